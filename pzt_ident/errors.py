@@ -1,0 +1,26 @@
+"""The one error that bad input raises."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class InputError(ValueError):
+    """Something the user gave is wrong; the message says what and where, the remedy what to do about it.
+
+    The command line prints both and ends with exit code 2, without a traceback.
+    """
+
+    def __init__(self, message: str, *, where: str = "", remedy: str = "") -> None:
+        self.message, self.where, self.remedy = message, where, remedy
+        super().__init__(": ".join(part for part in (where, message) if part) + (f"\n  {remedy}" if remedy else ""))
+
+
+def nearest(word: str, words: Iterable[str]) -> str:
+    """A remedy for an unknown word: the nearest known ones, else all of them."""
+    known = sorted(words)
+    close = difflib.get_close_matches(word, known, n=3, cutoff=0.5)
+    if close:
+        return "did you mean " + " or ".join(repr(item) for item in close) + "?"
+    return "known: " + ", ".join(known)

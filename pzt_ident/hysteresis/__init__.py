@@ -1,0 +1,1 @@
+"""Hysteresis operators, one file each; the file name is the word in the job."""

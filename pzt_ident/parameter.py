@@ -1,0 +1,34 @@
+"""A physical quantity, declared once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A quantity of a block: everything else (bounds, schema, report, sensitivities) is derived from this.
+
+    `unit` is written as in a job file. The words `drive` and `response` stand for the units of the axis' own
+    channels, and the bounds of such a parameter are multiples of the data's own spans: `Parameter("response/drive",
+    (0, 2))` of a record over 100 V and 8 um goes from 0 to 0.16 um/V.
+
+    `null` is the value at which the block is exactly the identity; None where there is none.
+    `effect` names the effect that the parameter belongs to; unless the job lists it, the parameter stays at its null.
+    `count` makes a parameter one of each branch of the block, `weight_1`, `weight_2`, ...
+    `value` is what it is fixed to unless the job frees it with bounds.
+    """
+
+    unit: str
+    bounds: tuple[float, float]
+    doc: str
+    null: float | None = None
+    scale: Literal["linear", "log"] = "linear"
+    effect: str | None = None
+    count: int | None = None
+    value: float | None = None
+    name: str = ""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        object.__setattr__(self, "name", name)

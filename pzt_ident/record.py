@@ -1,0 +1,90 @@
+"""Measured channels: what a job names (Source, Channel, Axis) and what a simulation uses (Record)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Use = Literal["identify", "validate"]
+
+
+@dataclass(frozen=True)
+class Channel:
+    """Where one signal stands in a file: a header text such as `u_x [V]`, a column number counted from 1, or a data
+    set or array (then `file` may be another file than the record's). `unit` wins over the unit in the header."""
+
+    name: str | None = None
+    column: int | None = None
+    unit: str | None = None
+    dataset: str | None = None
+    index: tuple[int | str, ...] | None = None
+    file: str | None = None
+
+
+@dataclass(frozen=True)
+class Axis:
+    """An axis of the stage: its drive and, where it is measured, its response."""
+
+    drive: Channel
+    response: Channel | None = None
+
+
+@dataclass(frozen=True)
+class Source:
+    """One record as the job names it. `rows` are counted from 0, the end excluded; `time` is a stretch in s."""
+
+    file: str
+    use: Use = "identify"
+    name: str | None = None
+    sample_rate: float | None = None
+    rows: tuple[int | None, int | None] | None = None
+    time: tuple[float | None, float | None] | None = None
+    settle: float = 0.0
+    decimate: int = 1
+    run_in: int = 0
+    dataset: str | None = None
+    table: int | str | None = None
+    index: tuple[int | str, ...] | None = None
+    sheet: str | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """One measured stretch on a uniform time grid, in SI units.
+
+    drive, response: (axes, samples); the response of an axis that is not measured is NaN throughout.
+    dt, start: sample time and first time stamp, s. settle: samples simulated but not scored at the start.
+    run_in: how often the drive is simulated before the first sample (a periodic record in steady state).
+    sha256: of the file as read.
+    """
+
+    name: str
+    use: Use
+    dt: float
+    drive: NDArray[np.float64]
+    response: NDArray[np.float64]
+    start: float = 0.0
+    settle: int = 0
+    run_in: int = 0
+    file: str = ""
+    sha256: str = ""
+    axes: tuple[str, ...] = ("x",)
+    drive_units: tuple[str, ...] = ("V",)
+    response_units: tuple[str | None, ...] = ("m",)
+    notes: tuple[str, ...] = field(default=())
+
+    @property
+    def samples(self) -> int:
+        return self.drive.shape[1]
+
+    @property
+    def measured(self) -> tuple[int, ...]:
+        """Indices of the axes that have a response."""
+        return tuple(i for i, unit in enumerate(self.response_units) if unit is not None)
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        return self.start + self.dt * np.arange(self.samples)

@@ -1,0 +1,75 @@
+"""From the word in a job file to the thing in the file of that name."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from collections.abc import Iterator
+from importlib.metadata import entry_points
+from typing import Any, Generic, TypeVar
+
+from pzt_ident.errors import InputError, nearest
+
+T = TypeVar("T", bound=type[Any])
+
+
+class Registry(Generic[T]):
+    """Classes by their file's name. Folders are imported word by word at the first look-up; others add theirs by
+    entry points of `group`, or by `register` in a file of theirs.
+
+    Raises InputError with the nearest words for an unknown one.
+    """
+
+    def __init__(self, kind: str, packages: tuple[str, ...], group: str) -> None:
+        self.kind, self.packages, self.group = kind, packages, group
+        self._items: dict[str, T] = {}
+
+    def register(self, item: T) -> T:
+        item.name = item.__module__.rpartition(".")[2]
+        self._items[item.name] = item
+        return item
+
+    def __getitem__(self, word: str) -> T:
+        if word not in self._items:
+            self._load(word)
+        if word not in self._items:
+            raise InputError(f"unknown {self.kind} {word!r}", remedy=nearest(word, self.words()))
+        return self._items[word]
+
+    def __contains__(self, word: str) -> bool:
+        return word in self.words()
+
+    def __iter__(self) -> Iterator[T]:
+        return (self[word] for word in self.words())
+
+    def words(self) -> list[str]:
+        """Every known word, without importing what stands behind it."""
+        return sorted(set(self._items) | set(self._files()) | {entry.name for entry in self._entries()})
+
+    def folder(self, word: str) -> str:
+        """The last part of the package that the word's class was declared in, for example `effects`."""
+        return self[word].__module__.split(".")[-2]
+
+    def _files(self) -> dict[str, str]:
+        found = {}
+        for package in self.packages:
+            for module in pkgutil.iter_modules(importlib.import_module(package).__path__):
+                if not module.name.startswith("_"):
+                    found[module.name] = f"{package}.{module.name}"
+        return found
+
+    def _entries(self) -> list[Any]:
+        return list(entry_points(group=self.group))
+
+    def _load(self, word: str) -> None:
+        if path := self._files().get(word):
+            importlib.import_module(path)
+        for entry in self._entries():
+            if entry.name == word:
+                self._items[word] = entry.load()
+
+
+blocks: Registry[Any] = Registry(
+    "block or effect", ("pzt_ident.hysteresis", "pzt_ident.mechanics", "pzt_ident.effects"), "pzt_ident.block"
+)
+optimizers: Registry[Any] = Registry("optimizer", ("pzt_ident.optimizers",), "pzt_ident.optimizer")
