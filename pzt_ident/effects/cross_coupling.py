@@ -1,0 +1,22 @@
+"""Force of one axis that moves another through the guide's stiffness."""
+
+from pzt_ident.block import Coupling, Place
+from pzt_ident.parameter import Parameter
+from pzt_ident.registry import blocks
+
+
+@blocks.register
+class CrossCoupling(Coupling):
+    """f1 <- f1 + (k12 / k11) f2, ahead of the mechanics of axis 1.
+
+    Lin & Lin (2012), Mechatronics 22, 614, eq. 6 and 20: only the ratios k12 / k11 and k21 / k22 matter.
+    """
+
+    place = Place.COUPLING
+    ratio = Parameter("1", (-0.2, 0.2), "Stiffness coupling k12 / k11 from the other axis.", null=0)
+
+    def prepare(ratio):
+        return (ratio,)
+
+    def step(y, other, ratio):
+        return y + ratio * other

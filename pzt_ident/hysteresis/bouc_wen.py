@@ -1,0 +1,60 @@
+"""Bouc-Wen hysteresis driven by the voltage."""
+
+from math import inf
+
+import numpy as np
+
+from pzt_ident.block import Operator, Place, expm1, log1p
+from pzt_ident.parameter import Parameter
+from pzt_ident.registry import blocks
+
+
+@blocks.register
+class BoucWen(Operator):
+    """y = d u - h,  dh/dt = alpha d du/dt - beta |du/dt| h - gamma du/dt |h|.
+
+    Lin & Lin (2012), Mechatronics 22, 614, eq. 5. The state is h / (alpha d), in volts. On a monotone step of length s,
+    counted along the motion, q(s) = q0 exp(-r s) + (1 - exp(-r s)) / r, with r = beta - gamma where q < 0 and
+    r = beta + gamma where q > 0.
+    """
+
+    place = Place.OPERATOR
+    gain = Parameter("response/drive", (0, 3), "Displacement per volt without hysteresis, d.")
+    alpha = Parameter("1", (0, 1), "Share of the prompt response that hysteresis takes back just after a rest.")
+    beta = Parameter("1/drive", (0, 60), "Forgetting per volt on both branches.")
+    gamma = Parameter("1/drive", (-30, 60), "Forgetting per volt, with the sign of h along the motion.")
+
+    def prepare(gain, alpha, beta, gamma):
+        return (gain, alpha * gain), regime(beta + gamma), regime(beta - gamma)
+
+    def start(u):
+        return (0.0,)
+
+    def travel(distance, rate, length):
+        lost = -expm1(-rate * distance)
+        return 1 - lost, lost * length
+
+    def near(further, keep, add, rate, length):
+        x = rate * further
+        extra = further * (
+            1 - x * (1 / 2 - x * (1 / 6 - x * (1 / 24 - x * (1 / 120 - x * (1 / 720 - x * (1 / 5040))))))
+        )
+        return keep - rate * (keep * extra), add + keep * extra
+
+    def exact(q, distance, along, against):
+        rate, length = against
+        reaches = q < 0 and -q * rate > -1
+        left = distance - (log1p(-q * rate) * length if reaches else inf)
+        crosses = q < 0 and left > 0
+        rate, length = along if crosses or q >= 0 else against
+        q, distance = (0.0, left) if crosses else (q, distance)
+        return q + expm1(-rate * distance) * (q - length)
+
+    def output(h, u, gain, slope):
+        return gain * u - slope * h
+
+
+def regime(rate):
+    """Rate and its inverse; a rate of zero is taken as one too small to matter."""
+    rate = np.where(np.abs(rate) < 1e-200, 1e-200, rate)
+    return rate, 1 / rate

@@ -1,0 +1,187 @@
+"""Blocks compiled once each, run over many candidates as SIMD lanes and over tiles of time that stay in the cache.
+
+A group of WIDTH candidates goes through a tile of TILE samples block after block. Each block is one C function of its
+own, written out from the template for its kind (lanes.py), compiled by numba and cached on disk under a name that holds
+the hash of its source; the driver calls it through its address, so no combination of blocks is ever compiled.
+"""
+
+from __future__ import annotations
+
+import os
+from math import log
+from typing import Any
+
+import numba
+import numpy as np
+from llvmlite import binding, ir
+from numba import cfunc, njit, types
+from numba.extending import intrinsic, overload, register_jitable
+
+from pzt_ident import block
+
+if "NUMBA_CPU_FEATURES" not in os.environ:  # 512 bit vectors where the processor has them: 1.4 times faster here
+    numba.config.CPU_FEATURES = binding.get_host_cpu_features().flatten() + ",-prefer-256-bit"
+    numba.config.CPU_NAME = binding.get_host_cpu_name()
+
+WIDTH = 24
+TILE = 64
+UNROLL = 2
+OPTIONS: dict[str, Any] = {"fastmath": {"contract"}, "error_model": "numpy", "cache": True}
+
+pointer = types.CPointer(types.float64)
+SIGNATURE = types.void(types.intp, types.intp, types.intp, pointer, pointer, pointer)
+compiled = cfunc(SIGNATURE, **OPTIONS)
+
+
+def bitwise(result: Any, make: Any) -> Any:
+    """An intrinsic of one float64 that works on its bits."""
+
+    def function(context: Any, x: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+            return make(builder, builder.bitcast(args[0], WHOLE), lambda value: ir.Constant(WHOLE, value))
+
+        return result(types.float64), generate
+
+    return intrinsic(function)
+
+
+WHOLE = ir.IntType(64)
+two_to_the = bitwise(  # 2^n from n + SHIFT
+    types.float64,
+    lambda ir_, bits, const: ir_.bitcast(ir_.shl(ir_.add(bits, const(1023)), const(52)), ir.DoubleType()),
+)
+exponent = bitwise(types.int64, lambda ir_, bits, const: ir_.sub(ir_.lshr(bits, const(52)), const(1023)))
+mantissa = bitwise(
+    types.float64,
+    lambda ir_, bits, const: ir_.bitcast(ir_.or_(ir_.and_(bits, const(2**52 - 1)), const(1023 << 52)), ir.DoubleType()),
+)
+
+SHIFT = 1.5 * 2**52
+PER_LN2 = 1 / log(2)
+LN2_HIGH, LN2_LOW = float.fromhex("0x1.62e42fefap-1"), float.fromhex("0x1.cf79abc9e3b3ap-40")
+
+
+@register_jitable(forceinline=True)
+def expm1_lanes(x):
+    """exp(x) - 1 = 2^n (exp(r) - 1) + (2^n - 1), x = n ln 2 + r; Chebyshev fit to (exp(r) - 1 - r) / r^2."""
+    x = min(max(x, -700.0), 700.0)
+    shifted = x * PER_LN2 + SHIFT
+    n = shifted - SHIFT
+    r = (x - n * LN2_HIGH) - n * LN2_LOW
+    p = 2.4801536388690766e-05 + r * (2.762511557828763e-06 + r * 2.761380686153829e-07)
+    p = 0.008333333353729397 + r * (0.0013888888905881542 + r * (0.00019841208732536384 + r * p))
+    p = r + r * r * (0.5 + r * (0.1666666666664829 + r * (0.04166666666665136 + r * p)))
+    scale = two_to_the(shifted)
+    return scale * p + (scale - 1)
+
+
+@register_jitable(forceinline=True)
+def log1p_lanes(x):
+    """log(1 + x) for x > -1, with the rounding of 1 + x taken back; Chebyshev fit to (atanh(s) / s - 1) / s^2."""
+    whole = 1 + x
+    m = mantissa(whole)
+    high = m > 1.4142135623730951
+    m = 0.5 * m if high else m
+    n = float(exponent(whole) + (1 if high else 0))
+    s = (m - 1) / (m + 1)
+    z = s * s
+    p = 0.11111105549855646 + z * (0.09091445840219947 + z * (0.0766581834977067 + z * 0.07308749346957806))
+    p = 0.3333333333333335 + z * (0.19999999999949516 + z * (0.14285714313095244 + z * p))
+    rounding = (x - (whole - 1)) / whole
+    return n * LN2_HIGH + (2 * s + (2 * s * z * p + (rounding + n * LN2_LOW)))
+
+
+@overload(block.expm1, jit_options={"forceinline": True})
+def _expm1(x):
+    return lambda x: expm1_lanes(x)
+
+
+@overload(block.log1p, jit_options={"forceinline": True})
+def _log1p(x):
+    return lambda x: log1p_lanes(x)
+
+
+@intrinsic
+def call(context: Any, address: Any, samples: Any, first: Any, fresh: Any, drive: Any, scratch: Any, tile: Any) -> Any:
+    """Call the C function at an address; the last three are addresses of float64."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        whole, real = ir.IntType(64), ir.DoubleType().as_pointer()
+        kind = ir.FunctionType(ir.VoidType(), [whole] * 3 + [real] * 3)
+        function = builder.inttoptr(args[0], kind.as_pointer())
+        builder.call(function, [*args[1:4], *(builder.inttoptr(a, real) for a in args[4:])])
+        return context.get_dummy_value()
+
+    return types.void(*[types.int64] * 7), generate
+
+
+@compiled
+def fill(samples, first, fresh, drive, scratch, tile):
+    """The drive itself, the same in every lane."""
+    for i in range(samples):
+        u = drive[first + i]
+        for j in range(WIDTH):
+            tile[i * WIDTH + j] = u
+
+
+@compiled
+def errors(samples, first, fresh, response, sums, tile):
+    """Sum of e and e^2, e = y - response."""
+    whole = samples - samples % 2
+    for i in range(0, whole, 2):
+        r0, r1 = response[first + i], response[first + i + 1]
+        for j in range(WIDTH):
+            e0, e1 = tile[i * WIDTH + j] - r0, tile[(i + 1) * WIDTH + j] - r1
+            sums[j] += e0 + e1
+            sums[WIDTH + j] += e0 * e0 + e1 * e1
+    for i in range(whole, samples):
+        for j in range(WIDTH):
+            e0 = tile[i * WIDTH + j] - response[first + i]
+            sums[j] += e0
+            sums[WIDTH + j] += e0 * e0
+
+
+@njit(nogil=True, cache=True)
+def run(program, signals, scratch, tiles, samples, since, stride, output, take):
+    """Run every group through every tile.
+
+    program: (steps, 5) of address, scratch row, row of signals, tile, from which sample on.
+    signals: (rows, 1 + samples + UNROLL), a sample of rest before the record. tiles: (axes, TILE * WIDTH), aligned.
+    scratch: (groups, rows * WIDTH). output: (groups * WIDTH, axes, samples after `since` / stride) or empty, filled
+    from the tiles numbered in `take`, every `stride`-th sample.
+    """
+    for group in range(scratch.shape[0]):
+        for first in range(0, samples, TILE):
+            count = min(TILE, samples - first)
+            for step in range(program.shape[0]):
+                skip = max(0, program[step, 4] - first)
+                if skip < count:
+                    call(
+                        program[step, 0],
+                        count - skip,
+                        first + skip,
+                        1 if first == 0 else 0,
+                        signals[program[step, 2]].ctypes.data + 8,
+                        scratch[group].ctypes.data + 8 * WIDTH * program[step, 1],
+                        tiles[program[step, 3]].ctypes.data + 8 * WIDTH * skip,
+                    )
+            if output.size:
+                begin = max(first, since)
+                begin += (since - begin) % stride
+                for axis in range(take.size):
+                    for i in range(begin, first + count, stride):
+                        for j in range(WIDTH):
+                            output[group * WIDTH + j, axis, (i - since) // stride] = tiles[
+                                take[axis], (i - first) * WIDTH + j
+                            ]
+
+
+def aligned(*shape: int) -> np.ndarray:
+    """Zeros that begin on a cache line."""
+    size = int(np.prod(shape))
+    raw = np.zeros(size + 8)
+    shift = (-raw.ctypes.data // 8) % 8
+    return raw[shift : shift + size].reshape(shape)
+
+
+VERSION = f"{numba.__version__}-{WIDTH}-{TILE}-{UNROLL}"

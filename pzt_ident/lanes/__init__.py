@@ -1,0 +1,150 @@
+"""The lane loop around an author's block: written out from a template, compiled by numba, kept on the disk.
+
+One file of source a block, named by the hash of all that it is made of, so that a cached kernel is never stale.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import inspect
+import os
+import sys
+import tempfile
+from functools import cache
+from pathlib import Path
+from types import FunctionType, ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from pzt_ident.block import Bank, Block, Coupling, Operator
+
+TEMPLATES = Path(__file__).parent
+FUNCTIONS = ("start", "step", "travel", "near", "exact", "output")
+
+
+class Layout(NamedTuple):
+    """Rows of WIDTH numbers in a block's scratch: states of all branches, then coefficients of all, then work."""
+
+    states: int
+    coefficients: int
+    copies: int
+    rows: int
+    shared: int
+
+
+class Compiled(NamedTuple):
+    address: int
+    layout: Layout
+
+
+@cache
+def compile_block(block: type[Block], axes: int, driven: bool) -> Compiled:
+    """The block's C function. `driven`: it reads the drive, the same in every lane, and is the first of its axis."""
+    from pzt_ident import kernel
+
+    template = template_of(block, driven)
+    layout = layout_of(block, axes, kernel.TILE)
+    text = (TEMPLATES / f"{template}.jinja").read_text()
+    sources = [text, kernel.VERSION, str(layout), str(axes), inspect.getsource(inspect.getmodule(block))]  # type: ignore[arg-type]
+    key = hashlib.sha256("\0".join(sources).encode()).hexdigest()[:16]
+    path = folder() / f"{block.__name__.lower()}_{template}_{key}.py"
+    if not path.exists():
+        write(path, render(text, layout, axes, kernel))
+    return Compiled(load(path, block).tile.address, layout)
+
+
+def template_of(block: type[Block], driven: bool) -> str:
+    if issubclass(block, Operator):
+        return "driven_operator" if driven else "operator"
+    return "coupling" if issubclass(block, Coupling) else "bank" if issubclass(block, Bank) else "plain"
+
+
+def layout_of(block: type[Block], axes: int, tile: int) -> Layout:
+    """Counted by asking the block itself, with parameters in the middle of their bounds."""
+    words = {p.name: p for p in block.parameters().values()}
+    shape = {word: (1,) if p.count is None else (p.count, 1) for word, p in words.items()}
+    middle = {word: np.full(shape[word], sum(p.bounds) / 2) for word, p in words.items()}
+    known = middle | {"dt": 1e-3, "span": 1.0}
+    with np.errstate(all="ignore"):
+        prepared = block.prepare(*(known[word] for word in block.arguments()))  # type: ignore[attr-defined]
+    shared = len(prepared[0]) if issubclass(block, Operator) else len(prepared)
+    count = len(flat(block, prepared))
+    example = [1.0] * (0 if issubclass(block, Operator) else count)
+    copies = block.branches if issubclass(block, Bank) else axes * (axes - 1) if issubclass(block, Coupling) else 1
+    states = 0 if issubclass(block, Coupling) else len(block.start(0.0, *example))  # type: ignore[attr-defined]
+    work = 6 if issubclass(block, Operator) else tile if issubclass(block, Bank) else 0
+    return Layout(states, count, copies, copies * (states + count) + work, shared)
+
+
+def flat(block: type[Block], prepared: tuple[Any, ...]) -> tuple[Any, ...]:
+    """An operator's coefficients in one row: shared, along, against."""
+    return tuple(c for part in prepared for c in part) if issubclass(block, Operator) else prepared
+
+
+def render(text: str, layout: Layout, axes: int, kernel: ModuleType) -> str:
+    from jinja2 import Environment, StrictUndefined
+
+    made = Environment(trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined).from_string(text)
+    return made.render(
+        S=[f"s{i}" for i in range(layout.states)],
+        K=[f"k{i}" for i in range(layout.coefficients)],
+        shared=layout.shared,
+        copies=layout.copies,
+        axes=axes,
+        W=kernel.WIDTH,
+        TILE=kernel.TILE,
+        UNROLL=kernel.UNROLL,
+    )
+
+
+@cache
+def folder() -> Path:
+    """$PZT_IDENT_CACHE, else the user's cache folder, else a temporary one where that cannot be written."""
+    home = os.environ.get("PZT_IDENT_CACHE") or Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    try:
+        chosen = Path(home) / "pzt_ident"
+        chosen.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=chosen).close()
+    except OSError:
+        chosen = Path(tempfile.mkdtemp(prefix="pzt_ident-"))
+    return chosen
+
+
+def write(path: Path, text: str) -> None:
+    with tempfile.NamedTemporaryFile("w", dir=path.parent, suffix=".tmp", delete=False) as file:
+        file.write(text)
+    os.replace(file.name, path)
+
+
+def load(path: Path, block: type[Block]) -> Any:
+    """Import the written-out source with the author's functions in it."""
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    assert spec and spec.loader
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[path.stem] = module
+    for word in FUNCTIONS:
+        if function := getattr(block, word, None):
+            setattr(module, word, jitted(function))
+    spec.loader.exec_module(module)
+    return module
+
+
+def jitted(function: FunctionType) -> Any:
+    """The function and the plain functions that it calls, as numba sees them."""
+    from numba import njit
+    from numba.extending import register_jitable
+
+    for helper in helpers(function):
+        register_jitable(forceinline=True)(helper)
+    return njit(forceinline=True)(function)
+
+
+def helpers(function: FunctionType) -> set[FunctionType]:
+    found: set[FunctionType] = set()
+    for word in function.__code__.co_names:
+        helper = function.__globals__.get(word)
+        if isinstance(helper, FunctionType) and helper.__module__ == function.__module__:
+            found |= {helper} | helpers(helper)
+    return found

@@ -1,0 +1,49 @@
+"""One mass, damper and spring."""
+
+import numpy as np
+
+from pzt_ident.block import Block, Place
+from pzt_ident.parameter import Parameter
+from pzt_ident.registry import blocks
+
+
+@blocks.register
+class Lumped(Block):
+    """m x'' + b x' + k x = k f, solved exactly for f linear on each step (first-order hold), at rest at the start.
+
+    Lin & Lin (2012), Mechatronics 22, 614, eq. 2. With w = x - f and v = x'/omega, (w, v) turns by
+    R = exp(A T) and is pushed by b (f1 - f0). Valid undamped, over- and critically damped, and beyond Nyquist.
+    """
+
+    place = Place.MECHANICS
+    mass = Parameter("kg", (0.01, 10), "Moving mass.", scale="log")
+    damping = Parameter("N*s/m", (0, 1e4), "Viscous damping.")
+    stiffness = Parameter("N/m", (1e5, 1e9), "Stiffness of flexure and actuator together.", scale="log")
+
+    def prepare(mass, damping, stiffness, dt):
+        omega = np.sqrt(stiffness / mass)
+        zeta = damping / (2 * np.sqrt(stiffness * mass))
+        angle = omega * dt
+        cosine, sine = rotation(zeta, angle)
+        r11, r12 = cosine + zeta * sine, sine
+        r21, r22 = -sine, cosine - zeta * sine
+        lag, speed = 2 * zeta / angle, 1 / angle
+        return r11, r12, r21, r22, r11 * lag - r12 * speed - lag, r21 * lag - r22 * speed + speed
+
+    def start(u, r11, r12, r21, r22, b1, b2):
+        return 0.0, 0.0, u
+
+    def step(w, v, f, u, r11, r12, r21, r22, b1, b2):
+        push = u - f
+        w, v = r11 * w + r12 * v + b1 * push, r21 * w + r22 * v + b2 * push
+        return w, v, u, u + w
+
+
+def rotation(zeta, angle):
+    """exp(-zeta a) cos(s a) and exp(-zeta a) sin(s a) / s with s = sqrt(1 - zeta^2), real for every zeta >= 0."""
+    s = np.sqrt((1 - zeta**2).astype(complex))
+    phase = 1j * s * angle
+    up, down = np.exp(phase - zeta * angle), np.exp(-phase - zeta * angle)
+    small = np.abs(s * angle) < 1e-6
+    sine = np.where(small, angle * np.exp(-zeta * angle), ((up - down) / (2j * np.where(small, 1, s))).real)
+    return ((up + down) / 2).real, sine

@@ -1,0 +1,242 @@
+"""Blocks in signal order, simulated for many candidates at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pzt_ident.block import Bank, Block, Coupling, Operator
+from pzt_ident.lanes import Layout
+from pzt_ident.parameter import Parameter
+from pzt_ident.record import Record
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Slot:
+    """One parameter of one block on one axis (or of one ordered pair of axes: `other` acts on `axis`)."""
+
+    name: str
+    block: type[Block]
+    word: str
+    axis: int
+    other: int
+    parameter: Parameter
+
+
+class Model:
+    """A chain of blocks over all axes of a stage.
+
+    theta is (candidates, parameters) in SI units, in the order of `slots`; a simulation is (candidates, measured axes,
+    samples). An axis without a response is simulated as far as the last coupling, with the parameters of the first
+    measured axis. Parameter names carry the axis where more than one is measured.
+    """
+
+    def __init__(self, blocks: Sequence[type[Block]], axes: Sequence[str], measured: Sequence[int]) -> None:
+        self.blocks = tuple(sorted(blocks, key=lambda block: block.place))
+        self.axes, self.measured = tuple(axes), tuple(measured)
+        self.slots = tuple(slot for block in self.blocks for slot in self._slots(block))
+
+    def _slots(self, block: type[Block]) -> list[Slot]:
+        found = []
+        for axis in self.measured:
+            prefix = f"{self.axes[axis]}." if len(self.measured) > 1 else ""
+            others = [b for b in range(len(self.axes)) if b != axis] if issubclass(block, Coupling) else [axis]
+            for other in others:
+                suffix = f"_from_{self.axes[other]}" if len(others) > 1 else ""
+                for word, parameter in block.parameters().items():
+                    name = f"{prefix}{block.name}.{word}{suffix}"
+                    found.append(Slot(name, block, word, axis, other, parameter))
+        return found
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(slot.name for slot in self.slots)
+
+    @property
+    def oversample(self) -> int:
+        return max((block.oversample for block in self.blocks), default=1)
+
+    def columns(self, block: type[Block], axis: int, other: int) -> dict[str, int | list[int]] | None:
+        """Columns of theta that hold a block's parameters; None for a pair that has none (onto an axis not measured)."""
+        if axis not in self.measured:
+            if issubclass(block, Coupling):
+                return None
+            axis = other = self.measured[0]
+        found: dict[str, int | list[int]] = {}
+        for column, slot in enumerate(self.slots):
+            if slot.block is block and (slot.axis, slot.other) == (axis, other):
+                if slot.parameter.count is None:
+                    found[slot.parameter.name] = column
+                else:
+                    found.setdefault(slot.parameter.name, []).append(column)  # type: ignore[union-attr]
+        return found
+
+    def simulate(self, record: Record, theta: Array) -> Array:
+        """Responses without their free offset, in SI units: (candidates, measured axes, samples)."""
+        return Plan(self, record).simulate(theta)
+
+
+class Part(NamedTuple):
+    """A block at work: where its coefficients go, and from which columns of theta they come."""
+
+    block: type[Block]
+    row: int
+    layout: Layout
+    columns: dict[str, int | list[int]]
+    known: dict[str, float]
+
+
+class Plan:
+    """A model made ready for one record: the kernel's program and the layout of its scratch. Stateless between calls."""
+
+    def __init__(self, model: Model, record: Record) -> None:
+        self.model, self.record = model, record
+        self.parts: list[Part] = []
+        self.program: list[tuple[int, ...]] = []
+        self.rows = 0
+        fresh = set(range(len(model.axes)))  # axes whose tile does not hold a signal yet
+        last = max((i for i, block in enumerate(model.blocks) if issubclass(block, Coupling)), default=-1)
+        for number, block in enumerate(model.blocks):
+            if issubclass(block, Coupling):
+                self._fill(fresh)
+                self._add(block, 0, driven=False)
+                continue
+            for axis in range(len(model.axes)):
+                if axis in model.measured or number < last:
+                    driven = axis in fresh and issubclass(block, Operator)
+                    self._fill(fresh & (set() if driven else {axis}))
+                    self._add(block, axis, driven)
+                    fresh.discard(axis)
+        self._fill(fresh & set(model.measured))
+        self.sums = self.rows
+        self.rows += 2 * len(model.measured)
+
+    def _fill(self, axes: set[int]) -> None:
+        from pzt_ident.kernel import fill
+
+        self.program += [(fill.address, 0, axis, axis, 0) for axis in sorted(axes)]
+        axes.clear()
+
+    def _add(self, block: type[Block], axis: int, driven: bool) -> None:
+        from pzt_ident.lanes import compile_block
+
+        made = compile_block(block, len(self.model.axes), driven)
+        self.program.append((made.address, self.rows, axis, axis, 0))
+        axes = range(len(self.model.axes))
+        coupling = issubclass(block, Coupling)
+        places = [(a, b) for a in axes for b in axes if b != a] if coupling else [(axis, axis)]
+        layout = made.layout
+        for copy, place in enumerate(places):
+            if columns := self.model.columns(block, *place):
+                row = self.rows + layout.states * layout.copies + copy * layout.coefficients
+                span = float(np.ptp(self.record.drive[place[0]]))
+                known = {"dt": self.record.dt / self.model.oversample, "span": span}
+                self.parts.append(Part(block, row, layout, columns, known))
+        self.rows += layout.rows
+
+    @cached_property
+    def signals(self) -> Array:
+        """A sample of rest, the drives over the run-in and the record, then the responses about their means, padded."""
+        from pzt_ident.kernel import UNROLL
+
+        record, model = self.record, self.model
+        drive = np.array([self._fine(row) for row in record.drive])
+        drive = np.tile(drive, record.run_in + 1)
+        response = np.zeros((len(model.measured), drive.shape[1]))
+        if model.oversample == 1:
+            measured = record.response[list(model.measured)]
+            response[:, drive.shape[1] - record.samples :] = measured - measured.mean(axis=1, keepdims=True)
+        rows = np.vstack([drive, response])
+        return np.hstack([rows[:, :1], rows, np.repeat(rows[:, -1:], UNROLL, axis=1)])
+
+    def _fine(self, drive: Array) -> Array:
+        """The drive at `oversample` steps a sample: band-limited where the record is periodic, else a cubic spline."""
+        times = self.model.oversample
+        if times == 1:
+            return drive
+        if self.record.run_in:
+            from scipy.signal import resample
+
+            return resample(drive, times * drive.size)
+        from scipy.interpolate import CubicSpline
+
+        grid = np.minimum(np.arange(times * drive.size) / times, drive.size - 1)
+        return CubicSpline(np.arange(drive.size), drive)(grid)
+
+    def _scratch(self, theta: Array) -> Array:
+        from pzt_ident.kernel import WIDTH, aligned
+        from pzt_ident.lanes import flat
+
+        groups = -(-theta.shape[0] // WIDTH)
+        scratch = aligned(groups, self.rows, WIDTH)
+        lanes = np.minimum(np.arange(groups * WIDTH), theta.shape[0] - 1)
+        rows = np.ascontiguousarray(theta[lanes].T)
+        for block, row, layout, columns, known in self.parts:
+            given = [rows[columns[word]] if word in columns else known[word] for word in block.arguments()]
+            prepared = flat(block, block.prepare(*given))  # type: ignore[attr-defined]
+            for k, coefficient in enumerate(prepared):
+                if np.ndim(coefficient) == 2:
+                    for branch, one in enumerate(coefficient):
+                        scratch[:, row + branch * layout.coefficients + k] = one.reshape(-1, WIDTH)
+                else:
+                    branches = layout.copies if issubclass(block, Bank) else 1
+                    at = slice(row + k, row + k + (branches - 1) * layout.coefficients + 1, layout.coefficients)
+                    scratch[:, at] = np.reshape(coefficient, (-1, 1, WIDTH)) if np.ndim(coefficient) else coefficient
+        return scratch.reshape(groups, -1)
+
+    def _run(self, theta: Array, program: list[tuple[int, ...]], output: Array) -> Array:
+        from pzt_ident.kernel import TILE, WIDTH, aligned, run
+
+        scratch = self._scratch(theta)
+        tiles = aligned(len(self.model.axes), TILE * WIDTH)
+        steps = np.array(program, dtype=np.int64).reshape(-1, 5)
+        samples = (self.record.run_in + 1) * self.record.samples * self.model.oversample
+        since = self.record.run_in * self.record.samples * self.model.oversample
+        take = np.array(self.model.measured, dtype=np.int64)
+        run(steps, self.signals, scratch, tiles, samples, since, self.model.oversample, output, take)
+        return scratch
+
+    def simulate(self, theta: Array) -> Array:
+        """(candidates, measured axes, samples), before the free offset."""
+        from pzt_ident.kernel import WIDTH
+
+        theta = np.atleast_2d(theta)
+        lanes = -(-theta.shape[0] // WIDTH) * WIDTH
+        output = np.empty((lanes, len(self.model.measured), self.record.samples))
+        self._run(theta, self.program, output)
+        return output[: theta.shape[0]]
+
+    @property
+    def scored(self) -> int:
+        return self.record.samples - self.record.settle
+
+    def squares(self, theta: Array) -> Array:
+        """Sum of squared errors over the scored samples, each record's free offset removed: (candidates, axes)."""
+        from pzt_ident import kernel
+
+        if self.model.oversample > 1:
+            error = self.residuals(theta)
+            return np.einsum("mas,mas->ma", error, error)
+        since = self.record.run_in * self.record.samples + self.record.settle
+        program = list(self.program)
+        for i, axis in enumerate(self.model.measured):
+            program.append((kernel.errors.address, self.sums + 2 * i, len(self.model.axes) + i, axis, since))
+        scratch = self._run(theta, program, np.empty((0, 0, 0)))
+        sums = scratch.reshape(scratch.shape[0], self.rows, kernel.WIDTH)[:, self.sums :]
+        total, square = sums[:, 0::2], sums[:, 1::2]
+        found = np.moveaxis(square - total**2 / self.scored, 1, 2).reshape(-1, len(self.model.measured))
+        return found[: theta.shape[0]]
+
+    def residuals(self, theta: Array) -> Array:
+        """Model minus measurement over the scored samples, each with its free offset removed."""
+        error = self.simulate(theta) - self.record.response[list(self.model.measured)]
+        error = error[:, :, self.record.settle :]
+        error -= error.mean(axis=2, keepdims=True)
+        return error
