@@ -1,0 +1,176 @@
+"""Units as they stand in headers and job files: a small table, SI prefixes, products and quotients."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from functools import lru_cache
+
+from pzt_ident.errors import InputError, nearest
+
+Dimension = tuple[int, int, int, int, int]
+"""Exponents of m, kg, s, A, K."""
+
+_NUMBER: Dimension = (0, 0, 0, 0, 0)
+TIME: Dimension = (0, 0, 1, 0, 0)
+FREQUENCY: Dimension = (0, 0, -1, 0, 0)
+
+_PREFIXES = {
+    "f": 1e-15,
+    "p": 1e-12,
+    "n": 1e-9,
+    "u": 1e-6,
+    "m": 1e-3,
+    "c": 1e-2,
+    "d": 1e-1,
+    "k": 1e3,
+    "M": 1e6,
+    "G": 1e9,
+}
+_PREFIXED: dict[str, tuple[float, Dimension]] = {
+    "m": (1, (1, 0, 0, 0, 0)),
+    "g": (1e-3, (0, 1, 0, 0, 0)),
+    "s": (1, TIME),
+    "A": (1, (0, 0, 0, 1, 0)),
+    "K": (1, (0, 0, 0, 0, 1)),
+    "Hz": (1, FREQUENCY),
+    "N": (1, (1, 1, -2, 0, 0)),
+    "Pa": (1, (-1, 1, -2, 0, 0)),
+    "J": (1, (2, 1, -2, 0, 0)),
+    "W": (1, (2, 1, -3, 0, 0)),
+    "C": (1, (0, 0, 1, 1, 0)),
+    "V": (1, (2, 1, -3, -1, 0)),
+    "F": (1, (-2, -1, 4, 2, 0)),
+    "Ohm": (1, (2, 1, -3, -2, 0)),
+    "rad": (1, _NUMBER),
+}
+_WORDS = {
+    "m": "meter meters metre metres",
+    "um": "micron microns micrometer micrometers micrometre micrometres",
+    "nm": "nanometer nanometers nanometre nanometres",
+    "mm": "millimeter millimeters millimetre millimetres",
+    "s": "sec secs second seconds",
+    "ms": "msec millisecond milliseconds",
+    "us": "usec microsecond microseconds",
+    "V": "volt volts",
+    "mV": "millivolt millivolts",
+    "kV": "kilovolt kilovolts",
+    "A": "amp amps ampere amperes",
+    "N": "newton newtons",
+    "C": "coulomb coulombs",
+    "F": "farad farads",
+    "Ohm": "ohm ohms Ω",
+    "Hz": "hertz",
+    "1": "count counts lsb",
+}
+_SINGLE: dict[str, tuple[float, Dimension]] = {
+    **_PREFIXED,
+    **{
+        prefix + name: (size * scale, dim)
+        for prefix, scale in _PREFIXES.items()
+        for name, (size, dim) in _PREFIXED.items()
+    },
+    "1": (1, _NUMBER),
+    "%": (1e-2, _NUMBER),
+    "min": (60, TIME),
+}
+_SYNONYM = {word: unit for unit, words in _WORDS.items() for word in words.split()}
+_FACTOR = re.compile(
+    r"(?P<name>[^\W\d_]+|%)(?:(?:\^|\*\*)?(?P<power>[+-]?\d+))?|(?P<number>[+-]?\d+\.?\d*(?:[eE][+-]?\d+)?)"
+)
+_SCALED = re.compile(r"^[+-]?\d+\.?\d*(?:[eE][+-]?\d+)?\s+(?=[^\W\d_])")
+_BRACKETED = re.compile(r"^(?P<name>.*?)\s*(?:\[(?P<square>[^\[\]]*)\]|\((?P<round>[^()]*)\))\s*$")
+_TRAILING = re.compile(r"^(?P<name>.+?)(?:\s*,\s*|\s+)(?P<unit>[^\s,]+)$")
+_SPELLING = str.maketrans("μ−·⋅×", "u-***")
+_LABELLED = re.compile(r"(?i)\b(?:ch|channel|sensor|axis|input|output|probe|actuator|stage|phase)$")
+
+
+def factor(unit: str) -> float:
+    """What a value in `unit` is multiplied by to be in SI units: `factor("um/V")` is 1e-6.
+
+    A number in front is the scale of a signal: values in `20 V` are volts behind a gain of 20.
+    Raises InputError with the nearest known words.
+    """
+    return _parsed(unit)[0]
+
+
+def dimension(unit: str) -> Dimension:
+    """The exponents of m, kg, s, A, K. Raises InputError with the nearest known words."""
+    return _parsed(unit)[1]
+
+
+def same_kind(a: str, b: str) -> bool:
+    """Whether values in one unit can be given in the other."""
+    return dimension(a) == dimension(b)
+
+
+def unscaled(unit: str) -> str:
+    """The unit without a number in front, to show results in: `V` for `20 V`."""
+    return _SCALED.sub("", unit.strip())
+
+
+def is_unit(text: str) -> bool:
+    try:
+        _parsed(text)
+    except InputError:
+        return False
+    return True
+
+
+def plain(text: str) -> str:
+    """One spelling of a text: compatible characters (NFKC), ASCII micro, minus and product signs, single spaces."""
+    return " ".join(unicodedata.normalize("NFKC", text).translate(_SPELLING).split())
+
+
+def split_header(header: str) -> tuple[str, str | None]:
+    """Name and unit of a column: `u_x [V]`, `u_x (V)`, `Ch1,V` and `P1 uC_per_cm2` all have one.
+
+    What stands in square brackets is taken for a unit, known or not; elsewhere only a known unit is, and
+    a single letter after a word such as `Channel` is not.
+    """
+    header = header.strip()
+    if found := _BRACKETED.match(header):
+        inside = (found["square"] if found["square"] is not None else found["round"]).strip()
+        if found["square"] is not None or is_unit(inside):
+            return found["name"], inside or None
+    elif found := _TRAILING.match(header):
+        label = len(found["unit"]) == 1 and "," not in header and _LABELLED.search(found["name"])
+        if not found["unit"][0].isdigit() and is_unit(found["unit"]) and not label:
+            return found["name"], found["unit"]
+    return header, None
+
+
+@lru_cache(maxsize=512)
+def _parsed(unit: str) -> tuple[float, Dimension]:
+    text = plain(unit).replace("_per_", "/").replace(" per ", "/")
+    size, powers, position, sign = 1.0, [0] * 5, 0, 1
+    while True:
+        found = _FACTOR.match(text, position)
+        if not found:
+            raise _unknown(unit, text[position:])
+        one, dim, power = _single(unit, found)
+        size *= one ** (sign * power)
+        powers = [old + sign * power * new for old, new in zip(powers, dim, strict=True)]
+        if found.end() == len(text):
+            return size, (powers[0], powers[1], powers[2], powers[3], powers[4])
+        joint = re.compile(r"\s*([*/])\s*|\s+").match(text, found.end())
+        if not joint:
+            raise _unknown(unit, text[position:])
+        sign, position = (-1 if joint[1] == "/" else 1), joint.end()
+
+
+def _single(unit: str, found: re.Match[str]) -> tuple[float, Dimension, int]:
+    if found["number"]:
+        return float(found["number"]), _NUMBER, 1
+    name = found["name"]
+    name = name if name in _SINGLE else _SYNONYM.get(name.lower(), name)
+    name = re.sub("(?:Ω|ohm)$", "Ohm", name)
+    if name not in _SINGLE:
+        raise _unknown(unit, found["name"])
+    return *_SINGLE[name], int(found["power"] or 1)
+
+
+def _unknown(unit: str, part: str) -> InputError:
+    named = f" (in {unit!r})" if part != unit else ""
+    common = "m mm um nm micron s ms us second Hz kHz V mV kV volt A mA N mN C uC nC F kg K Pa J W Ohm rad % count 1"
+    return InputError(f"unknown unit {part!r}{named}", remedy=nearest(part, common.split()))
