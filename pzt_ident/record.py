@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -34,7 +35,11 @@ class Axis:
 
 @dataclass(frozen=True)
 class Source:
-    """One record as the job names it. `rows` are counted from 0, the end excluded; `time` is a stretch in s."""
+    """One record as the job names it. `rows` are counted from 0, the end excluded; `time` is a stretch in s.
+
+    `channels` says what is different in this record, by `time`, `drive`, `response` or, of one axis, `x.drive`:
+    `{"response": Channel(file="y.npy")}` takes every response from another file.
+    """
 
     file: str
     use: Use = "identify"
@@ -49,6 +54,7 @@ class Source:
     table: int | str | None = None
     index: tuple[int | str, ...] | None = None
     sheet: str | None = None
+    channels: Mapping[str, Channel] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,4 +93,4 @@ class Record:
 
     @property
     def time(self) -> NDArray[np.float64]:
-        return self.start + self.dt * np.arange(self.samples)
+        return self.start + self.dt * np.arange(self.samples, dtype=np.float64)
