@@ -55,6 +55,12 @@ class Model:
                     found.append(Slot(name, block, word, axis, other, parameter))
         return found
 
+    def spellings(self, slot: Slot) -> tuple[str, ...]:
+        """The names that a job may call a parameter by, the most particular first."""
+        plain = f"{slot.block.name}.{slot.word}"
+        paired = (f"{plain}_from_{self.axes[slot.other]}",) if slot.other != slot.axis else ()
+        return *(f"{self.axes[slot.axis]}.{name}" for name in (*paired, plain)), *paired, plain
+
     @property
     def names(self) -> tuple[str, ...]:
         return tuple(slot.name for slot in self.slots)
@@ -64,7 +70,7 @@ class Model:
         return max((block.oversample for block in self.blocks), default=1)
 
     def columns(self, block: type[Block], axis: int, other: int) -> dict[str, int | list[int]] | None:
-        """Columns of theta that hold a block's parameters; None for a pair that has none (onto an axis not measured)."""
+        """Columns of theta that hold a block's parameters; None for a pair onto an axis that is not measured."""
         if axis not in self.measured:
             if issubclass(block, Coupling):
                 return None
@@ -94,7 +100,7 @@ class Part(NamedTuple):
 
 
 class Plan:
-    """A model made ready for one record: the kernel's program and the layout of its scratch. Stateless between calls."""
+    """A model made ready for one record: the kernel's program and the layout of its scratch."""
 
     def __init__(self, model: Model, record: Record) -> None:
         self.model, self.record = model, record

@@ -1,0 +1,87 @@
+"""What the data say of each parameter."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pzt_ident.problem import Problem
+
+Array = NDArray[np.float64]
+
+LOOSE = 0.2  # of its search range: a standard error above this says nothing
+FLAT = 0.01  # of the RMSE: a parameter may go where the RMSE rises by less
+WIDE = 0.5  # of its search range, over which it may go
+EDGE = 1e-4  # of its search range
+
+
+class Estimate(NamedTuple):
+    """One free parameter in the user's units; standard_error is None where it is not determined."""
+
+    name: str
+    value: float
+    unit: str
+    lower: float
+    upper: float
+    standard_error: float | None
+    verdict: str
+    note: str
+
+
+def estimates(problem: Problem, point: Array) -> tuple[list[Estimate], Array]:
+    """Value, standard error and verdict of each free parameter, and their correlations (free, free).
+
+    Standard errors are those of least squares with correlated residuals: (J'J)^-1 M (J'J)^-1 with M summed over
+    blocks of neighbouring samples (White 1980; Newey & West 1987). A parameter is not determined where its standard
+    error, or the stretch over which it changes the RMSE by less than one percent, takes up its search range.
+    """
+    covariance = covariance_of(problem.jacobian(point), problem.residuals(point)[0])
+    error = np.sqrt(np.diag(covariance))
+    value = problem.physical(point)[0]
+    slope = (problem.physical(point + 1e-6) - problem.physical(point - 1e-6))[0] / 2e-6
+    flat = flat_share(problem, point)
+    found = []
+    for i, name in enumerate(problem.names):
+        verdict, note = judge(point[i], error[i], flat[i])
+        known = float(error[i] * abs(slope[i])) if verdict != "not determined" else None
+        lower, upper = float(problem.lower[i]), float(problem.upper[i])
+        found.append(Estimate(name, float(value[i]), problem.units[i], lower, upper, known, verdict, note))
+    scale = np.where(error > 0, error, 1)
+    return found, np.nan_to_num(covariance / np.outer(scale, scale))
+
+
+def judge(place: float, error: float, flat: float) -> tuple[str, str]:
+    """Verdict and its reason from the place, the standard error and the flat stretch, as shares of the range."""
+    if not error < LOOSE:
+        return "not determined", "its standard error is as wide as its search range: these data do not see it"
+    if flat > WIDE:
+        return "not determined", f"over {flat:.0%} of its search range it changes the RMSE by less than 1 %"
+    for side, on in (("lower", place < EDGE), ("upper", place > 1 - EDGE)):
+        if on:
+            return f"on its {side} bound", "the best value may lie beyond it: widen the bounds, or doubt the model"
+    return "determined", ""
+
+
+def covariance_of(jacobian: Array, residual: Array, blocks: int = 40) -> Array:
+    """Covariance of the parameters in the cube; huge along directions that the data do not see."""
+    u, s, vt = np.linalg.svd(jacobian, full_matrices=False)
+    seen = np.maximum(s, 1e-9 * max(s.max(initial=0), 1e-300))
+    parts = np.array_split(u * residual[:, None], blocks)
+    sums = np.array([part.sum(axis=0) for part in parts])
+    meat = sums.T @ sums
+    white = residual @ residual / max(1, residual.size - s.size)
+    meat = np.maximum(np.diag(meat), white)  # an unseen direction has no gradient of its own
+    return (vt.T / seen**2 * meat) @ vt
+
+
+def flat_share(problem: Problem, point: Array, steps: int = 24) -> Array:
+    """Share of each parameter's range over which the loss stays within FLAT of the best, the others held: (free,)."""
+    grid = (np.arange(steps) + 0.5) / steps
+    count = problem.dimensions
+    tries = np.tile(point, (count * steps, 1))
+    for i in range(count):
+        tries[i * steps : (i + 1) * steps, i] = grid
+    losses = problem.loss(tries).reshape(count, steps)
+    return (losses <= (1 + FLAT) * problem.loss(point)[0]).mean(axis=1)

@@ -1,0 +1,208 @@
+"""Model and records as a function on the unit cube."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pzt_ident.errors import InputError
+from pzt_ident.model import Model, Plan, Slot
+from pzt_ident.record import Record
+from pzt_ident.units import factor
+
+Array = NDArray[np.float64]
+
+
+class Wish(Protocol):
+    """What a job may say of a parameter, in the user's units: bounds free it, a value alone fixes it."""
+
+    @property
+    def bounds(self) -> tuple[float, float] | None: ...
+    @property
+    def value(self) -> float | None: ...
+
+
+class Problem:
+    """Find the free parameters that leave the least RMSE on the records to identify.
+
+    The loss is sqrt(mean over measured axes of RMSE^2), pooled over records, each record's and axis' free offset
+    removed (Lin & Lin 2012, eq. 8 and 19), in SI units. A simulation that fails is infinite here, and counted.
+    names, units, lower, upper: of the free parameters, in the user's units. Points are (candidates, free) in [0, 1].
+    Raises InputError for a record shorter than the model needs or bounds that the model cannot take.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        records: Sequence[Record],
+        wishes: Mapping[str, Wish] | None = None,
+        effects: Sequence[str] = (),
+    ) -> None:
+        self.model, self.records = model, tuple(records)
+        self.failed = 0
+        identify = [record for record in records if record.use == "identify"]
+        if not identify:
+            raise InputError("no record to identify from", where="records", remedy="give one of them `use: identify`")
+        self.plans = {use: [Plan(model, r) for r in records if r.use == use] for use in ("identify", "validate")}
+        self._settle(identify, wishes or {}, set(effects))
+        self._enough(identify)
+
+    def _settle(self, identify: list[Record], wishes: Mapping[str, Wish], effects: set[str]) -> None:
+        """Which parameters are free, within which bounds, and what the others are fixed to."""
+        count = len(self.model.slots)
+        self.all_units = [self._unit(slot, identify[0]) for slot in self.model.slots]
+        self._factor = np.array([factor(unit) for unit in self.all_units])
+        self.theta = np.full(count, np.nan)
+        free, lower, upper = [], [], []
+        for column, slot in enumerate(self.model.slots):
+            wish = next((wishes[name] for name in self.model.spellings(slot) if name in wishes), None)
+            parameter = slot.parameter
+            if wish and wish.bounds is None and wish.value is not None:
+                self.theta[column] = wish.value * self._factor[column]
+            elif parameter.effect and parameter.effect not in effects and parameter.null is not None:
+                self.theta[column] = parameter.null
+            elif parameter.value is not None and not wish:
+                self.theta[column] = parameter.value * self._size(slot, identify)
+            else:
+                size = self._size(slot, identify) / self._factor[column]
+                low, high = wish.bounds if wish and wish.bounds else (b * size for b in parameter.bounds)
+                free.append(column)
+                lower.append(low)
+                upper.append(high)
+        self.free = np.array(free, dtype=int)
+        self.names = tuple(self.model.names[column] for column in free)
+        self.units = tuple(self.all_units[column] for column in free)
+        self.lower, self.upper = np.array(lower), np.array(upper)
+        scales = np.array([self.model.slots[column].parameter.scale == "log" for column in free], dtype=bool)
+        self.log = scales & (self.lower > 0)
+
+    def _unit(self, slot: Slot, record: Record) -> str:
+        drive = record.drive_units[slot.axis]
+        response = record.response_units[slot.axis]
+        return re.sub(
+            r"drive|response", lambda word: str({"drive": drive, "response": response}[word[0]]), slot.parameter.unit
+        )
+
+    def _size(self, slot: Slot, records: list[Record]) -> float:
+        """What declared bounds are multiples of, in SI units: the data's own spans where the unit names them."""
+        spans = {
+            "drive": max(float(np.ptp(record.drive[slot.axis])) for record in records),
+            "response": max(float(np.ptp(record.response[slot.axis])) for record in records),
+        }
+        named = re.findall(r"drive|response", slot.parameter.unit)
+        if not named:
+            return factor(slot.parameter.unit)
+        size, sign = 1.0, 1
+        for token in re.findall(r"[\w.]+|[*/]", slot.parameter.unit):
+            if token in "*/":
+                sign = 1 if token == "*" else -1
+            else:
+                size *= (spans[token] if token in spans else factor(token) if token != "1" else 1.0) ** sign
+        return size
+
+    def _enough(self, identify: list[Record]) -> None:
+        for record in identify:
+            if record.samples - record.settle <= len(self.free):
+                raise InputError(
+                    f"{record.samples - record.settle} scored samples for {len(self.free)} free parameters",
+                    where=record.file or record.name,
+                    remedy="give a longer stretch, a shorter `settle`, or fix parameters",
+                )
+
+    @property
+    def scored(self) -> int:
+        """Scored samples of the records to identify, over all measured axes."""
+        return sum(plan.scored for plan in self.plans["identify"]) * len(self.model.measured)
+
+    @property
+    def dimensions(self) -> int:
+        return len(self.free)
+
+    def physical(self, points: Array) -> Array:
+        """Free parameters in the user's units: (candidates, free)."""
+        points = np.atleast_2d(points)
+        linear = self.lower + points * (self.upper - self.lower)
+        if not self.log.any():
+            return linear
+        base, ratio = np.where(self.log, self.lower, 1.0), np.where(self.log, self.upper / self.lower, 1.0)
+        return np.where(self.log, base * ratio**points, linear)
+
+    def unit_point(self, values: Mapping[str, float]) -> Array:
+        """The point of the cube for values by name in the user's units, moved into the bounds."""
+        given = np.array([values[name] for name in self.names])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            logarithmic = np.log(given / self.lower) / np.log(self.upper / self.lower)
+        linear = (given - self.lower) / (self.upper - self.lower)
+        return np.clip(np.where(self.log, logarithmic, linear), 0, 1)
+
+    def parameters(self, points: Array) -> Array:
+        """All parameters of the model in SI units: (candidates, parameters)."""
+        values = self.physical(points)
+        theta = np.tile(self.theta, (values.shape[0], 1))
+        theta[:, self.free] = values * self._factor[self.free]
+        return theta
+
+    def by_axis(self, points: Array, use: str = "identify") -> Array:
+        """RMSE of each measured axis over all records of that use, in SI units: (candidates, axes)."""
+        theta = self.parameters(points)
+        plans = self.plans[use]
+        with np.errstate(all="ignore"):
+            squares = sum(plan.squares(theta) for plan in plans) / sum(plan.scored for plan in plans)
+            failed = ~np.isfinite(squares)
+            rmse = np.sqrt(np.maximum(squares, 0))
+        self.failed += int(failed.any(axis=1).sum())
+        return np.where(failed, np.inf, rmse)
+
+    def loss(self, points: Array, use: str = "identify") -> Array:
+        """(candidates,); infinite where the simulation failed, NaN where there is no record of that use."""
+        if not self.plans[use]:
+            return np.full(np.atleast_2d(points).shape[0], np.nan)
+        return np.sqrt(np.mean(self.by_axis(points, use) ** 2, axis=1))
+
+    def residuals(self, points: Array) -> Array:
+        """(candidates, scored samples of all records and axes), scaled so that the norm is the loss; inf if failed."""
+        theta = self.parameters(points)
+        plans = self.plans["identify"]
+        with np.errstate(all="ignore"):
+            found = np.hstack([plan.residuals(theta).reshape(theta.shape[0], -1) for plan in plans])
+            found /= np.sqrt(self.scored)
+        wrong = ~np.isfinite(found).all(axis=1)
+        self.failed += int(wrong.sum())
+        found[wrong] = np.inf
+        return found
+
+    def jacobian(self, point: Array, step: float = 1e-5) -> Array:
+        """Central differences of the residuals over the cube (one-sided on its faces): (samples, free)."""
+        point = np.asarray(point, dtype=float)
+        up = np.minimum(point + step, 1)
+        down = np.maximum(point - step, 0)
+        count = self.dimensions
+        tries = np.vstack([np.where(np.eye(count, dtype=bool), ends, point) for ends in (up, down)])
+        found = self.residuals(tries)
+        return ((found[:count] - found[count:]) / (up - down)[:, None]).T
+
+    def polish(self, point: Array, evaluations: int = 2000) -> tuple[Array, int]:
+        """Least squares from a point, with the batched Jacobian: the point reached and the simulations it took."""
+        from scipy.optimize import least_squares
+
+        if not np.isfinite(self.loss(point)[0]):
+            return np.asarray(point), 1
+        each = 2 * self.dimensions
+        size = self.loss(point)[0] or 1.0
+        found = least_squares(
+            lambda x: self.residuals(x)[0] / size,
+            np.clip(point, 1e-9, 1 - 1e-9),
+            lambda x: self.jacobian(x) / size,
+            bounds=(np.zeros(self.dimensions), np.ones(self.dimensions)),
+            x_scale="jac",
+            ftol=1e-10,
+            xtol=1e-10,
+            gtol=1e-12,
+            max_nfev=max(2, evaluations // (each + 1)),
+        )
+        better = self.loss(found.x)[0] < self.loss(point)[0]
+        return (found.x if better else np.asarray(point)), int(found.nfev + each * found.njev)

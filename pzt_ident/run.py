@@ -1,0 +1,204 @@
+"""From a job to a result on the disk: records, model, searches side by side, tables and curves."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pzt_ident.diagnosis.noise import noise_floor
+from pzt_ident.errors import InputError
+from pzt_ident.files import write_json, write_text
+from pzt_ident.job import Job
+from pzt_ident.league import compare
+from pzt_ident.pool import run_all
+from pzt_ident.problem import Problem
+from pzt_ident.readers import read_records
+from pzt_ident.record import Record
+from pzt_ident.registry import optimizers
+from pzt_ident.signals import write_signals
+from pzt_ident.units import factor
+from pzt_ident.worker import Task, problem_of, read_result, read_told, unit_of, work
+
+Event = dict[str, Any]
+Listen = Callable[[Event], None]
+
+
+def run(
+    job: Job,
+    out: Path | None = None,
+    *,
+    workers: int | None = None,
+    report: bool = True,
+    listen: Listen = lambda event: None,
+) -> Path:
+    """Identify what the job asks for; returns the folder of results. `listen` is told each event as it happens.
+
+    Raises InputError before anything is written where the job or its data are wrong.
+    """
+    records = read(job)
+    problem_of(job, records)
+    folder = out or Path("results") / job.name / f"{datetime.now():%Y%m%d-%H%M%S}-{job.hash}"
+    if folder.exists() and any(folder.iterdir()):
+        raise InputError("this folder is not empty", where=str(folder), remedy="give another --out, or resume it")
+    folder.mkdir(parents=True, exist_ok=True)
+    write_text(folder / "job.yaml", job.text)
+    write_json(folder / "environment.json", environment(job))
+    return go_on(job, records, folder, workers, report, listen)
+
+
+def resume(
+    folder: Path, *, workers: int | None = None, report: bool = True, listen: Listen = lambda event: None
+) -> Path:
+    """Go on where a killed run stopped, to the result that it would have had.
+
+    Raises InputError where the folder holds no run, or its data have changed.
+    """
+    known = folder / "environment.json"
+    if not known.exists():
+        raise InputError("holds no run", where=str(folder), remedy="give the folder that `pzt-ident run` wrote")
+    before = json.loads(known.read_text())
+    job = Job.from_text((folder / "job.yaml").read_text(encoding="utf-8"), Path(before["job_folder"]))
+    return go_on(job, read(job), folder, workers, report, listen)
+
+
+def read(job: Job) -> list[Record]:
+    return read_records(job.records, job.channels.axes, job.channels.time, job.folder)
+
+
+def go_on(job: Job, records: list[Record], folder: Path, workers: int | None, report: bool, listen: Listen) -> Path:
+    tasks = tasks_of(job, records, folder)
+    missing = [task for task in tasks if not task.result.exists()]
+    with (folder / "events.jsonl").open("a", encoding="utf-8") as events:
+
+        def tell(event: Event) -> None:
+            events.write(json.dumps(event) + "\n")
+            events.flush()
+            listen(event)
+
+        budget = sum(task.stop["evaluations"] for task in tasks)
+        tell({"event": "start", "runs": [task.run for task in tasks], "budget": budget, "unit": unit_of(records)})
+        arguments = [(task.run, (task, job.text, job.folder, records)) for task in missing]
+        failed = run_all(work, arguments, workers, tell)
+        done = [task for task in tasks if task.run not in failed]
+        if not done:
+            raise RuntimeError("every run failed: " + "; ".join(f"{run}: {reason}" for run, reason in failed.items()))
+        collect(job, records, folder, done, failed)
+        if report:
+            from pzt_ident.report.page import write_report
+
+            write_report(folder)
+        tell({"event": "done", "folder": str(folder)})
+    return folder
+
+
+def tasks_of(job: Job, records: list[Record], folder: Path) -> list[Task]:
+    """Optimizers times repeats, all with the budget of the first unless the job gives one."""
+    first = job.optimizers[0]
+    budget = job.stop.evaluations or optimizers[first.name].make(**first.settings).evaluations
+    target = job.stop.target
+    stop = {
+        "evaluations": budget,
+        "seconds": job.stop.seconds,
+        "stagnation": job.stop.stagnation,
+        "target": target and target.value * factor(target.unit or unit_of(records)),
+    }
+    return [
+        Task(f"{choice.name}-{repeat}", choice.name, choice.settings, repeat, job.seed, stop, job.polish, folder)
+        for choice in job.optimizers
+        for repeat in range(job.repeats)
+    ]
+
+
+def collect(job: Job, records: list[Record], folder: Path, done: list[Task], failed: dict[str, str]) -> None:
+    """Tables and curves of all runs; `result.json` comes last."""
+    size = factor(unit_of(records))
+    runs = [read_result(task) for task in done]
+    histories = {task.run: history_of(task, size) for task in done}
+    league = compare(runs, histories)
+    best = min(runs, key=lambda run: run["rmse"]["identify"])
+    problem = problem_of(job, records)
+    point = np.array(best["point"])
+    write_text(folder / "history.csv", history_text(done, histories))
+    write_signals(folder / "signals.nc", problem, point)
+    floors = {records[0].axes[a]: noise_floor(list(records), a) for a in records[0].measured}
+    units = {records[0].axes[a]: str(records[0].response_units[a]) for a in records[0].measured}
+    result = {
+        "name": job.name,
+        "unit": unit_of(records),
+        "seed": job.seed,
+        "command": " ".join(["pzt-ident", *sys.argv[1:]]),
+        "created": datetime.now().astimezone().isoformat(timespec="seconds"),
+        "noise_floor": {axis: floor.value / factor(units[axis]) for axis, floor in floors.items()},
+        "noise_floor_source": {axis: floor.source for axis, floor in floors.items()},
+        "records": [about(record, problem, point) for record in records],
+        "league": league,
+        "best": best,
+        "runs": [{key: value for key, value in run.items() if key != "correlation"} for run in runs],
+        "failed_runs": [{"run": name, "reason": reason} for name, reason in failed.items()],
+    }
+    write_json(folder / "result.json", result)
+
+
+def about(record: Record, problem: Problem, point: np.ndarray) -> dict[str, Any]:
+    plan = next(plan for plans in problem.plans.values() for plan in plans if plan.record is record)
+    rmse = np.sqrt(plan.squares(problem.parameters(point))[0] / plan.scored)
+    return {
+        "name": record.name,
+        "use": record.use,
+        "file": record.file,
+        "sha256": record.sha256,
+        "samples": record.samples,
+        "sample_rate": 1 / record.dt,
+        "settle": record.settle * record.dt,
+        "axes": [record.axes[a] for a in record.measured],
+        "rmse": {
+            record.axes[a]: rmse[i] / factor(str(record.response_units[a])) for i, a in enumerate(record.measured)
+        },
+        "notes": list(record.notes),
+    }
+
+
+def history_of(task: Task, size: float) -> np.ndarray:
+    """(generations, 3): evaluations so far, seconds so far, best RMSE so far in the user's unit."""
+    rows, evaluations, best = [], 0, np.inf
+    for seconds, losses in read_told(task.told):
+        evaluations, best = evaluations + len(losses), min(best, losses.min())
+        rows.append((evaluations, seconds, best / size))
+    return np.array(rows)
+
+
+def history_text(done: list[Task], histories: dict[str, np.ndarray]) -> str:
+    lines = ["optimizer,repeat,generation,evaluations,seconds,best"]
+    for task in done:
+        for generation, (evaluations, seconds, best) in enumerate(histories[task.run], 1):
+            lines.append(f"{task.optimizer},{task.repeat},{generation},{evaluations:.0f},{seconds:.6g},{best:.9g}")
+    return "\n".join(lines) + "\n"
+
+
+def environment(job: Job) -> dict[str, Any]:
+    """Where this ran: enough to run it again."""
+    import os
+    import platform
+    from importlib.metadata import PackageNotFoundError, version
+
+    packages = {}
+    for name in ("pzt-ident", "numpy", "scipy", "numba", "pandas", "pyswarms", "deap", "cma"):
+        try:
+            packages[name] = version(name)
+        except PackageNotFoundError:
+            packages[name] = "not installed"
+    return {
+        "python": platform.python_version(),
+        "platform": platform.platform(),
+        "cpu": platform.processor() or platform.machine(),
+        "cores": os.cpu_count(),
+        "packages": packages,
+        "job_hash": job.hash,
+        "job_folder": str(job.folder.resolve()),
+    }

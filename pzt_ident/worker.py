@@ -1,0 +1,169 @@
+"""One optimizer, one repeat: what runs in a process of its own."""
+
+from __future__ import annotations
+
+import json
+import struct
+import time
+import zlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pzt_ident.estimate import estimates
+from pzt_ident.files import write_json
+from pzt_ident.model import Model
+from pzt_ident.problem import Problem
+from pzt_ident.record import Record
+from pzt_ident.registry import blocks, optimizers
+from pzt_ident.search import State, Stop, drive
+from pzt_ident.units import factor
+
+Tell = Callable[[dict[str, Any]], None]
+
+
+@dataclass(frozen=True)
+class Task:
+    """Everything that a search is a function of, and where it leaves its traces."""
+
+    run: str
+    optimizer: str
+    settings: dict[str, Any]
+    repeat: int
+    seed: int
+    stop: dict[str, Any]
+    polish: bool
+    folder: Path
+
+    @property
+    def told(self) -> Path:
+        return self.folder / "runs" / f"{self.run}.told"
+
+    @property
+    def result(self) -> Path:
+        return self.folder / "runs" / f"{self.run}.json"
+
+
+def problem_of(job: Any, records: list[Record]) -> Problem:
+    """The problem that a job states about its records."""
+    axes = records[0].axes
+    chosen = [blocks[word] for word in (*job.model, *job.effects) if word in blocks]
+    return Problem(Model(chosen, axes, records[0].measured), records, job.parameters, job.effects)
+
+
+def unit_of(records: list[Record]) -> str:
+    return str(records[0].response_units[records[0].measured[0]])
+
+
+def search(task: Task, job: Any, records: list[Record], tell: Tell) -> dict[str, Any]:
+    """Search, polish, judge the parameters, and write the result; continues from the losses told so far."""
+    problem = problem_of(job, records)
+    size = factor(unit_of(records))
+    generations = list(read_told(task.told))
+    before = generations[-1][0] if generations else 0.0
+    begun, cpu, shown = time.perf_counter(), time.process_time(), 0.0
+    task.told.parent.mkdir(parents=True, exist_ok=True)
+    with task.told.open("r+b" if generations else "wb") as file:
+        file.truncate(sum(16 + 8 * len(losses) for _, losses in generations))
+        file.seek(0, 2)
+
+        def note(state: State) -> None:
+            nonlocal shown
+            seconds = before + time.perf_counter() - begun
+            file.write(struct.pack("<dq", seconds, len(state.losses)) + state.losses.astype("<f8").tobytes())
+            file.flush()
+            if seconds - shown > 0.1 or shown == 0:
+                shown = seconds
+                tell(generation_event(task, state.evaluations, state.loss / size, seconds))
+
+        outcome = drive(
+            optimizers[task.optimizer].make(**task.settings).with_budget(task.stop["evaluations"]),
+            problem.dimensions,
+            problem.loss,
+            np.random.SeedSequence([task.seed, task.repeat, zlib.crc32(task.optimizer.encode())]),
+            Stop(**task.stop),
+            residuals=lambda points: problem.residuals(points) * np.sqrt(problem.scored),
+            callback=note,
+            told=[losses for _, losses in generations],
+        )
+    tell(generation_event(task, outcome.evaluations, outcome.loss / size, before + time.perf_counter() - begun))
+    point, extra = problem.polish(outcome.point) if task.polish else (outcome.point, 0)
+    found, correlation = estimates(problem, point)
+    result = {
+        "run": task.run,
+        "optimizer": task.optimizer,
+        "repeat": task.repeat,
+        "rmse": rmse(problem, point, size),
+        "rmse_before_polish": rmse(problem, outcome.point, size),
+        "parameters": {item.name: {k: v for k, v in item._asdict().items() if k != "name"} for item in found},
+        "fixed": fixed(problem),
+        "correlation": {"names": list(problem.names), "matrix": correlation},
+        "evaluations": outcome.evaluations,
+        "polish_evaluations": extra,
+        "seconds": before + time.perf_counter() - begun,
+        "cpu_seconds": time.process_time() - cpu,
+        "failed_simulations": problem.failed,
+        "stopped_by": outcome.stopped_by,
+        "point": point,
+    }
+    write_json(task.result, result)
+    return result
+
+
+def rmse(problem: Problem, point: Any, size: float) -> dict[str, float]:
+    return {use: float(problem.loss(point, use)[0]) / size for use in ("identify", "validate")}
+
+
+def fixed(problem: Problem) -> dict[str, Any]:
+    """Parameters that were not searched, in the user's units."""
+    return {
+        slot.name: {"value": problem.theta[i] / factor(problem.all_units[i]), "unit": problem.all_units[i]}
+        for i, slot in enumerate(problem.model.slots)
+        if i not in problem.free
+    }
+
+
+def generation_event(task: Task, evaluations: int, best: float, seconds: float) -> dict[str, Any]:
+    return {
+        "event": "generation",
+        "run": task.run,
+        "optimizer": task.optimizer,
+        "repeat": task.repeat,
+        "evaluations": evaluations,
+        "best": best,
+        "seconds": seconds,
+    }
+
+
+def read_told(path: Path) -> Iterator[tuple[float, np.ndarray]]:
+    """Seconds and losses of each whole generation on the disk; a torn last one is left out."""
+    raw = path.read_bytes() if path.exists() else b""
+    at = 0
+    while at + 16 <= len(raw):
+        seconds, count = struct.unpack_from("<dq", raw, at)
+        if at + 16 + 8 * count > len(raw):
+            return
+        yield seconds, np.frombuffer(raw, "<f8", count, at + 16)
+        at += 16 + 8 * count
+
+
+def work(task: Task, job_text: str, folder: Path, records: list[Record], pipe: Any) -> None:
+    """Entry of the process: results go to the disk, events and errors through the pipe."""
+    import signal
+
+    from pzt_ident.job import Job
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        search(task, Job.from_text(job_text, folder), records, pipe.send)
+        pipe.send(None)
+    except BaseException as error:
+        pipe.send({"event": "failed", "run": task.run, "reason": f"{type(error).__name__}: {error}"})
+        raise
+
+
+def read_result(task: Task) -> dict[str, Any]:
+    return dict(json.loads(task.result.read_text()))
