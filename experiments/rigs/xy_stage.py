@@ -1,9 +1,8 @@
 """Virtual piezo flexure stage: the continuous equations of Lin & Lin (2012) and an encoder, integrated by scipy.
 
 It makes measured-like records and shares no code with pzt_ident. Eq. 2, 5 and 6 of Mechatronics 22, 614 are integrated
-together, from rest at 0 V, by DOP853 to 0.01 nm after 5 s, stopping at every corner of the drive. The identified damping
-is zero, so each corner leaves 1 to 4 nm of ringing above 3 kHz for good (11 nm where corners add up, X in Case II): it
-is part of the record.
+together, from rest at 0 V, by DOP853 to 0.01 nm after 5 s, stopping at every corner of the drive. The published damping
+is zero: each corner leaves 1 to 4 nm of ringing above 3 kHz for good (11 nm on X in Case II, where corners add up).
 
 `python experiments/rigs/xy_stage.py --out .` in the repository's root writes the committed files (minutes).
 """
