@@ -128,8 +128,8 @@ class Problem:
         linear = self.lower + points * (self.upper - self.lower)
         if not self.log.any():
             return linear
-        base, ratio = np.where(self.log, self.lower, 1.0), np.where(self.log, self.upper / self.lower, 1.0)
-        return np.where(self.log, base * ratio**points, linear)
+        base = np.where(self.log, self.lower, 1.0)
+        return np.where(self.log, base * (np.where(self.log, self.upper, 1.0) / base) ** points, linear)
 
     def unit_point(self, values: Mapping[str, float]) -> Array:
         """The point of the cube for values by name in the user's units, moved into the bounds."""

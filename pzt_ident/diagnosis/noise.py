@@ -52,7 +52,7 @@ def quantiser(response: Array) -> float:
 
 
 def resting(drive: Array, response: Array, least: int = 100) -> list[float]:
-    """Scatter about a parabola wherever every drive stands still, without the first fifth of the stretch."""
+    """Scatter about a quartic, which follows creep, in the last four fifths of every stretch of constant drive."""
     span = np.ptp(drive, axis=1, keepdims=True)
     still = (np.abs(np.diff(drive, axis=1)) <= 1e-6 * np.maximum(span, 1e-300)).all(axis=0)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(int), [0]])))
@@ -60,7 +60,7 @@ def resting(drive: Array, response: Array, least: int = 100) -> list[float]:
     for first, last in zip(edges[::2], edges[1::2], strict=True):
         first += (last - first) // 5
         if last - first >= least:
-            found.append(scatter(response[first:last], 2))
+            found.append(scatter(response[first:last], 4))
     return found
 
 
@@ -88,20 +88,21 @@ def scatter(signal: Array, degree: int) -> float:
 
 
 def period_of(drive: Array, tolerance: float = 2e-3) -> int:
-    """Samples after which every drive repeats, 0 where it does not: the first shift that brings it onto itself."""
+    """Samples after which every drive repeats, 0 where it does not: the first valley of the distance to itself."""
     span = np.ptp(drive, axis=1)
     moving = drive[span > 0]
     samples = drive.shape[1]
     if not moving.size or samples < 8:
         return 0
-    centred = (moving - moving.mean(axis=1, keepdims=True)) / span[span > 0][:, None]
+    scaled = moving / span[span > 0][:, None]
     size = 2 ** int(np.ceil(np.log2(2 * samples)))
-    power = np.abs(np.fft.rfft(centred, size)) ** 2
+    correlation = np.fft.irfft(np.abs(np.fft.rfft(scaled, size)) ** 2, size).sum(axis=0)
+    power = np.concatenate([[0], np.cumsum((scaled**2).sum(axis=0))])
     lags = np.arange(1, samples // 2 + 1)
-    correlation = np.fft.irfft(power, size).sum(axis=0)[lags] / (samples - lags)
-    peaks = np.flatnonzero((correlation[1:-1] >= correlation[:-2]) & (correlation[1:-1] >= correlation[2:])) + 1
-    for lag in lags[peaks[np.argsort(lags[peaks])]]:
-        shift = np.sqrt(np.mean((centred[:, lag:] - centred[:, :-lag]) ** 2))
-        if shift < tolerance:
-            return int(lag)
-    return 0
+    apart = (power[-1] - power[lags] + power[samples - lags] - 2 * correlation[lags]) / (samples - lags)
+    low = np.flatnonzero(apart < tolerance**2)
+    risen = low[low > np.argmax(apart >= tolerance**2)] if apart.max() >= tolerance**2 else low[:0]
+    if not risen.size:
+        return 0
+    valley = risen[: np.argmax(np.diff(risen, append=risen[-1] + 2) > 1) + 1]
+    return int(lags[valley[np.argmin(apart[valley])]])

@@ -1,0 +1,140 @@
+"""The loss, its gradient and what the data say of each parameter, on data made by the model itself."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from pzt_ident.errors import InputError
+from pzt_ident.estimate import estimates
+from pzt_ident.model import Model
+from pzt_ident.problem import Problem
+from pzt_ident.record import Record
+from pzt_ident.registry import blocks
+
+TRUTH = {"bouc_wen.gain": 0.082, "bouc_wen.alpha": 0.56, "bouc_wen.beta": 0.015, "bouc_wen.gamma": 0.055}
+MECHANICS = {"lumped.mass": 0.16, "lumped.damping": 100.0, "lumped.stiffness": 7e7}
+
+
+def wish(bounds=None, value=None):
+    return SimpleNamespace(bounds=bounds, value=value)
+
+
+def made(words, truth, noise=0.0, offset=3e-6, **more):
+    """A problem whose records were simulated with `truth`."""
+    t = np.arange(4000) / 1000
+    drives = {"identify": 65 * (1 - np.cos(2 * np.pi * t)), "validate": 50 * np.abs(np.sin(7 * t)) * t / 4}
+    model = Model([blocks[word] for word in words], ["x"], [0])
+    rng = np.random.default_rng(5)
+    records = []
+    for use, u in drives.items():
+        blank = Record(use, use, 1e-3, u[None], np.zeros((1, u.size)) + u * 1e-7, response_units=("um",), **more)
+        si = [truth[name] * (1e-6 if name.endswith("gain") else 1) for name in model.names]
+        y = model.simulate(blank, np.array([si]))[0] + offset + rng.normal(0, noise, (1, u.size))
+        records.append(Record(use, use, 1e-3, u[None], y, response_units=("um",), **more))
+    return model, records
+
+
+def test_the_truth_has_no_error_whatever_the_offset():
+    model, records = made(["bouc_wen"], TRUTH)
+    problem = Problem(model, records)
+    point = problem.unit_point(TRUTH)
+    assert problem.units == ("um/V", "1", "1/V", "1/V")
+    assert problem.loss(point)[0] < 1e-11
+    assert problem.loss(point, "validate")[0] < 1e-11
+
+
+def test_loss_is_the_norm_of_the_residuals():
+    model, records = made(["bouc_wen", "lumped"], TRUTH | MECHANICS, noise=1e-8, settle=500)
+    problem = Problem(model, records)
+    points = np.random.default_rng(1).uniform(size=(30, problem.dimensions))
+    residuals = problem.residuals(points)
+    assert residuals.shape == (30, 3500) == (30, problem.scored)
+    np.testing.assert_allclose(np.linalg.norm(residuals, axis=1), problem.loss(points), rtol=1e-9)
+
+
+def test_relative_bounds_are_multiples_of_the_spans():
+    model, records = made(["bouc_wen"], TRUTH)
+    problem = Problem(model, records)
+    span = np.ptp(records[0].response) * 1e6 / np.ptp(records[0].drive)
+    assert problem.upper[0] == pytest.approx(blocks["bouc_wen"].gain.bounds[1] * span)
+
+
+def test_a_job_narrows_and_fixes():
+    model, records = made(["bouc_wen", "lumped"], TRUTH | MECHANICS)
+    wishes = {
+        "bouc_wen.gain": wish((0.05, 0.1)),
+        "lumped.mass": wish(value=0.16),
+        "x.lumped.stiffness": wish(value=7e7),
+    }
+    problem = Problem(model, records, wishes)
+    assert "lumped.mass" not in problem.names and "lumped.stiffness" not in problem.names
+    assert (problem.lower[0], problem.upper[0]) == (0.05, 0.1)
+    assert problem.loss(problem.unit_point(TRUTH | MECHANICS))[0] < 1e-11
+
+
+def test_jacobian_is_the_derivative():
+    model, records = made(["bouc_wen"], TRUTH, noise=1e-8)
+    problem = Problem(model, records)
+    point = problem.unit_point(TRUTH) + 0.01
+    step = 1e-3 * np.array([1.0, -1, 1, 1])
+    change = problem.residuals(point + step)[0] - problem.residuals(point - step)[0]
+    assert np.linalg.norm(2 * problem.jacobian(point) @ step - change) < 1e-3 * np.linalg.norm(change)
+
+
+def test_polish_finds_the_truth_from_nearby():
+    model, records = made(["bouc_wen"], TRUTH)
+    problem = Problem(model, records)
+    point, spent = problem.polish(np.clip(problem.unit_point(TRUTH) * 1.2, 0, 1))
+    np.testing.assert_allclose(problem.physical(point)[0], list(TRUTH.values()), rtol=1e-4)
+    assert 0 < spent < 2000
+
+
+def test_a_failed_simulation_is_infinite_and_counted():
+    model, records = made(["bouc_wen"], TRUTH)
+    problem = Problem(model, records, {"bouc_wen.beta": wish((-1e3, 1e3))})
+    bad = problem.unit_point(TRUTH)
+    bad[2] = 0.0
+    assert problem.loss(np.vstack([bad, problem.unit_point(TRUTH)]))[0] == np.inf
+    assert np.isinf(problem.residuals(bad)).all()
+    assert problem.failed == 2
+
+
+def test_standard_errors_cover_the_truth():
+    model, records = made(["bouc_wen"], TRUTH, noise=2e-8)
+    problem = Problem(model, records)
+    point, _ = problem.polish(problem.unit_point(TRUTH))
+    found, correlation = estimates(problem, point)
+    assert [item.verdict for item in found] == ["determined"] * 4
+    for item in found:
+        assert abs(item.value - TRUTH[item.name]) < 5 * item.standard_error
+        assert item.standard_error < 0.05 * abs(item.value)
+    np.testing.assert_allclose(np.diag(correlation), 1)
+
+
+def test_slow_data_do_not_determine_the_mechanics():
+    model, records = made(["bouc_wen", "lumped"], TRUTH | MECHANICS, noise=2e-8)
+    wishes = {
+        "lumped.mass": wish((0.15, 0.17)),
+        "lumped.damping": wish((50, 150)),
+        "lumped.stiffness": wish((6e7, 8e7)),
+    }
+    problem = Problem(model, records, wishes)
+    found, _ = estimates(problem, problem.unit_point(TRUTH | MECHANICS))
+    verdicts = {item.name: item.verdict for item in found}
+    assert {verdicts[name] for name in MECHANICS} == {"not determined"}
+    assert {verdicts[name] for name in TRUTH} == {"determined"}
+
+
+def test_a_parameter_on_its_bound_is_named():
+    model, records = made(["bouc_wen"], TRUTH)
+    problem = Problem(model, records, {"bouc_wen.gain": wish((0.0, 0.08))})
+    point, _ = problem.polish(problem.unit_point(TRUTH))
+    found, _ = estimates(problem, point)
+    assert found[0].verdict == "on its upper bound"
+
+
+def test_a_record_shorter_than_the_model_needs():
+    short = Record("r", "identify", 1e-3, np.arange(5.0)[None], np.arange(5.0)[None], file="short.csv")
+    with pytest.raises(InputError, match=r"short.csv: 4 scored samples for 4 free parameters.*\n.*longer"):
+        Problem(Model([blocks["bouc_wen"]], ["x"], [0]), [Record(**{**short.__dict__, "settle": 1})])
