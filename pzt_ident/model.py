@@ -186,15 +186,12 @@ class Plan:
         rows = np.ascontiguousarray(theta[lanes].T)
         for block, row, layout, columns, known in self.parts:
             given = [rows[columns[word]] if word in columns else known[word] for word in block.arguments()]
-            prepared = flat(block, block.prepare(*given))  # type: ignore[attr-defined]
-            for k, coefficient in enumerate(prepared):
-                if np.ndim(coefficient) == 2:
-                    for branch, one in enumerate(coefficient):
-                        scratch[:, row + branch * layout.coefficients + k] = one.reshape(-1, WIDTH)
-                else:
-                    branches = layout.copies if issubclass(block, Bank) else 1
-                    at = slice(row + k, row + k + (branches - 1) * layout.coefficients + 1, layout.coefficients)
-                    scratch[:, at] = np.reshape(coefficient, (-1, 1, WIDTH)) if np.ndim(coefficient) else coefficient
+            copies = layout.copies if issubclass(block, Bank) else 1
+            table = np.empty((copies, layout.coefficients, lanes.size))
+            for k, coefficient in enumerate(flat(block, block.prepare(*given))):  # type: ignore[attr-defined]
+                table[:, k] = coefficient
+            into = slice(row, row + copies * layout.coefficients)
+            scratch[:, into] = table.reshape(-1, groups, WIDTH).swapaxes(0, 1)
         return scratch.reshape(groups, -1)
 
     def _run(self, theta: Array, program: list[tuple[int, ...]], output: Array) -> Array:
