@@ -5,7 +5,8 @@ from __future__ import annotations
 import importlib
 import pkgutil
 from collections.abc import Iterator
-from importlib.metadata import entry_points
+from functools import cached_property
+from importlib.metadata import EntryPoint, entry_points
 from typing import Any, Generic, TypeVar
 
 from pzt_ident.errors import InputError, nearest
@@ -44,7 +45,7 @@ class Registry(Generic[T]):
 
     def words(self) -> list[str]:
         """Every known word, without importing what stands behind it."""
-        return sorted(set(self._items) | set(self._files()) | {entry.name for entry in self._entries()})
+        return sorted(set(self._items) | set(self._files()) | {entry.name for entry in self._entries})
 
     def folder(self, word: str) -> str:
         """The last part of the package that the word's class was declared in, for example `effects`."""
@@ -58,13 +59,14 @@ class Registry(Generic[T]):
                     found[module.name] = f"{package}.{module.name}"
         return found
 
-    def _entries(self) -> list[Any]:
-        return list(entry_points(group=self.group))
+    @cached_property
+    def _entries(self) -> tuple[EntryPoint, ...]:
+        return tuple(entry_points(group=self.group))
 
     def _load(self, word: str) -> None:
         if path := self._files().get(word):
             importlib.import_module(path)
-        for entry in self._entries():
+        for entry in self._entries:
             if entry.name == word:
                 self._items[word] = entry.load()
 
