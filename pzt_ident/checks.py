@@ -1,0 +1,231 @@
+"""What the parts of a job must be to agree with each other and with the registries; faults are noted, not raised."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from pzt_ident import units
+from pzt_ident.document import Document, Loc
+from pzt_ident.errors import InputError, nearest
+from pzt_ident.registry import blocks, optimizers
+
+if TYPE_CHECKING:
+    from pzt_ident.job import Channels, Choice, Setting, Stopping
+    from pzt_ident.model import Model, Slot
+    from pzt_ident.record import Axis, Channel, Source
+
+Earlier = Mapping[str, Any]
+"""The sections before this one, less those with a fault in their own form."""
+
+
+def _records(document: Document, sources: tuple[Source, ...], earlier: Earlier) -> None:
+    if all(source.use != "identify" for source in sources):
+        document.fault(("records",), "no record to identify from", "give at least one record `use: identify`")
+    names: set[str] = set()
+    for i, source in enumerate(sources):
+        at: Loc = ("records", i)
+        for word, least in (("settle", 0), ("decimate", 1), ("run_in", 0)):
+            if getattr(source, word) < least:
+                document.fault((*at, word), f"{document.source((*at, word))} is too small", f"give at least {least}")
+        if source.sample_rate is not None and source.sample_rate <= 0:
+            document.fault((*at, "sample_rate"), f"{source.sample_rate:g} Hz", "give a rate above 0 Hz")
+        for word, stretch in (("rows", source.rows), ("time", source.time)):
+            _stretch(document, (*at, word), stretch)
+        if source.name is not None and source.name in names:
+            document.fault((*at, "name"), f"duplicate record name {source.name!r}", "name each record differently")
+        names |= {source.name} if source.name is not None else set()
+
+
+def _stretch(document: Document, at: Loc, stretch: tuple[float | None, float | None] | None) -> None:
+    if stretch is None:
+        return
+    first, last = stretch
+    if first is not None and first < 0:
+        document.fault((*at, 0), f"{document.source((*at, 0))} is before the start", "count from 0")
+    if last is not None and last <= (first or 0):
+        message = f"ends at {document.source((*at, 1))}, at or before its start"
+        document.fault(at, message, "write [first, last], the earlier first")
+
+
+def _channels(document: Document, channels: Channels, earlier: Earlier) -> None:
+    alone = not any(source.channels for source in earlier.get("records", ()))
+    places: list[tuple[Loc, Channel | None]] = [(("channels", "time"), channels.time)]
+    for name, axis in channels.axes.items():
+        at: Loc = ("channels", "axes", name)
+        if not name.isidentifier() or name in blocks.words():
+            document.fault(at, f"{name!r} cannot name an axis", "use letters and digits, such as x", at_key=True)
+        places += [((*at, "drive"), axis.drive), ((*at, "response"), axis.response)]
+    for at, channel in places:
+        if channel is not None:
+            _channel(document, at, channel, alone)
+    if all(axis.response is None for axis in channels.axes.values()):
+        document.fault(("channels", "axes"), "no axis has a response", "give at least one axis a `response`")
+
+
+def _channel(document: Document, at: Loc, channel: Channel, alone: bool) -> None:
+    if alone and all(getattr(channel, word) is None for word in ("name", "column", "dataset", "index", "file")):
+        document.fault(at, "names no channel", "give a header text, or `column`, `dataset` or `index`")
+    if channel.column is not None and channel.column < 1:
+        document.fault((*at, "column"), f"there is no column {channel.column}", "columns count from 1")
+    if channel.unit is not None:
+        _unit(document, (*at, "unit"), channel.unit)
+
+
+def _unit(document: Document, at: Loc, unit: str) -> None:
+    try:
+        units.factor(unit)
+    except InputError as error:
+        document.fault(at, error.message, error.remedy)
+
+
+def _model(document: Document, words: tuple[str, ...], earlier: Earlier) -> None:
+    if not words:
+        document.fault(("model",), "the model has no block", "list at least one, see `pzt-ident list blocks`")
+    folders: dict[str, str] = {}
+    operators = [word for word in blocks.words() if blocks.folder(word) != "effects"]
+    for i, word in enumerate(words):
+        at: Loc = ("model", i)
+        if word not in blocks:
+            document.fault(at, f"unknown block {word!r}", nearest(word, operators))
+            continue
+        folder = blocks.folder(word)
+        if folder == "effects":
+            document.fault(at, f"{word!r} is an effect", f"move it to `effects: [{word}]`")
+        elif folder in folders:
+            message = f"{word!r} beside {folders[folder]!r}: two blocks of {folder}"
+            document.fault(at, message, "keep one of the two")
+        folders[folder] = word
+
+
+def _effects(document: Document, words: tuple[str, ...], earlier: Earlier) -> None:
+    chosen = [blocks[word] for word in earlier.get("model", ()) if word in blocks]
+    terms = {declared.effect for block in chosen for declared in block.parameters().values() if declared.effect}
+    known = terms | {word for word in blocks.words() if blocks.folder(word) == "effects"}
+    for i, word in enumerate(words):
+        at: Loc = ("effects", i)
+        if word in words[:i]:
+            document.fault(at, f"duplicate effect {word!r}", "keep one of the two")
+        elif word not in known and word in blocks:
+            document.fault(at, f"{word!r} is not an effect", f"move it to `model: [{word}]`")
+        elif word not in known:
+            document.fault(at, f"unknown effect {word!r}", nearest(word, known))
+        elif word in blocks and "channels" in earlier and len(earlier["channels"].axes) < 2 and _couples(word):
+            document.fault(at, f"{word!r} needs a second axis", "give the other axis, at least its `drive`")
+
+
+def _couples(word: str) -> bool:
+    from pzt_ident.block import Coupling
+
+    return issubclass(blocks[word], Coupling)
+
+
+def _parameters(document: Document, settings: dict[str, Setting], earlier: Earlier) -> None:
+    for name, setting in settings.items():
+        _setting(document, ("parameters", name), setting)
+    if not {"channels", "model", "effects"} <= set(earlier):
+        return
+    axes = earlier["channels"].axes
+    model = _chain((*earlier["model"], *earlier["effects"]), axes)
+    spelled = {name: slot for slot in model.slots for name in model.spellings(slot)}
+    for name, setting in settings.items():
+        at: Loc = ("parameters", name)
+        if name not in spelled:
+            document.fault(at, *_stranger(name, earlier, spelled), at_key=True)
+            continue
+        declared = spelled[name].parameter
+        if declared.effect and declared.effect not in earlier["effects"]:
+            document.fault(at, f"belongs to the effect {declared.effect!r}", f"add `effects: [{declared.effect}]`")
+        least = setting.bounds[0] if setting.bounds else setting.value
+        if declared.scale == "log" and least is not None and least <= 0:
+            document.fault(at, f"{least:g} is not above 0", "give a value or lower bound above 0")
+
+
+def _chain(words: Iterable[str], axes: Mapping[str, Axis]) -> Model:
+    """The model of the known words; an effect that is a term inside another block adds none."""
+    from pzt_ident.model import Model
+
+    measured = [i for i, axis in enumerate(axes.values()) if axis.response is not None]
+    return Model([blocks[word] for word in dict.fromkeys(words) if word in blocks], list(axes), measured)
+
+
+def _setting(document: Document, at: Loc, setting: Setting) -> None:
+    if setting.bounds is None and setting.value is None:
+        document.fault(at, "sets nothing", "give `bounds: [low, high]` or `value: ...`")
+    if setting.bounds is None:
+        return
+    low, high = setting.bounds
+    if low >= high:
+        message = f"bounds reversed, {low:g} is not below {high:g}"
+        document.fault((*at, "bounds"), message, "write [low, high], or fix it with `value`")
+    elif setting.value is not None and not low <= setting.value <= high:
+        document.fault(
+            (*at, "value"), f"{setting.value:g} is outside its bounds [{low:g}, {high:g}]", "widen the bounds"
+        )
+
+
+def _stranger(name: str, earlier: Earlier, spelled: Mapping[str, Slot]) -> tuple[str, str]:
+    """What is wrong with a name that no parameter of this job has, and what to do."""
+    *axis, block, word = ["", *name.split(".")]
+    axes = earlier["channels"].axes
+    if len(axis) == 2 and axis[1] not in axes:
+        return f"there is no axis {axis[1]!r}", nearest(axis[1], axes)
+    if len(axis) == 2 and axes[axis[1]].response is None:
+        return f"axis {axis[1]!r} has no response, so it has no parameters", "take it out"
+    chosen = (*earlier["model"], *earlier["effects"])
+    if block not in chosen and block in blocks:
+        return f"{block!r} is not in this model", "list it under `model` or `effects`, or take this out"
+    if block not in chosen:
+        return f"unknown parameter {name!r}", nearest(name, spelled)
+    alike = [known for known in spelled if f"{block}." in known and known.count(".") == name.count(".")]
+    return f"{block!r} has no parameter {word!r}", nearest(name, alike)
+
+
+def _optimizers(document: Document, choices: tuple[Choice, ...], earlier: Earlier) -> None:
+    if not choices:
+        document.fault(("optimizers",), "no optimizer", "list at least one, see `pzt-ident list optimizers`")
+    names = [choice.name for choice in choices]
+    for i, choice in enumerate(choices):
+        at: Loc = ("optimizers", i)
+        if choice.name not in optimizers:
+            named = document.reach((*at, "name"))
+            document.fault(named, f"unknown optimizer {choice.name!r}", nearest(choice.name, optimizers.words()))
+            continue
+        if choice.name in names[:i]:
+            document.fault(at, f"{choice.name!r} twice", "keep one; compare its settings in a job each")
+        for loc, error in _complaints(choice):
+            document.fault((*at, *loc), error.message, error.remedy, at_key=error.message.startswith("unknown setting"))
+
+
+def _complaints(choice: Choice) -> Iterator[tuple[Loc, InputError]]:
+    """What an optimizer says to each setting by itself; to all of them together where each is right by itself."""
+    made = optimizers[choice.name].make
+    silent = True
+    for word, value in choice.settings.items():
+        try:
+            made(**{word: value})
+        except InputError as error:
+            if error.where == f"{choice.name}.{word}" or error.message.startswith("unknown setting"):
+                silent = False
+                yield (word,), error
+    if silent:
+        try:
+            made(**choice.settings)
+        except InputError as error:
+            yield (), error
+
+
+def _stop(document: Document, stop: Stopping, earlier: Earlier) -> None:
+    if stop.target is not None and stop.target.unit is not None:
+        _unit(document, ("stop", "target"), stop.target.unit)
+
+
+SECTIONS: Mapping[str, Callable[[Document, Any, Earlier], None]] = {
+    "records": _records,
+    "channels": _channels,
+    "model": _model,
+    "effects": _effects,
+    "parameters": _parameters,
+    "optimizers": _optimizers,
+    "stop": _stop,
+}
