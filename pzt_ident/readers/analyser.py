@@ -41,7 +41,7 @@ def _blocks(lines: Sequence[str]) -> dict[int, tuple[int, int]]:
     """First and last line of each table by its number; the ones with `key: value` lines win."""
     found: dict[int, tuple[int, int]] = {}
     for i, line in enumerate(lines):
-        if heading := _HEADING.match(line):
+        if line.startswith("Table ") and (heading := _HEADING.match(line)):
             last = next((j for j in range(i, len(lines)) if not lines[j].strip()), len(lines))
             number = int(heading[1])
             if number not in found or ":" in lines[min(i + 1, last - 1)]:

@@ -107,7 +107,7 @@ class Finder:
 
 
 def _merged(channel: Channel, over: Channel) -> Channel:
-    if over.name or over.column or over.dataset:
+    if over.name or over.column is not None or over.dataset:
         channel = replace(channel, name=over.name, column=over.column, dataset=over.dataset)
     return replace(
         channel,

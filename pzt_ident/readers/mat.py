@@ -15,7 +15,9 @@ from pzt_ident.record import Source
 
 
 def read(path: Path, source: Source) -> Table:
-    if path.open("rb").read(10) == b"MATLAB 7.3":
+    with path.open("rb") as file:
+        version = file.read(10)
+    if version == b"MATLAB 7.3":
         from pzt_ident.readers import hdf5
 
         return hdf5.tables(path, transposed=True)

@@ -58,7 +58,8 @@ def _below(columns: Sequence[Column], dataset: str | None) -> list[Column]:
 
 
 def _named(columns: Sequence[Column], name: str, dataset: str | None, where: str) -> Column:
-    path = _path(f"{dataset}/{name}" if dataset else name)
+    group = _path(dataset or "")
+    path = _path(f"{group}/{name}")
     spellings: tuple[Callable[[Column], str], ...] = (
         lambda column: _path(column.header),
         lambda column: _path(column.name),
@@ -74,8 +75,7 @@ def _named(columns: Sequence[Column], name: str, dataset: str | None, where: str
             raise InputError(
                 f"column {name!r} occurs {len(found)} times", where=where, remedy=f"give `column:` {numbers}"
             )
-    skipped = len(_path(dataset)) + 1 if dataset else 0
-    known = [column.header.strip("/")[skipped:] for column in columns]
+    known = [column.header.strip("/")[len(group) :].lstrip("/") for column in columns]
     remedy = (
         nearest(name, filter(None, known)) if any(known) else f"it has no header: give `column:` 1 to {len(columns)}"
     )
@@ -88,7 +88,7 @@ def _numbered(columns: Sequence[Column], number: int | None, where: str) -> Colu
         raise InputError(
             f"holds {len(columns)} columns", where=where, remedy=f"say which by name or `column:`; {names}"
         )
-    number = number or 1
+    number = 1 if number is None else number
     if not 1 <= number <= len(columns):
         remedy = f"columns count from 1 to {len(columns)}"
         raise InputError(f"column {number} is out of range", where=where, remedy=remedy)

@@ -35,7 +35,8 @@ class Signal:
         if gaps.size:
             runs = np.split(gaps, np.flatnonzero(np.diff(gaps) > 1) + 1)
             named = [self.place(run[0]) + (f" to {self.place(run[-1])}" if len(run) > 1 else "") for run in runs[:3]]
-            problem = f"{gaps.size} values are missing: {', '.join(named)}{', ...' if len(runs) > 3 else ''}"
+            count = "1 value is" if gaps.size == 1 else f"{gaps.size} values are"
+            problem = f"{count} missing: {', '.join(named)}{', ...' if len(runs) > 3 else ''}"
             raise InputError(problem, where=self.where, remedy="fill the gap, or take a stretch without with `rows`")
         return self
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import csv
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from operator import methodcaller
 
 from pzt_ident.errors import InputError
 from pzt_ident.units import is_unit
@@ -36,6 +36,12 @@ class Layout:
             return next(csv.reader([line], delimiter=self.delimiter, skipinitialspace=True))
         return line.split() if self.delimiter == " " else line.split(self.delimiter)
 
+    def splitter(self, lines: Iterable[str]) -> Callable[[str], list[str]]:
+        """`split`, or where no line has quotes the same without a look for them."""
+        if any('"' in line for line in lines):
+            return self.split
+        return methodcaller("split", None if self.delimiter == " " else self.delimiter)
+
     def number(self, cell: str) -> bool:
         """Whether a cell holds a number, a gap included."""
         try:
@@ -51,8 +57,7 @@ def sniff(lines: Sequence[str], where: str, delimiter: str | None = None) -> Lay
     Raises InputError where there are no two lines of numbers.
     """
     filled = [i for i, line in enumerate(lines) if line.strip()]
-    data = [lines[i] for i in filled if not lines[i].startswith(COMMENTS)]
-    sample = data[len(data) // 2 :][:100]
+    sample = [lines[i] for i in filled[len(filled) // 2 :][:100] if not lines[i].startswith(COMMENTS)]
     layout = _punctuation(sample, delimiter)
     rows = [layout.split(line) for line in sample]
     width = Counter(map(len, rows)).most_common(1)[0][0] if rows else 0
@@ -89,12 +94,19 @@ def _start(
     def partly(i: int) -> bool:
         row = layout.split(lines[i])
         numbers = [cell.strip() != "" and layout.number(cell) for cell in row]
-        return not lines[i].startswith(COMMENTS) and len(row) == width and any(numbers) and not _units(row)
+        return len(row) == width and any(numbers) and not _units(row)
 
-    at = next((n for n, (i, j) in enumerate(pairwise(filled)) if clean(i) and clean(j)), None)
-    while at and partly(filled[at - 1]):
+    kept: list[int] = []
+    for i in (i for i in filled if not lines[i].startswith(COMMENTS)):
+        kept.append(i)
+        if len(kept) > 1 and clean(kept[-1]) and clean(kept[-2]):
+            break
+    else:
+        return None
+    at = len(kept) - 2
+    while at > 0 and partly(kept[at - 1]):
         at -= 1
-    return None if at is None else filled[at]
+    return kept[at]
 
 
 def _names(above: Sequence[str], layout: Layout, width: int) -> tuple[str, ...]:
@@ -109,7 +121,7 @@ def _names(above: Sequence[str], layout: Layout, width: int) -> tuple[str, ...]:
 def _fields(line: str, layout: Layout, width: int) -> list[str]:
     """The cells of a header line, by the delimiter of the numbers or another one that fits their count."""
     for delimiter in (layout.delimiter, *DELIMITERS):
-        if delimiter == " ":
+        if delimiter == " " and '"' not in line:
             cells = re.findall(r"\S+(?:\s*[\[(][^\])]*[\])])?", line)
         else:
             cells = [cell.strip() for cell in Layout(delimiter, ".").split(line)]
