@@ -1,0 +1,194 @@
+"""Laws that every block of the registry keeps. A new block is tested by existing."""
+
+import re
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pzt_ident.block import Bank, Coupling, Operator, Place
+from pzt_ident.model import Plan
+from pzt_ident.registry import blocks
+from pzt_ident.units import is_unit
+from rig import candidates, model, path, record
+from twins import plain
+from twins.blocks import Identity
+
+WORDS = blocks.words()
+SINGLE = [word for word in WORDS if blocks[word].oversample == 1]
+OPERATORS = [word for word in WORDS if issubclass(blocks[word], Operator)]
+EFFECTS = [word for word in WORDS if blocks.folder(word) == "effects"]
+SPAN = np.array([0.0, 100.0])
+CLOSE = 1e-12
+
+levels = st.lists(st.integers(-30, 100), min_size=2, max_size=6)
+seeds = st.integers(0, 2**31)
+drives = st.one_of(
+    st.builds(lambda levels, points: path(*levels, points=points), levels, st.integers(1, 40)),
+    st.builds(lambda seed, samples: waves(seed, samples), seeds, st.integers(4, 200)),
+    st.builds(lambda seed, samples: np.random.default_rng(seed).uniform(0, 100, samples), seeds, st.integers(4, 200)),
+)
+quick = settings(deadline=None, max_examples=20, derandomize=True)
+
+
+def waves(seed, samples=200):
+    """A sum of three sines about 50 V."""
+    rng = np.random.default_rng(seed)
+    phase = np.outer(rng.uniform(0.5, 40, 3), np.linspace(0, 2 * np.pi, samples)) + rng.uniform(0, 6, (3, 1))
+    return 50 + rng.uniform(2, 16, 3) @ np.sin(phase)
+
+
+def made(word, drive, count=3, seed=1, **more):
+    """Model, record and candidates of a block alone; a second axis has the drive backwards."""
+    chain = model(word)
+    measured = record(*[drive, drive[::-1]][: len(chain.axes)], **more)
+    return chain, measured, candidates(chain, SPAN, count, seed)
+
+
+def assert_close(found, expected):
+    """To 1e-12 of each largest value, up to where a candidate runs away."""
+    so_far = np.maximum.accumulate(np.abs(expected), axis=-1)
+    known = so_far < 1e6
+    largest = np.where(known, so_far, 0).max(axis=-1, keepdims=True)
+    assert np.all((np.abs(found - expected) <= CLOSE * largest) | ~known)
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_declarations_are_complete(word):
+    block = blocks[word]
+    assert isinstance(block.place, Place)
+    assert "=" in block.__doc__ or "<-" in block.__doc__, "the equation"
+    assert word == block.name == block.__module__.rpartition(".")[2]
+    for name, declared in block.parameters().items():
+        low, high = declared.bounds
+        assert is_unit(re.sub("drive|response", lambda word: {"drive": "V", "response": "m"}[word[0]], declared.unit))
+        assert low < high and (low > 0 or declared.scale == "linear")
+        assert all(low <= value <= high for value in (declared.null, declared.value) if value is not None)
+        assert re.fullmatch(r"[A-Z].{8,}\.", declared.doc), name
+        assert declared.effect is None or declared.null is not None, name
+        assert (declared.count is not None) == (name != declared.name)
+
+
+@pytest.mark.parametrize("word", EFFECTS)
+@quick
+@given(drive=drives, seed=seeds)
+def test_effect_is_exactly_the_identity_at_its_null(word, drive, seed):
+    chain, measured, theta = made(word, drive, seed=seed)
+    nulls = [slot.parameter.null for slot in chain.slots]
+    assert any(null is not None for null in nulls)
+    theta[:, [null is not None for null in nulls]] = [null for null in nulls if null is not None]
+    assert np.array_equal(chain.simulate(measured, theta), np.broadcast_to(measured.drive, (3, *measured.drive.shape)))
+
+
+@pytest.mark.parametrize("word", WORDS)
+@quick
+@given(drive=drives, seed=seeds)
+def test_compiled_is_what_the_author_wrote(word, drive, seed):
+    chain, measured, theta = made(word, drive[:: blocks[word].oversample], seed=seed)
+    if measured.samples > 1:
+        for found, candidate in zip(chain.simulate(measured, theta), theta, strict=True):
+            assert_close(found, plain.simulate(chain, measured, candidate))
+
+
+@pytest.mark.parametrize("samples", [1, 2, 3, 63, 64, 65, 127, 129, 1000])
+@pytest.mark.parametrize("word", WORDS)
+def test_tiles_leave_no_seam(word, samples):
+    if blocks[word].oversample > 1 and samples == 1:
+        pytest.skip("no spline through one sample")
+    chain, measured, theta = made(word, waves(samples, samples), count=1)
+    assert_close(chain.simulate(measured, theta)[0], plain.simulate(chain, measured, theta[0]))
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_batch_is_each_alone(word):
+    chain, measured, theta = made(word, waves(1), count=70)
+    alone = [chain.simulate(measured, candidate)[0] for candidate in theta]
+    assert_close(chain.simulate(measured, theta), np.array(alone))
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_a_candidate_that_fails_leaves_the_others_alone(word):
+    chain, measured, theta = made(word, waves(2), count=70)
+    failing = theta.copy()
+    failing[3], failing[11], failing[30] = np.nan, 1e300, np.inf
+    with np.errstate(all="ignore"):
+        found, squares = chain.simulate(measured, failing), Plan(chain, measured).squares(failing)
+    others = np.delete(np.arange(70), [3, 11, 30])
+    assert_close(found[others], chain.simulate(measured, theta)[others])
+    assert np.isfinite(squares[others]).all()
+    assert np.isnan(squares[3]).all()
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_output_waits_for_the_drive(word):
+    """A spline between samples looks some 25 samples ahead, its weight falling by 0.27 a sample."""
+    ahead = 0 if blocks[word].oversample == 1 else 25
+    chain, before, theta = made(word, waves(3))
+    after = record(*np.where(np.arange(before.samples) > 100, -before.drive, before.drive))
+    past = slice(0, 101 - ahead)
+    assert_close(chain.simulate(after, theta)[..., past], chain.simulate(before, theta)[..., past])
+    assert not np.allclose(chain.simulate(after, theta), chain.simulate(before, theta))
+
+
+@pytest.mark.parametrize("word", OPERATORS)
+@quick
+@given(drive=drives, seed=seeds)
+def test_operator_behind_a_block_is_the_one_on_the_drive(word, drive, seed):
+    behind, measured = model(Identity, word), record(drive)
+    theta = candidates(behind, SPAN, 30, seed)
+    assert_close(behind.simulate(measured, theta), model(word).simulate(measured, theta))
+
+
+@pytest.mark.parametrize("word", OPERATORS)
+@given(seed=seeds)
+@quick
+def test_operator_is_one_map_of_the_distance(word, seed):
+    """`exact` in one step or two, `travel` on one side of zero, `near` around it: all the same."""
+    block, rng = blocks[word], np.random.default_rng(seed)
+    theta = candidates(model(word), SPAN, 1, seed)[0]
+    _, along, against = [tuple(np.asarray(c).item() for c in part) for part in block.prepare(*theta[:, None])]
+    a, b = rng.uniform(0, 20, 2)
+    q = rng.uniform(-1, 1) / max(abs(along[0]), abs(against[0]))
+    whole = block.exact(q, a + b, along, against)
+    assert block.exact(block.exact(q, a, along, against), b, along, against) == pytest.approx(whole, rel=1e-11)
+    for regime in (along, against):
+        keep, add = block.travel(a, *regime)
+        if q >= 0 or (regime == against and keep * q + add <= 0):
+            assert keep * q + add == pytest.approx(block.exact(q, a, regime, regime), rel=1e-12)
+        further = rng.uniform(-0.1, 0.1) / abs(regime[0])
+        near, expected = block.near(further, keep, add, *regime), block.travel(a + further, *regime)
+        assert near == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("word", SINGLE)
+def test_run_in_is_the_drive_again(word):
+    chain, measured, theta = made(word, waves(4, 90), run_in=2)
+    again = record(*np.tile(measured.drive, 3))
+    assert_close(chain.simulate(measured, theta), chain.simulate(again, theta)[..., 180:])
+
+
+@pytest.mark.parametrize("word", WORDS)
+@pytest.mark.parametrize("more", [{}, {"settle": 70}, {"run_in": 2}, {"run_in": 1, "settle": 129}])
+def test_squares_are_those_of_the_residuals(word, more):
+    chain, measured, theta = made(word, waves(5), count=30, **more)
+    measured.response[:] = np.random.default_rng(6).normal(size=measured.response.shape)
+    plan, residuals = Plan(chain, measured), Plan(chain, measured).residuals(theta)
+    assert residuals.shape[-1] == plan.scored == 200 - more.get("settle", 0)
+    np.testing.assert_allclose(residuals.mean(axis=-1), 0, atol=1e-13 * np.abs(residuals).max())
+    np.testing.assert_allclose(plan.squares(theta), (residuals**2).sum(axis=-1), rtol=1e-10)
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_nothing_before_the_settling_or_constant_is_scored(word):
+    chain, measured, theta = made(word, waves(7), settle=80)
+    expected = Plan(chain, measured).squares(theta)
+    measured.response[:, :80] = 1e3
+    measured.response[:] += 7.0
+    np.testing.assert_allclose(Plan(chain, measured).squares(theta), expected, rtol=1e-9)
+
+
+def test_kinds_are_all_there():
+    """What the laws above are shown on."""
+    kinds = {kind for kind in (Operator, Bank, Coupling) if any(issubclass(blocks[word], kind) for word in WORDS)}
+    assert kinds == {Operator, Bank, Coupling}

@@ -1,0 +1,73 @@
+"""Records, drives and candidates made up for the tests of the physics."""
+
+from itertools import pairwise
+
+import numpy as np
+
+from pzt_ident.block import Coupling
+from pzt_ident.model import Model
+from pzt_ident.record import Record
+from pzt_ident.registry import blocks
+
+AXES = "xyz"
+
+
+def record(*drives, response=None, dt=1e-3, measured=None, **more):
+    """One record over as many axes as drives; the response is zero unless given."""
+    drive = np.array(drives, float)
+    measured = range(len(drive)) if measured is None else measured
+    return Record(
+        name="made up",
+        use="identify",
+        dt=dt,
+        drive=drive,
+        response=np.zeros_like(drive) if response is None else np.array(response, float),
+        axes=tuple(AXES[: len(drive)]),
+        drive_units=("V",) * len(drive),
+        response_units=tuple("m" if i in measured else None for i in range(len(drive))),
+        **more,
+    )
+
+
+def model(*chain, axes=None, measured=None):
+    """A model of blocks or their words; two axes where a block couples them."""
+    chain = [blocks[item] if isinstance(item, str) else item for item in chain]
+    axes = axes or (2 if any(issubclass(block, Coupling) for block in chain) else 1)
+    return Model(chain, AXES[:axes], range(axes) if measured is None else measured)
+
+
+def response(chain, parameters, *drives, dt=1e-3, **more):
+    """Response of one candidate, (axes, samples), or (samples,) for one axis. Parameters as named in `Model.names`."""
+    made = model(*chain, axes=len(drives))
+    theta = np.array([[parameters[name] for name in made.names]])
+    found = made.simulate(record(*drives, dt=dt, **more), theta)[0]
+    return found if len(drives) > 1 else found[0]
+
+
+def candidates(made, drive, count, seed, response=10.0):
+    """Random theta within the declared bounds, for drives of that span and responses of the given one."""
+    rng = np.random.default_rng(seed)
+    columns = []
+    for slot in made.slots:
+        declared = slot.parameter
+        low, high = np.array(declared.bounds) * size(declared.unit, np.ptp(drive), response)
+        share = rng.uniform(0.02, 0.98, count)
+        columns.append(low * (high / low) ** share if declared.scale == "log" else low + (high - low) * share)
+    return np.array(columns).T.reshape(count, -1)
+
+
+def size(unit, drive, response):
+    """What the bounds of a parameter in `drive` or `response` units are multiples of."""
+    spans = {"drive": drive, "response": response}
+    top, _, bottom = unit.partition("/")
+    return spans.get(top, 1) / spans.get(bottom, 1)
+
+
+def path(*levels, points=100):
+    """Straight legs from level to level, `points` samples each; every level is a sample."""
+    legs = [np.linspace(a, b, points, endpoint=False) for a, b in pairwise(levels)]
+    return np.append(np.concatenate(legs), float(levels[-1]))
+
+
+def triangle(amplitude, cycles=3, points=500):
+    return path(*[amplitude * (i % 2) for i in range(2 * cycles + 1)], points=points)

@@ -1,0 +1,34 @@
+"""Blocks that only tests use."""
+
+from pzt_ident.block import Block, Coupling, Place
+from pzt_ident.parameter import Parameter
+
+
+class Identity(Block):
+    """y = u, without state or parameter."""
+
+    name = "identity"
+    place = Place.AMPLIFIER
+
+    def prepare():
+        return ()
+
+    def start(u):
+        return ()
+
+    def step(u):
+        return u
+
+
+class Turn(Coupling):
+    """y_a = u_a + sum_b size_ab u_a u_b: tells the order of its arguments and of the pairs."""
+
+    name = "turn"
+    place = Place.COUPLING
+    size = Parameter("1/drive", (-1, 1), "Of the product with the other axis.", null=0)
+
+    def prepare(size):
+        return (size,)
+
+    def step(y, other, size):
+        return y + size * y * other
