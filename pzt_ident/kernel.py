@@ -20,8 +20,8 @@ from numba.extending import intrinsic, overload, register_jitable
 from pzt_ident import block
 
 if "NUMBA_CPU_FEATURES" not in os.environ:  # 512 bit vectors where the processor has them: 1.4 times faster here
-    numba.config.CPU_FEATURES = binding.get_host_cpu_features().flatten() + ",-prefer-256-bit"
-    numba.config.CPU_NAME = binding.get_host_cpu_name()
+    setattr(numba.config, "CPU_FEATURES", binding.get_host_cpu_features().flatten() + ",-prefer-256-bit")  # noqa: B010
+    setattr(numba.config, "CPU_NAME", binding.get_host_cpu_name())  # noqa: B010
 
 WIDTH = 24
 TILE = 64
@@ -156,7 +156,7 @@ def run(program, signals, scratch, tiles, samples, since, stride, output, take):
             for step in range(program.shape[0]):
                 skip = max(0, program[step, 4] - first)
                 if skip < count:
-                    call(
+                    call(  # type: ignore[call-arg]
                         program[step, 0],
                         count - skip,
                         first + skip,

@@ -127,13 +127,13 @@ class Plan:
     def _fill(self, axes: set[int]) -> None:
         from pzt_ident.kernel import fill
 
-        self.program += [(fill.address, 0, axis, axis, 0) for axis in sorted(axes)]
+        self.program += [(int(fill.address), 0, axis, axis, 0) for axis in sorted(axes)]
         axes.clear()
 
     def _add(self, block: type[Block], axis: int, driven: bool) -> None:
         from pzt_ident.lanes import compile_block
 
-        made = compile_block(block, len(self.model.axes), driven)
+        made = compile_block(block, len(self.model.axes), driven)  # type: ignore[arg-type]
         self.program.append((made.address, self.rows, axis, axis, 0))
         axes = range(len(self.model.axes))
         coupling = issubclass(block, Coupling)
@@ -230,7 +230,7 @@ class Plan:
         since = self.record.run_in * self.record.samples + self.record.settle
         program = list(self.program)
         for i, axis in enumerate(self.model.measured):
-            program.append((kernel.errors.address, self.sums + 2 * i, len(self.model.axes) + i, axis, since))
+            program.append((int(kernel.errors.address), self.sums + 2 * i, len(self.model.axes) + i, axis, since))
         scratch = self._run(theta, program, np.empty((0, 0, 0)))
         sums = scratch.reshape(scratch.shape[0], self.rows, kernel.WIDTH)[:, self.sums :]
         total, square = sums[:, 0::2], sums[:, 1::2]

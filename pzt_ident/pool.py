@@ -44,10 +44,11 @@ def run_all(
                 process.start()
                 theirs.close()
                 running[ours] = name, process
-            for pipe in wait(list(running)):
+            for ready in wait(list(running)):
+                pipe: Any = ready
                 name, process = running[pipe]
                 try:
-                    event = pipe.recv()  # type: ignore[union-attr]
+                    event = pipe.recv()
                 except EOFError:
                     event = {"event": "failed", "run": name, "reason": died(process)}
                 if event is None or event["event"] == "failed":
