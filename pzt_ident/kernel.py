@@ -176,6 +176,11 @@ def run(program, signals, scratch, tiles, samples, since, stride, output, take):
                             ]
 
 
+def address(function: Any) -> int:
+    """Where a compiled C function stands."""
+    return int(function.address)
+
+
 def aligned(*shape: int) -> np.ndarray:
     """Zeros that begin on a cache line."""
     size = int(np.prod(shape))

@@ -125,9 +125,9 @@ class Plan:
         self.rows += 2 * len(model.measured)
 
     def _fill(self, axes: set[int]) -> None:
-        from pzt_ident.kernel import fill
+        from pzt_ident.kernel import address, fill
 
-        self.program += [(int(fill.address), 0, axis, axis, 0) for axis in sorted(axes)]
+        self.program += [(address(fill), 0, axis, axis, 0) for axis in sorted(axes)]
         axes.clear()
 
     def _add(self, block: type[Block], axis: int, driven: bool) -> None:
@@ -230,7 +230,7 @@ class Plan:
         since = self.record.run_in * self.record.samples + self.record.settle
         program = list(self.program)
         for i, axis in enumerate(self.model.measured):
-            program.append((int(kernel.errors.address), self.sums + 2 * i, len(self.model.axes) + i, axis, since))
+            program.append((kernel.address(kernel.errors), self.sums + 2 * i, len(self.model.axes) + i, axis, since))
         scratch = self._run(theta, program, np.empty((0, 0, 0)))
         sums = scratch.reshape(scratch.shape[0], self.rows, kernel.WIDTH)[:, self.sums :]
         total, square = sums[:, 0::2], sums[:, 1::2]
