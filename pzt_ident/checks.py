@@ -126,12 +126,14 @@ def _parameters(document: Document, settings: dict[str, Setting], earlier: Earli
     if not {"channels", "model", "effects"} <= set(earlier):
         return
     axes = earlier["channels"].axes
+    if all(axis.response is None for axis in axes.values()):
+        return
     model = _chain((*earlier["model"], *earlier["effects"]), axes)
     spelled = {name: slot for slot in model.slots for name in model.spellings(slot)}
     for name, setting in settings.items():
         at: Loc = ("parameters", name)
         if name not in spelled:
-            document.fault(at, *_stranger(name, earlier, spelled), at_key=True)
+            _stranger(document, name, earlier, spelled)
             continue
         declared = spelled[name].parameter
         if declared.effect and declared.effect not in earlier["effects"]:
@@ -164,21 +166,24 @@ def _setting(document: Document, at: Loc, setting: Setting) -> None:
         )
 
 
-def _stranger(name: str, earlier: Earlier, spelled: Mapping[str, Slot]) -> tuple[str, str]:
-    """What is wrong with a name that no parameter of this job has, and what to do."""
+def _stranger(document: Document, name: str, earlier: Earlier, spelled: Mapping[str, Slot]) -> None:
+    """Say what is wrong with a name that no parameter of this job has."""
     *axis, block, word = ["", *name.split(".")]
-    axes = earlier["channels"].axes
+    axes, chosen = earlier["channels"].axes, (*earlier["model"], *earlier["effects"])
     if len(axis) == 2 and axis[1] not in axes:
-        return f"there is no axis {axis[1]!r}", nearest(axis[1], axes)
-    if len(axis) == 2 and axes[axis[1]].response is None:
-        return f"axis {axis[1]!r} has no response, so it has no parameters", "take it out"
-    chosen = (*earlier["model"], *earlier["effects"])
-    if block not in chosen and block in blocks:
-        return f"{block!r} is not in this model", "list it under `model` or `effects`, or take this out"
-    if block not in chosen:
-        return f"unknown parameter {name!r}", nearest(name, spelled)
-    alike = [known for known in spelled if f"{block}." in known and known.count(".") == name.count(".")]
-    return f"{block!r} has no parameter {word!r}", nearest(name, alike)
+        said = f"there is no axis {axis[1]!r}", nearest(axis[1], axes)
+    elif len(axis) == 2 and axes[axis[1]].response is None:
+        said = f"axis {axis[1]!r} has no response, so it has no parameters", "take it out"
+    elif block not in chosen and block in blocks:
+        if any(word not in blocks for word in earlier["model"]):
+            return  # one of the unknown words may well stand for this block
+        said = f"{block!r} is not in this model", "list it under `model` or `effects`, or take this out"
+    elif block not in chosen:
+        said = f"unknown parameter {name!r}", nearest(name, spelled)
+    else:
+        alike = [known for known in spelled if f"{block}." in known and known.count(".") == name.count(".")]
+        said = f"{block!r} has no parameter {word!r}", nearest(name, alike)
+    document.fault(("parameters", name), *said, at_key=True)
 
 
 def _optimizers(document: Document, choices: tuple[Choice, ...], earlier: Earlier) -> None:
