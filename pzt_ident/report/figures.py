@@ -1,0 +1,155 @@
+"""The figures of a run: which there are, and their files."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pzt_ident.files import replaced
+from pzt_ident.report import residual_figures as residual
+from pzt_ident.report import search_figures as search
+from pzt_ident.report import signal_figures as signal
+from pzt_ident.report.results import Results, Trace
+from pzt_ident.report.style import COLUMN, PAGE, saved, style
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True)
+class Plate:
+    """One figure to be drawn at any width: `section` is where it stands in the report, `caption` what is below it."""
+
+    name: str
+    section: str
+    caption: str
+    height: Callable[[float], float]
+    draw: Callable[[Figure], None]
+
+
+def plates(results: Results) -> list[Plate]:
+    """Every figure that these results have, in the order of the report."""
+    return [*_signal_plates(results), *_residual_plates(results), *_search_plates(results)]
+
+
+def render(plate: Plate, width: float, forms: Sequence[str]) -> dict[str, bytes]:
+    """A plate drawn `width` mm wide, as the content of a file of each form, svg or pdf."""
+    from matplotlib.figure import Figure
+
+    with style():
+        figure = Figure(figsize=(width / 25.4, plate.height(width) / 25.4))
+        plate.draw(figure)
+        return {form: saved(figure, form) for form in forms}
+
+
+def write_page_figures(results: Results, folder: Path) -> list[tuple[Plate, bytes]]:
+    """Write every figure as the SVG that the page shows, `<name>-180mm.svg`; returns them."""
+    return [(plate, _write(plate, PAGE, ("svg",), folder)["svg"]) for plate in plates(results)]
+
+
+def write_paper_figures(results: Results, folder: Path) -> Iterator[Plate]:
+    """Write the files that a paper needs beside those: PDF at 88 and 180 mm, SVG at 88 mm. Yields what is done."""
+    for plate in plates(results):
+        _write(plate, COLUMN, ("svg", "pdf"), folder)
+        _write(plate, PAGE, ("pdf",), folder)
+        yield plate
+
+
+def _write(plate: Plate, width: int, forms: Sequence[str], folder: Path) -> dict[str, bytes]:
+    drawn = render(plate, width, forms)
+    for form, content in drawn.items():
+        with replaced(folder / f"{plate.name}-{width}mm.{form}") as beside:
+            beside.write_bytes(content)
+    return drawn
+
+
+def slug(text: str) -> str:
+    """`text` as part of a file name."""
+    return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:40]
+
+
+def _signal_plates(results: Results) -> Iterator[Plate]:
+    floor = results.result["noise_floor"]
+    bins = max(150, min(600, 2400 // max(len(results.traces), 1)))
+    for place, trace in enumerate(results.traces, start=1):
+        yield Plate(
+            "-".join(filter(None, (f"time-{place}", slug(trace.record), slug(trace.axis)))),
+            "model",
+            f"Response of axis {trace.axis}, measured and modelled, and the residual: {trace.record} ({trace.use}).",
+            signal.time_height,
+            partial(signal.draw_time, trace=trace, noise=floor.get(trace.axis), bins=bins),
+        )
+    for axis, traces in _by_axis(results):
+        yield Plate(
+            f"loops-{slug(axis)}",
+            "loops",
+            f"Response against drive of axis {axis}, measured and modelled.",
+            partial(signal.records_height, records=len(traces)),
+            partial(signal.draw_loops, traces=traces, bins=bins),
+        )
+
+
+def _residual_plates(results: Results) -> Iterator[Plate]:
+    floor = results.result["noise_floor"]
+    for axis, traces in _by_axis(results):
+        height = partial(signal.records_height, records=len(traces))
+        yield Plate(
+            f"residual-drive-{slug(axis)}",
+            "residuals",
+            f"Residual of axis {axis} against the drive, rising and falling drive apart: median, and the band that "
+            "holds 90 % of the samples.",
+            height,
+            partial(residual.draw_branches, traces=traces, noise=floor.get(axis)),
+        )
+        yield Plate(
+            f"residual-loop-{slug(axis)}",
+            "residuals",
+            f"Mean residual of axis {axis} along the measured loop.",
+            height,
+            partial(residual.draw_map, traces=traces),
+        )
+    yield Plate(
+        "residual-spread",
+        "residuals",
+        "Spread of the scored residuals.",
+        partial(residual.histogram_height, axes=len(results.axes)),
+        partial(residual.draw_histogram, traces=results.traces, noise=floor),
+    )
+
+
+def _search_plates(results: Results) -> Iterator[Plate]:
+    yield Plate(
+        "convergence",
+        "convergence",
+        "Best RMSE on the identify records so far, before the polish: median and range over the repeats of each "
+        "optimizer.",
+        search.convergence_height,
+        partial(search.draw_convergence, results=results),
+    )
+    if free := search.free_parameters(results):
+        yield Plate(
+            "estimates",
+            "parameters",
+            "Where every run put each free parameter between its bounds. A parameter whose estimates scatter over the "
+            "whole box is one that the data do not determine. Logarithmic (log) where the bounds span two decades or "
+            "more.",
+            partial(search.estimates_height, parameters=len(free)),
+            partial(search.draw_estimates, results=results),
+        )
+    names, _ = search.correlation(results)
+    if names:
+        yield Plate(
+            "correlation",
+            "correlations",
+            "Correlations of the best run's estimates; grey where there is none to give.",
+            partial(search.correlation_height, longest=max(map(len, names)), parameters=len(names)),
+            partial(search.draw_correlation, results=results),
+        )
+
+
+def _by_axis(results: Results) -> list[tuple[str, list[Trace]]]:
+    return [(axis, [trace for trace in results.traces if trace.axis == axis]) for axis in results.axes]

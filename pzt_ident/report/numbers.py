@@ -1,0 +1,88 @@
+"""Numbers and units as an engineer writes them."""
+
+from __future__ import annotations
+
+import math
+import re
+import unicodedata
+
+MISSING = "–"
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def number(value: float | None, digits: int = 4) -> str:
+    """`value` with so many significant digits: 0.08195, 17.30, 8.195 × 10⁻⁸; a dash where there is none."""
+    if value is None or math.isnan(value):
+        return MISSING
+    if math.isinf(value) or value == 0:
+        return {math.inf: "∞", -math.inf: "−∞"}.get(value, "0")
+    power = _power(value, digits)
+    if -4 <= power < 5:
+        return _fixed(value, digits - 1 - power)
+    return f"{_fixed(value / 10.0**power, digits - 1)} × {power_of_ten(power)}"
+
+
+def short(value: float | None, digits: int = 4) -> str:
+    """As `number`, without the zeros that follow the last digit: for bounds, ticks and other round numbers."""
+    mantissa, times, power = number(value, digits).partition(" × ")
+    if "." in mantissa:
+        mantissa = mantissa.rstrip("0").rstrip(".")
+    if mantissa == "1" and times:
+        return power
+    return {"10000": "10⁴", "0.0001": "10⁻⁴"}.get(mantissa, mantissa) + times + power
+
+
+def bounds(lower: float | None, upper: float | None) -> str:
+    return MISSING if lower is None or upper is None else f"{short(lower)} to {short(upper)}"
+
+
+def with_error(value: float | None, error: float | None) -> str:
+    """`value ± error`, the error with two significant digits and the value with the same decimals.
+
+    Where the error exceeds the value, or is below its eighth digit, each is written by itself.
+    """
+    if value is None or error is None or not math.isfinite(value) or not math.isfinite(error) or error <= 0:
+        return number(value)
+    power, last = _power(value, 4), _power(error, 2) - 1
+    if error > abs(value) or power - last > 8:
+        return f"{number(value, 4 if error > abs(value) else 8)} ± {number(error, 2)}"
+    if -4 <= power < 5:
+        return f"{_fixed(value, -last)} ± {_fixed(error, -last)}"
+    scale = 10.0**power
+    pair = f"{_fixed(value / scale, power - last)} ± {_fixed(error / scale, power - last)}"
+    return f"({pair}) × {power_of_ten(power)}"
+
+
+def count(value: float | None) -> str:
+    """A whole number with its thousands set apart: 17 500."""
+    return MISSING if value is None or math.isnan(value) else f"{round(value):,}".replace(",", "\u202f")
+
+
+def percent(share: float | None) -> str:
+    return MISSING if share is None or math.isnan(share) else f"{100 * share:.0f}\u00a0%"
+
+
+def unit(text: str) -> str:
+    """A unit as it is printed: um/V is µm/V, N s/m is N·s/m, m/s^2 is m/s², 1 is nothing."""
+    text = unicodedata.normalize("NFKC", text).replace("\u03bc", "µ").strip()
+    text = re.sub(r"\bu(?=(m|s|g|V|A|N|C|F|K|W|Hz|rad)\b)", "µ", text)
+    text = re.sub(r"(?:\^|\*\*)(-?\d+)", lambda match: match[1].translate(SUPERSCRIPTS), text)
+    return "" if text == "1" else re.sub(r"\s*\*\s*|\s+", "·", text)
+
+
+def quantity(value: float | None, of: str, digits: int = 4) -> str:
+    """Number and unit, which no line break parts."""
+    return f"{number(value, digits)}\u00a0{unit(of)}".rstrip("\u00a0")
+
+
+def power_of_ten(power: int) -> str:
+    return "10" + str(power).translate(SUPERSCRIPTS)
+
+
+def _power(value: float, digits: int) -> int:
+    """The power of ten of `value` once it is rounded to so many digits."""
+    return int(f"{value:.{digits - 1}e}".partition("e")[2])
+
+
+def _fixed(value: float, decimals: int) -> str:
+    return f"{round(value, decimals):.{max(decimals, 0)}f}".replace("-", "−")

@@ -1,0 +1,102 @@
+"""Figures of the signals: the best model beside the measurement, in time and as loops."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pzt_ident.report.results import Floats, Trace
+from pzt_ident.report.style import (
+    COLUMN,
+    INK,
+    MEASURED,
+    MODEL,
+    NOISE,
+    SHADE,
+    Frame,
+    decimate,
+    heading,
+    key,
+    label,
+    name_panel,
+    panels,
+    patch,
+    width_of,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_KEYS = (("measured", MEASURED), ("model", MODEL))
+
+
+def time_height(width: float) -> float:
+    return 70 if width == COLUMN else 78
+
+
+def draw_time(figure: Figure, trace: Trace, noise: float | None, bins: int) -> None:
+    """Measured and modelled response over time, the residual below; what is not scored is shaded."""
+    keys = [key(name, **look) for name, look in _KEYS]
+    keys += [patch("± noise floor", **NOISE)] * bool(noise) + [patch("not scored", color=SHADE)] * (trace.settle > 0)
+    top = heading(figure, f"Model beside measurement, axis {trace.axis}", keys)
+    upper, lower = panels(figure, 2, 1, Frame(top + 4, down=3.5), sharex=True, height_ratios=(1.8, 1))[:, 0]
+    name_panel(upper, trace.record, trace.use)
+    for axes, values, look in (
+        (upper, trace.response, MEASURED),
+        (upper, trace.model, MODEL),
+        (lower, trace.residual, {"color": INK, "linewidth": 0.4}),
+    ):
+        shown = decimate(values, bins)
+        axes.plot(trace.time[shown], values[shown], **look)
+        if trace.settle > 0 and look is not MODEL:
+            axes.axvspan(trace.time[0], trace.time[0] + trace.settle, color=SHADE, linewidth=0)
+    lower.axhspan(-(noise or 0), noise or 0, linewidth=0, **NOISE)
+    lower.set_ylim(*_limits(trace, noise or 0.0))
+    lower.set_xlim(trace.time[0], trace.time[-1])
+    label(upper.yaxis, "response", trace.unit, trace.response)
+    label(lower.yaxis, "residual", trace.unit, lower.get_ylim())
+    lower.set_xlabel("time [s]")
+
+
+def draw_loops(figure: Figure, traces: Sequence[Trace], bins: int) -> None:
+    """Response against drive, one panel a record."""
+    title = f"Response against drive, axis {traces[0].axis}"
+    top = heading(figure, title, [key(name, **look) for name, look in _KEYS])
+    for axes, trace in zip(record_panels(figure, traces, Frame(top + 4)), traces, strict=True):
+        for values, look in ((trace.response, MEASURED), (trace.model, MODEL)):
+            shown = np.union1d(decimate(values, bins), decimate(trace.drive, bins))
+            axes.plot(trace.drive[shown], values[shown], **look | {"linewidth": 0.65 * look["linewidth"]})
+        label(axes.yaxis, "response", trace.unit, trace.response)
+
+
+def record_panels(figure: Figure, traces: Sequence[Trace], frame: Frame) -> list[Axes]:
+    """One titled panel a record, its drive along the foot."""
+    grid = panels(figure, *_shape(width_of(figure), len(traces)), frame).ravel()
+    for place, (axes, trace) in enumerate(zip(grid, traces, strict=False)):
+        name_panel(axes, trace.record, trace.use, place if len(traces) > 1 else None)
+        label(axes.xaxis, "drive", trace.drive_unit, trace.drive)
+    for spare in grid[len(traces) :]:
+        spare.set_axis_off()
+    return list(grid[: len(traces)])
+
+
+def records_height(width: float, records: int) -> float:
+    """Height in mm of a figure with one panel a record."""
+    rows, columns = _shape(width, records)
+    return 24 + rows * 0.72 * min(70.0, width / columns - 13) + 14 * (rows - 1)
+
+
+def _shape(width: float, records: int) -> tuple[int, int]:
+    columns = 2 if records == 4 else min(records, 3) if width > COLUMN else 1 if records < 4 else 2
+    return -(-records // columns), columns
+
+
+def _limits(trace: Trace, noise: float) -> tuple[float, float]:
+    """Room for the scored residual and the noise floor; the start, before the model has settled, may leave it."""
+    scored = trace.residual[trace.scored]
+    ends: Floats = np.append(scored[np.isfinite(scored)], [-1.2 * noise, 1.2 * noise])
+    spare = 0.06 * float(np.ptp(ends)) or 1.0
+    return float(ends.min()) - spare, float(ends.max()) + spare

@@ -1,0 +1,205 @@
+"""The tables of a run: numbers for a computer (CSV), and the same as text for a reader (page, LaTeX)."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pzt_ident.files import write_text
+from pzt_ident.report.numbers import bounds, count, number, percent, short, unit, with_error
+from pzt_ident.report.results import Results
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Cell = Callable[[Mapping[str, Any]], str]
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """`data` has the numbers, a unit in the heading where there is one; `text` has what is printed. `words` are
+    the printed columns set flush left, numbers being flush right."""
+
+    name: str
+    data: pd.DataFrame
+    text: pd.DataFrame
+    words: frozenset[str]
+
+
+def make_tables(results: Results) -> dict[str, Table]:
+    """The league of optimizers, every run, the best run's parameters, and the records, by name."""
+    made = (league(results), runs(results), parameters(results), records(results))
+    return {table.name: table for table in made}
+
+
+def write_tables(tables: Mapping[str, Table], folder: Path) -> None:
+    """Write `<name>.csv` and `<name>.tex` (a booktabs tabular) of each into the folder."""
+    for table in tables.values():
+        write_text(folder / f"{table.name}.csv", table.data.to_csv(index=False, lineterminator="\n"))
+        write_text(folder / f"{table.name}.tex", latex(table))
+
+
+def league(results: Results) -> Table:
+    """One row an optimizer: its own result before the polish, what it cost, and the result after the polish."""
+    rmse = ("rmse_median", "rmse_lower_quartile", "rmse_upper_quartile", "rmse_best", "polished_rmse_median")
+    of = unit(results.unit)
+    cells: dict[str, Cell] = {
+        "optimizer": lambda row: row["optimizer"],
+        "runs": lambda row: count(row["runs"]),
+        f"RMSE median [{of}]": lambda row: number(row["rmse_median"]),
+        f"quartiles [{of}]": lambda row: (
+            f"{number(row['rmse_lower_quartile'])} to {number(row['rmse_upper_quartile'])}"
+        ),
+        f"best [{of}]": lambda row: number(row["rmse_best"]),
+        f"median after polish [{of}]": lambda row: number(row["polished_rmse_median"]),
+        "time [s]": lambda row: number(row["seconds_median"], 3),
+        "evaluations": lambda row: count(row["evaluations"]),
+        "evaluations to 1\u00a0%": lambda row: count(row["evaluations_to_1_percent_median"]),
+        "success": lambda row: percent(row["success"]),
+    }
+    return _table(
+        "league", results.result["league"], cells, {"optimizer"}, _units(results, *rmse, s=("seconds_median",))
+    )
+
+
+def runs(results: Results) -> Table:
+    """One row a finished run, RMSE over the identify and over the validate records, before and after the polish."""
+    flat = ("identify", "validate", "identify_before_polish", "validate_before_polish")
+    rows = [
+        {
+            **{key: run[key] for key in ("run", "optimizer", "repeat")},
+            **dict(zip(flat, (*_pair(run["rmse"]), *_pair(run["rmse_before_polish"])), strict=True)),
+            **{key: run[key] for key in ("evaluations", "polish_evaluations", "evaluations_to_1_percent")},
+            **{key: run[key] for key in ("seconds", "cpu_seconds", "failed_simulations", "stopped_by")},
+        }
+        for run in results.result["runs"]
+    ]
+    of = unit(results.unit)
+    cells: dict[str, Cell] = {
+        "run": lambda row: row["run"],
+        f"identify [{of}]": lambda row: number(row["identify"]),
+        f"validate [{of}]": lambda row: number(row["validate"]),
+        f"identify before polish [{of}]": lambda row: number(row["identify_before_polish"]),
+        f"validate before polish [{of}]": lambda row: number(row["validate_before_polish"]),
+        "evaluations": lambda row: count(row["evaluations"]),
+        "in the polish": lambda row: count(row["polish_evaluations"]),
+        "evaluations to 1\u00a0%": lambda row: count(row["evaluations_to_1_percent"]),
+        "time [s]": lambda row: number(row["seconds"], 3),
+        "CPU [s]": lambda row: number(row["cpu_seconds"], 3),
+        "failed simulations": lambda row: count(row["failed_simulations"]),
+        "stopped by": lambda row: row["stopped_by"],
+    }
+    units = _units(results, *flat, s=("seconds", "cpu_seconds"))
+    return _table("runs", rows, cells, {"run", "stopped by"}, units)
+
+
+def parameters(results: Results) -> Table:
+    """One row a parameter of the best run: value with standard error, bounds, and what the data say about it."""
+    keys = ("value", "standard_error", "unit", "lower", "upper", "verdict", "note")
+    rows = [
+        {"parameter": name, **{key: entry.get(key) for key in keys}}
+        for name, entry in results.best["parameters"].items()
+    ]
+    cells: dict[str, Cell] = {
+        "parameter": lambda row: row["parameter"],
+        "value": lambda row: with_error(row["value"], row["standard_error"]),
+        "unit": lambda row: unit(row["unit"]),
+        "bounds": lambda row: bounds(row["lower"], row["upper"]),
+        "verdict": lambda row: row["verdict"],
+        "note": lambda row: row["note"] or "",
+    }
+    return _table("parameters", rows, cells, {"parameter", "unit", "verdict", "note"}, {})
+
+
+def records(results: Results) -> Table:
+    """One row a record: its use, size, RMSE of the best run per axis, and the hash of its file."""
+    keys = ("name", "use", "samples", "sample_rate", "settle")
+    axes = list(dict.fromkeys(axis for record in results.result["records"] for axis in record["rmse"]))
+    rows = [
+        {
+            **{key: record[key] for key in keys},
+            **{f"rmse_{axis}": record["rmse"].get(axis) for axis in axes},
+            **{key: record[key] for key in ("file", "sha256")},
+        }
+        for record in results.result["records"]
+    ]
+    errors: dict[str, Cell] = {
+        f"RMSE {axis} [{unit(results.unit)}]": lambda row, key=f"rmse_{axis}": number(row[key])  # type: ignore[misc]
+        for axis in axes
+    }
+    cells: dict[str, Cell] = {
+        "record": lambda row: row["name"],
+        "use": lambda row: row["use"],
+        "samples": lambda row: count(row["samples"]),
+        "rate [Hz]": lambda row: short(row["sample_rate"], 6),
+        "not scored [s]": lambda row: short(row["settle"]),
+        **errors,
+        "file": lambda row: row["file"],
+        "SHA-256": lambda row: row["sha256"][:16],
+    }
+    units = _units(results, *(f"rmse_{axis}" for axis in axes), s=("settle",), Hz=("sample_rate",))
+    return _table("records", rows, cells, {"record", "use", "file", "SHA-256"}, units)
+
+
+def latex(table: Table) -> str:
+    r"""The printed table as a booktabs `tabular`, to be read with `\input`; needs `\usepackage{booktabs}`."""
+    align = "".join("l" if column in table.words else "r" for column in table.text)
+    body = [_latex_row(row) for row in table.text.itertuples(index=False, name=None)]
+    lines = [rf"\begin{{tabular}}{{{align}}}", r"\toprule", _latex_row(table.text.columns), r"\midrule", *body]
+    return "\n".join([*lines, r"\bottomrule", r"\end{tabular}", ""])
+
+
+def latex_escape(text: str) -> str:
+    """`text` as LaTeX shows it: its special characters, and the signs that numbers and units are printed with."""
+    text = re.sub(r"[\\{}&%$#_~^<>|]", lambda match: _SPECIAL[match[0]], text)
+    text = re.sub(r"[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda match: f"$^{{{match[0].translate(_DIGITS)}}}$", text)
+    return re.sub("|".join(_SIGNS), lambda match: _SIGNS[match[0]], text)
+
+
+_SPECIAL = {character: f"\\{character}" for character in "{}&%$#_"} | {
+    "\\": r"\textbackslash{}",
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "|": r"\textbar{}",
+}
+_SIGNS = {
+    " × ": r" $\times$ ",
+    "±": r"$\pm$",
+    "−": "$-$",
+    "∞": r"$\infty$",
+    "·": r"$\cdot$",
+    "–": "--",
+    "µ": r"\textmu{}",
+    "\u03bc": r"\textmu{}",
+    "\u202f": r"\,",
+    "\u00a0": "~",
+}
+_DIGITS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+
+
+def _latex_row(cells: Any) -> str:
+    return " & ".join(latex_escape(str(cell)) for cell in cells) + r" \\"
+
+
+def _table(
+    name: str, rows: list[dict[str, Any]], cells: dict[str, Cell], words: set[str], units: dict[str, str]
+) -> Table:
+    import pandas as pd
+
+    text = pd.DataFrame([{title: str(cell(row)) for title, cell in cells.items()} for row in rows], columns=list(cells))
+    data = pd.DataFrame(rows).rename(columns={key: f"{key} [{of}]" for key, of in units.items()})
+    return Table(name, data, text, frozenset(words))
+
+
+def _units(results: Results, *keys: str, **others: tuple[str, ...]) -> dict[str, str]:
+    """The unit of each heading: the run's own for `keys`."""
+    return dict.fromkeys(keys, results.unit) | {key: of for of, names in others.items() for key in names}
+
+
+def _pair(rmse: Mapping[str, float | None]) -> tuple[float | None, float | None]:
+    return rmse["identify"], rmse["validate"]

@@ -1,0 +1,72 @@
+"""What the numbers say, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from pzt_ident.report.numbers import count, number, quantity
+from pzt_ident.report.results import Results
+
+
+def verdict(results: Results) -> str:
+    """One sentence: what the model leaves, on which records, and how that compares with the noise."""
+    rmse = results.best["rmse"]
+    use = "identify" if rmse["validate"] is None else "validate"
+    where = {
+        "validate": "on records the fit never saw",
+        "identify": "on the records it was fitted to, and no record was kept back to judge it on",
+    }[use]
+    return f"The model leaves {quantity(rmse[use], results.unit, 3)} RMS {where}{_over_noise(results, use)}."
+
+
+def findings(results: Results) -> list[str]:
+    """Sentences on what a reader must know beside the verdict: parameters not found, simulations and runs failed."""
+    return [*_parameters(results), *_failures(results)]
+
+
+def _over_noise(results: Results, use: str) -> str:
+    known = results.result["noise_floor"]
+    floor = {axis: value for axis, value in known.items() if value}
+    if not floor:
+        return "" if 0 in known.values() else "; the noise floor is not known"
+    if len(floor) == 1:
+        (value,) = floor.values()
+        ratio = number(results.best["rmse"][use] / value, 2)
+        return f", {ratio} times the noise floor of {quantity(value, results.unit, 2)}"
+    records = [record["rmse"] for record in results.result["records"] if record["use"] == use]
+    ratios = sorted(rmse[axis] / floor[axis] for rmse in records for axis in floor if rmse.get(axis) is not None)
+    return (
+        f"; axis by axis and record by record, {number(ratios[0], 2)} to {number(ratios[-1], 2)} times the noise floor"
+    )
+
+
+def _parameters(results: Results) -> list[str]:
+    found: dict[str, list[str]] = {}
+    for name, entry in results.best["parameters"].items():
+        found.setdefault(entry["verdict"], []).append(name)
+    said = []
+    if names := found.get("not determined"):
+        said.append(f"These data do not determine {listed(names)}: other values would fit as well.")
+    for bound in ("lower", "upper"):
+        if names := found.get(f"on its {bound} bound"):
+            place = f"sits on its {bound} bound" if len(names) == 1 else f"sit on their {bound} bounds"
+            said.append(f"{listed(names)} {place}: what fits best may lie beyond.")
+    return said
+
+
+def _failures(results: Results) -> list[str]:
+    runs, failed = results.result["runs"], results.result["failed_runs"]
+    said = []
+    if lost := sum(run["failed_simulations"] for run in runs):
+        spent = sum(run["evaluations"] + run["polish_evaluations"] for run in runs)
+        said.append(f"{count(lost)} of {count(spent)} simulations failed and were scored as infinitely bad.")
+    if failed:
+        noun = "run" if len(failed) == 1 else "runs"
+        said.append(f"{count(len(failed))} {noun} did not finish: {listed(entry['run'] for entry in failed)}.")
+    return said
+
+
+def listed(names: Iterable[str]) -> str:
+    """a, b and c."""
+    *most, last = names
+    return f"{', '.join(most)} and {last}" if most else last

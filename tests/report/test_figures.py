@@ -1,0 +1,133 @@
+from xml.etree import ElementTree
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from pzt_ident.report.figures import plates, render, write_page_figures, write_paper_figures
+from pzt_ident.report.residual_figures import banded, branches, cell_means
+from pzt_ident.report.results import Trace, read_results
+from pzt_ident.report.search_figures import descent, within
+from pzt_ident.report.style import COLUMN, PAGE, decimate, fit
+
+NUMBER = st.floats(-1e6, 1e6) | st.just(np.nan)
+
+
+@given(arrays(float, st.integers(2, 400), elements=NUMBER), st.integers(2, 40))
+def test_decimation_keeps_extremes_ends_and_order(values, bins):
+    kept = decimate(values, bins)
+    assert kept.size <= max(2 * bins + 2, values.size if values.size <= 2 * bins else 0)
+    assert (np.diff(kept) > 0).all()
+    assert (kept[0], kept[-1]) == (0, values.size - 1)
+    known = np.nan_to_num(values)
+    assert known[kept].max() == known.max()
+    assert known[kept].min() == known.min()
+
+
+def test_branches_follow_a_noisy_triangle():
+    time = np.linspace(0, 4, 801)
+    drive = 100 * np.abs((time + 1) % 2 - 1)
+    noisy = drive + 0.2 * np.random.default_rng(1).uniform(-1, 1, drive.size)
+    rising = np.gradient(drive) > 0
+    turning = (drive < 2) | (drive > 98)
+    np.testing.assert_array_equal((branches(noisy) == 1)[~turning], rising[~turning])
+
+
+def test_band_of_a_known_residual():
+    drive = np.repeat(np.arange(40.0), 101)
+    drive_mid, low, middle, high = banded(drive, np.tile(np.linspace(-1, 1, 101), 40))
+    np.testing.assert_allclose(low, -0.9)
+    np.testing.assert_allclose(middle, 0, atol=1e-12)
+    np.testing.assert_allclose(high, 0.9)
+    assert (np.diff(drive_mid) > 0).all()
+
+
+def test_cells_hold_the_mean_residual_at_their_place():
+    drive, response = (axis.ravel() for axis in np.meshgrid(np.linspace(0, 1, 96), np.linspace(0, 2, 64)))
+    trace = Trace("r", "identify", "x", np.arange(drive.size), drive, response, response, 3 * drive, "V", "um")
+    means, extent = cell_means(trace)
+    assert means.shape == (64, 96)
+    np.testing.assert_allclose(means[10], 3 * np.linspace(0, 1, 96), atol=0.05)
+    assert extent == (0, 1, 0, 2)
+
+
+def test_descent_of_two_repeats_one_of_which_stops_early():
+    history = pd.DataFrame(
+        [(0, 10, 4.0), (0, 20, 2.0), (0, 30, 1.0), (1, 10, 8.0), (1, 20, 6.0)],
+        columns=["repeat", "evaluations", "best"],
+    )
+    spent, low, middle, high = descent(history, "evaluations")
+    np.testing.assert_allclose(spent, [10, 20, 30])
+    np.testing.assert_allclose(low, [4, 2, 1])
+    np.testing.assert_allclose(middle, [6, 4, 3.5])
+    np.testing.assert_allclose(high, [8, 6, 6])
+
+
+def test_descent_leaves_out_what_no_repeat_could_simulate():
+    history = pd.DataFrame({"repeat": 0, "evaluations": [1, 2], "best": [np.inf, 3.0]})
+    spent, _, middle, _ = descent(history, "evaluations")
+    assert (spent.tolist(), middle.tolist()) == ([2.0], [3.0])
+
+
+@pytest.mark.parametrize(("value", "place"), [(0.0, 0.0), (5.0, 0.5), (10.0, 1.0)])
+def test_place_within_linear_bounds(value, place):
+    assert within({"value": value, "lower": 0.0, "upper": 10.0}) == place
+
+
+def test_place_within_wide_bounds_is_logarithmic():
+    assert within({"value": 1.0, "lower": 0.01, "upper": 100.0}) == pytest.approx(0.5)
+
+
+def test_names_too_long_lose_their_middle():
+    assert fit("short", 80) == "short"
+    cut = fit("a" * 50 + "b" * 50, 40)
+    assert cut.startswith("a") and cut.endswith("b") and "…" in cut and len(cut) <= 40 / (0.185 * 7)
+
+
+@pytest.fixture(scope="module")
+def drawn(weird):
+    return {plate.name: svg for plate, svg in write_page_figures(read_results(weird), weird / "figures")}
+
+
+def test_every_figure_is_a_file_of_valid_svg_at_its_width(weird, drawn):
+    assert len(drawn) == len(plates(read_results(weird)))
+    for name, svg in drawn.items():
+        assert (weird / "figures" / f"{name}-180mm.svg").read_bytes() == svg
+        root = ElementTree.fromstring(svg)
+        assert float(root.attrib["width"].removesuffix("pt")) == pytest.approx(PAGE / 25.4 * 72, rel=1e-4)
+    assert not [path for path in (weird / "figures").iterdir() if path.name.startswith(".")]
+
+
+def test_axes_carry_units_and_names_are_shown_as_they_are(drawn):
+    texts = [element.text for element in ElementTree.fromstring(next(iter(drawn.values()))).iter() if element.text]
+    assert {"response [µm]", "residual [µm]", "time [s]"} <= set(texts)
+    assert "<script>alert('x')</script> 100%_µ & \"q\" $a_1$.csv (identify)" in texts
+
+
+def test_paper_files_are_pdf_and_svg_at_both_widths(plain):
+    next(write_paper_figures(read_results(plain), plain / "figures"))
+    for width, points in ((COLUMN, b"249.4"), (PAGE, b"510.2")):
+        pdf = next((plain / "figures").glob(f"time-1-*-{width}mm.pdf")).read_bytes()
+        assert pdf.startswith(b"%PDF") and b"/MediaBox [ 0 0 " + points in pdf
+    assert ElementTree.fromstring(next((plain / "figures").glob("time-1-*-88mm.svg")).read_bytes()) is not None
+
+
+def test_the_same_results_give_the_same_file(plain):
+    plate = plates(read_results(plain))[-1]
+    assert render(plate, COLUMN, ("svg",)) == render(plate, COLUMN, ("svg",))
+
+
+def test_small_numbers_put_a_power_of_ten_to_the_unit(plain):
+    from dataclasses import replace
+    from functools import partial
+
+    from pzt_ident.report.signal_figures import draw_time
+
+    trace = read_results(plain).traces[0]
+    kinds = ("response", "model", "residual")
+    metres = replace(trace, unit="m", **{kind: 1e-6 * getattr(trace, kind) for kind in kinds})
+    plate = replace(plates(read_results(plain))[0], draw=partial(draw_time, trace=metres, noise=None, bins=200))
+    assert "response [10⁻⁶ m]" in render(plate, COLUMN, ("svg",))["svg"].decode()

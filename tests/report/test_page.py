@@ -1,0 +1,161 @@
+import json
+import re
+import shutil
+from html.parser import HTMLParser
+
+import pytest
+
+from pzt_ident.report.page import write_report
+from pzt_ident.report.results import read_results
+from pzt_ident.report.words import findings, listed, verdict
+
+from .conftest import WEIRD, make_run
+
+SECTIONS = [
+    "model",
+    "loops",
+    "residuals",
+    "convergence",
+    "league",
+    "parameters",
+    "correlations",
+    "noise",
+    "records",
+    "run",
+]
+
+
+class Page(HTMLParser):
+    """What a browser would see: tags with attributes, the text, and whatever it would load."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.words, self.loads = [], [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append((tag, dict(attributes)))
+        for key, value in attributes:
+            if key in ("src", "srcset", "href", "xlink:href", "action", "data", "poster"):
+                self.loads.append(value)
+            self.loads += re.findall(r"url\(([^)]*)\)", value or "")
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+    @property
+    def text(self):
+        return " ".join("".join(self.words).split())
+
+
+@pytest.fixture(scope="module")
+def plain_page(plain):
+    return Page(write_report(plain).read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module")
+def weird_page(weird):
+    return Page(write_report(weird).read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("name", ["plain_page", "weird_page"])
+def test_nothing_is_loaded_and_nothing_runs(name, request):
+    page = request.getfixturevalue(name)
+    assert page.loads
+    assert all(re.match(r"#|data:image/png;base64,", reference) for reference in page.loads)
+    assert not {"script", "iframe", "link", "object", "embed", "img"} & {tag for tag, _ in page.tags}
+    assert not [key for _, attributes in page.tags for key in attributes if key.startswith("on")]
+    style = next(words for words in page.words if "color-scheme" in words)
+    assert "@import" not in style and "url(" not in style
+
+
+@pytest.mark.parametrize("name", ["plain_page", "weird_page"])
+def test_every_section_is_there_and_every_link_leads_somewhere(name, request):
+    page = request.getfixturevalue(name)
+    assert [attributes["id"] for tag, attributes in page.tags if tag == "section"] == SECTIONS
+    ids = [attributes["id"] for _, attributes in page.tags if "id" in attributes]
+    assert len(ids) == len(set(ids))
+    targets = {reference[1:] for reference in page.loads if reference.startswith("#")}
+    targets |= {attributes["aria-labelledby"] for _, attributes in page.tags if "aria-labelledby" in attributes}
+    assert targets <= set(ids)
+
+
+def test_markup_in_names_is_text(weird_page):
+    assert WEIRD in weird_page.text
+    assert "worker killed by <signal> 9" in weird_page.text
+    assert "# <script>alert(1)</script>" in weird_page.text
+
+
+def test_parameters_that_are_not_found_get_a_plain_word(plain_page):
+    assert "These data do not determine lumped.mass and lumped.damping" in plain_page.text
+    assert "bouc_wen.gamma sits on its lower bound" in plain_page.text
+    marked = [words for words in plain_page.words if words in ("not determined", "on its lower bound")]
+    assert sorted(marked) == ["not determined", "not determined", "on its lower bound"]
+
+
+def test_what_was_run_is_told(plain, plain_page):
+    result = json.loads((plain / "result.json").read_text())
+    for record in result["records"]:
+        assert record["sha256"] in plain_page.text
+    for words in ("pzt-ident run job.yaml", "numpy 2.0.0", "3.12.1", "rest segments", result["created"]):
+        assert words in plain_page.text
+
+
+def test_verdict_on_unseen_records(plain):
+    assert verdict(read_results(plain)).replace("\u00a0", " ") == (
+        "The model leaves 0.375 µm RMS on records the fit never saw, 7.7 times the noise floor of 0.049 µm."
+    )
+
+
+def test_verdict_without_validation_and_noise(weird):
+    assert verdict(read_results(weird)).replace("\u00a0", " ") == (
+        "The model leaves 0.302 µm RMS on the records it was fitted to, and no record was kept back to judge it on; "
+        "the noise floor is not known."
+    )
+    assert "1 run did not finish: rga-0." in findings(read_results(weird))
+
+
+def test_verdict_of_two_axes_gives_the_range(tmp_path):
+    results = read_results(make_run(tmp_path, axes=("x", "y"), samples=60))
+    assert "7.7 to 7.9 times the noise floor" in verdict(results)
+
+
+def test_failed_simulations_are_counted(plain):
+    assert findings(read_results(plain))[-1].replace("\u202f", " ") == (
+        "27 of 39 060 simulations failed and were scored as infinitely bad."
+    )
+
+
+@pytest.mark.parametrize(("names", "text"), [("a", "a"), ("ab", "a and b"), ("abc", "a, b and c")])
+def test_names_are_listed(names, text):
+    assert listed(names) == text
+
+
+def test_a_job_of_20_000_samples_stays_small(long):
+    assert write_report(long).stat().st_size < 300 * 1024
+
+
+def test_a_perfect_fit_of_fixed_parameters_is_drawn(plain, tmp_path):
+    folder = shutil.copytree(plain, tmp_path / "perfect", ignore=shutil.ignore_patterns("figures", "tables"))
+    perfect(folder)
+    page = Page(write_report(folder).read_text(encoding="utf-8"))
+    assert "There is none to show." in page.text
+    assert "The model leaves 0 µm RMS" in page.text.replace("\u00a0", " ")
+    assert sorted(path.name for path in folder.iterdir() if path.name.startswith(".")) == []
+
+
+def perfect(folder):
+    import h5py
+
+    with h5py.File(folder / "signals.nc", "a") as file:
+        for group in file.values():
+            group["model_x"][...] = group["response_x"][...]
+            group["residual_x"][...] = 0.0
+    result = json.loads((folder / "result.json").read_text())
+    result["noise_floor"] = {"x": 0.0}
+    for run in [*result["runs"], result["best"]]:
+        run["rmse"] = {"identify": 0.0, "validate": 0.0}
+        for entry in run["parameters"].values():
+            entry["verdict"] = "fixed"
+    result["best"]["correlation"] = None
+    (folder / "result.json").write_text(json.dumps(result))
