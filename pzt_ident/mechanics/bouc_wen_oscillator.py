@@ -27,9 +27,10 @@ class BoucWenOscillator(Block):
         return 1 / mass, damping, stiffness, alpha, beta, gamma, dt
 
     def start(u, per_mass, damping, stiffness, alpha, beta, gamma, dt):
-        return 0.0, 0.0, 0.0, u
+        return 0.0, 0.0, 0.0, u, 0.0
 
-    def step(y, v, z, before, u, per_mass, damping, stiffness, alpha, beta, gamma, dt):
+    def step(y, v, z, before, begun, u, per_mass, damping, stiffness, alpha, beta, gamma, dt):
+        dt = begun * dt  # no time has passed at the first sample
         half = dt / 2
         middle = (before + u) / 2
         a1, r1 = slope(y, v, z, before, per_mass, damping, stiffness, alpha, beta, gamma)
@@ -43,7 +44,7 @@ class BoucWenOscillator(Block):
         y = y + sixth * (v + 2 * v2 + 2 * v3 + v4)
         v = v + sixth * (a1 + 2 * a2 + 2 * a3 + a4)
         z = z + sixth * (r1 + 2 * r2 + 2 * r3 + r4)
-        return y, v, z, u, y
+        return y, v, z, u, 1.0, y
 
 
 def slope(y, v, z, u, per_mass, damping, stiffness, alpha, beta, gamma):
