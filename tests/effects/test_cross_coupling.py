@@ -1,0 +1,66 @@
+"""Stiffness coupling of two axes against equation 6 and the numbers of Lin & Lin (2012)."""
+
+import numpy as np
+import pytest
+
+import lin_lin
+from rig import response, triangle
+
+CHAIN = ("bouc_wen", "cross_coupling", "lumped")
+RATIOS = {"x.cross_coupling.ratio": -0.046, "y.cross_coupling.ratio": 0.054}
+
+
+def test_each_axis_gets_its_share_of_the_other():
+    x, y = np.random.default_rng(1).normal(size=(2, 200))
+    found = response(["cross_coupling"], RATIOS, x, y)
+    np.testing.assert_allclose(found, [x - 0.046 * y, y + 0.054 * x], rtol=0, atol=1e-15)
+
+
+def test_another_axis_at_rest_adds_nothing():
+    x = triangle(130)
+    np.testing.assert_array_equal(response(["cross_coupling"], RATIOS, x, 0 * x)[0], x)
+
+
+def test_displacement_of_another_axis_comes_with_its_hysteresis():
+    x, y = triangle(130), triangle(90)
+    known = lin_lin.coupled(damping_ratio=0.5)
+    both, one = response(CHAIN, known, x, y), response(CHAIN, known, x, 0 * y)
+    other = response(CHAIN, known | {"y.cross_coupling.ratio": 0.0}, 0 * x, y)[1]
+    np.testing.assert_allclose(both[0] - one[0], known["x.cross_coupling.ratio"] * other, rtol=0, atol=3e-5)
+
+
+def test_the_axis_that_is_pushed_rings_at_its_own_frequency():
+    """What tells stiffness coupling from a kinematic one: it stands ahead of the mechanics."""
+    step = np.where(np.arange(4000) < 10, 0.0, 10.0)
+    known = lin_lin.coupled(damping_ratio=0.01)
+    x = response(CHAIN, known, 0 * step, step, dt=1e-5)[0][10:]
+    spectrum = np.abs(np.fft.rfft((x - x[-1]) * np.hanning(x.size)))
+    natural = np.sqrt(lin_lin.COUPLED_X["lumped.stiffness"] / lin_lin.COUPLED_X["lumped.mass"]) / (2 * np.pi)
+    assert np.argmax(spectrum) / (1e-5 * x.size) == pytest.approx(natural, rel=0.01)
+
+
+def test_only_the_ratios_matter_to_slow_drives():
+    known, time = lin_lin.coupled(damping_ratio=0.02), np.linspace(0, 2 * np.pi, 2000)
+    drives = 65 * (1 - np.cos(time)), 45 * (1 - np.cos(2 * time))
+    stiffer = known | {f"{axis}.{word}": 1.1 * known[f"{axis}.{word}"] for axis in "xy" for word in lin_lin.WORDS[:3]}
+    np.testing.assert_allclose(response(CHAIN, stiffer, *drives), response(CHAIN, known, *drives), atol=1e-10)
+
+
+@pytest.mark.parametrize("damping_ratio", [0, 0.02])
+def test_both_triangles_at_once(damping_ratio):
+    peaks = response(CHAIN, lin_lin.coupled(damping_ratio), triangle(130), triangle(90)).max(axis=1)
+    assert peaks == pytest.approx([9.55, 10.26], abs=6e-3)
+
+
+@pytest.mark.parametrize(
+    ("sign", "x_band", "y_band"), [(1, (-1.10, 0.64), (-0.28, 0.77)), (-1, (-0.47, 0.85), (-0.28, 0.77))]
+)
+def test_open_loop_errors_of_case_3(sign, x_band, y_band):
+    """x - x_d for the ramps of eq. 33 under U = x_d / d, the voltage coming a sample of 1 ms late."""
+    known = lin_lin.coupled(damping_ratio=0.02)
+    known["x.cross_coupling.ratio"] *= sign
+    time = np.arange(2501) / 1000
+    wanted = 10 * (time - 2 * np.maximum(time - 1, 0) + np.maximum(time - 2, 0))
+    late = np.append(0, wanted[:-1])
+    error = response(CHAIN, known, late / known["x.bouc_wen.gain"], late / known["y.bouc_wen.gain"]) - wanted
+    assert [error.min(axis=1), error.max(axis=1)] == pytest.approx(np.transpose([x_band, y_band]), abs=8e-3)

@@ -1,0 +1,73 @@
+"""Mass, damper and spring against the matrix exponential and what is conserved."""
+
+import numpy as np
+import pytest
+
+import lin_lin
+from pzt_ident.mechanics.lumped import Lumped
+from rig import response, triangle
+from twins import lumped_twin
+
+MASS, _, STIFFNESS = [lin_lin.X[word] for word in lin_lin.WORDS[:3]]
+CRITICAL = 2 * np.sqrt(MASS * STIFFNESS)
+NEAR_CRITICAL = [1 - 1e-6, 1 - 1e-9, 1, 1 + 1e-13, 1 + 1e-9, 1 + 1e-6]
+
+
+def displacement(force, ratio, dt, scale=1.0):
+    values = scale * np.array([MASS, ratio * CRITICAL, STIFFNESS])
+    return response(["lumped"], dict(zip(lin_lin.WORDS, values, strict=False)), force, dt=dt)
+
+
+def coefficients(ratio, dt=1e-3):
+    found = Lumped.prepare(np.array([MASS]), np.array([ratio * CRITICAL]), np.array([STIFFNESS]), dt)
+    return [value.item() for value in found]
+
+
+def test_undamped_far_beyond_nyquist():
+    """Lin & Lin's X axis, 3.37 kHz at 1 kHz, in um."""
+    force = lin_lin.X["bouc_wen.gain"] * triangle(130, cycles=2)
+    expected = lumped_twin.lumped(force, 1e-3, MASS, 0, STIFFNESS)
+    np.testing.assert_allclose(displacement(force, 0, 1e-3), expected, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("dt", [1e-3, 1e-4, 1e-6])
+@pytest.mark.parametrize("ratio", [0, 1e-3, 0.02, 0.5, *NEAR_CRITICAL, 4, 100])
+def test_every_damping_is_exact_between_samples(ratio, dt):
+    force = np.random.default_rng(1).normal(size=300).cumsum()
+    expected = lumped_twin.lumped(force, dt, MASS, ratio * CRITICAL, STIFFNESS)
+    np.testing.assert_allclose(displacement(force, ratio, dt), expected, rtol=0, atol=1e-12 * np.ptp(force))
+
+
+@pytest.mark.parametrize("ratio", [0, 0.02, 0.5, 1, 4])
+def test_area_shrinks_by_the_damping_alone(ratio):
+    """det R = exp(-2 zeta omega T), so 1 undamped."""
+    r11, r12, r21, r22, *_ = coefficients(ratio, 1e-4)
+    assert r11 * r22 - r12 * r21 == pytest.approx(np.exp(-1e-4 * ratio * CRITICAL / MASS), abs=1e-15)
+
+
+def test_undamped_ringing_neither_grows_nor_decays():
+    known = coefficients(0)
+    w, v, f = 0.6, 0.8, 0.0
+    for _ in range(10**6):
+        w, v, f, _ = Lumped.step(w, v, f, 0.0, *known)
+    assert np.hypot(w, v) == pytest.approx(1, abs=5e-11)
+
+
+@pytest.mark.parametrize("ratio", [0, 0.02, 1, 4])
+def test_at_rest_under_a_constant_force(ratio):
+    np.testing.assert_array_equal(displacement(np.full(500, 7.3), ratio, 1e-3), 7.3)
+
+
+def test_a_sine_comes_out_with_the_transfer_function():
+    """X = G F with G = 1 / (1 - r^2 + 2 i zeta r), r the frequency over the natural one."""
+    omega, ratio, dt = np.sqrt(STIFFNESS / MASS), 0.05, 1e-6
+    for r in (0.1, 1.0, 3.0):
+        phase = r * omega * dt * np.arange(20000)
+        settled = displacement(np.sin(phase), ratio, dt)[10000:]
+        expected = (np.exp(1j * phase[10000:]) / (1 - r**2 + 2j * ratio * r)).imag
+        np.testing.assert_allclose(settled, expected, atol=2e-3 * np.abs(expected).max())
+
+
+def test_only_ratios_of_the_parameters_matter():
+    force = np.random.default_rng(2).normal(size=300)
+    np.testing.assert_allclose(displacement(force, 0.3, 1e-4, 7.0), displacement(force, 0.3, 1e-4), atol=1e-13)
