@@ -133,10 +133,10 @@ class Plan:
     def _add(self, block: type[Block], axis: int, driven: bool) -> None:
         from pzt_ident.lanes import compile_block
 
-        made = compile_block(block, len(self.model.axes), driven)  # type: ignore[arg-type]
-        self.program.append((made.address, self.rows, axis, axis, 0))
         axes = range(len(self.model.axes))
         coupling = issubclass(block, Coupling)
+        made = compile_block(block, len(axes) if coupling else 1, driven)  # type: ignore[arg-type]
+        self.program.append((made.address, self.rows, axis, axis, 0))
         places = [(a, b) for a in axes for b in axes if b != a] if coupling else [(axis, axis)]
         layout = made.layout
         for copy, place in enumerate(places):
@@ -224,6 +224,7 @@ class Plan:
         """Sum of squared errors over the scored samples, each record's free offset removed: (candidates, axes)."""
         from pzt_ident import kernel
 
+        theta = np.atleast_2d(theta)
         if self.model.oversample > 1:
             error = self.residuals(theta)
             return np.einsum("mas,mas->ma", error, error)
@@ -234,7 +235,8 @@ class Plan:
         scratch = self._run(theta, program, np.empty((0, 0, 0)))
         sums = scratch.reshape(scratch.shape[0], self.rows, kernel.WIDTH)[:, self.sums :]
         total, square = sums[:, 0::2], sums[:, 1::2]
-        found = np.moveaxis(square - total**2 / self.scored, 1, 2).reshape(-1, len(self.model.measured))
+        left = np.maximum(square - total**2 / self.scored, 0)  # rounding leaves less than nothing of a perfect fit
+        found = np.moveaxis(left, 1, 2).reshape(-1, len(self.model.measured))
         return found[: theta.shape[0]]
 
     def residuals(self, theta: Array) -> Array:
