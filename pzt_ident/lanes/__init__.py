@@ -47,7 +47,8 @@ def compile_block(block: type[Block], axes: int, driven: bool) -> Compiled:
     template = template_of(block, driven)
     layout = layout_of(block, axes, kernel.TILE)
     text = (TEMPLATES / f"{template}.jinja").read_text()
-    sources = [text, kernel.VERSION, str(layout), str(axes), inspect.getsource(inspect.getmodule(block))]  # type: ignore[arg-type]
+    author, host = inspect.getsource(inspect.getmodule(block)), inspect.getsource(kernel)  # type: ignore[arg-type]
+    sources = [text, kernel.VERSION, str(layout), str(axes), author, host]
     key = hashlib.sha256("\0".join(sources).encode()).hexdigest()[:16]
     path = folder() / f"{block.__name__.lower()}_{template}_{key}.py"
     if not path.exists():
@@ -102,12 +103,12 @@ def render(text: str, layout: Layout, axes: int, kernel: ModuleType) -> str:
 @cache
 def folder() -> Path:
     """$PZT_IDENT_CACHE, else the user's cache folder, else a temporary one where that cannot be written."""
-    home = os.environ.get("PZT_IDENT_CACHE") or Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    home = os.environ.get("PZT_IDENT_CACHE") or os.environ.get("XDG_CACHE_HOME") or "~/.cache"
     try:
-        chosen = Path(home) / "pzt_ident"
+        chosen = Path(home).expanduser() / "pzt_ident"
         chosen.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=chosen).close()
-    except OSError:
+    except (OSError, RuntimeError):  # the latter where nobody is at home
         chosen = Path(tempfile.mkdtemp(prefix="pzt_ident-"))
     return chosen
 
