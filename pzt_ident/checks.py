@@ -11,9 +11,9 @@ from pzt_ident.errors import InputError, nearest
 from pzt_ident.registry import blocks, optimizers
 
 if TYPE_CHECKING:
-    from pzt_ident.job import Channels, Choice, Setting, Stopping
     from pzt_ident.model import Model, Slot
     from pzt_ident.record import Axis, Channel, Source
+    from pzt_ident.sections import Channels, Choice, Setting, Stopping
 
 Earlier = Mapping[str, Any]
 """The sections before this one, less those with a fault in their own form."""

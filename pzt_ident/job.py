@@ -7,7 +7,6 @@ import copy
 import hashlib
 import json
 from contextlib import suppress
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -16,53 +15,9 @@ from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError,
 from pzt_ident import checks
 from pzt_ident.document import Document, Fault, Loc, reject
 from pzt_ident.errors import InputError, nearest
-from pzt_ident.record import Axis, Channel, Source
+from pzt_ident.record import Source
+from pzt_ident.sections import Channels, Choice, Count, Setting, Stopping
 from pzt_ident.shorthand import written_out
-
-Positive = Annotated[float, Field(gt=0)]
-Count = Annotated[int, Field(ge=1)]
-
-
-@dataclass(frozen=True)
-class Channels:
-    """Where time, drives and responses stand in the files of the records."""
-
-    axes: dict[str, Axis]
-    time: Channel | None = None
-
-
-@dataclass(frozen=True)
-class Setting:
-    """Bounds free a parameter, a value alone fixes it (beside bounds it must lie in them); in the user's units."""
-
-    bounds: tuple[float, float] | None = None
-    value: float | None = None
-
-
-@dataclass(frozen=True)
-class Choice:
-    """An optimizer by name, and what is set in it."""
-
-    name: str
-    settings: dict[str, Any] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Quantity:
-    """A value in a unit, or in the unit of the response where none is given."""
-
-    value: Positive
-    unit: str | None = None
-
-
-@dataclass(frozen=True)
-class Stopping:
-    """When a search ends, whichever comes first: evaluations, wall time, RMSE reached, generations without progress."""
-
-    evaluations: Count | None = None
-    seconds: Positive | None = None
-    target: Quantity | None = None
-    stagnation: Count | None = None
 
 
 class Job(BaseModel):

@@ -11,10 +11,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pzt_ident.errors import InputError
-from pzt_ident.job import Choice, Job, Quantity, Setting, load_job
+from pzt_ident.job import Job, load_job
 from pzt_ident.record import Axis, Channel, Source
 from pzt_ident.registry import optimizers
 from pzt_ident.search import Generational, setting
+from pzt_ident.sections import Choice, Quantity, Setting
 
 GOOD = """\
 name: stage

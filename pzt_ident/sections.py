@@ -1,0 +1,55 @@
+"""The parts of a job that are not a record's."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from pzt_ident.record import Axis, Channel
+
+Positive = Annotated[float, Field(gt=0)]
+Count = Annotated[int, Field(ge=1)]
+
+
+@dataclass(frozen=True)
+class Channels:
+    """Where time, drives and responses stand in the files of the records."""
+
+    axes: dict[str, Axis]
+    time: Channel | None = None
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Bounds free a parameter, a value alone fixes it (beside bounds it must lie in them); in the user's units."""
+
+    bounds: tuple[float, float] | None = None
+    value: float | None = None
+
+
+@dataclass(frozen=True)
+class Choice:
+    """An optimizer by name, and what is set in it."""
+
+    name: str
+    settings: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A value in a unit, or in the unit of the response where none is given."""
+
+    value: Positive
+    unit: str | None = None
+
+
+@dataclass(frozen=True)
+class Stopping:
+    """When a search ends, whichever comes first: evaluations, wall time, RMSE reached, generations without progress."""
+
+    evaluations: Count | None = None
+    seconds: Positive | None = None
+    target: Quantity | None = None
+    stagnation: Count | None = None
