@@ -49,7 +49,7 @@ class Registry(Generic[T]):
 
     def folder(self, word: str) -> str:
         """The last part of the package that the word's class was declared in, for example `effects`."""
-        return self[word].__module__.split(".")[-2]
+        return self[word].__module__.rpartition(".")[0].rpartition(".")[2]
 
     def _files(self) -> dict[str, str]:
         found = {}
