@@ -1,0 +1,188 @@
+"""The command line. What a command needs is imported when it runs, so that `--help` is there at once."""
+
+from __future__ import annotations
+
+import errno
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from pzt_ident.errors import InputError
+
+if TYPE_CHECKING:
+    from pzt_ident.terminal import Listener
+
+Command = Callable[..., None]
+
+EXISTING = click.Path(path_type=Path)
+
+
+class Failure(click.ClickException):
+    """One line on stderr; ends with exit code 1."""
+
+
+class BadInput(click.ClickException):
+    exit_code = 2
+
+
+class Interrupted(click.ClickException):
+    exit_code = 130
+
+
+class Commands(click.Group):
+    """Turns errors into one clear line: exit code 2 for bad input, 1 for a failure, 130 for an interrupt."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        try:
+            return super().invoke(ctx)
+        except (click.ClickException, click.exceptions.Exit, click.Abort):
+            raise
+        except InputError as error:
+            raise BadInput(str(error)) from None
+        except KeyboardInterrupt:
+            raise Interrupted("interrupted") from None
+        except Exception as error:
+            if ctx.params["debug"] or (isinstance(error, OSError) and error.errno == errno.EPIPE):
+                raise
+            raise Failure(_in_a_line(error)) from None
+
+
+def _in_a_line(error: Exception) -> str:
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
+    return f"{type(error).__name__}: {error} (`pzt-ident --debug ...` shows where)"
+
+
+@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.version_option(package_name="pzt-ident", prog_name="pzt-ident")
+@click.option("--debug", is_flag=True, help="Show where an unexpected error came from.")
+def main(debug: bool) -> None:
+    """Identify hysteresis models of piezo stages from measurements.
+
+    Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted.
+    """
+
+
+def output(command: Command) -> Command:
+    """--json and --quiet."""
+    command = click.option("--quiet", is_flag=True, help="Say nothing but errors.")(command)
+    return click.option("--json", "as_json", is_flag=True, help="Write the answer to stdout as JSON.")(command)
+
+
+def searching(command: Command) -> Command:
+    """--workers and --no-report."""
+    command = click.option("--no-report", is_flag=True, help="Write the results, draw no report.")(command)
+    workers = click.IntRange(min=1)
+    return click.option("--workers", type=workers, help="Processes side by side; all cores if not given.")(command)
+
+
+@main.command()
+@click.argument("job", type=EXISTING)
+@click.option("--out", type=EXISTING, help="Folder for the results; results/<name>/<time>-<hash> if not given.")
+@searching
+@output
+def run(job: Path, out: Path | None, workers: int | None, no_report: bool, as_json: bool, quiet: bool) -> None:
+    """Identify the model of a job file JOB."""
+
+    def start(listen: Listener) -> Path:
+        from pzt_ident.job import load_job
+        from pzt_ident.run import run
+
+        return run(load_job(job), out, workers=workers, report=not no_report, listen=listen)
+
+    _identify(start, as_json, quiet)
+
+
+@main.command()
+@click.argument("folder", metavar="DIR", type=EXISTING)
+@searching
+@output
+def resume(folder: Path, workers: int | None, no_report: bool, as_json: bool, quiet: bool) -> None:
+    """Go on with the run in the folder DIR."""
+
+    def start(listen: Listener) -> Path:
+        from pzt_ident.run import resume
+
+        return resume(folder, workers=workers, report=not no_report, listen=listen)
+
+    _identify(start, as_json, quiet)
+
+
+def _identify(start: Callable[[Listener], Path], as_json: bool, quiet: bool) -> None:
+    from pzt_ident import terminal
+
+    with terminal.listening(silent=as_json or quiet) as listen:
+        folder = start(listen)
+    result = json.loads((folder / "result.json").read_text(encoding="utf-8"))
+    _answer({"folder": str(folder), "result": result}, lambda: terminal.show_result(result, folder), as_json, quiet)
+
+
+@main.command()
+@click.argument("job", type=EXISTING)
+@output
+def check(job: Path, as_json: bool, quiet: bool) -> None:
+    """Say what is in a job file JOB and its data. Writes nothing."""
+    from pzt_ident import summary
+    from pzt_ident.job import load_job
+
+    found = summary.of_job(load_job(job))
+    _answer(found, lambda: summary.show_job(found), as_json, quiet)
+
+
+@main.command("list")
+@click.argument("kind", type=click.Choice(["blocks", "effects", "optimizers"]))
+@output
+def list_(kind: str, as_json: bool, quiet: bool) -> None:
+    """List the words that a job may use."""
+    from pzt_ident import summary, terminal
+
+    found = summary.words(kind)
+    _answer(found, lambda: terminal.table(("word", "what it is"), list(found.items())), as_json, quiet)
+
+
+@main.command()
+@click.argument("name")
+@output
+def show(name: str, as_json: bool, quiet: bool) -> None:
+    """Show what a block, effect or optimizer declares."""
+    from pzt_ident import summary
+
+    found = summary.of_word(name)
+    _answer(found, lambda: summary.show_word(found), as_json, quiet)
+
+
+@main.command()
+@click.argument("folder", metavar="DIR", type=EXISTING)
+@output
+def init(folder: Path, as_json: bool, quiet: bool) -> None:
+    """Write an example job and its data into the folder DIR."""
+    from pzt_ident.example import write_example
+
+    written = write_example(folder)
+    job = folder / "job.yaml"
+
+    def say() -> None:
+        click.echo("".join(f"wrote {path}\n" for path in written) + f"next: pzt-ident run {job}")
+
+    _answer({"written": [str(path) for path in written], "job": str(job)}, say, as_json, quiet)
+
+
+@main.command()
+@click.argument("folders", metavar="DIR...", nargs=-1, required=True, type=EXISTING)
+@output
+def report(folders: tuple[Path, ...], as_json: bool, quiet: bool) -> None:
+    """Draw the report of each finished run's folder again."""
+    from pzt_ident.report.page import write_report
+
+    pages = [str(write_report(folder)) for folder in folders]
+    _answer({"reports": pages}, lambda: click.echo("\n".join(pages)), as_json, quiet)
+
+
+def _answer(found: dict[str, Any], say: Callable[[], None], as_json: bool, quiet: bool) -> None:
+    if as_json:
+        click.echo(json.dumps(found, indent=2))
+    elif not quiet:
+        say()

@@ -1,0 +1,211 @@
+"""What a job and its data hold, and what a word in a job stands for: as data, and as text for the terminal."""
+
+from __future__ import annotations
+
+import inspect
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any
+
+import click
+import numpy as np
+
+from pzt_ident import terminal
+from pzt_ident.errors import InputError, nearest
+from pzt_ident.registry import blocks, optimizers
+from pzt_ident.units import factor
+
+if TYPE_CHECKING:
+    from pzt_ident.job import Job
+    from pzt_ident.problem import Problem
+    from pzt_ident.record import Record
+
+Facts = dict[str, Any]
+
+
+def of_job(job: Job) -> Facts:
+    """Records, axes, parameters and optimizers of a job. Raises InputError on whatever is wrong with its data."""
+    from pzt_ident.run import read, tasks_of
+    from pzt_ident.worker import problem_of
+
+    records = read(job)
+    problem = problem_of(job, records)
+    tasks = tasks_of(job, records, job.folder)
+    return {
+        "name": job.name,
+        "hash": job.hash,
+        "model": [block.name for block in problem.model.blocks],
+        "records": [_record(record) for record in records],
+        "axes": [_axis(records, axis) for axis in range(len(records[0].axes))],
+        "parameters": _parameters(problem),
+        "runs": [task.run for task in tasks],
+        "evaluations": sum(task.stop["evaluations"] for task in tasks),
+    }
+
+
+def _record(record: Record) -> Facts:
+    return {
+        "name": record.name,
+        "use": record.use,
+        "samples": record.samples,
+        "sample_rate": 1 / record.dt,
+        "seconds": record.samples * record.dt,
+        "settle": record.settle * record.dt,
+        "file": record.file,
+        "notes": list(record.notes),
+    }
+
+
+def _axis(records: list[Record], axis: int) -> Facts:
+    first = records[0]
+    channels = {"drive": first.drive_units[axis], "response": first.response_units[axis]}
+    facts: Facts = {"name": first.axes[axis]}
+    for channel, unit in channels.items():
+        facts[f"{channel}_unit"] = unit
+        if unit is not None:
+            values = [getattr(record, channel)[axis] / factor(unit) for record in records]
+            facts[f"{channel}_range"] = [float(min(map(np.min, values))), float(max(map(np.max, values)))]
+    return facts
+
+
+def _parameters(problem: Problem) -> list[Facts]:
+    bounds = dict(zip(problem.names, zip(problem.lower, problem.upper, strict=True), strict=True))
+    found = []
+    for slot, unit, value in zip(problem.model.slots, problem.all_units, problem.theta, strict=True):
+        facts: Facts = {"name": slot.name, "unit": unit, "doc": slot.parameter.doc}
+        if slot.name in bounds:
+            facts["bounds"] = [float(bound) for bound in bounds[slot.name]]
+        else:
+            facts["value"] = float(value / factor(unit))
+        found.append(facts)
+    return found
+
+
+def show_job(found: Facts) -> None:
+    number = terminal.number
+    click.echo(f"{found['name']} ({found['hash']}): {' -> '.join(found['model'])}\n")
+    terminal.table(
+        ("record", "use", "samples", "rate [Hz]", "length [s]", "not scored [s]", "file"),
+        [
+            (row["name"], row["use"], row["samples"], *(number(row[key]) for key in _TIMES), row["file"])
+            for row in found["records"]
+        ],
+    )
+    terminal.table(
+        ("axis", "drive", "response"),
+        [(axis["name"], _range(axis, "drive"), _range(axis, "response")) for axis in found["axes"]],
+    )
+    terminal.table(
+        ("parameter", "unit", "bounds", "what it is"),
+        [(row["name"], row["unit"], _searched(row), row["doc"]) for row in found["parameters"]],
+    )
+    click.echo(f"{len(found['runs'])} runs, {found['evaluations']} evaluations: {' '.join(found['runs'])}")
+
+
+_TIMES = ("sample_rate", "seconds", "settle")
+
+
+def _range(axis: Facts, channel: str) -> str:
+    if axis[f"{channel}_unit"] is None:
+        return "not measured"
+    low, high = axis[f"{channel}_range"]
+    return f"{low:.4g} to {high:.4g} {axis[f'{channel}_unit']}"
+
+
+def _searched(row: Facts) -> str:
+    return "fixed at {:.4g}".format(row["value"]) if "value" in row else "{:.4g} to {:.4g}".format(*row["bounds"])
+
+
+def words(kind: str) -> dict[str, str]:
+    """The words of a kind (`blocks`, `effects` or `optimizers`) with the first line of what they are."""
+    if kind == "optimizers":
+        return {item.name: _headline(item) for item in optimizers}
+    own = {
+        item.name: _headline(item) for item in blocks if (blocks.folder(item.name) == "effects") == (kind == "effects")
+    }
+    return own | (_terms() if kind == "effects" else {})
+
+
+def _terms() -> dict[str, str]:
+    """Effects that are parameters of other blocks, with those blocks."""
+    found: dict[str, list[str]] = {}
+    for block in blocks:
+        for declared in block.parameters().values():
+            if declared.effect and block.name not in found.setdefault(declared.effect, []):
+                found[declared.effect].append(block.name)
+    return {effect: "a term of " + ", ".join(owners) for effect, owners in sorted(found.items())}
+
+
+def _headline(item: type) -> str:
+    return (inspect.getdoc(item) or "").partition("\n")[0]
+
+
+def of_word(name: str) -> Facts:
+    """What a block, effect or optimizer declares. Raises InputError with the nearest words for an unknown one."""
+    if name in blocks:
+        return _block(name)
+    if name in optimizers:
+        return _optimizer(name)
+    terms = _terms()
+    if name in terms:
+        owned = [_owned(row, block.name) for block in blocks for row in _declared(block) if row["effect"] == name]
+        return {"name": name, "kind": "effect", "doc": terms[name], "parameters": owned}
+    raise InputError(f"unknown word {name!r}", remedy=nearest(name, [*blocks.words(), *optimizers.words(), *terms]))
+
+
+def _owned(row: Facts, block: str) -> Facts:
+    return row | {"name": f"{block}.{row['name']}"}
+
+
+def _block(name: str) -> Facts:
+    block = blocks[name]
+    facts = {"name": name, "kind": blocks.folder(name), "doc": inspect.getdoc(block), "place": block.place.name.lower()}
+    return facts | {"parameters": _declared(block)}
+
+
+def _declared(block: type[Any]) -> list[Facts]:
+    keys = ("unit", "bounds", "null", "value", "scale", "effect", "doc")
+    return [
+        {"name": word} | {key: getattr(declared, key) for key in keys} for word, declared in block.parameters().items()
+    ]
+
+
+def _optimizer(name: str) -> Facts:
+    item = optimizers[name]
+    settings = [{"name": setting.name, "default": setting.default, **setting.metadata} for setting in fields(item)]
+    return {"name": name, "kind": "optimizer", "doc": inspect.getdoc(item), "source": item.source, "settings": settings}
+
+
+def show_word(found: Facts) -> None:
+    click.echo(f"{found['name']} ({found['kind']})\n\n{found['doc']}\n")
+    if source := found.get("source"):
+        click.echo(f"{source}\n")
+    if "settings" in found:
+        terminal.table(
+            ("setting", "default", "from - to", "unit", "what it is"),
+            [(row["name"], row["default"], _allowed(row), row["unit"], row["doc"]) for row in found["settings"]],
+        )
+    else:
+        terminal.table(
+            ("parameter", "unit", "bounds", "null", "what it is"),
+            [
+                (row["name"], row["unit"], "{:g} to {:g}".format(*row["bounds"]), _plain(row["null"]), _meaning(row))
+                for row in found["parameters"]
+            ],
+        )
+        if any("drive" in row["unit"] or "response" in row["unit"] for row in found["parameters"]):
+            click.echo("Bounds in units of drive and response are multiples of the data's own peak-to-peak values.")
+
+
+def _allowed(row: Facts) -> str:
+    return " or ".join(row["words"]) if "words" in row else "{:g} to {:g}".format(*row["bounds"])
+
+
+def _plain(value: float | None) -> str:
+    return "" if value is None else f"{value:g}"
+
+
+def _meaning(row: Facts) -> str:
+    """What a parameter is, and what it takes to have it searched for."""
+    fixed = "" if row["value"] is None else f" Fixed at {row['value']:g} unless the job gives bounds."
+    effect = "" if row["effect"] is None else f" With the effect {row['effect']} only."
+    return row["doc"] + fixed + effect
