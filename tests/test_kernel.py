@@ -1,0 +1,85 @@
+"""The kernel's own elementary functions against NumPy, over all that they take."""
+
+import math
+
+import numpy as np
+import pytest
+from numba import njit
+
+from pzt_ident import block, kernel
+
+EXPM1, LOG1P = kernel.expm1_lanes, kernel.log1p_lanes
+
+
+@njit(fastmath={"contract"}, error_model="numpy")
+def expm1(x):
+    found = np.empty_like(x)
+    for i in range(x.size):
+        found[i] = EXPM1(x[i])
+    return found
+
+
+@njit(fastmath={"contract"}, error_model="numpy")
+def log1p(x):
+    found = np.empty_like(x)
+    for i in range(x.size):
+        found[i] = LOG1P(x[i])
+    return found
+
+
+def both_signs(*exponents):
+    """Numbers of every magnitude between powers of ten."""
+    sizes = 10.0 ** np.random.default_rng(0).uniform(*exponents, 20000)
+    return np.concatenate([sizes, -sizes])
+
+
+def test_expm1_over_the_whole_range():
+    x = both_signs(-300, math.log10(700))
+    np.testing.assert_allclose(expm1(x), np.expm1(x), rtol=5e-15)
+    x = np.random.default_rng(1).uniform(-40, 40, 40000)
+    np.testing.assert_allclose(expm1(x), np.expm1(x), rtol=5e-15)
+
+
+def test_expm1_where_its_argument_is_split():
+    """At halves of ln 2 the power of two changes."""
+    x = math.log(2) * np.arange(-1000, 1000) / 2
+    x = np.concatenate([x, np.nextafter(x, 1e9), np.nextafter(x, -1e9)])
+    np.testing.assert_allclose(expm1(x), np.expm1(x), rtol=5e-15)
+
+
+def test_expm1_ends_in_a_number_no_step_survives():
+    assert expm1(np.array([0.0, -1e4, -np.inf])).tolist() == [0, -1, -1]
+    assert np.all(expm1(np.array([800.0, np.inf])) > 1e300)
+
+
+def test_log1p_over_the_whole_range():
+    x = both_signs(-300, 300)
+    x = x[x > -1]
+    np.testing.assert_allclose(log1p(x), np.log1p(x), rtol=1e-15)
+    x = np.random.default_rng(1).uniform(-1, 3, 40000)
+    np.testing.assert_allclose(log1p(x), np.log1p(x), rtol=1e-15)
+
+
+def test_log1p_where_its_argument_is_split():
+    """At sqrt(2) times a power of two the exponent changes; close to -1 all digits are in what was rounded."""
+    x = np.concatenate([math.sqrt(2) * 2.0 ** np.arange(-20, 60) - 1, 2.0 ** -np.arange(1, 54) - 1])
+    x = np.concatenate([x, np.nextafter(x, 1e9)])
+    np.testing.assert_allclose(log1p(x), np.log1p(x), rtol=1e-15)
+
+
+def test_inverse_of_each_other():
+    x = np.random.default_rng(2).uniform(-0.99, 20, 5000)
+    np.testing.assert_allclose(expm1(log1p(x)), x, rtol=1e-13)
+
+
+def test_authors_have_them_in_plain_python():
+    assert block.expm1(1e-20) == block.log1p(1e-20) == 1e-20
+    assert math.isnan(block.log1p(-1.0)) and math.isnan(block.log1p(-5.0))
+
+
+@pytest.mark.parametrize("shape", [(1,), (3, 5, kernel.WIDTH), (0, 4)])
+def test_scratch_begins_on_a_cache_line(shape):
+    scratch = kernel.aligned(*shape)
+    assert scratch.shape == shape
+    assert not scratch.any()
+    assert scratch.size == 0 or scratch.ctypes.data % 64 == 0
