@@ -1,0 +1,148 @@
+"""Chains of blocks over axes: order, names, and every chain against its slow twin."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import lin_lin
+from pzt_ident.model import Plan
+from pzt_ident.registry import blocks
+from rig import candidates, model, record, response, triangle
+from twins import plain
+from twins.blocks import Identity, Turn
+
+AXIS = ["bouc_wen", "lumped"]
+SPAN = np.array([0.0, 100.0])
+
+
+def noise(axes, samples=150, seed=0):
+    return np.random.default_rng(seed).uniform(0, 100, (axes, samples)).cumsum(axis=1) % 97
+
+
+def assert_twin(chain, measured, theta):
+    for found, candidate in zip(chain.simulate(measured, theta), theta, strict=True):
+        expected = plain.simulate(chain, measured, candidate)
+        known = np.maximum.accumulate(np.abs(expected), axis=1) < 1e6
+        scale = np.where(known, np.abs(expected), 0).max()
+        assert np.all((np.abs(found - expected) <= 1e-12 * scale) | ~known)
+
+
+@given(
+    chain=st.lists(st.sampled_from([Identity, Turn, *blocks.words()]), max_size=4, unique=True),
+    measured=st.sampled_from([(1, (0,)), (2, (0,)), (2, (1,)), (2, (0, 1)), (3, (0, 2)), (3, (0, 1, 2))]),
+    seed=st.integers(0, 1000),
+    more=st.sampled_from([{}, {"run_in": 1}]),
+)
+@settings(deadline=None, max_examples=40, derandomize=True)
+def test_every_chain_is_its_blocks_one_after_the_other(chain, measured, seed, more):
+    axes, measured = measured
+    samples = 20 if "bouc_wen_oscillator" in chain else 150
+    chain = model(*chain, axes=axes, measured=measured)
+    made = record(*noise(axes, samples, seed), measured=measured, **more)
+    assert_twin(chain, made, candidates(chain, SPAN, 3, seed))
+
+
+def test_blocks_stand_in_the_order_of_the_signal():
+    chain = model("lumped", "cross_coupling", "bouc_wen", Identity)
+    assert [block.name for block in chain.blocks] == ["identity", "bouc_wen", "cross_coupling", "lumped"]
+
+
+def test_names_carry_the_axis_only_where_there_are_several():
+    assert model(*AXIS).names[:2] == ("bouc_wen.gain", "bouc_wen.alpha")
+    assert model(*AXIS, axes=2, measured=[1]).names[:1] == ("bouc_wen.gain",)
+    assert model(*AXIS, axes=2).names[::4] == (
+        "x.bouc_wen.gain",
+        "y.bouc_wen.gain",
+        "x.lumped.mass",
+        "y.lumped.damping",
+    )
+    assert model("cross_coupling").names == ("x.cross_coupling.ratio", "y.cross_coupling.ratio")
+    assert model("cross_coupling", axes=2, measured=[0]).names == ("cross_coupling.ratio",)
+    assert model(Turn, axes=3, measured=[0, 1]).names == (
+        "x.turn.size_from_y",
+        "x.turn.size_from_z",
+        "y.turn.size_from_x",
+        "y.turn.size_from_z",
+    )
+    assert model("prandtl_ishlinskii").names[:3] == tuple(
+        f"prandtl_ishlinskii.{word}" for word in ("gain", "weight_1", "weight_2")
+    )
+
+
+def test_a_model_of_nothing_passes_the_drive_on():
+    x, y = noise(2)
+    found = model(axes=2, measured=[1]).simulate(record(x, y, measured=[1]), np.zeros((2, 0)))
+    np.testing.assert_array_equal(found, [[y], [y]])
+
+
+def test_an_axis_without_response_still_couples():
+    """It is simulated as far as the coupling, with the parameters of the axis that is measured."""
+    x, y = noise(2)
+    one = response(["bouc_wen"], lin_lin.X, x), response(["bouc_wen"], lin_lin.X, y)
+    chain = model("bouc_wen", "cross_coupling", axes=2, measured=[0])
+    known = lin_lin.X | {"cross_coupling.ratio": 0.1}
+    found = chain.simulate(record(x, y, measured=[0]), np.array([known[name] for name in chain.names]))
+    np.testing.assert_allclose(found[0, 0], one[0] + 0.1 * one[1], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("count", [1, 23, 24, 25, 70])
+def test_any_number_of_candidates(count):
+    chain, made = model(*AXIS), record(*noise(1))
+    theta = candidates(chain, SPAN, 70, 1)
+    all_of_them, squares = chain.simulate(made, theta), Plan(chain, made).squares(theta)
+    np.testing.assert_allclose(chain.simulate(made, theta[:count]), all_of_them[:count], rtol=1e-12, atol=1e-11)
+    np.testing.assert_allclose(Plan(chain, made).squares(theta[:count]), squares[:count], rtol=1e-9)
+
+
+def test_one_candidate_may_be_a_row_alone():
+    chain, made = model(*AXIS), record(*noise(1))
+    theta = candidates(chain, SPAN, 1, 1)
+    for of in (Plan(chain, made).simulate, Plan(chain, made).squares, Plan(chain, made).residuals):
+        np.testing.assert_array_equal(of(theta[0]), of(theta))
+
+
+def test_a_perfect_fit_is_not_better_than_perfect():
+    chain = model(*AXIS, axes=2)
+    theta = candidates(chain, SPAN, 100, 2)
+    drives = noise(2)
+    for candidate in theta:
+        made = record(*drives, response=chain.simulate(record(*drives), candidate)[0] + 3.0)
+        squares = Plan(chain, made).squares(candidate)
+        assert np.all((squares >= 0) & (squares <= 1e-12 * (made.response**2).sum(axis=1)))
+
+
+def test_a_plan_may_serve_several_threads():
+    chain, made = model(*AXIS), record(*noise(1, 2000))
+    plan, theta = Plan(chain, made), candidates(chain, SPAN, 48, 3)
+    expected = plan.squares(theta)
+    with ThreadPoolExecutor(4) as pool:
+        for found in pool.map(plan.squares, [theta] * 20):
+            np.testing.assert_array_equal(found, expected)
+
+
+@pytest.mark.parametrize(("drive", "nanometres"), [("sine", 0.01), ("triangle", 3)])
+def test_mechanics_do_not_show_in_slow_data(drive, nanometres):
+    """Over Lin & Lin's whole box of m, b and k; the triangle's corners leave some ringing."""
+    volts = 65 * (1 - np.cos(np.linspace(0, 2 * np.pi, 2000))) if drive == "sine" else triangle(130)
+    static = response(["bouc_wen"], lin_lin.X, volts)
+    for mass in (0.15, 0.17):
+        for damping in (0, 10):
+            for stiffness in (7e7, 8e7):
+                box = dict(zip(lin_lin.WORDS, (mass, damping, stiffness), strict=False))
+                np.testing.assert_allclose(
+                    response(AXIS, lin_lin.X | box, volts), static, rtol=0, atol=1e-3 * nanometres
+                )
+
+
+def test_steady_state_of_an_oversampled_block():
+    """A run-in takes the period for a period: one more changes nothing, a shift of the drive shifts the response."""
+    drive = 50 * np.sin(2 * np.pi * 3 * np.arange(60) / 60) + 20 * np.cos(2 * np.pi * 7 * np.arange(60) / 60)
+    words = ("mass", "damping", "stiffness", "alpha", "beta", "gamma")
+    known = dict(zip([f"bouc_wen_oscillator.{w}" for w in words], (2, 300, 5e4, 5e4, 800, 100), strict=True))
+    settled = [response(["bouc_wen_oscillator"], known, drive, run_in=n) for n in (20, 21)]
+    shifted = response(["bouc_wen_oscillator"], known, np.roll(drive, 13), run_in=20)
+    np.testing.assert_allclose(settled[0], settled[1], rtol=0, atol=1e-9 * np.ptp(settled[0]))
+    np.testing.assert_allclose(shifted - shifted.mean(), np.roll(settled[0] - settled[0].mean(), 13), atol=1e-5)
