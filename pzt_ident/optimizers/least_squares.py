@@ -1,0 +1,122 @@
+"""Least squares from many starts."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+
+from pzt_ident.registry import optimizers
+from pzt_ident.search import Array, Optimizer, Search, setting
+
+STEP = 1.5e-8  # of a forward difference: the square root of the rounding error
+SMALLEST = 1e-11  # move that ends a start
+
+
+@optimizers.register
+@dataclass(frozen=True)
+class LeastSquares(Optimizer):
+    """Levenberg-Marquardt from many starts: (J'J + mu D) s = -J'r within the bounds, J by a batch of differences.
+
+    Without residuals the model of the loss is quadratic with a BFGS Hessian in place of J'J. The first start is the
+    best of `samples` random points, and so is every further one.
+    """
+
+    source = "Marquardt (1963), J. SIAM 11, 431; Nielsen (1999), IMM-REP-1999-05; Nocedal & Wright (2006), ch. 6 and 10"
+    wants = "residuals"
+
+    budget: int = setting(17_500, "1", (1, 1_000_000_000), "Evaluations.")
+    samples: int = setting(10, "1", (1, 100_000), "Random points of which the best one is a start.")
+
+    @property
+    def evaluations(self) -> int:
+        return self.budget
+
+    def with_budget(self, evaluations: int) -> Self:
+        return replace(self, budget=evaluations)
+
+    def search(self, dimensions: int, rng: np.random.Generator) -> Search:
+        while True:
+            points = rng.random((self.samples, dimensions))
+            answers = yield points
+            best = int(np.argmin([size(answer) for answer in answers]))
+            if np.isfinite(size(answers[best])):
+                yield from descend(points[best], answers[best])
+
+
+def size(answer: Array) -> float:
+    """Half the squared norm of residuals, or a loss as it is; infinite where either is not finite."""
+    value = 0.5 * float(answer @ answer) if np.ndim(answer) else float(answer)
+    return value if np.isfinite(value) else np.inf
+
+
+def descend(x: Array, answer: Array) -> Generator[Array, Array, None]:
+    """From one start to a place where no step within the bounds makes the loss fall."""
+    hessian = None
+    before: tuple[Array, Array] | None = None
+    damping, growth = 1e-3, 2.0
+    while True:
+        steps = np.where(x + STEP > 1, -STEP, STEP)
+        tried = yield np.clip(x + np.diag(steps), 0, 1)
+        if not np.isfinite(tried).all():
+            return
+        if np.ndim(answer):
+            jacobian = ((tried - answer) / steps[:, None]).T
+            gradient, hessian = jacobian.T @ answer, jacobian.T @ jacobian
+        else:
+            gradient = (tried - answer) / steps
+            hessian = secant(hessian, before, x, gradient)
+        before = x, gradient
+        while True:
+            step = bounded_step(x, gradient, hessian, damping)
+            if np.abs(step).max() < SMALLEST or damping > 1e12:
+                return
+            candidates = np.clip(x + np.outer([1.0, 0.25], step), 0, 1)
+            answers = yield candidates
+            chosen = int(np.argmin([size(one) for one in answers[:2]]))
+            expected = -(gradient @ step + 0.5 * step @ hessian @ step)
+            gained = size(answer) - size(answers[chosen])
+            if gained > 0:
+                quality = (size(answer) - size(answers[0])) / max(expected, 1e-300)
+                damping *= max(1 / 10, 1 - (2 * min(quality, 1.5) - 1) ** 3) if quality > 0 else 4.0
+                growth = 2.0
+                x, answer = candidates[chosen], answers[chosen]
+                break
+            damping, growth = damping * growth, growth * 2
+        if gained < 1e-14 * size(answer):
+            return
+
+
+def bounded_step(x: Array, gradient: Array, hessian: Array, damping: float) -> Array:
+    """The damped step over the coordinates that are free to move, cut at the bounds."""
+    free = ~(((x <= 0) & (gradient > 0)) | ((x >= 1) & (gradient < 0)))
+    step = np.zeros_like(x)
+    scale = np.maximum(np.diag(hessian), 1e-12 * max(np.diag(hessian).max(), 1e-300))
+    for _ in range(x.size):
+        if not free.any():
+            break
+        inside = np.ix_(free, free)
+        step[:] = 0
+        step[free] = -np.linalg.lstsq(hessian[inside] + damping * np.diag(scale[free]), gradient[free], rcond=None)[0]
+        out = free & (((x <= 0) & (step < 0)) | ((x >= 1) & (step > 0)))
+        if not out.any():
+            break
+        free &= ~out
+    return np.clip(x + step, 0, 1) - x
+
+
+def secant(hessian: Array | None, before: tuple[Array, Array] | None, x: Array, gradient: Array) -> Array:
+    """BFGS, damped so that it stays positive definite (Nocedal & Wright, procedure 18.2)."""
+    if before is None or hessian is None:
+        return np.eye(x.size) * max(float(np.linalg.norm(gradient)), 1e-12)
+    s, y = x - before[0], gradient - before[1]
+    if not np.any(s):
+        return hessian
+    along = hessian @ s
+    curvature, bent = float(s @ along), float(s @ y)
+    if bent < 0.2 * curvature:
+        share = 0.8 * curvature / (curvature - bent)
+        y = share * y + (1 - share) * along
+    return hessian - np.outer(along, along) / curvature + np.outer(y, y) / float(s @ y)
