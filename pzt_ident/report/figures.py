@@ -89,7 +89,7 @@ def _signal_plates(results: Results) -> Iterator[Plate]:
             "loops",
             f"Response against drive of axis {axis}, measured and modelled.",
             partial(signal.records_height, records=len(traces)),
-            partial(signal.draw_loops, traces=traces, bins=bins),
+            partial(signal.draw_loops, traces=traces, points=3 * bins),
         )
 
 

@@ -39,13 +39,14 @@ def bounds(lower: float | None, upper: float | None) -> str:
 def with_error(value: float | None, error: float | None) -> str:
     """`value ± error`, the error with two significant digits and the value with the same decimals.
 
-    Where the error exceeds the value, or is below its eighth digit, each is written by itself.
+    Where that would leave the value fewer than two digits or more than eight, each is written by itself.
     """
     if value is None or error is None or not math.isfinite(value) or not math.isfinite(error) or error <= 0:
         return number(value)
     power, last = _power(value, 4), _power(error, 2) - 1
-    if error > abs(value) or power - last > 8:
-        return f"{number(value, 4 if error > abs(value) else 8)} ± {number(error, 2)}"
+    if value and not 1 <= power - last <= 8:
+        return f"{number(value, 2 if power < last + 1 else 8)} ± {number(error, 2)}"
+    power = max(power, last + 1)
     if -4 <= power < 5:
         return f"{_fixed(value, -last)} ± {_fixed(error, -last)}"
     scale = 10.0**power

@@ -127,7 +127,7 @@ def _group(group: h5py.Group) -> list[Trace]:
             **{kind: group[f"{kind}_{axis}"][:] for kind in ("drive", "response", "model", "residual")},
             drive_unit=str(group[f"drive_{axis}"].attrs["units"]),
             unit=str(group[f"response_{axis}"].attrs["units"]),
-            settle=float(group.attrs["settle"]),
+            settle=float(np.ravel(group.attrs["settle"])[0]),
         )
         for axis in axes
     ]

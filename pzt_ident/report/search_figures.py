@@ -102,15 +102,15 @@ def draw_estimates(figure: Figure, results: Results) -> None:
     top = heading(figure, "Estimates of all runs within their bounds", [*keys, key("best run", linestyle="", **ring)])
     frame = Frame(top + 1, left=_names_width(max(map(len, names))), right=22)
     axes = panels(figure, 1, 1, frame)[0, 0]
-    for row, name in enumerate(names):
+    for place, (optimizer, look) in enumerate(looks.items()):
+        own = [run["parameters"] for run in results.result["runs"] if run["optimizer"] == optimizer]
+        shift = 0.36 * (place / max(len(looks) - 1, 1) - 0.5)
+        xs = [within(parameters[name]) for name in names for parameters in own]
+        axes.plot(xs, np.repeat(np.arange(len(names)) + shift, len(own)), linestyle="", clip_on=False, **look)
+    best = [results.best["parameters"][name] for name in names]
+    axes.plot([within(entry) for entry in best], range(len(names)), linestyle="", clip_on=False, **ring)
+    for row, entry in enumerate(best):
         axes.axhline(row, color=SHADE, linewidth=0.5, zorder=0)
-        for run in results.result["runs"]:
-            shift = 0.36 * (optimizers(results).index(run["optimizer"]) / max(len(looks) - 1, 1) - 0.5)
-            axes.plot(
-                within(run["parameters"][name]), row + shift, linestyle="", clip_on=False, **looks[run["optimizer"]]
-            )
-        entry = results.best["parameters"][name]
-        axes.plot(within(entry), row, linestyle="", clip_on=False, **ring)
         _bounds(axes, row, entry)
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.set_yticks(range(len(names)), names)

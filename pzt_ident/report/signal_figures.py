@@ -16,6 +16,7 @@ from pzt_ident.report.style import (
     NOISE,
     SHADE,
     Frame,
+    along,
     decimate,
     heading,
     key,
@@ -61,13 +62,13 @@ def draw_time(figure: Figure, trace: Trace, noise: float | None, bins: int) -> N
     lower.set_xlabel("time [s]")
 
 
-def draw_loops(figure: Figure, traces: Sequence[Trace], bins: int) -> None:
+def draw_loops(figure: Figure, traces: Sequence[Trace], points: int) -> None:
     """Response against drive, one panel a record."""
     title = f"Response against drive, axis {traces[0].axis}"
     top = heading(figure, title, [key(name, **look) for name, look in _KEYS])
     for axes, trace in zip(record_panels(figure, traces, Frame(top + 4)), traces, strict=True):
+        shown = along(trace.drive, trace.response, points)
         for values, look in ((trace.response, MEASURED), (trace.model, MODEL)):
-            shown = np.union1d(decimate(values, bins), decimate(trace.drive, bins))
             axes.plot(trace.drive[shown], values[shown], **look | {"linewidth": 0.65 * look["linewidth"]})
         label(axes.yaxis, "response", trace.unit, trace.response)
 

@@ -209,6 +209,15 @@ def decimate(values: NDArray[np.float64], bins: int) -> NDArray[np.intp]:
     return np.unique([0, *found, size - 1])
 
 
+def along(xs: NDArray[np.float64], ys: NDArray[np.float64], points: int) -> NDArray[np.intp]:
+    """Indices of points at even distances along a curve, and of the turns of x, in order."""
+    if xs.size <= points:
+        return np.arange(xs.size)
+    steps = [np.diff(np.nan_to_num(values)) / (float(np.ptp(np.nan_to_num(values))) or 1.0) for values in (xs, ys)]
+    way = np.append(0.0, np.cumsum(np.hypot(*steps)))
+    return np.union1d(decimate(xs, points // 4), np.searchsorted(way, np.linspace(0.0, way[-1], points)))
+
+
 def saved(figure: Figure, form: str) -> bytes:
     """The figure as a file's content, `form` being svg or pdf; the same bytes for the same figure."""
     file = io.BytesIO()

@@ -109,8 +109,9 @@ def parameters(results: Results) -> Table:
         "unit": lambda row: unit(row["unit"]),
         "bounds": lambda row: bounds(row["lower"], row["upper"]),
         "verdict": lambda row: row["verdict"],
-        "note": lambda row: row["note"] or "",
     }
+    if any(row["note"] for row in rows):
+        cells["note"] = lambda row: row["note"] or ""
     return _table("parameters", rows, cells, {"parameter", "unit", "verdict", "note"}, {})
 
 

@@ -32,7 +32,7 @@ def _over_noise(results: Results, use: str) -> str:
     if len(floor) == 1:
         (value,) = floor.values()
         ratio = number(results.best["rmse"][use] / value, 2)
-        return f", {ratio} times the noise floor of {quantity(value, results.unit, 2)}"
+        return f", {ratio}\u00a0times the noise floor of {quantity(value, results.unit, 2)}"
     records = [record["rmse"] for record in results.result["records"] if record["use"] == use]
     ratios = sorted(rmse[axis] / floor[axis] for rmse in records for axis in floor if rmse.get(axis) is not None)
     return (

@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-import h5py
+import h5netcdf
 import numpy as np
 import pytest
 
@@ -38,10 +38,11 @@ def drive_of(use: str, time):
 
 
 def write_signals(path: Path, records: list[dict[str, Any]], axes: tuple[str, ...], unit: str, rng) -> None:
-    with h5py.File(path, "w") as file:
+    with h5netcdf.File(path, "w") as file:
         for record in records:
             group = file.create_group(record["name"])
             group.attrs.update(name=record["name"], use=record["use"], settle=record["settle"])
+            group.dimensions = {"time": record["samples"]}
             time = np.arange(record["samples"]) / record["sample_rate"]
             channels = {"time": (time, "s")}
             for shift, axis in enumerate(axes):
@@ -53,8 +54,7 @@ def write_signals(path: Path, records: list[dict[str, Any]], axes: tuple[str, ..
                     channels[f"{kind}_{axis}"] = (values, unit)
                 channels[f"drive_{axis}"] = (drive, "V")
             for name, (values, of) in channels.items():
-                group[name] = values
-                group[name].attrs.update(units=of, long_name=name)
+                group.create_variable(name, ("time",), data=values).attrs.update(units=of, long_name=name)
 
 
 def histories(optimizers: tuple[str, ...], repeats: int, rng) -> list[str]:

@@ -11,7 +11,7 @@ from pzt_ident.report.figures import plates, render, write_page_figures, write_p
 from pzt_ident.report.residual_figures import banded, branches, cell_means
 from pzt_ident.report.results import Trace, read_results
 from pzt_ident.report.search_figures import descent, within
-from pzt_ident.report.style import COLUMN, PAGE, decimate, fit
+from pzt_ident.report.style import COLUMN, PAGE, along, decimate, fit
 
 NUMBER = st.floats(-1e6, 1e6) | st.just(np.nan)
 
@@ -25,6 +25,16 @@ def test_decimation_keeps_extremes_ends_and_order(values, bins):
     known = np.nan_to_num(values)
     assert known[kept].max() == known.max()
     assert known[kept].min() == known.min()
+
+
+def test_points_along_a_loop_are_even_and_reach_its_turns():
+    time = np.linspace(0, 20, 20_001)
+    drive, response = np.sin(2 * np.pi * time), np.sin(2 * np.pi * time - 0.3)
+    shown = along(drive, response, 900)
+    assert shown.size < 1400
+    assert np.hypot(np.diff(drive[shown]), np.diff(response[shown])).max() < 0.15
+    assert (drive[shown].min(), drive[shown].max()) == (drive.min(), drive.max())
+    assert np.count_nonzero(drive[shown] > 0.9999) >= 20
 
 
 def test_branches_follow_a_noisy_triangle():
