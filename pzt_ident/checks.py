@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from pzt_ident import units
@@ -130,6 +130,8 @@ def _parameters(document: Document, settings: dict[str, Setting], earlier: Earli
         return
     model = _chain((*earlier["model"], *earlier["effects"]), axes)
     spelled = {name: slot for slot in model.slots for name in model.spellings(slot)}
+    if spelled and not any(_free(model, slot, settings, earlier["effects"]) for slot in model.slots):
+        document.fault(("parameters",), "every parameter is fixed", "free at least one: give it `bounds`")
     for name, setting in settings.items():
         at: Loc = ("parameters", name)
         if name not in spelled:
@@ -141,6 +143,15 @@ def _parameters(document: Document, settings: dict[str, Setting], earlier: Earli
         least = setting.bounds[0] if setting.bounds else setting.value
         if declared.scale == "log" and least is not None and least <= 0:
             document.fault(at, f"{least:g} is not above 0", "give a value or lower bound above 0")
+
+
+def _free(model: Model, slot: Slot, settings: Mapping[str, Setting], effects: Collection[str]) -> bool:
+    """Whether a parameter is searched for."""
+    setting = next((settings[name] for name in model.spellings(slot) if name in settings), None)
+    if setting is not None:
+        return setting.bounds is not None
+    declared = slot.parameter
+    return declared.value is None and (declared.effect is None or declared.effect in effects)
 
 
 def _chain(words: Iterable[str], axes: Mapping[str, Axis]) -> Model:

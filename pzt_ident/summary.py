@@ -98,7 +98,7 @@ def show_job(found: Facts) -> None:
         ("parameter", "unit", "bounds", "what it is"),
         [(row["name"], row["unit"], _searched(row), row["doc"]) for row in found["parameters"]],
     )
-    click.echo(f"{len(found['runs'])} runs, {found['evaluations']} evaluations: {' '.join(found['runs'])}")
+    click.echo(f"runs: {' '.join(found['runs'])}, {found['evaluations']} evaluations in all")
 
 
 _TIMES = ("sample_rate", "seconds", "settle")

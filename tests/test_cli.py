@@ -184,7 +184,7 @@ class TestCheck:
         assert "x     0 to 100 V" in result.stdout
         assert "bouc_wen.gamma  1/V" in result.stdout
         assert "fixed at 0.01" in result.stdout
-        assert "2 runs, 1600 evaluations: pso-0 pso-1" in result.stdout
+        assert "runs: pso-0 pso-1, 1600 evaluations in all" in result.stdout
         assert files(folder) == before
 
     def test_json(self, folder):

@@ -196,6 +196,14 @@ def test_two_operators_do_not_go_together():
     assert "10:27: model[2]: 'prandtl_ishlinskii' beside 'bouc_wen': two blocks of hysteresis" in message
 
 
+def test_something_must_be_left_to_identify():
+    fixed = "".join(f"  bouc_wen.{word}: {{value: 0.5}}\n" for word in ("gain", "alpha", "beta", "gamma"))
+    text = GOOD.replace(", lumped]", "]").replace("effects: [cross_coupling]\n", "")
+    start, end = text.index("  bouc_wen.alpha"), text.index("optimizers:")
+    message = faults(text[:start] + fixed + text[end:])
+    assert message.startswith("job.yaml:12:3: parameters: every parameter is fixed\n  free at least one")
+
+
 def test_an_effect_among_the_blocks_is_moved():
     message = faults(GOOD.replace("[bouc_wen, lumped]", "[bouc_wen, lumped, cross_coupling]"))
     assert "model[2]: 'cross_coupling' is an effect\n  move it to `effects: [cross_coupling]`" in message
