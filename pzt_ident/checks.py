@@ -171,10 +171,8 @@ def _setting(document: Document, at: Loc, setting: Setting) -> None:
     if low >= high:
         message = f"bounds reversed, {low:g} is not below {high:g}"
         document.fault((*at, "bounds"), message, "write [low, high], or fix it with `value`")
-    elif setting.value is not None and not low <= setting.value <= high:
-        document.fault(
-            (*at, "value"), f"{setting.value:g} is outside its bounds [{low:g}, {high:g}]", "widen the bounds"
-        )
+    if setting.value is not None:
+        document.fault((*at, "value"), "beside `bounds`", "keep one: bounds free a parameter, a value fixes it")
 
 
 def _stranger(document: Document, name: str, earlier: Earlier, spelled: Mapping[str, Slot]) -> None:

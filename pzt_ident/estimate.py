@@ -15,6 +15,7 @@ LOOSE = 0.2  # of its search range: a standard error above this says nothing
 FLAT = 0.01  # of the RMSE: a parameter may go where the RMSE rises by less
 WIDE = 0.5  # of its search range, over which it may go
 EDGE = 1e-4  # of its search range
+TIED = 0.995  # correlation of two parameters that are known together only
 
 
 class Estimate(NamedTuple):
@@ -26,6 +27,7 @@ class Estimate(NamedTuple):
     lower: float
     upper: float
     standard_error: float | None
+    scale: str
     verdict: str
     note: str
 
@@ -42,14 +44,25 @@ def estimates(problem: Problem, point: Array) -> tuple[list[Estimate], Array]:
     value = problem.physical(point)[0]
     slope = (problem.physical(point + 1e-6) - problem.physical(point - 1e-6))[0] / 2e-6
     flat = flat_share(problem, point)
+    scale = np.where(error > 0, error, 1)
+    correlation = np.nan_to_num(covariance / np.outer(scale, scale))
     found = []
     for i, name in enumerate(problem.names):
         verdict, note = judge(point[i], error[i], flat[i])
         known = float(error[i] * abs(slope[i])) if verdict != "not determined" else None
+        if verdict == "determined":
+            note = doubts(problem, i, value[i], known or 0.0, correlation[i])
         lower, upper = float(problem.lower[i]), float(problem.upper[i])
-        found.append(Estimate(name, float(value[i]), problem.units[i], lower, upper, known, verdict, note))
-    scale = np.where(error > 0, error, 1)
-    return found, np.nan_to_num(covariance / np.outer(scale, scale))
+        axis = "log" if problem.log[i] else "linear"
+        found.append(Estimate(name, float(value[i]), problem.units[i], lower, upper, known, axis, verdict, note))
+    return found, correlation
+
+
+def doubts(problem: Problem, i: int, value: float, error: float, correlation: Array) -> str:
+    """What to know of a determined parameter: that its sign is open, or with which other it is tied."""
+    tied = [name for j, name in enumerate(problem.names) if j != i and abs(correlation[j]) > TIED]
+    said = ["zero lies within two standard errors"] if abs(value) < 2 * error else []
+    return "; ".join(said + ([f"known only together with {', '.join(tied)}"] if tied else []))
 
 
 def judge(place: float, error: float, flat: float) -> tuple[str, str]:

@@ -63,7 +63,8 @@ def resume(
     if not known.exists():
         raise InputError("holds no run", where=str(folder), remedy="give the folder that `pzt-ident run` wrote")
     before = json.loads(known.read_text())
-    job = Job.from_text((folder / "job.yaml").read_text(encoding="utf-8"), Path(before["job_folder"]))
+    text = (folder / "job.yaml").read_text(encoding="utf-8")
+    job = Job.from_text(text, Path(before["job_folder"]), f"{before['job_name']}.yaml")
     return go_on(job, read(job), folder, workers, report, listen)
 
 
@@ -82,7 +83,8 @@ def go_on(job: Job, records: list[Record], folder: Path, workers: int | None, re
             listen(event)
 
         budget = sum(task.stop["evaluations"] for task in tasks)
-        tell({"event": "start", "runs": [task.run for task in tasks], "budget": budget, "unit": unit_of(records)})
+        runs = [task.run for task in tasks]
+        tell({"event": "start", "runs": runs, "budget": budget, "unit": unit_of(records), "folder": str(folder)})
         arguments = [(task.run, (task, job.text, job.folder, records)) for task in missing]
         failed = run_all(work, arguments, workers, tell)
         done = [task for task in tasks if task.run not in failed]
@@ -200,5 +202,6 @@ def environment(job: Job) -> dict[str, Any]:
         "cores": os.cpu_count(),
         "packages": packages,
         "job_hash": job.hash,
+        "job_name": job.name,
         "job_folder": str(job.folder.resolve()),
     }

@@ -158,7 +158,7 @@ ONE_FAULT = [
     ("bouc_wen.alpha", "prandtl_ishlinskii.gain", "'prandtl_ishlinskii' is not in this model", "`model`"),
     ("[1e-6, 1]", "[1, 1e-6]", "13:28: parameters.bouc_wen.alpha.bounds: bounds reversed", "[low"),
     ("[1e-6, 1]", "[0, .inf]", "13:32: parameters.bouc_wen.alpha.bounds[1]: .inf is not a finite", "plain"),
-    ("[1e-6, 1]}", "[0, 1], value: 2}", "13:43: parameters.bouc_wen.alpha.value: 2 is outside its", "widen"),
+    ("[1e-6, 1]}", "[0, 1], value: 2}", "13:43: parameters.bouc_wen.alpha.value: beside `bounds`", "keep one"),
     ("{bounds: [1e-6, 1]}", "{}", "13:19: parameters.bouc_wen.alpha: sets nothing", "bounds: [low, high]"),
     ("value: 0.1566", "value: -1", "14:18: parameters.x.lumped.mass: -1 is not above 0", "above 0"),
     ("name: fake", "name: fakee", "16:12: optimizers[0].name: unknown optimizer 'fakee'", "did you mean 'fake'"),
