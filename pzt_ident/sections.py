@@ -23,7 +23,7 @@ class Channels:
 
 @dataclass(frozen=True)
 class Setting:
-    """Bounds free a parameter, a value alone fixes it (beside bounds it must lie in them); in the user's units."""
+    """Bounds free a parameter, a value fixes it: one of the two, in the user's units."""
 
     bounds: tuple[float, float] | None = None
     value: float | None = None
