@@ -22,14 +22,15 @@ EFFECTS = [word for word in WORDS if blocks.folder(word) == "effects"]
 SPAN = np.array([0.0, 100.0])
 CLOSE = 1e-12
 
-levels = st.lists(st.integers(-30, 100), min_size=2, max_size=6)
-seeds = st.integers(0, 2**31)
-drives = st.one_of(
-    st.builds(lambda levels, points: path(*levels, points=points), levels, st.integers(1, 40)),
-    st.builds(lambda seed, samples: waves(seed, samples), seeds, st.integers(4, 200)),
-    st.builds(lambda seed, samples: np.random.default_rng(seed).uniform(0, 100, samples), seeds, st.integers(4, 200)),
-)
-quick = settings(deadline=None, max_examples=20, derandomize=True)
+
+def legs(levels, points):
+    return path(*levels, points=points)
+
+
+def shaky(levels, seed, digits):
+    """Legs whose steps differ from some digit on."""
+    drive = path(*levels, points=25)
+    return drive + 10.0**-digits * np.random.default_rng(seed).uniform(size=drive.size)
 
 
 def waves(seed, samples=200):
@@ -37,6 +38,21 @@ def waves(seed, samples=200):
     rng = np.random.default_rng(seed)
     phase = np.outer(rng.uniform(0.5, 40, 3), np.linspace(0, 2 * np.pi, samples)) + rng.uniform(0, 6, (3, 1))
     return 50 + rng.uniform(2, 16, 3) @ np.sin(phase)
+
+
+def noise(seed, samples):
+    return np.random.default_rng(seed).uniform(0, 100, samples)
+
+
+levels = st.lists(st.integers(-30, 100), min_size=2, max_size=6)
+seeds = st.integers(0, 2**31)
+drives = st.one_of(
+    st.builds(legs, levels, st.integers(1, 40)),
+    st.builds(shaky, levels, seeds, st.integers(0, 12)),
+    st.builds(waves, seeds, st.integers(4, 200)),
+    st.builds(noise, seeds, st.integers(4, 200)),
+)
+quick = settings(deadline=None, max_examples=20, derandomize=True)
 
 
 def made(word, drive, count=3, seed=1, **more):
