@@ -14,6 +14,8 @@ Event = dict[str, Any]
 
 def context() -> Any:
     """Workers forked from a small server that has the kernels loaded; started afresh where that cannot be had."""
+    for library in ("OPENBLAS", "MKL", "OMP"):  # one process a core; their own threads would only get in the way
+        os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     if sys.platform == "win32":
         return multiprocessing.get_context("spawn")
     made = multiprocessing.get_context("forkserver")

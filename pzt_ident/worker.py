@@ -90,8 +90,11 @@ def search(task: Task, job: Any, records: list[Record], tell: Tell) -> None:
             callback=note,
             told=[losses for _, losses in generations],
         )
-    tell(generation_event(task, outcome.evaluations, outcome.loss / size, before + time.perf_counter() - begun))
+    seconds, spent = before + time.perf_counter() - begun, time.process_time() - cpu
+    tell(generation_event(task, outcome.evaluations, outcome.loss / size, seconds))
+    begun = time.perf_counter()
     point, extra = problem.polish(outcome.point) if task.polish else (outcome.point, 0)
+    polishing = time.perf_counter() - begun
     found, correlation = estimates(problem, point)
     result = {
         "run": task.run,
@@ -104,8 +107,9 @@ def search(task: Task, job: Any, records: list[Record], tell: Tell) -> None:
         "correlation": {"names": list(problem.names), "matrix": correlation},
         "evaluations": outcome.evaluations,
         "polish_evaluations": extra,
-        "seconds": before + time.perf_counter() - begun,
-        "cpu_seconds": time.process_time() - cpu,
+        "seconds": seconds,
+        "cpu_seconds": spent,
+        "polish_seconds": polishing,
         "failed_simulations": problem.failed,
         "stopped_by": outcome.stopped_by,
         "point": point,

@@ -59,7 +59,7 @@ def finished(folder):
 def numbers(out: Path) -> list:
     """All that must not differ between two runs of a job: everything but the clock."""
     result = json.loads((out / "result.json").read_text())
-    clock = ("seconds", "cpu_seconds", "failed_simulations")
+    clock = ("seconds", "cpu_seconds", "polish_seconds", "failed_simulations")
     return [{key: value for key, value in item.items() if key not in clock} for item in result["runs"]]
 
 
