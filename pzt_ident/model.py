@@ -140,7 +140,7 @@ class Plan:
         places = [(a, b) for a in axes for b in axes if b != a] if coupling else [(axis, axis)]
         layout = made.layout
         for copy, place in enumerate(places):
-            if columns := self.model.columns(block, *place):
+            if (columns := self.model.columns(block, *place)) is not None:
                 row = self.rows + layout.states * layout.copies + copy * layout.coefficients
                 span = float(np.ptp(self.record.drive[place[0]]))
                 known = {"dt": self.record.dt / self.model.oversample, "span": span}
