@@ -12,7 +12,7 @@ from pzt_ident.model import Plan
 from pzt_ident.registry import blocks
 from rig import candidates, model, record, response, triangle
 from twins import plain
-from twins.blocks import Identity, Turn
+from twins.blocks import Identity, Relative, Turn
 
 AXIS = ["bouc_wen", "lumped"]
 SPAN = np.array([0.0, 100.0])
@@ -86,6 +86,12 @@ def test_an_axis_without_response_still_couples():
     known = lin_lin.X | {"cross_coupling.ratio": 0.1}
     found = chain.simulate(record(x, y, measured=[0]), np.array([known[name] for name in chain.names]))
     np.testing.assert_allclose(found[0, 0], one[0] + 0.1 * one[1], rtol=0, atol=1e-12)
+
+
+def test_blocks_may_ask_for_the_sample_time_and_the_span():
+    x, y = noise(2) * [[1], [3]]
+    found = model(Relative, axes=2).simulate(record(x, y, dt=0.25), np.zeros((1, 0)))
+    np.testing.assert_allclose(found[0], [0.25 * x / np.ptp(x), 0.25 * y / np.ptp(y)], rtol=1e-15)
 
 
 @pytest.mark.parametrize("count", [1, 23, 24, 25, 70])

@@ -32,3 +32,19 @@ class Turn(Coupling):
 
     def step(y, other, size):
         return y + size * y * other
+
+
+class Relative(Block):
+    """y = u T / s, T the sample time and s the span of the axis' drive."""
+
+    name = "relative"
+    place = Place.AMPLIFIER
+
+    def prepare(dt, span):
+        return dt, span
+
+    def start(u, dt, span):
+        return ()
+
+    def step(u, dt, span):
+        return u * dt / span
