@@ -1,0 +1,249 @@
+"""Time the kernels, the searches and the command line; print and write the tables and the figure of the README.
+
+python experiments/performance/run.py
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+from baselines import first_order_hold, lsoda, numpy_population, plain_loop
+
+from pzt_ident.model import Model
+from pzt_ident.problem import Problem
+from pzt_ident.record import Record
+from pzt_ident.registry import blocks, optimizers
+from pzt_ident.search import Stop, drive
+
+HERE = Path(__file__).parent
+OUT = HERE.parents[1] / "results" / "reference" / "performance"
+TRUTH = {
+    "gain": 8.1947e-8,
+    "alpha": 0.5590,
+    "beta": 0.0148,
+    "gamma": 0.0552,
+    "mass": 0.1566,
+    "damping": 5.0,
+    "stiffness": 7.0028e7,
+}
+BOUNDS = {  # Lin & Lin (2012), Table 2, X axis
+    "bouc_wen.gain": (0, 0.5),
+    "bouc_wen.alpha": (0, 1),
+    "bouc_wen.beta": (0, 1),
+    "bouc_wen.gamma": (0, 1),
+    "lumped.mass": (0.15, 0.17),
+    "lumped.damping": (0, 10),
+    "lumped.stiffness": (7e7, 8e7),
+}
+MILLION = 1e6
+
+
+def drives(time_axis: np.ndarray) -> dict[str, np.ndarray]:
+    t = time_axis
+    return {
+        "constant step (triangle, 1 Hz)": 130 * (1 - np.abs(1 - (2 * t) % 2)),
+        "general (sine, 1 Hz)": 65 * (1 - np.cos(2 * np.pi * t)),
+        "general (three sines, 1 to 111 Hz)": 60 * np.sin(2 * np.pi * t) + 5 * np.sin(234 * t) + 3 * np.sin(697 * t),
+        "general (white noise)": np.random.default_rng(1).uniform(0, 130, t.size),
+    }
+
+
+def problem(u: np.ndarray, words: tuple[str, ...] = ("bouc_wen", "lumped")) -> Problem:
+    model = Model([blocks[word] for word in words], ["x"], [0])
+    blank = Record("r", "identify", 1e-3, u[None], u[None] * 1e-7, response_units=("um",))
+    truth = np.array([[TRUTH[slot.word] for slot in model.slots]])
+    y = np.round(model.simulate(blank, truth)[0] / 1e-7) * 1e-7
+    record = Record("r", "identify", 1e-3, u[None], y, response_units=("um",))
+    wishes = {name: SimpleNamespace(bounds=b, value=None) for name, b in BOUNDS.items() if name in model.names}
+    return Problem(model, [record], wishes)
+
+
+def cpu(function, repeats: int = 41) -> float:
+    """Median CPU seconds of a call, warm."""
+    function()
+    found = []
+    for _ in range(repeats):
+        begun = time.process_time()
+        function()
+        found.append(time.process_time() - begun)
+    return float(np.median(found))
+
+
+def kernels(samples: int = 5000, candidates: int = 70) -> list[tuple[str, float]]:
+    """CPU microseconds a candidate."""
+    t = np.arange(samples) / 1e3
+    rng = np.random.default_rng(0)
+    rows = []
+    for name, u in drives(t).items():
+        whole = problem(u)
+        points = rng.uniform(size=(candidates, whole.dimensions))
+        each = cpu(lambda p=whole, x=points: p.loss(x)) / candidates * MILLION
+        rows.append((f"pzt-ident, Bouc-Wen + lumped + error, {name}", each))
+        bare = problem(u, ("bouc_wen",))
+        alone = cpu(lambda p=bare, x=points[:, :4]: p.loss(x)) / candidates * MILLION
+        rows.append((f"  of which the linear block (lumped), {name}", each - alone))
+    u = drives(t)["general (sine, 1 Hz)"]
+    record = problem(u).records[0]
+    theta = problem(u).parameters(rng.uniform(0.05, 0.95, size=(candidates, 7)))
+    response = record.response[0]
+    rows.append(
+        (
+            "NumPy exact step over the population",
+            cpu(lambda: numpy_population(t, u, response, theta), 3) / candidates * MILLION,
+        )
+    )
+
+    def loop() -> None:
+        for row in theta:
+            plain_loop(u, response, *row[:4], *first_order_hold(*row[4:], 1e-3))
+
+    rows.append(("numba loop, one candidate at a time", cpu(loop, 9) / candidates * MILLION))
+    begun = time.process_time()
+    lsoda(t[:501], u[:501], response[:501], theta[0])
+    rows.append(
+        ("solve_ivp LSODA, rtol 1e-6 (500 samples, scaled)", (time.process_time() - begun) * (samples / 500) * MILLION)
+    )
+    return rows
+
+
+def whole_search() -> list[tuple[str, float]]:
+    t = np.arange(5000) / 1e3
+    made = problem(drives(t)["constant step (triangle, 1 Hz)"])
+    settings = {"pso": {"c1": 2.8, "c2": 1.3}}
+    rows = []
+    for word in optimizers.words():
+        optimizer = optimizers[word].make(**settings.get(word, {}))
+        residuals = lambda x: made.residuals(x) * np.sqrt(made.scored)  # noqa: E731
+        spent = cpu(lambda o=optimizer: drive(o, made.dimensions, made.loss, 1, Stop(17_500), residuals), 3)
+        rows.append((word, spent))
+    return rows
+
+
+def scaling() -> dict[str, list[tuple[int, float]]]:
+    """CPU microseconds a candidate against samples, candidates and parameters."""
+    rng = np.random.default_rng(0)
+    found: dict[str, list[tuple[int, float]]] = {"samples": [], "candidates": [], "parameters": []}
+    for samples in (100, 300, 1000, 3000, 10_000, 30_000, 100_000):
+        made = problem(drives(np.arange(samples) / 1e3)["general (sine, 1 Hz)"])
+        points = rng.uniform(size=(72, made.dimensions))
+        found["samples"].append((samples, cpu(lambda p=made, x=points: p.loss(x), 9) / 72 * MILLION))
+    u = drives(np.arange(5000) / 1e3)["general (sine, 1 Hz)"]
+    made = problem(u)
+    for candidates in (1, 8, 24, 25, 72, 240, 1200):
+        points = rng.uniform(size=(candidates, made.dimensions))
+        found["candidates"].append((candidates, cpu(lambda p=made, x=points: p.loss(x), 15) / candidates * MILLION))
+    for words in (
+        ("lumped",),
+        ("bouc_wen",),
+        ("bouc_wen", "lumped"),
+        ("prandtl_ishlinskii",),
+        ("prandtl_ishlinskii", "lumped"),
+    ):
+        bare = Model([blocks[word] for word in words], ["x"], [0])
+        record = Record("r", "identify", 1e-3, u[None], u[None] * 1e-7, response_units=("um",))
+        made = Problem(bare, [record])
+        points = rng.uniform(size=(72, made.dimensions))
+        found["parameters"].append((made.dimensions, cpu(lambda p=made, x=points: p.loss(x), 15) / 72 * MILLION))
+    found["parameters"].sort()
+    return found
+
+
+def command_line() -> list[tuple[str, float]]:
+    """Wall seconds, the second of two runs."""
+    job = HERE / "small.yaml"
+    with tempfile.TemporaryDirectory() as folder:
+        tool = [sys.executable, "-m", "pzt_ident"]
+        run = lambda i: [*tool, "run", str(job), "--quiet", "--out", f"{folder}/{i}"]  # noqa: E731
+        rows = []
+        for name, command in (("pzt-ident --help", lambda i: [*tool, "--help"]), ("pzt-ident run of a small job", run)):
+            for i in range(2):
+                begun = time.perf_counter()
+                subprocess.run(command(i), check=True, stdout=subprocess.DEVNULL)
+                spent = time.perf_counter() - begun
+            rows.append((name, spent))
+    return rows
+
+
+def memory() -> list[tuple[str, float]]:
+    """Peak memory in MiB of a search of few and of many generations, each in its own process."""
+    rows = []
+    for generations in (200, 2000, 20_000):
+        done = subprocess.run(
+            [sys.executable, __file__, "--memory", str(generations)], check=True, capture_output=True, text=True
+        )
+        rows.append((f"{generations} generations", float(done.stdout)))
+    return rows
+
+
+def peak(generations: int) -> float:
+    made = problem(drives(np.arange(200) / 1e3)["general (sine, 1 Hz)"])
+    drive(
+        optimizers["pso"].make(population=10, generations=generations),
+        made.dimensions,
+        made.loss,
+        1,
+        Stop(10 * generations),
+    )
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+
+def figure(found: dict[str, list[tuple[int, float]]]) -> None:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    labels = {"samples": "samples a record", "candidates": "candidates a batch", "parameters": "free parameters"}
+    fig, axes = plt.subplots(1, 3, figsize=(180 / 25.4, 60 / 25.4), layout="constrained")
+    for axis, (what, rows) in zip(axes, found.items(), strict=True):
+        x, y = np.array(rows).T
+        axis.plot(x, y, "o-" if what != "parameters" else "o", color="#0072B2", ms=3.5, lw=1)
+        if what != "parameters":
+            axis.set(xscale="log", yscale="log")
+        else:
+            axis.set_ylim(bottom=0)
+        axis.set_xlabel(labels[what], fontsize=8)
+        axis.tick_params(labelsize=7)
+        axis.grid(alpha=0.25, lw=0.5)
+    axes[0].set_ylabel("CPU per candidate (µs)", fontsize=8)
+    fig.suptitle("Cost of one candidate: linear in samples, flat once lanes are full", fontsize=9)
+    for kind in ("svg", "pdf", "png"):
+        fig.savefig(OUT / f"scaling.{kind}", dpi=200)
+
+
+def table(title: str, unit: str, rows: list[tuple[str, float]]) -> str:
+    lines = [f"| {title} | {unit} |", "|---|---|", *(f"| {name} | {value:,.3g} |" for name, value in rows)]
+    return "\n".join(lines)
+
+
+def main() -> None:
+    OUT.mkdir(parents=True, exist_ok=True)
+    rows = kernels()
+    ours = next(value for name, value in rows if "sine, 1 Hz" in name)
+    ratios = [(name, value / ours) for name, value in rows if not name.startswith(("pzt", "  "))]
+    grown = scaling()
+    figure(grown)
+    parts = [
+        table("5,000 samples, 7 parameters, 70 candidates", "CPU µs a candidate", rows),
+        table("in ratio to pzt-ident on the same drive (sine)", "times", ratios),
+        table("a search of 17,500 evaluations, warm", "CPU s", whole_search()),
+        table("command line", "wall s", command_line()),
+        table("peak memory, population 10", "MiB", memory()),
+    ]
+    text = f"Cores: {os.cpu_count()}. Load before: {os.getloadavg()[0]:.1f}.\n\n" + "\n\n".join(parts) + "\n"
+    (OUT / "tables.md").write_text(text)
+    (OUT / "scaling.json").write_text(json.dumps(grown))
+    print(text)
+
+
+if __name__ == "__main__":
+    print(peak(int(sys.argv[2]))) if sys.argv[1:2] == ["--memory"] else main()

@@ -1,0 +1,29 @@
+"""What the README shows is run."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+README = Path(__file__).parents[1] / "README.md"
+
+
+def block(name: str) -> str:
+    """The code block behind the comment `<!-- name -->`."""
+    found = re.search(rf"<!-- {name} -->\s*```\w*\n(.*?)```", README.read_text(encoding="utf-8"), re.S)
+    assert found, f"no block {name!r} in README.md"
+    return found[1]
+
+
+def test_the_library_example_finds_the_minimum(tmp_path):
+    code = block("library")
+    assert len(code.split("\n\n\n")[-1].strip().splitlines()) < 10
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert done.stdout.startswith("[1. 1.]")
+    assert not list(tmp_path.iterdir())
+
+
+def test_paths_in_the_readme_exist():
+    text = README.read_text(encoding="utf-8")
+    for path in re.findall(r"\]\(([\w/.]+)\)", text) + re.findall(r"`((?:configs|experiments|results)/[\w/.]+)`", text):
+        assert (README.parent / path).exists(), path
