@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 
 def lsoda(time, drive, response, theta, rtol=1e-6):
-    """One candidate, RMSE: Bouc-Wen and mechanics as differential equations, one interval of constant slope a sample."""
+    """One candidate, RMSE: Bouc-Wen and mechanics as differential equations, one call a sample, as corners need."""
     gain, alpha, beta, gamma, mass, damping, stiffness = theta
     state, out = np.array([0.0, gain * drive[0], 0.0]), [gain * drive[0]]
     for i in range(1, drive.size):

@@ -120,9 +120,12 @@ def whole_search() -> list[tuple[str, float]]:
     made = problem(drives(t)["constant step (triangle, 1 Hz)"])
     settings = {"pso": {"c1": 2.8, "c2": 1.3}}
     rows = []
+
+    def residuals(points: np.ndarray) -> np.ndarray:
+        return made.residuals(points) * np.sqrt(made.scored)
+
     for word in optimizers.words():
         optimizer = optimizers[word].make(**settings.get(word, {}))
-        residuals = lambda x: made.residuals(x) * np.sqrt(made.scored)  # noqa: E731
         spent = cpu(lambda o=optimizer: drive(o, made.dimensions, made.loss, 1, Stop(17_500), residuals), 3)
         rows.append((word, spent))
     return rows
