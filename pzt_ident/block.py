@@ -1,8 +1,8 @@
 """What an author of a model block writes: one sample of one candidate.
 
-`prepare` turns parameters into coefficients, once per candidate (NumPy arrays, one entry a candidate). `start` gives
-the state at rest under the first input, `step` one sample: scalars in, scalars out, conditional expressions instead
-of branches. The functions are declared without self. The kernel batches candidates as SIMD lanes (kernel.py).
+`prepare` turns parameters into coefficients, once per candidate. `start` gives the state at rest under the first
+input, `step` one sample. All are scalars in, scalars out; `step` has conditional expressions instead of branches. The
+functions are declared without self. The kernel compiles them and batches candidates as SIMD lanes (lanes/).
 """
 
 from __future__ import annotations
@@ -92,8 +92,11 @@ class Operator(Block):
 
 
 class Bank(Block):
-    """Branches in parallel under one input: `step` is one branch and returns its contribution; coefficients are
-    (branches, candidates); output(u, total, *coefficients of the first branch) -> y."""
+    """Branches in parallel under one input: `step` is one branch and returns its contribution to the total.
+
+    prepare may ask for `branch`, counted from 0, and is given each branch its own of a counted parameter.
+    output(u, total, *coefficients of the first branch) -> y.
+    """
 
     branches: ClassVar[int]
 

@@ -26,6 +26,7 @@ if "NUMBA_CPU_FEATURES" not in os.environ:  # 512 bit vectors where the processo
 WIDTH = 24
 TILE = 64
 UNROLL = 2
+PADDING = 4  # samples behind the last one, which a loop over several at once may touch
 OPTIONS: dict[str, Any] = {"fastmath": {"contract"}, "error_model": "numpy", "cache": True}
 
 pointer = types.CPointer(types.float64)
@@ -117,11 +118,14 @@ def call(context: Any, address: Any, samples: Any, first: Any, fresh: Any, drive
 
 @compiled
 def fill(samples, first, fresh, drive, scratch, tile):
-    """The drive itself, the same in every lane."""
-    for i in range(samples):
-        u = drive[first + i]
+    """The drive itself, the same in every lane; four samples a loop, which LLVM would else unroll and not vectorise."""
+    for i in range(0, samples, 4):
+        u0, u1, u2, u3 = drive[first + i], drive[first + i + 1], drive[first + i + 2], drive[first + i + 3]
         for j in range(WIDTH):
-            tile[i * WIDTH + j] = u
+            tile[i * WIDTH + j] = u0
+            tile[(i + 1) * WIDTH + j] = u1
+            tile[(i + 2) * WIDTH + j] = u2
+            tile[(i + 3) * WIDTH + j] = u3
 
 
 @compiled
@@ -146,7 +150,7 @@ def run(program, signals, scratch, tiles, samples, since, stride, output, take):
     """Run every group through every tile.
 
     program: (steps, 5) of address, scratch row, row of signals, tile, from which sample on.
-    signals: (rows, 1 + samples + UNROLL), a sample of rest before the record. tiles: (axes, TILE * WIDTH), aligned.
+    signals: (rows, 1 + samples + PADDING), a sample of rest before the record. tiles: (axes, TILE * WIDTH), aligned.
     scratch: (groups, rows * WIDTH). output: (groups * WIDTH, axes, samples after `since` / stride) or empty, filled
     from the tiles numbered in `take`, every `stride`-th sample.
     """

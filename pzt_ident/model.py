@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.block import Bank, Block, Coupling, Operator
-from pzt_ident.lanes import Layout
 from pzt_ident.parameter import Parameter
 from pzt_ident.record import Record
 
@@ -89,23 +87,14 @@ class Model:
         return Plan(self, record).simulate(theta)
 
 
-class Part(NamedTuple):
-    """A block at work: where its coefficients go, and from which columns of theta they come."""
-
-    block: type[Block]
-    row: int
-    layout: Layout
-    columns: dict[str, int | list[int]]
-    known: dict[str, float]
-
-
 class Plan:
     """A model made ready for one record: the kernel's program and the layout of its scratch."""
 
     def __init__(self, model: Model, record: Record) -> None:
         self.model, self.record = model, record
-        self.parts: list[Part] = []
         self.program: list[tuple[int, ...]] = []
+        self.given: list[tuple[int, int]] = []  # row of the scratch, column of theta
+        self.known: list[tuple[int, float]] = []  # row of the scratch, the same number for every candidate
         self.rows = 0
         fresh = set(range(len(model.axes)))  # axes whose tile does not hold a signal yet
         last = max((i for i, block in enumerate(model.blocks) if issubclass(block, Coupling)), default=-1)
@@ -138,19 +127,25 @@ class Plan:
         made = compile_block(block, len(axes) if coupling else 1, driven)  # type: ignore[arg-type]
         self.program.append((made.address, self.rows, axis, axis, 0))
         places = [(a, b) for a in axes for b in axes if b != a] if coupling else [(axis, axis)]
-        layout = made.layout
-        for copy, place in enumerate(places):
-            if (columns := self.model.columns(block, *place)) is not None:
-                row = self.rows + layout.states * layout.copies + copy * layout.coefficients
-                span = float(np.ptp(self.record.drive[place[0]]))
-                known = {"dt": self.record.dt / self.model.oversample, "span": span}
-                self.parts.append(Part(block, row, layout, columns, known))
-        self.rows += layout.rows
+        branches = range(block.branches) if issubclass(block, Bank) else [0]
+        row = self.rows + made.layout.first_given
+        for axis, other in places:
+            columns = self.model.columns(block, axis, other)
+            known = {"dt": self.record.dt / self.model.oversample, "span": float(np.ptp(self.record.drive[axis]))}
+            for branch in branches:
+                for word in block.arguments():
+                    column = columns.get(word) if columns else None
+                    if column is None:
+                        self.known.append((row, (known | {"branch": branch}).get(word, 0.0)))
+                    else:
+                        self.given.append((row, column[branch] if isinstance(column, list) else column))
+                    row += 1
+        self.rows += made.layout.rows
 
     @cached_property
     def signals(self) -> Array:
         """A sample of rest, the drives over the run-in and the record, then the responses about their means, padded."""
-        from pzt_ident.kernel import UNROLL
+        from pzt_ident.kernel import PADDING
 
         record, model = self.record, self.model
         drive = np.array([self._fine(row) for row in record.drive])
@@ -160,7 +155,7 @@ class Plan:
             measured = record.response[list(model.measured)]
             response[:, drive.shape[1] - record.samples :] = measured - measured.mean(axis=1, keepdims=True)
         rows = np.vstack([drive, response])
-        return np.hstack([rows[:, :1], rows, np.repeat(rows[:, -1:], UNROLL, axis=1)])
+        return np.hstack([rows[:, :1], rows, np.repeat(rows[:, -1:], PADDING, axis=1)])
 
     def _fine(self, drive: Array) -> Array:
         """The drive at `oversample` steps a sample: band-limited where the record is periodic, else a cubic spline."""
@@ -177,21 +172,16 @@ class Plan:
         return CubicSpline(np.arange(drive.size), drive)(grid)
 
     def _scratch(self, theta: Array) -> Array:
+        """What every block's `prepare` is given, in lanes: (groups, rows * WIDTH)."""
         from pzt_ident.kernel import WIDTH, aligned
-        from pzt_ident.lanes import flat
 
         groups = -(-theta.shape[0] // WIDTH)
+        lanes = np.minimum(np.arange(groups * WIDTH), theta.shape[0] - 1).reshape(groups, 1, WIDTH)
         scratch = aligned(groups, self.rows, WIDTH)
-        lanes = np.minimum(np.arange(groups * WIDTH), theta.shape[0] - 1)
-        rows = np.ascontiguousarray(theta[lanes].T)
-        for block, row, layout, columns, known in self.parts:
-            given = [rows[columns[word]] if word in columns else known[word] for word in block.arguments()]
-            copies = layout.copies if issubclass(block, Bank) else 1
-            table = np.empty((copies, layout.coefficients, lanes.size))
-            for k, coefficient in enumerate(flat(block, block.prepare(*given))):  # type: ignore[attr-defined]
-                table[:, k] = coefficient
-            into = slice(row, row + copies * layout.coefficients)
-            scratch[:, into] = table.reshape(-1, groups, WIDTH).swapaxes(0, 1)
+        rows, columns = np.array(self.given, dtype=int).reshape(-1, 2).T
+        scratch[:, rows] = theta[lanes, columns[:, None]]
+        for row, value in self.known:
+            scratch[:, row] = value
         return scratch.reshape(groups, -1)
 
     def _run(self, theta: Array, program: list[tuple[int, ...]], output: Array) -> Array:
@@ -234,10 +224,10 @@ class Plan:
             program.append((kernel.address(kernel.errors), self.sums + 2 * i, len(self.model.axes) + i, axis, since))
         scratch = self._run(theta, program, np.empty((0, 0, 0)))
         sums = scratch.reshape(scratch.shape[0], self.rows, kernel.WIDTH)[:, self.sums :]
-        total, square = sums[:, 0::2], sums[:, 1::2]
-        left = np.maximum(square - total**2 / self.scored, 0)  # rounding leaves less than nothing of a perfect fit
-        found = np.moveaxis(left, 1, 2).reshape(-1, len(self.model.measured))
-        return found[: theta.shape[0]]
+        with np.errstate(invalid="ignore", over="ignore"):
+            left = sums[:, 1::2] - sums[:, 0::2] ** 2 / self.scored
+        left = np.maximum(left, 0)  # rounding leaves less than nothing of a perfect fit
+        return left.swapaxes(1, 2).reshape(-1, len(self.model.measured))[: theta.shape[0]]
 
     def residuals(self, theta: Array) -> Array:
         """Model minus measurement over the scored samples, each with its free offset removed."""

@@ -142,7 +142,8 @@ class Problem:
     def parameters(self, points: Array) -> Array:
         """All parameters of the model in SI units: (candidates, parameters)."""
         values = self.physical(points)
-        theta = np.tile(self.theta, (values.shape[0], 1))
+        theta = np.empty((len(values), len(self.theta)))
+        theta[:] = self.theta
         theta[:, self.free] = values * self._factor[self.free]
         return theta
 
@@ -150,18 +151,22 @@ class Problem:
         """RMSE of each measured axis over all records of that use, in SI units: (candidates, axes)."""
         theta = self.parameters(points)
         plans = self.plans[use]
-        with np.errstate(all="ignore"):
-            squares = sum(plan.squares(theta) for plan in plans) / sum(plan.scored for plan in plans)
-            failed = ~np.isfinite(squares)
-            rmse = np.sqrt(np.maximum(squares, 0))
-        self.failed += int(failed.any(axis=1).sum())
-        return np.where(failed, np.inf, rmse)
+        squares = plans[0].squares(theta)
+        for plan in plans[1:]:
+            squares = squares + plan.squares(theta)
+        rmse = np.sqrt(squares / sum(plan.scored for plan in plans))
+        failed = ~(rmse < np.inf)
+        if failed.any():
+            self.failed += int(failed.any(axis=1).sum())
+            rmse[failed] = np.inf
+        return rmse
 
     def loss(self, points: Array, use: str = "identify") -> Array:
         """(candidates,); infinite where the simulation failed, NaN where there is no record of that use."""
         if not self.plans[use]:
             return np.full(np.atleast_2d(points).shape[0], np.nan)
-        return np.sqrt(np.mean(self.by_axis(points, use) ** 2, axis=1))
+        rmse = self.by_axis(points, use)
+        return rmse[:, 0] if rmse.shape[1] == 1 else np.sqrt(np.mean(rmse**2, axis=1))
 
     def residuals(self, points: Array) -> Array:
         """(candidates, scored samples of all records and axes), scaled so that the norm is the loss; inf if failed."""

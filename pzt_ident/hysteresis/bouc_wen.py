@@ -2,8 +2,6 @@
 
 from math import inf
 
-import numpy as np
-
 from pzt_ident.block import Operator, Place, expm1, log1p
 from pzt_ident.parameter import Parameter
 from pzt_ident.registry import blocks
@@ -56,5 +54,5 @@ class BoucWen(Operator):
 
 def regime(rate):
     """Rate and its inverse; a rate of zero is taken as one too small to matter."""
-    rate = np.where(np.abs(rate) < 1e-200, 1e-200, rate)
+    rate = rate if abs(rate) > 1e-200 else 1e-200
     return rate, 1 / rate

@@ -1,7 +1,5 @@
 """Prandtl-Ishlinskii hysteresis: weighted plays."""
 
-import numpy as np
-
 from pzt_ident.block import Bank, Place
 from pzt_ident.parameter import Parameter
 from pzt_ident.registry import blocks
@@ -23,8 +21,8 @@ class PrandtlIshlinskii(Bank):
     weight = Parameter("response/drive", (-0.5, 1.5), "Weight of the i-th play.", count=PLAYS)
     reach = Parameter("drive", (0.05, 1), "Half-width of the widest play.", value=0.5)
 
-    def prepare(gain, weight, reach):
-        return gain, weight, reach * np.arange(1, PLAYS + 1)[:, None] / PLAYS
+    def prepare(gain, weight, reach, branch):
+        return gain, weight, reach * (branch + 1) / PLAYS
 
     def start(u, gain, weight, half):
         return (max(u - half, min(u + half, 0.0)),)

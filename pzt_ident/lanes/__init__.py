@@ -16,22 +16,30 @@ from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from pzt_ident.block import Bank, Block, Coupling, Operator
 
 TEMPLATES = Path(__file__).parent
-FUNCTIONS = ("start", "step", "travel", "near", "exact", "output")
+FUNCTIONS = ("prepare", "start", "step", "travel", "near", "exact", "output")
 
 
 class Layout(NamedTuple):
-    """Rows of WIDTH numbers in a block's scratch: states of all branches, then coefficients of all, then work."""
+    """Rows of WIDTH numbers in a block's scratch: states of all copies (branches, or pairs of axes), coefficients of
+    all, what `prepare` is given of all, then work. An operator's coefficients are shared, along, against."""
 
     states: int
     coefficients: int
+    given: int
     copies: int
-    rows: int
+    work: int
     shared: int
+
+    @property
+    def first_given(self) -> int:
+        return self.copies * (self.states + self.coefficients)
+
+    @property
+    def rows(self) -> int:
+        return self.copies * (self.states + self.coefficients + self.given) + self.work
 
 
 class Compiled(NamedTuple):
@@ -64,24 +72,15 @@ def template_of(block: type[Block], driven: bool) -> str:
 
 def layout_of(block: type[Block], axes: int, tile: int) -> Layout:
     """Counted by asking the block itself, with parameters in the middle of their bounds."""
-    words = {p.name: p for p in block.parameters().values()}
-    shape = {word: (1,) if p.count is None else (p.count, 1) for word, p in words.items()}
-    middle = {word: np.full(shape[word], sum(p.bounds) / 2) for word, p in words.items()}
-    known = middle | {"dt": 1e-3, "span": 1.0}
-    with np.errstate(all="ignore"):
-        prepared = block.prepare(*(known[word] for word in block.arguments()))  # type: ignore[attr-defined]
-    shared = len(prepared[0]) if issubclass(block, Operator) else len(prepared)
-    count = len(flat(block, prepared))
-    example = [1.0] * (0 if issubclass(block, Operator) else count)
-    copies = block.branches if issubclass(block, Bank) else axes * (axes - 1) if issubclass(block, Coupling) else 1
-    states = 0 if issubclass(block, Coupling) else len(block.start(0.0, *example))  # type: ignore[attr-defined]
-    work = 6 if issubclass(block, Operator) else tile if issubclass(block, Bank) else 0
-    return Layout(states, count, copies, copies * (states + count) + work, shared)
-
-
-def flat(block: type[Block], prepared: tuple[Any, ...]) -> tuple[Any, ...]:
-    """An operator's coefficients in one row: shared, along, against."""
-    return tuple(c for part in prepared for c in part) if issubclass(block, Operator) else prepared
+    known = {p.name: sum(p.bounds) / 2 for p in block.parameters().values()} | {"dt": 1e-3, "span": 1.0, "branch": 0}
+    prepared = block.prepare(*(known[word] for word in block.arguments()))  # type: ignore[attr-defined]
+    operator, coupling = issubclass(block, Operator), issubclass(block, Coupling)
+    count = sum(len(part) for part in prepared) if operator else len(prepared)
+    example = () if operator else prepared
+    states = 0 if coupling else len(block.start(0.0, *example))  # type: ignore[attr-defined]
+    copies = block.branches if issubclass(block, Bank) else axes * (axes - 1) if coupling else 1
+    work = 6 if operator else tile if issubclass(block, Bank) else 0
+    return Layout(states, count, len(block.arguments()), copies, work, len(prepared[0]) if operator else 0)
 
 
 def render(text: str, layout: Layout, axes: int, kernel: ModuleType) -> str:
@@ -91,6 +90,8 @@ def render(text: str, layout: Layout, axes: int, kernel: ModuleType) -> str:
     return made.render(
         S=[f"s{i}" for i in range(layout.states)],
         K=[f"k{i}" for i in range(layout.coefficients)],
+        G=layout.given,
+        given=layout.first_given,
         shared=layout.shared,
         copies=layout.copies,
         axes=axes,

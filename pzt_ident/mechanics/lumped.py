@@ -1,6 +1,6 @@
 """One mass, damper and spring."""
 
-import numpy as np
+from math import cos, exp, sin, sqrt
 
 from pzt_ident.block import Block, Place
 from pzt_ident.parameter import Parameter
@@ -21,8 +21,8 @@ class Lumped(Block):
     stiffness = Parameter("N/m", (1e5, 1e9), "Stiffness of flexure and actuator together.", scale="log")
 
     def prepare(mass, damping, stiffness, dt):
-        omega = np.sqrt(stiffness / mass)
-        zeta = damping / (2 * np.sqrt(stiffness * mass))
+        omega = sqrt(stiffness / mass)
+        zeta = damping / (2 * sqrt(stiffness * mass))
         angle = omega * dt
         cosine, sine = rotation(zeta, angle)
         r11, r12 = cosine + zeta * sine, sine
@@ -41,9 +41,12 @@ class Lumped(Block):
 
 def rotation(zeta, angle):
     """exp(-zeta a) cos(s a) and exp(-zeta a) sin(s a) / s with s = sqrt(1 - zeta^2), real for every zeta >= 0."""
-    s = np.sqrt((1 - zeta**2).astype(complex))
-    phase = 1j * s * angle
-    up, down = np.exp(phase - zeta * angle), np.exp(-phase - zeta * angle)
-    small = np.abs(s * angle) < 1e-6
-    sine = np.where(small, angle * np.exp(-zeta * angle), ((up - down) / (2j * np.where(small, 1, s))).real)
-    return ((up + down) / 2).real, sine
+    square = (1 - zeta) * (1 + zeta) * angle**2
+    x, decay = sqrt(abs(square)), exp(-zeta * angle)
+    if x < 1e-2:
+        series = 1 - square / 6 * (1 - square / 20 * (1 - square / 42))
+        return decay * (1 - square / 2 * (1 - square / 12 * (1 - square / 30))), decay * angle * series
+    if zeta < 1:
+        return decay * cos(x), decay * angle * sin(x) / x
+    slow, fast = exp(-(angle**2) / (x + zeta * angle)), exp(-x - zeta * angle)
+    return (slow + fast) / 2, angle * (slow - fast) / (2 * x)

@@ -163,7 +163,7 @@ def test_operator_is_one_map_of_the_distance(word, seed):
     """`exact` in one step or two, `travel` on one side of zero, `near` around it: all the same."""
     block, rng = blocks[word], np.random.default_rng(seed)
     theta = candidates(model(word), SPAN, 1, seed)[0]
-    _, along, against = [tuple(np.asarray(c).item() for c in part) for part in block.prepare(*theta[:, None])]
+    _, along, against = block.prepare(*theta.tolist())
     a, b = rng.uniform(0, 20, 2)
     q = rng.uniform(-1, 1) / max(abs(along[0]), abs(against[0]))
     whole = block.exact(q, a + b, along, against)

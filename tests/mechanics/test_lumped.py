@@ -19,8 +19,7 @@ def displacement(force, ratio, dt, scale=1.0):
 
 
 def coefficients(ratio, dt=1e-3):
-    found = Lumped.prepare(np.array([MASS]), np.array([ratio * CRITICAL]), np.array([STIFFNESS]), dt)
-    return [value.item() for value in found]
+    return Lumped.prepare(MASS, ratio * CRITICAL, STIFFNESS, dt)
 
 
 def test_undamped_far_beyond_nyquist():
@@ -35,7 +34,9 @@ def test_undamped_far_beyond_nyquist():
 def test_every_damping_is_exact_between_samples(ratio, dt):
     force = np.random.default_rng(1).normal(size=300).cumsum()
     expected = lumped_twin.lumped(force, dt, MASS, ratio * CRITICAL, STIFFNESS)
-    np.testing.assert_allclose(displacement(force, ratio, dt), expected, rtol=0, atol=1e-12 * np.ptp(force))
+    lag = 2 * ratio / (np.sqrt(STIFFNESS / MASS) * dt)  # in samples; it multiplies the rounding of R
+    atol = (1e-12 + 2 * np.finfo(float).eps * lag) * np.ptp(force)
+    np.testing.assert_allclose(displacement(force, ratio, dt), expected, rtol=0, atol=atol)
 
 
 @pytest.mark.parametrize("ratio", [0, 0.02, 0.5, 1, 4])

@@ -21,7 +21,7 @@ def simulate(model, record, theta):
                 known = {"dt": record.dt / times, "span": np.ptp(record.drive[axis])}
                 if values := parameters(model, block, axis, other, theta):
                     inputs = (signals[axis], before[other])
-                    signals[axis] = act(block, prepare(block, values | known), *inputs)
+                    signals[axis] = act(block, values | known, *inputs)
     since = record.run_in * record.samples * times
     return np.array([signals[axis][since::times] for axis in model.measured])
 
@@ -48,20 +48,21 @@ def parameters(model, block, axis, other, theta):
     return found or {"": None}
 
 
-def prepare(block, values):
-    """The author's `prepare` for a batch of one; numbers, or one number a branch."""
-    given = [
-        np.reshape(values[word], (-1, 1) if len(np.atleast_1d(values[word])) > 1 else -1) for word in block.arguments()
-    ]
-    return block.prepare(*given)
+def prepare(block, values, branch=0):
+    """The author's `prepare`, of one branch."""
+    given = values | {"branch": branch}
+    own = {
+        word: value[branch] if isinstance(value, list) and len(value) > 1 else value for word, value in given.items()
+    }
+    return block.prepare(*(own[word][0] if isinstance(own[word], list) else own[word] for word in block.arguments()))
 
 
-def act(block, coefficients, signal, other):
+def act(block, values, signal, other):
     if issubclass(block, Operator):
-        return operator(block, coefficients, signal)
+        return operator(block, prepare(block, values), signal)
     if issubclass(block, Bank):
-        return bank(block, coefficients, signal)
-    numbers = [np.asarray(c).item() for c in coefficients]
+        return bank(block, [prepare(block, values, branch) for branch in range(block.branches)], signal)
+    numbers = prepare(block, values)
     if issubclass(block, Coupling):
         return np.array([block.step(y, f, *numbers) for y, f in zip(signal, other, strict=True)])
     return plain(block, numbers, signal)
@@ -75,10 +76,7 @@ def plain(block, numbers, signal):
     return np.array(result)
 
 
-def bank(block, coefficients, signal):
-    each = [
-        [np.broadcast_to(np.ravel(c), block.branches)[i].item() for c in coefficients] for i in range(block.branches)
-    ]
+def bank(block, each, signal):
     states, result = [block.start(signal[0], *numbers) for numbers in each], []
     for u in signal:
         total = 0.0
@@ -91,7 +89,7 @@ def bank(block, coefficients, signal):
 
 def operator(block, coefficients, signal):
     """Only `exact`, in every sample."""
-    shared, along, against = [tuple(np.asarray(c).item() for c in part) for part in coefficients]
+    shared, along, against = coefficients
     (h,), before, result = block.start(signal[0]), signal[0], []
     for u in signal:
         sign = 1.0 if u >= before else -1.0
