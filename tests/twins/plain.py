@@ -18,7 +18,7 @@ def simulate(model, record, theta):
         for axis in range(len(signals)):
             others = [b for b in range(len(signals)) if b != axis] if issubclass(block, Coupling) else [axis]
             for other in others:
-                known = {"dt": record.dt / times, "span": np.ptp(record.drive[axis])}
+                known = {"dt": [record.dt / times], "span": [np.ptp(record.drive[axis])]}
                 if values := parameters(model, block, axis, other, theta):
                     inputs = (signals[axis], before[other])
                     signals[axis] = act(block, values | known, *inputs)
@@ -45,16 +45,13 @@ def parameters(model, block, axis, other, theta):
     for slot, value in zip(model.slots, theta, strict=True):
         if (slot.block, slot.axis, slot.other) == (block, axis, other):
             found.setdefault(slot.parameter.name, []).append(value)
-    return found or {"": None}
+    return found or {"": [None]}
 
 
 def prepare(block, values, branch=0):
     """The author's `prepare`, of one branch."""
-    given = values | {"branch": branch}
-    own = {
-        word: value[branch] if isinstance(value, list) and len(value) > 1 else value for word, value in given.items()
-    }
-    return block.prepare(*(own[word][0] if isinstance(own[word], list) else own[word] for word in block.arguments()))
+    own = {word: each[branch] if len(each) > 1 else each[0] for word, each in values.items()} | {"branch": branch}
+    return block.prepare(*(own[word] for word in block.arguments()))
 
 
 def act(block, values, signal, other):
