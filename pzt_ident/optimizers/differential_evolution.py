@@ -1,4 +1,4 @@
-"""Differential evolution that adapts itself."""
+"""Differential evolution that adapts its own settings (L-SHADE)."""
 
 from __future__ import annotations
 
@@ -13,70 +13,84 @@ from pzt_ident.search import Array, Generational, Search, setting
 @optimizers.register
 @dataclass(frozen=True)
 class DifferentialEvolution(Generational):
-    """L-SHADE: v = x + F (p - x) + F (r1 - r2), p one of the best, r2 also from the archive; binomial crossover.
+    """Differential evolution, current-to-pbest/1/bin: v = x + F (p - x) + F (r1 - r2), F and CR learned (L-SHADE).
 
-    F and the crossover rate are drawn about values that made losses fall before; the population shrinks linearly to
-    `smallest` over the budget.
+    p is one of the best `greed` share, r2 may come from the archive of beaten parents, and the population falls
+    linearly to 4 over the budget.
     """
 
     source = "Tanabe & Fukunaga (2014), Proc. IEEE CEC, 1658"
 
-    population: int = setting(70, "1", (4, 100_000), "Candidates in the first generation.")
-    generations: int = setting(250, "1", (1, 10_000_000), "The budget is this many times the first population.")
-    smallest: int = setting(4, "1", (4, 100_000), "Candidates in the last generation.")
-    elite: float = setting(0.11, "1", (0, 1), "Share of the population that is one of the best.")
-    memory: int = setting(6, "1", (1, 1000), "Length of the memory of what worked.")
+    population: int = setting(35, "1", (4, 100_000), "Candidates in the first generation.")
+    generations: int = setting(500, "1", (1, 10_000_000), "The budget is this many times the population.")
+    memory: int = setting(6, "1", (1, 1000), "Remembered pairs of F and CR that worked.")
+    archive: float = setting(2.6, "1", (0, 10), "Size of the archive over the population.")
+    greed: float = setting(0.11, "1", (0, 1), "Share of the population that counts as best.")
 
     def search(self, dimensions: int, rng: np.random.Generator) -> Search:
         points = rng.random((self.population, dimensions))
-        losses = (yield points.copy()).copy()
-        archive = np.empty((0, dimensions))
-        scale, rate = np.full(self.memory, 0.5), np.full(self.memory, 0.5)
-        spent, slot = self.population, 0
+        losses = yield points.copy()
+        archive = points[:0]
+        scale, cross, slot, used = np.full(self.memory, 0.5), np.full(self.memory, 0.5), 0, len(points)
         while True:
-            count = len(points)
-            chosen = rng.integers(self.memory, size=count)
-            f = cauchy(scale[chosen], rng)
-            cr = np.clip(rng.normal(rate[chosen], 0.1), 0, 1)
-            trials = self.trials(points, losses, archive, f, cr, rng)
-            found = yield trials
-            trials, spent = trials[: len(found)], spent + len(found)
-            better = np.flatnonzero(found < losses[: len(found)])
-            if better.size:
-                gain = np.minimum(losses[better] - found[better], 1e300)
-                share = gain / gain.sum() if gain.sum() > 0 else np.full(better.size, 1 / better.size)
-                scale[slot] = (share * f[better] ** 2).sum() / (share * f[better]).sum()
-                rate[slot] = (share * cr[better]).sum()
-                slot = (slot + 1) % self.memory
-                archive = np.vstack([archive, points[better]])
-                points[better], losses[better] = trials[better], found[better]
-            keep = max(
-                self.smallest, round(self.population - (self.population - self.smallest) * spent / self.evaluations)
-            )
-            order = np.argsort(losses, kind="stable")[: min(keep, count)]
+            order = np.argsort(losses, kind="stable")[: self.survivors(used)]
             points, losses = points[order], losses[order]
-            archive = archive[rng.permutation(len(archive))[: int(2.6 * len(points))]]
+            archive = rng.permutation(archive)[: round(self.archive * len(points))]
+            remembered = rng.integers(self.memory, size=len(points))
+            f, cr = draw_scale(scale[remembered], rng), draw_cross(cross[remembered], rng)
+            trial = np.where(crossed(cr, dimensions, rng), self.mutant(points, archive, f, rng), points)
+            told = yield trial.copy()
+            used += len(trial)
+            better = told < losses
+            if better.any():
+                weight = gains(losses[better], told[better])
+                scale[slot], cross[slot] = lehmer(f[better], weight), lehmer(cr[better], weight)
+                slot = (slot + 1) % self.memory
+                archive = np.concatenate([archive, points[better]])
+            level = told <= losses
+            points[level], losses[level] = trial[level], told[level]
 
-    def trials(
-        self, points: Array, losses: Array, archive: Array, f: Array, cr: Array, rng: np.random.Generator
-    ) -> Array:
-        """current-to-pbest/1/bin with archive; a coordinate out of the cube goes half the way to the bound."""
-        count, dimensions = points.shape
-        best = np.argsort(losses, kind="stable")[: max(2, round(self.elite * count))]
-        others = np.vstack([points, archive])
-        one = (np.arange(count) + rng.integers(1, count, size=count)) % count
-        two = rng.integers(len(others), size=count)
-        pull = points[rng.choice(best, size=count)] - points
-        mutants = points + f[:, None] * (pull + points[one] - others[two])
-        mutants = np.where(mutants < 0, points / 2, np.where(mutants > 1, (points + 1) / 2, mutants))
-        crossed = rng.random((count, dimensions)) < cr[:, None]
-        crossed[np.arange(count), rng.integers(dimensions, size=count)] = True
-        return np.where(crossed, mutants, points)
+    def survivors(self, used: int) -> int:
+        return max(4, round(self.population + (4 - self.population) * used / self.evaluations))
+
+    def mutant(self, points: Array, archive: Array, f: Array, rng: np.random.Generator) -> Array:
+        """x + F (p - x) + F (r1 - r2) of points sorted best first, halfway to a bound that it would cross."""
+        count, rows = len(points), np.arange(len(points))
+        best = points[rng.integers(max(2, round(self.greed * count)), size=count)]
+        first = (rows + rng.integers(1, count, size=count)) % count
+        pool = np.concatenate([points, archive])
+        second = rng.integers(len(pool) - 2, size=count)
+        for taken in np.sort([rows, first], axis=0):
+            second += second >= taken
+        raw = points + f[:, None] * (best - points + points[first] - pool[second])
+        return np.where(raw < 0, points / 2, np.where(raw > 1, (1 + points) / 2, raw))
 
 
-def cauchy(centre: Array, rng: np.random.Generator) -> Array:
-    """Cauchy about the centre, drawn again where not positive, at most 1."""
-    drawn = centre + 0.1 * rng.standard_cauchy(centre.size)
-    while (wrong := drawn <= 0).any():
-        drawn[wrong] = centre[wrong] + 0.1 * rng.standard_cauchy(int(wrong.sum()))
-    return np.minimum(drawn, 1.0)
+def draw_scale(mean: Array, rng: np.random.Generator) -> Array:
+    """F from Cauchy(mean, 0.1), again while not positive, at most 1."""
+    f = np.zeros_like(mean)
+    while (low := f <= 0).any():
+        f[low] = mean[low] + 0.1 * rng.standard_cauchy(int(low.sum()))
+    return np.minimum(f, 1)
+
+
+def draw_cross(mean: Array, rng: np.random.Generator) -> Array:
+    """CR from N(mean, 0.1) in [0, 1]."""
+    return np.clip(rng.normal(mean, 0.1), 0, 1)
+
+
+def crossed(cr: Array, dimensions: int, rng: np.random.Generator) -> np.ndarray:
+    """Coordinates to take from the mutant, one at least: (M,) -> (M, P)."""
+    always = rng.integers(dimensions, size=len(cr))
+    return (rng.random((len(cr), dimensions)) < cr[:, None]) | (np.arange(dimensions) == always[:, None])
+
+
+def gains(before: Array, after: Array) -> Array:
+    """Weights of what worked, by how much it gained; from a failed parent all alike."""
+    fallen = before - after
+    return np.where(np.isfinite(fallen), fallen, np.max(fallen, where=np.isfinite(fallen), initial=1e-300))
+
+
+def lehmer(values: Array, weight: Array) -> float:
+    """Weighted Lehmer mean."""
+    return float(weight @ values**2) / max(float(weight @ values), 1e-300)
