@@ -30,7 +30,7 @@ PADDING = 4  # samples behind the last one, which a loop over several at once ma
 OPTIONS: dict[str, Any] = {"fastmath": {"contract"}, "error_model": "numpy", "cache": True}
 
 pointer = types.CPointer(types.float64)
-SIGNATURE = types.void(types.intp, types.intp, types.intp, pointer, pointer, pointer)
+SIGNATURE = types.void(types.intp, types.intp, types.intp, pointer, pointer, pointer, pointer)
 compiled = cfunc(SIGNATURE, **OPTIONS)
 
 
@@ -103,33 +103,32 @@ def _log1p(x):
 
 
 @intrinsic
-def call(context: Any, address: Any, samples: Any, first: Any, fresh: Any, drive: Any, scratch: Any, tile: Any) -> Any:
-    """Call the C function at an address; the last three are addresses of float64."""
+def call(
+    context: Any, function: Any, samples: Any, first: Any, fresh: Any, drive: Any, runs: Any, scratch: Any, tile: Any
+) -> Any:
+    """Call the C function at an address; the last four are addresses of float64."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         whole, real = ir.IntType(64), ir.DoubleType().as_pointer()
-        kind = ir.FunctionType(ir.VoidType(), [whole] * 3 + [real] * 3)
+        kind = ir.FunctionType(ir.VoidType(), [whole] * 3 + [real] * 4)
         function = builder.inttoptr(args[0], kind.as_pointer())
         builder.call(function, [*args[1:4], *(builder.inttoptr(a, real) for a in args[4:])])
         return context.get_dummy_value()
 
-    return types.void(*[types.int64] * 7), generate
+    return types.void(*[types.int64] * 8), generate
 
 
 @compiled
-def fill(samples, first, fresh, drive, scratch, tile):
-    """The drive itself, the same in every lane; four samples a loop, which LLVM would else unroll and not vectorise."""
-    for i in range(0, samples, 4):
-        u0, u1, u2, u3 = drive[first + i], drive[first + i + 1], drive[first + i + 2], drive[first + i + 3]
+def fill(samples, first, fresh, drive, runs, scratch, tile):
+    """The drive itself, the same in every lane."""
+    for i in range(samples):
+        u = drive[first + i]
         for j in range(WIDTH):
-            tile[i * WIDTH + j] = u0
-            tile[(i + 1) * WIDTH + j] = u1
-            tile[(i + 2) * WIDTH + j] = u2
-            tile[(i + 3) * WIDTH + j] = u3
+            tile[i * WIDTH + j] = u
 
 
 @compiled
-def errors(samples, first, fresh, response, sums, tile):
+def errors(samples, first, fresh, response, runs, sums, tile):
     """Sum of e and e^2, e = y - response."""
     whole = samples - samples % 2
     for i in range(0, whole, 2):
@@ -146,14 +145,17 @@ def errors(samples, first, fresh, response, sums, tile):
 
 
 @njit(nogil=True, cache=True)
-def run(program, signals, scratch, tiles, samples, since, stride, output, take):
+def run(program, signals, scratch, axes, samples, since, stride, output, take):
     """Run every group through every tile.
 
     program: (steps, 5) of address, scratch row, row of signals, tile, from which sample on.
-    signals: (rows, 1 + samples + PADDING), a sample of rest before the record. tiles: (axes, TILE * WIDTH), aligned.
+    signals: (rows, 1 + samples + PADDING), a sample of rest before the record; the row behind a drive's holds its runs.
     scratch: (groups, rows * WIDTH). output: (groups * WIDTH, axes, samples after `since` / stride) or empty, filled
     from the tiles numbered in `take`, every `stride`-th sample.
     """
+    room = np.zeros(axes * TILE * WIDTH + 8)
+    start = (-room.ctypes.data // 8) % 8  # on a cache line
+    tiles = room[start : start + axes * TILE * WIDTH].reshape(axes, TILE * WIDTH)
     for group in range(scratch.shape[0]):
         for first in range(0, samples, TILE):
             count = min(TILE, samples - first)
@@ -166,6 +168,7 @@ def run(program, signals, scratch, tiles, samples, since, stride, output, take):
                         first + skip,
                         1 if first == 0 else 0,
                         signals[program[step, 2]].ctypes.data + 8,
+                        signals[min(program[step, 2] + 1, signals.shape[0] - 1)].ctypes.data + 8,
                         scratch[group].ctypes.data + 8 * WIDTH * program[step, 1],
                         tiles[program[step, 3]].ctypes.data + 8 * WIDTH * skip,
                     )
@@ -178,6 +181,28 @@ def run(program, signals, scratch, tiles, samples, since, stride, output, take):
                             output[group * WIDTH + j, axis, (i - since) // stride] = tiles[
                                 take[axis], (i - first) * WIDTH + j
                             ]
+
+
+def runs_of(drive: np.ndarray) -> np.ndarray:
+    """For each sample the end (excluded) of the monotone run of the drive that it stands in: positive where all steps
+    from there to the end are the same to 1e-11, else negative. drive: (samples,), the first one at rest."""
+    move = np.diff(drive, prepend=drive[:1])
+    number = np.arange(drive.size)
+    direction = np.where(move >= 0, 1, -1)
+    turn = np.append(direction[1:] != direction[:-1], True)
+    other = np.append(np.abs(move[1:] - move[:-1]) > 1e-11 * np.abs(move[:-1]), True) | turn
+    same = next_true(other)
+    long = same - number >= 2 * UNROLL
+    begins = (
+        np.append(long[1:] & ~long[:-1], True) | turn
+    )  # where a stretch of varying steps gives way to a constant one
+    return np.where(long, same, -next_true(begins)).astype(float)
+
+
+def next_true(flags: np.ndarray) -> np.ndarray:
+    """One past the first true at or behind each place; the last one is true."""
+    ends = np.flatnonzero(flags) + 1
+    return ends[np.searchsorted(ends, np.arange(flags.size), side="right")]
 
 
 def address(function: Any) -> int:

@@ -110,13 +110,14 @@ class Plan:
                     self._add(block, axis, driven)
                     fresh.discard(axis)
         self._fill(fresh & set(model.measured))
+        self._measured = np.array(model.measured, dtype=np.int64)
         self.sums = self.rows
         self.rows += 2 * len(model.measured)
 
     def _fill(self, axes: set[int]) -> None:
         from pzt_ident.kernel import address, fill
 
-        self.program += [(address(fill), 0, axis, axis, 0) for axis in sorted(axes)]
+        self.program += [(address(fill), 0, 2 * axis, axis, 0) for axis in sorted(axes)]
         axes.clear()
 
     def _add(self, block: type[Block], axis: int, driven: bool) -> None:
@@ -125,7 +126,7 @@ class Plan:
         axes = range(len(self.model.axes))
         coupling = issubclass(block, Coupling)
         made = compile_block(block, len(axes) if coupling else 1, driven)  # type: ignore[arg-type]
-        self.program.append((made.address, self.rows, axis, axis, 0))
+        self.program.append((made.address, self.rows, 2 * axis, axis, 0))
         places = [(a, b) for a in axes for b in axes if b != a] if coupling else [(axis, axis)]
         branches = range(block.branches) if issubclass(block, Bank) else [0]
         row = self.rows + made.layout.first_given
@@ -144,18 +145,22 @@ class Plan:
 
     @cached_property
     def signals(self) -> Array:
-        """A sample of rest, the drives over the run-in and the record, then the responses about their means, padded."""
-        from pzt_ident.kernel import PADDING
+        """Each drive over the run-in and the record and behind it its runs, then the responses about their means; a
+        sample of rest ahead and padding behind."""
+        from pzt_ident.kernel import PADDING, runs_of
 
         record, model = self.record, self.model
-        drive = np.array([self._fine(row) for row in record.drive])
-        drive = np.tile(drive, record.run_in + 1)
-        response = np.zeros((len(model.measured), drive.shape[1]))
-        if model.oversample == 1:
-            measured = record.response[list(model.measured)]
-            response[:, drive.shape[1] - record.samples :] = measured - measured.mean(axis=1, keepdims=True)
-        rows = np.vstack([drive, response])
-        return np.hstack([rows[:, :1], rows, np.repeat(rows[:, -1:], PADDING, axis=1)])
+        rows = []
+        for row in record.drive:
+            drive = np.tile(self._fine(row), record.run_in + 1)
+            rows += [drive, runs_of(drive)]
+        for axis in model.measured:
+            response = np.zeros(rows[0].size)
+            if model.oversample == 1:
+                response[-record.samples :] = record.response[axis] - record.response[axis].mean()
+            rows.append(response)
+        table = np.array(rows)
+        return np.hstack([table[:, :1], table, np.repeat(table[:, -1:], PADDING, axis=1)])
 
     def _fine(self, drive: Array) -> Array:
         """The drive at `oversample` steps a sample: band-limited where the record is periodic, else a cubic spline."""
@@ -178,22 +183,36 @@ class Plan:
         groups = -(-theta.shape[0] // WIDTH)
         lanes = np.minimum(np.arange(groups * WIDTH), theta.shape[0] - 1).reshape(groups, 1, WIDTH)
         scratch = aligned(groups, self.rows, WIDTH)
-        rows, columns = np.array(self.given, dtype=int).reshape(-1, 2).T
-        scratch[:, rows] = theta[lanes, columns[:, None]]
-        for row, value in self.known:
-            scratch[:, row] = value
+        rows, columns, known, values = self._sources
+        scratch[:, rows] = theta[lanes, columns]
+        scratch[:, known] = values
         return scratch.reshape(groups, -1)
 
-    def _run(self, theta: Array, program: list[tuple[int, ...]], output: Array) -> Array:
-        from pzt_ident.kernel import TILE, WIDTH, aligned, run
+    @cached_property
+    def _sources(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], Array]:
+        """Rows that come from columns of theta, and rows that hold the same number for every candidate."""
+        rows, columns = np.array(self.given, dtype=np.int64).reshape(-1, 2).T
+        known, values = np.array(self.known, dtype=float).reshape(-1, 2).T
+        return rows, columns[:, None], known.astype(np.int64), values[:, None]
+
+    @cached_property
+    def _scoring(self) -> NDArray[np.int64]:
+        """The program with the sums of errors behind it."""
+        from pzt_ident.kernel import address, errors
+
+        since = self.record.run_in * self.record.samples + self.record.settle
+        behind = 2 * len(self.model.axes)
+        sums = [(address(errors), self.sums + 2 * i, behind + i, a, since) for i, a in enumerate(self.model.measured)]
+        return np.array(self.program + sums, dtype=np.int64)
+
+    def _run(self, theta: Array, program: NDArray[np.int64], output: Array) -> Array:
+        from pzt_ident.kernel import run
 
         scratch = self._scratch(theta)
-        tiles = aligned(len(self.model.axes), TILE * WIDTH)
-        steps = np.array(program, dtype=np.int64).reshape(-1, 5)
-        samples = (self.record.run_in + 1) * self.record.samples * self.model.oversample
-        since = self.record.run_in * self.record.samples * self.model.oversample
-        take = np.array(self.model.measured, dtype=np.int64)
-        run(steps, self.signals, scratch, tiles, samples, since, self.model.oversample, output, take)
+        times = self.model.oversample
+        since = self.record.run_in * self.record.samples * times
+        samples = since + self.record.samples * times
+        run(program, self.signals, scratch, len(self.model.axes), samples, since, times, output, self._measured)
         return scratch
 
     def simulate(self, theta: Array) -> Array:
@@ -203,7 +222,7 @@ class Plan:
         theta = np.atleast_2d(theta)
         lanes = -(-theta.shape[0] // WIDTH) * WIDTH
         output = np.empty((lanes, len(self.model.measured), self.record.samples))
-        self._run(theta, self.program, output)
+        self._run(theta, np.array(self.program, dtype=np.int64).reshape(-1, 5), output)
         return output[: theta.shape[0]]
 
     @property
@@ -218,11 +237,7 @@ class Plan:
         if self.model.oversample > 1:
             error = self.residuals(theta)
             return np.einsum("mas,mas->ma", error, error)
-        since = self.record.run_in * self.record.samples + self.record.settle
-        program = list(self.program)
-        for i, axis in enumerate(self.model.measured):
-            program.append((kernel.address(kernel.errors), self.sums + 2 * i, len(self.model.axes) + i, axis, since))
-        scratch = self._run(theta, program, np.empty((0, 0, 0)))
+        scratch = self._run(theta, self._scoring, np.empty((0, 0, 0)))
         sums = scratch.reshape(scratch.shape[0], self.rows, kernel.WIDTH)[:, self.sums :]
         with np.errstate(invalid="ignore", over="ignore"):
             left = sums[:, 1::2] - sums[:, 0::2] ** 2 / self.scored

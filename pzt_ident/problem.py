@@ -79,6 +79,7 @@ class Problem:
         self.lower, self.upper = np.array(lower), np.array(upper)
         scales = np.array([self.model.slots[column].parameter.scale == "log" for column in free], dtype=bool)
         self.log = scales & (self.lower > 0)
+        self._any_log = bool(self.log.any())
 
     def _unit(self, slot: Slot, record: Record) -> str:
         drive = record.drive_units[slot.axis]
@@ -126,7 +127,7 @@ class Problem:
         """Free parameters in the user's units: (candidates, free)."""
         points = np.atleast_2d(points)
         linear = self.lower + points * (self.upper - self.lower)
-        if not self.log.any():
+        if not self._any_log:
             return linear
         base = np.where(self.log, self.lower, 1.0)
         return np.where(self.log, base * (np.where(self.log, self.upper, 1.0) / base) ** points, linear)

@@ -79,7 +79,7 @@ def layout_of(block: type[Block], axes: int, tile: int) -> Layout:
     example = () if operator else prepared
     states = 0 if coupling else len(block.start(0.0, *example))  # type: ignore[attr-defined]
     copies = block.branches if issubclass(block, Bank) else axes * (axes - 1) if coupling else 1
-    work = 6 if operator else tile if issubclass(block, Bank) else 0
+    work = 7 if operator else tile if issubclass(block, Bank) else 0
     return Layout(states, count, len(block.arguments()), copies, work, len(prepared[0]) if operator else 0)
 
 
