@@ -1,0 +1,47 @@
+"""Every job that ships reads its data and searches, here with a tiny budget."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from pzt_ident.job import Job, Stopping, load_job
+from pzt_ident.run import read, tasks_of
+from pzt_ident.worker import read_result, search
+
+ROOT = Path(__file__).parents[1]
+CONFIGS = sorted(ROOT.glob("configs/*.yaml"))
+EXPERIMENTS = sorted(ROOT.glob("experiments/*/*.yaml"))
+TINY = {"stop": Stopping(evaluations=48), "repeats": 1, "polish": False}
+
+
+def tiny(path: Path) -> Job:
+    if "${PZT_IDENT_DATA}" in path.read_text(encoding="utf-8") and "PZT_IDENT_DATA" not in os.environ:
+        pytest.skip("PZT_IDENT_DATA is not set: the measurement of this job is not there")
+    return load_job(path).model_copy(update=TINY)
+
+
+def check(job: Job, folder: Path) -> None:
+    records = read(job)
+    assert {record.use for record in records} <= {"identify", "validate"}
+    for task in tasks_of(job, records, folder):
+        search(task, job, records, lambda event: None)
+        found = read_result(task)
+        assert found["evaluations"] <= 48
+        assert 0 < found["rmse"]["identify"] < float("inf")
+
+
+@pytest.mark.parametrize("path", CONFIGS, ids=lambda path: path.stem)
+def test_a_shipped_job_runs_with_every_optimizer(path, tmp_path):
+    check(tiny(path), tmp_path)
+
+
+@pytest.mark.parametrize("path", EXPERIMENTS, ids=lambda path: f"{path.parent.name}-{path.stem}")
+def test_the_job_of_an_experiment_runs(path, tmp_path):
+    job = tiny(path)
+    check(job.model_copy(update={"optimizers": job.optimizers[:1]}), tmp_path)
+
+
+def test_there_are_jobs_to_test():
+    assert {path.stem for path in CONFIGS} >= {"x_axis", "lin_lin_x", "lin_lin_y", "picma", "bender"}
+    assert EXPERIMENTS
