@@ -174,10 +174,17 @@ def init(folder: Path, as_json: bool, quiet: bool) -> None:
 @click.argument("folders", metavar="DIR...", nargs=-1, required=True, type=EXISTING)
 @output
 def report(folders: tuple[Path, ...], as_json: bool, quiet: bool) -> None:
-    """Draw the report of each finished run's folder again."""
+    """Draw the report of each finished run's folder again, and every figure as PDF and SVG at 88 and 180 mm."""
+    from pzt_ident.report.figures import write_paper_figures
     from pzt_ident.report.page import write_report
+    from pzt_ident.report.results import read_results
+    from pzt_ident.terminal import tracked
 
-    pages = [str(write_report(folder)) for folder in folders]
+    pages = []
+    for folder in folders:
+        pages.append(str(write_report(folder)))
+        for _ in tracked(write_paper_figures(read_results(folder), folder / "figures"), "figures", as_json or quiet):
+            pass
     _answer({"reports": pages}, lambda: click.echo("\n".join(pages)), as_json, quiet)
 
 

@@ -6,7 +6,9 @@ import json
 import sys
 from collections.abc import Callable
 from datetime import datetime
+from importlib import import_module
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 import numpy as np
@@ -85,6 +87,8 @@ def go_on(job: Job, records: list[Record], folder: Path, workers: int | None, re
         budget = sum(task.stop["evaluations"] for task in tasks)
         runs = [task.run for task in tasks]
         tell({"event": "start", "runs": runs, "budget": budget, "unit": unit_of(records), "folder": str(folder)})
+        if report:
+            import_ahead()
         arguments = [(task.run, (task, job.text, job.folder, records)) for task in missing]
         failed = run_all(work, arguments, workers, tell)
         done = [task for task in tasks if task.run not in failed]
@@ -97,6 +101,12 @@ def go_on(job: Job, records: list[Record], folder: Path, workers: int | None, re
             write_report(folder)
         tell({"event": "done", "folder": str(folder)})
     return folder
+
+
+def import_ahead() -> None:
+    """Import what draws the report while the searches run: they leave this process idle."""
+    drawing = ("pandas", "matplotlib.figure", "matplotlib.backends.backend_svg", "h5netcdf", "pzt_ident.report.page")
+    Thread(target=lambda: [import_module(name) for name in drawing], daemon=True).start()
 
 
 def tasks_of(job: Job, records: list[Record], folder: Path) -> list[Task]:

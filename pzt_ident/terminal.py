@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -190,3 +190,13 @@ _LEAGUE = ("rmse_best", "rmse_median", "polished_rmse_median")
 
 def _uses(rmse: dict[str, float | None]) -> str:
     return ", ".join(f"{number(value)} {use}" for use, value in rmse.items())
+
+
+def tracked(items: Iterable[Any], what: str, silent: bool) -> Iterator[Any]:
+    """The items, counted on a terminal while they come; nothing is said elsewhere."""
+    if silent or not sys.stdout.isatty():
+        yield from items
+        return
+    from rich.progress import track
+
+    yield from track(items, what, transient=True)
