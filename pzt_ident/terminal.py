@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+import signal
 import sys
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, TextIO
 
 import click
 
@@ -68,21 +69,29 @@ class Progress:
 def listening(silent: bool) -> Iterator[Listener]:
     """A listener for the events of a run: a live bar on a terminal, else a line every few seconds, on stderr.
 
-    An interrupt is followed by how to go on.
+    An interrupt, SIGTERM (a cluster's scheduler sends it) or a full disk is followed by how to go on.
     """
     progress = Progress()
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         if silent:
             yield progress.take
-        elif sys.stderr.isatty():
+        elif _is_terminal(sys.stderr):
             with _bar(progress) as listener:
                 yield listener
         else:
             yield _lines(progress)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, OSError):
         if progress.folder and not silent:
             click.echo(f"`pzt-ident resume {progress.folder}` goes on from here", err=True)
         raise
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _is_terminal(stream: TextIO | None) -> bool:
+    """Whether a person looks at it; None where the process was started with the stream closed."""
+    return stream is not None and stream.isatty()
 
 
 def _lines(progress: Progress) -> Listener:
@@ -91,8 +100,8 @@ def _lines(progress: Progress) -> Listener:
     def listen(event: Event) -> None:
         nonlocal shown
         progress.take(event)
-        if event["event"] == "failed":
-            click.echo(_failed(event), err=True)
+        if said := _said(event):
+            click.echo(said, err=True)
         elif time.perf_counter() - shown >= SECONDS_BETWEEN_LINES:
             shown = time.perf_counter()
             click.echo(progress, err=True)
@@ -111,11 +120,18 @@ def _bar(progress: Progress) -> Iterator[Listener]:
 
         def listen(event: Event) -> None:
             progress.take(event)
-            if event["event"] == "failed":
-                bar.console.print(_failed(event), markup=False, highlight=False)
+            if said := _said(event):
+                bar.console.print(said, markup=False, highlight=False)
             bar.update(task, total=progress.budget, completed=progress.done, description=str(progress))
 
         yield listen
+
+
+def _said(event: Event) -> str:
+    """An event in words, where it is worth some."""
+    if event["event"] == "finished":
+        return "every run is finished: nothing is searched again"
+    return _failed(event) if event["event"] == "failed" else ""
 
 
 def _failed(event: Event) -> str:
@@ -138,9 +154,9 @@ def number(value: float | None) -> str:
 
 
 def table(header: Sequence[str], rows: Sequence[Row]) -> None:
-    """Columns under their headings on stdout, set by rich on a terminal and by blanks elsewhere."""
+    """Columns under their headings on stdout, set by rich on a terminal and by blanks elsewhere; no word is cut."""
     cells = [["" if cell is None else str(cell) for cell in row] for row in rows]
-    if sys.stdout.isatty():
+    if _is_terminal(sys.stdout):
         from rich.box import SIMPLE_HEAD
         from rich.console import Console
         from rich.table import Table
@@ -151,7 +167,10 @@ def table(header: Sequence[str], rows: Sequence[Row]) -> None:
             drawn.add_column(Text(heading))
         for row in cells:
             drawn.add_row(*map(Text, row))
-        Console().print(drawn)
+        console = Console()
+        least = console.measure(drawn, options=console.options.update_width(1000)).minimum
+        console.width = max(console.width, least)
+        console.print(drawn)
         return
     widths = [max(map(len, column)) for column in zip(header, *cells, strict=True)]
     for row in [list(header), *cells]:
@@ -180,7 +199,7 @@ def show_result(result: dict[str, Any], folder: Path) -> None:
     for axis, floor in result["noise_floor"].items():
         click.echo(f"noise floor of {axis} [{unit}]: {number(floor)}")
     for run in result["failed_runs"]:
-        click.echo(_failed(run))
+        click.echo(f"{_failed(run)} (`pzt-ident resume {folder}` tries it again)")
     page = folder / "report.html"
     click.echo(f"report: {page}" if page.exists() else f"results: {folder}")
 
@@ -194,7 +213,7 @@ def _uses(rmse: dict[str, float | None]) -> str:
 
 def tracked(items: Iterable[Any], what: str, silent: bool) -> Iterator[Any]:
     """The items, counted on a terminal while they come; nothing is said elsewhere."""
-    if silent or not sys.stdout.isatty():
+    if silent or not _is_terminal(sys.stdout):
         yield from items
         return
     from rich.progress import track

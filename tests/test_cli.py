@@ -314,7 +314,10 @@ class TestErrors:
     def test_full_disk(self, failing):
         failing(OSError(28, "No space left on device", "out/history.csv"))
         result = call("run", "job.yaml")
-        assert (result.exit_code, result.stderr) == (1, "Error: out/history.csv: No space left on device\n")
+        assert result.exit_code == 1
+        assert result.stderr == (
+            "`pzt-ident resume out` goes on from here\nError: out/history.csv: No space left on device\n"
+        )
 
     def test_unexpected(self, failing):
         failing(ZeroDivisionError("by zero"))
@@ -381,6 +384,17 @@ class TestProcess:
         found = subprocess.run(command, stdout=writing, stderr=subprocess.PIPE, text=True, timeout=60)
         os.close(writing)
         assert found.stderr == ""
+
+    @pytest.mark.skipif(os.name == "nt", reason="needs a POSIX shell")
+    def test_no_stdout_and_no_stderr(self, folder):
+        command = f"{sys.executable} -m pzt_ident check job.yaml >&- 2>&-"
+        assert subprocess.run(command, shell=True, timeout=60).returncode == 0
+
+    def test_letters_that_the_terminal_lacks(self, folder):
+        (folder / "job.yaml").write_text(JOB.replace("{file: identify.csv,", "{file: identify.csv, name: πρώτη,"))
+        found = start("check", "job.yaml", env=os.environ | {"PYTHONIOENCODING": "cp1252"})
+        assert (found.returncode, found.stderr) == (0, "")
+        assert "?????" in found.stdout
 
     @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
     def test_a_full_disk_is_one_line(self):

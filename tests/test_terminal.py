@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import os
+import signal
 import sys
 
 import pytest
@@ -55,6 +57,20 @@ def test_lines_are_few(clock, capsys):
     assert [line.partition(",")[0] for line in lines] == ["4 %: 40 of 1000 evaluations", "8 %: 80 of 1000 evaluations"]
 
 
+def test_an_end_from_outside_is_an_interrupt(capsys):
+    with pytest.raises(KeyboardInterrupt), terminal.listening(silent=False) as listen:
+        listen(START | {"folder": "out"})
+        os.kill(os.getpid(), signal.SIGTERM)
+    assert capsys.readouterr().err == "`pzt-ident resume out` goes on from here\n"
+    assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
+
+
+def test_a_finished_run_says_so(capsys):
+    with terminal.listening(silent=False) as listen:
+        listen({"event": "finished"})
+    assert capsys.readouterr().err == "every run is finished: nothing is searched again\n"
+
+
 def test_silence(capsys):
     with terminal.listening(silent=True) as listen:
         listen(START)
@@ -93,6 +109,15 @@ def test_table_on_a_terminal_keeps_brackets(monkeypatch):
     terminal.table(("best [um]", "n"), [("[bold]", 1)])
     assert "best [um]" in screen.getvalue()
     assert "[bold]" in screen.getvalue()
+
+
+def test_table_on_a_narrow_terminal_cuts_no_word(monkeypatch):
+    screen = Terminal()
+    monkeypatch.setattr(sys, "stdout", screen)
+    monkeypatch.setenv("COLUMNS", "20")
+    words = ("x.cross_coupling.ratio", "-0.2308", "standard_error", "not-determined")
+    terminal.table(("parameter", "value", "error", "verdict"), [words])
+    assert all(word in screen.getvalue() for word in words)
 
 
 @pytest.mark.parametrize(
