@@ -71,3 +71,17 @@ def path(*levels, points=100):
 
 def triangle(amplitude, cycles=3, points=500):
     return path(*[amplitude * (i % 2) for i in range(2 * cycles + 1)], points=points)
+
+
+def rounding(made, measured, theta):
+    """What a last digit of the parameters does to the response: much, where a candidate runs away."""
+    return made.simulate(measured, theta * (1 + 1e-14)) - made.simulate(measured, theta)
+
+
+def assert_close(found, expected, rounding=0.0, close=1e-12):
+    """To 1e-12 of each largest value, as long as that is a sensible number, and what rounding may do."""
+    so_far = np.maximum.accumulate(np.abs(expected), axis=-1)
+    known = so_far < 1e6
+    largest = np.where(known, so_far, 0).max(axis=-1, keepdims=True)
+    allowed = close * largest + 100 * np.maximum.accumulate(np.abs(rounding + 0 * so_far), axis=-1)
+    assert np.all((np.abs(found - expected) <= allowed) | ~known)
