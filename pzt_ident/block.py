@@ -85,7 +85,7 @@ class Operator(Block):
     prepare(*parameters) -> (shared, along, against), a tuple of coefficients each.
     travel(distance, *along or against) -> (keep, add) for a step of |dU| = distance.
     near(further, keep, add, *along or against) -> the same for distance + further, from those for distance, good to
-    1e-13 while |rate further| <= 0.1, the rate being the first coefficient of a regime.
+    3e-13 while |rate further| <= 0.1, the rate being the first coefficient of a regime.
     exact(q, distance, along, against) -> q, through a sign change of q, for any q.
     output(h, u, *shared) -> y.
     """
