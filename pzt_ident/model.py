@@ -240,7 +240,7 @@ class Plan:
         scratch = self._run(theta, self._scoring, np.empty((0, 0, 0)))
         sums = scratch.reshape(scratch.shape[0], self.rows, kernel.WIDTH)[:, self.sums :]
         with np.errstate(invalid="ignore", over="ignore"):
-            left = sums[:, 1::2] - sums[:, 0::2] ** 2 / self.scored
+            left = sums[:, 1::2] - (sums[:, 0::2] / np.sqrt(self.scored)) ** 2  # overflows no sooner than the first
         left = np.maximum(left, 0)  # rounding leaves less than nothing of a perfect fit
         return left.swapaxes(1, 2).reshape(-1, len(self.model.measured))[: theta.shape[0]]
 
