@@ -68,8 +68,8 @@ class Problem:
             elif parameter.value is not None and not wish:
                 self.theta[column] = parameter.value * self._size(slot, identify)
             else:
-                size = self._size(slot, identify) / self._factor[column]
-                low, high = wish.bounds if wish and wish.bounds else (b * size for b in parameter.bounds)
+                own = wish.bounds if wish else None
+                low, high = own or self._bounds(slot, identify) / self._factor[column]
                 free.append(column)
                 lower.append(low)
                 upper.append(high)
@@ -88,6 +88,14 @@ class Problem:
             r"drive|response", lambda word: str({"drive": drive, "response": response}[word[0]]), slot.parameter.unit
         )
 
+    def _bounds(self, slot: Slot, records: list[Record]) -> Array:
+        """Declared bounds in SI units; those of a gain also with the other sign, unless the response rises with the
+        drive: an inverting amplifier turns it round, and so does a drive above the resonance."""
+        low, high = slot.parameter.bounds
+        if slot.parameter.unit == "response/drive" and not rises(records, slot.axis):
+            low, high = min(low, -high), max(high, -low)
+        return np.array([low, high]) * self._size(slot, records)
+
     def _size(self, slot: Slot, records: list[Record]) -> float:
         """What declared bounds are multiples of, in SI units: the data's own spans where the unit names them."""
         spans = {
@@ -97,6 +105,10 @@ class Problem:
         named = re.findall(r"drive|response", slot.parameter.unit)
         if not named:
             return factor(slot.parameter.unit)
+        if "drive" in named and spans["drive"] == 0:
+            problem = f"the drive of axis {self.model.axes[slot.axis]} is constant: nothing to scale {slot.name} by"
+            remedy = "is it the right column? Else give the parameter `bounds` or a `value`"
+            raise InputError(problem, where=records[0].file or records[0].name, remedy=remedy)
         size, sign = 1.0, 1
         for token in re.findall(r"[\w.]+|[*/]", slot.parameter.unit):
             if token in "*/":
@@ -176,32 +188,37 @@ class Problem:
         with np.errstate(all="ignore"):
             found = np.hstack([plan.residuals(theta).reshape(theta.shape[0], -1) for plan in plans])
             found /= np.sqrt(self.scored)
-        wrong = ~np.isfinite(found).all(axis=1)
+            wrong = ~np.isfinite(np.square(found).sum(axis=1))
         self.failed += int(wrong.sum())
         found[wrong] = np.inf
         return found
 
     def jacobian(self, point: Array, step: float = 1e-5) -> Array:
-        """Central differences of the residuals over the cube (one-sided on its faces): (samples, free)."""
+        """Central differences of the residuals over the cube, one-sided on its faces and beside points that fail, zero
+        between two of them: (samples, free)."""
         point = np.asarray(point, dtype=float)
-        up = np.minimum(point + step, 1)
-        down = np.maximum(point - step, 0)
+        ends = np.concatenate([np.minimum(point + step, 1), np.maximum(point - step, 0)])
         count = self.dimensions
-        tries = np.vstack([np.where(np.eye(count, dtype=bool), ends, point) for ends in (up, down)])
+        tries = np.where(np.tile(np.eye(count, dtype=bool), (2, 1)), ends[:, None], point)
         found = self.residuals(tries)
-        return ((found[:count] - found[count:]) / (up - down)[:, None]).T
+        failed = np.isinf(found[:, 0])
+        if failed.any():
+            found[failed], ends[failed] = self.residuals(point), np.tile(point, 2)[failed]
+        apart = ends[:count] - ends[count:]
+        return ((found[:count] - found[count:]) / np.where(apart > 0, apart, 1)[:, None]).T
 
     def polish(self, point: Array, evaluations: int = 2000) -> tuple[Array, int]:
         """Least squares from a point, with the batched Jacobian: the point reached and the simulations it took."""
         from scipy.optimize import least_squares
 
-        if not np.isfinite(self.loss(point)[0]):
+        start = np.clip(point, 1e-9, 1 - 1e-9)
+        size = self.loss(start)[0] or 1.0
+        if not np.isfinite(size):
             return np.asarray(point), 1
         each = 2 * self.dimensions
-        size = self.loss(point)[0] or 1.0
         found = least_squares(
             lambda x: self.residuals(x)[0] / size,
-            np.clip(point, 1e-9, 1 - 1e-9),
+            start,
             lambda x: self.jacobian(x) / size,
             bounds=(np.zeros(self.dimensions), np.ones(self.dimensions)),
             x_scale="jac",
@@ -212,3 +229,10 @@ class Problem:
         )
         better = self.loss(found.x)[0] < self.loss(point)[0]
         return (found.x if better else np.asarray(point)), int(found.nfev + each * found.njev)
+
+
+def rises(records: Sequence[Record], axis: int) -> bool:
+    """Whether the response of an axis clearly follows its drive: their correlation over all records is above 0.5."""
+    moves = [(record.drive[axis], record.response[axis]) for record in records]
+    drive, response = (np.concatenate([signal - signal.mean() for signal in part]) for part in zip(*moves, strict=True))
+    return bool(drive @ response > 0.5 * np.sqrt((drive @ drive) * (response @ response)))

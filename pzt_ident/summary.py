@@ -193,7 +193,8 @@ def show_word(found: Facts) -> None:
             ],
         )
         if any("drive" in row["unit"] or "response" in row["unit"] for row in found["parameters"]):
-            click.echo("Bounds in units of drive and response are multiples of the data's own peak-to-peak values.")
+            click.echo("Bounds in units of drive and response are multiples of the data's own peak-to-peak values,")
+            click.echo("those of response/drive with either sign where the response does not rise with the drive.")
 
 
 def _allowed(row: Facts) -> str:

@@ -1,5 +1,6 @@
 """The loss, its gradient and what the data say of each parameter, on data made by the model itself."""
 
+import dataclasses
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,7 +11,8 @@ from pzt_ident.estimate import estimates
 from pzt_ident.model import Model
 from pzt_ident.problem import Problem
 from pzt_ident.record import Record
-from pzt_ident.registry import blocks
+from pzt_ident.registry import blocks, optimizers
+from pzt_ident.search import Stop, drive
 
 TRUTH = {"bouc_wen.gain": 0.082, "bouc_wen.alpha": 0.56, "bouc_wen.beta": 0.015, "bouc_wen.gamma": 0.055}
 MECHANICS = {"lumped.mass": 0.16, "lumped.damping": 100.0, "lumped.stiffness": 7e7}
@@ -98,6 +100,59 @@ def test_a_failed_simulation_is_infinite_and_counted():
     assert problem.loss(np.vstack([bad, problem.unit_point(TRUTH)]))[0] == np.inf
     assert np.isinf(problem.residuals(bad)).all()
     assert problem.failed == 2
+
+
+def test_the_loss_rises_to_infinity_and_never_falls_back():
+    model, records = made(["bouc_wen"], TRUTH)
+    problem = Problem(model, records, {"bouc_wen.beta": wish((-1e3, 1e3))})
+    points = np.tile(problem.unit_point(TRUTH), (20_000, 1))
+    points[:, 2] -= np.linspace(0, 1e-3, len(points))
+    losses = problem.loss(points)
+    assert losses[0] < 1e-9 < 1e140 < losses[np.isfinite(losses)].max()
+    assert losses[-1] == np.inf
+    tail = losses[np.argmax(losses > 1) :]
+    assert (tail[1:] >= tail[:-1]).all()
+
+
+def test_the_jacobian_beside_a_failed_simulation_is_one_sided():
+    model, records = made(["bouc_wen"], TRUTH)
+    problem = Problem(model, records, {"bouc_wen.beta": wish((-1e3, 1e3))})
+    fails, holds = problem.unit_point(TRUTH), problem.unit_point(TRUTH)
+    fails[2] = 0.0
+    while (holds - fails).max() > 1e-6:
+        middle = (fails + holds) / 2
+        fails, holds = (middle, holds) if np.isinf(problem.loss(middle)[0]) else (fails, middle)
+    jacobian = problem.jacobian(holds)
+    assert np.isfinite(jacobian).all()
+    assert (np.abs(jacobian[:, [0, 2]]).max(axis=0) > 0).all()
+    assert np.isfinite(problem.loss(problem.polish(holds)[0])[0])
+
+
+def turned(records, word):
+    """The least loss of a model on the records and on their responses turned round."""
+    for sign in (1, -1):
+        signed = [dataclasses.replace(record, response=sign * record.response) for record in records]
+        problem = Problem(Model([blocks[word]], ["x"], [0]), signed)
+        found = drive(optimizers["pso"].make(), problem.dimensions, problem.loss, 1, Stop(3000))
+        yield problem, problem.loss(problem.polish(found.point)[0])[0]
+
+
+@pytest.mark.parametrize("word", ["bouc_wen", "prandtl_ishlinskii"])
+def test_an_inverting_stage_is_identified_as_well_as_an_upright_one(word):
+    _, records = made(["bouc_wen"], TRUTH, noise=2e-8)
+    (upright, loss), (inverting, turned_loss) = turned(records, word)
+    assert turned_loss == pytest.approx(loss, rel=1e-3)
+    assert upright.lower[0] == 0
+    assert inverting.lower[0] == pytest.approx(-inverting.upper[0])
+
+
+def test_a_constant_drive_is_no_scale():
+    drive, response = np.ones((1, 50)), np.arange(50.0)[None]
+    records = [Record("r", "identify", 1e-3, drive, response, file="rest.csv")]
+    model = Model([blocks["bouc_wen"]], ["x"], [0])
+    with pytest.raises(InputError, match=r"rest.csv: the drive of axis x is constant"):
+        Problem(model, records)
+    assert Problem(model, records, {name: wish((0.1, 1)) for name in TRUTH}).names == tuple(TRUTH)
 
 
 def test_standard_errors_cover_the_truth():
