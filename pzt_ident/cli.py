@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pzt_ident.errors import InputError
+from pzt_ident.errors import InputError, RunError
 
 if TYPE_CHECKING:
     from pzt_ident.terminal import Listener
@@ -44,6 +44,8 @@ class Commands(click.Group):
             raise
         except InputError as error:
             raise BadInput(str(error)) from None
+        except RunError as error:
+            raise Failure(str(error)) from None
         except KeyboardInterrupt:
             raise Interrupted("interrupted") from None
         except Exception as error:

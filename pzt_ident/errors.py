@@ -1,4 +1,4 @@
-"""The one error that bad input raises."""
+"""The errors whose message is all that a user needs."""
 
 from __future__ import annotations
 
@@ -15,6 +15,11 @@ class InputError(ValueError):
     def __init__(self, message: str, *, where: str = "", remedy: str = "") -> None:
         self.message, self.where, self.remedy = message, where, remedy
         super().__init__(": ".join(part for part in (where, message) if part) + (f"\n  {remedy}" if remedy else ""))
+
+
+class RunError(RuntimeError):
+    """A run came to nothing though its input is in order. The command line prints the message and ends with exit code
+    1, without a traceback."""
 
 
 def nearest(word: str, words: Iterable[str]) -> str:

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from pzt_ident.diagnosis.noise import noise_floor
-from pzt_ident.errors import InputError
-from pzt_ident.files import write_json, write_text
+from pzt_ident.errors import InputError, RunError
+from pzt_ident.files import plain, write_json, write_text
 from pzt_ident.job import Job
 from pzt_ident.league import compare
 from pzt_ident.pool import run_all
@@ -24,7 +24,7 @@ from pzt_ident.readers import read_records
 from pzt_ident.record import Record
 from pzt_ident.registry import optimizers
 from pzt_ident.signals import write_signals
-from pzt_ident.units import factor
+from pzt_ident.units import factor, same_kind
 from pzt_ident.worker import Task, problem_of, read_result, read_told, unit_of, work
 
 Event = dict[str, Any]
@@ -46,12 +46,11 @@ def run(
     records = read(job)
     problem_of(job, records)
     folder = out or Path("results") / job.name / f"{datetime.now():%Y%m%d-%H%M%S}-{job.hash}"
-    if folder.exists() and any(folder.iterdir()):
-        raise InputError("this folder is not empty", where=str(folder), remedy="give another --out, or resume it")
-    folder.mkdir(parents=True, exist_ok=True)
+    tasks = tasks_of(job, records, folder)
+    make_empty(folder)
     write_text(folder / "job.yaml", job.text)
-    write_json(folder / "environment.json", environment(job))
-    return go_on(job, records, folder, workers, report, listen)
+    write_json(folder / "environment.json", environment(job, records))
+    return go_on(job, records, folder, tasks, workers, report, listen)
 
 
 def resume(
@@ -59,42 +58,77 @@ def resume(
 ) -> Path:
     """Go on where a killed run stopped, to the result that it would have had.
 
-    Raises InputError where the folder holds no run, or its data have changed.
+    Raises InputError where the folder holds no run, or its job or data have changed.
     """
-    known = folder / "environment.json"
-    if not known.exists():
-        raise InputError("holds no run", where=str(folder), remedy="give the folder that `pzt-ident run` wrote")
-    before = json.loads(known.read_text())
+    before = begun(folder)
     text = (folder / "job.yaml").read_text(encoding="utf-8")
     job = Job.from_text(text, Path(before["job_folder"]), f"{before['job_name']}.yaml")
-    return go_on(job, read(job), folder, workers, report, listen)
+    records = read(job)
+    same_as_before(job, records, before, folder)
+    return go_on(job, records, folder, tasks_of(job, records, folder), workers, report, listen)
+
+
+def same_as_before(job: Job, records: list[Record], before: dict[str, Any], folder: Path) -> None:
+    remedy = "undo the change, or start a new run"
+    if job.hash != before["job_hash"]:
+        raise InputError("is not the job that this run began with", where=str(folder / "job.yaml"), remedy=remedy)
+    for record in records:
+        if record.sha256 != before["data"][record.name]:
+            where = str(job.folder / record.file)
+            raise InputError("has changed since this run began", where=where, remedy=remedy)
 
 
 def read(job: Job) -> list[Record]:
     return read_records(job.records, job.channels.axes, job.channels.time, job.folder)
 
 
-def go_on(job: Job, records: list[Record], folder: Path, workers: int | None, report: bool, listen: Listen) -> Path:
-    tasks = tasks_of(job, records, folder)
+def make_empty(folder: Path) -> None:
+    """Make the folder. Raises InputError where that cannot be, or something is in it."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        full = any(folder.iterdir())
+    except OSError as error:
+        remedy = "give another folder with --out"
+        raise InputError(error.strerror or str(error), where=str(folder), remedy=remedy) from None
+    if full:
+        raise InputError("this folder is not empty", where=str(folder), remedy="give another --out, or resume it")
+
+
+def begun(folder: Path) -> dict[str, Any]:
+    """The environment of the run in a folder. Raises InputError where there is none."""
+    try:
+        return dict(json.loads((folder / "environment.json").read_text(encoding="utf-8")))
+    except (OSError, ValueError):
+        remedy = "give the folder that `pzt-ident run` wrote"
+        raise InputError("holds no run", where=str(folder), remedy=remedy) from None
+
+
+def go_on(
+    job: Job,
+    records: list[Record],
+    folder: Path,
+    tasks: list[Task],
+    workers: int | None,
+    report: bool,
+    listen: Listen,
+) -> Path:
     missing = [task for task in tasks if not task.result.exists()]
     with (folder / "events.jsonl").open("a", encoding="utf-8") as events:
 
         def tell(event: Event) -> None:
-            events.write(json.dumps(event) + "\n")
+            events.write(json.dumps(plain(event)) + "\n")
             events.flush()
             listen(event)
 
-        budget = sum(task.stop["evaluations"] for task in tasks)
-        runs = [task.run for task in tasks]
-        tell({"event": "start", "runs": runs, "budget": budget, "unit": unit_of(records), "folder": str(folder)})
-        if report:
-            import_ahead()
-        arguments = [(task.run, (task, job.text, job.folder, records)) for task in missing]
-        failed = run_all(work, arguments, workers, tell)
-        done = [task for task in tasks if task.run not in failed]
-        if not done:
-            raise RuntimeError("every run failed: " + "; ".join(f"{run}: {reason}" for run, reason in failed.items()))
-        collect(job, records, folder, done, failed)
+        if missing or not (folder / "result.json").exists():
+            runs, budget = [task.run for task in missing], sum(task.stop["evaluations"] for task in missing)
+            tell({"event": "start", "runs": runs, "budget": budget, "unit": unit_of(records), "folder": str(folder)})
+            if report:
+                import_ahead()
+            arguments = [(task.run, (task, job.text, job.folder, records)) for task in missing]
+            collect(job, records, folder, tasks, run_all(work, arguments, workers, tell))
+        else:
+            tell({"event": "finished"})
         if report:
             from pzt_ident.report.page import write_report
 
@@ -110,15 +144,21 @@ def import_ahead() -> None:
 
 
 def tasks_of(job: Job, records: list[Record], folder: Path) -> list[Task]:
-    """Optimizers times repeats, all with the budget of the first unless the job gives one."""
+    """Optimizers times repeats, all with the budget of the first unless the job gives one.
+
+    Raises InputError where the target is in another kind of unit than the response.
+    """
     first = job.optimizers[0]
     budget = job.stop.evaluations or optimizers[first.name].make(**first.settings).evaluations
-    target = job.stop.target
+    unit, target = unit_of(records), job.stop.target
+    if target and target.unit and not same_kind(target.unit, unit):
+        problem = f"{target.value:g} {target.unit} cannot be an RMSE of a response in {unit}"
+        raise InputError(problem, where="stop.target", remedy=f"give it in a unit such as {unit}")
     stop = {
         "evaluations": budget,
         "seconds": job.stop.seconds,
         "stagnation": job.stop.stagnation,
-        "target": target and target.value * factor(target.unit or unit_of(records)),
+        "target": target and target.value * factor(target.unit or unit),
     }
     return [
         Task(f"{choice.name}-{repeat}", choice.name, choice.settings, repeat, job.seed, stop, job.polish, folder)
@@ -127,8 +167,11 @@ def tasks_of(job: Job, records: list[Record], folder: Path) -> list[Task]:
     ]
 
 
-def collect(job: Job, records: list[Record], folder: Path, done: list[Task], failed: dict[str, str]) -> None:
-    """Tables and curves of all runs; `result.json` comes last."""
+def collect(job: Job, records: list[Record], folder: Path, tasks: list[Task], failed: dict[str, str]) -> None:
+    """Tables and curves of all runs; `result.json` comes last. Raises RunError where every run failed."""
+    done = [task for task in tasks if task.run not in failed]
+    if not done:
+        raise RunError("every run failed: " + "; ".join(dict.fromkeys(failed.values())))
     size = factor(unit_of(records))
     runs = [read_result(task) for task in done]
     histories = {task.run: history_of(task, size) for task in done}
@@ -144,7 +187,7 @@ def collect(job: Job, records: list[Record], folder: Path, done: list[Task], fai
         "name": job.name,
         "unit": unit_of(records),
         "seed": job.seed,
-        "command": " ".join(["pzt-ident", *sys.argv[1:]]),
+        "command": begun(folder)["command"],
         "created": datetime.now().astimezone().isoformat(timespec="seconds"),
         "noise_floor": {axis: floor.value / factor(units[axis]) for axis, floor in floors.items()},
         "noise_floor_source": {axis: floor.source for axis, floor in floors.items()},
@@ -193,8 +236,8 @@ def history_text(done: list[Task], histories: dict[str, np.ndarray]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def environment(job: Job) -> dict[str, Any]:
-    """Where this ran: enough to run it again."""
+def environment(job: Job, records: list[Record]) -> dict[str, Any]:
+    """Where this ran and on what: enough to run it again, and to go on with nothing else."""
     import os
     import platform
     from importlib.metadata import PackageNotFoundError, version
@@ -211,6 +254,8 @@ def environment(job: Job) -> dict[str, Any]:
         "cpu": platform.processor() or platform.machine(),
         "cores": os.cpu_count(),
         "packages": packages,
+        "command": " ".join(["pzt-ident", *sys.argv[1:]]),
+        "data": {record.name: record.sha256 for record in records},
         "job_hash": job.hash,
         "job_name": job.name,
         "job_folder": str(job.folder.resolve()),

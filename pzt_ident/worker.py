@@ -7,19 +7,21 @@ import struct
 import time
 import zlib
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from pzt_ident.errors import InputError, RunError
 from pzt_ident.estimate import estimates
 from pzt_ident.files import write_json
 from pzt_ident.model import Model
 from pzt_ident.problem import Problem
 from pzt_ident.record import Record
 from pzt_ident.registry import blocks, optimizers
-from pzt_ident.search import State, Stop, drive
+from pzt_ident.search import Optimizer, Outcome, State, Stop, drive
 from pzt_ident.units import factor
 
 Tell = Callable[[dict[str, Any]], None]
@@ -62,9 +64,42 @@ def search(task: Task, job: Any, records: list[Record], tell: Tell) -> None:
     """Search, polish, judge the parameters, and write the result; continues from the losses told so far."""
     problem = problem_of(job, records)
     size = factor(unit_of(records))
+    outcome, seconds, spent = searched(task, problem, size, tell)
+    if not np.isfinite(outcome.loss):
+        raise RunError(f"the simulation of each of its {outcome.evaluations} candidates failed: narrow the bounds")
+    begun, problem.failed = time.perf_counter(), 0
+    point, extra = problem.polish(outcome.point) if task.polish else (outcome.point, 0)
+    polishing = time.perf_counter() - begun
+    failed = problem.failed + sum(int(np.isinf(losses).sum()) for _, losses in read_told(task.told))
+    found, correlation = estimates(problem, point)
+    result = {
+        "run": task.run,
+        "optimizer": task.optimizer,
+        "repeat": task.repeat,
+        "rmse": rmse(problem, point, size),
+        "rmse_before_polish": rmse(problem, outcome.point, size),
+        "parameters": {item.name: {k: v for k, v in item._asdict().items() if k != "name"} for item in found},
+        "fixed": fixed(problem),
+        "correlation": {"names": list(problem.names), "matrix": correlation},
+        "evaluations": outcome.evaluations,
+        "polish_evaluations": extra,
+        "seconds": seconds,
+        "cpu_seconds": spent,
+        "polish_seconds": polishing,
+        "failed_simulations": failed,
+        "stopped_by": outcome.stopped_by,
+        "point": point,
+    }
+    write_json(task.result, result)
+    tell({"event": "run", "run": task.run, "rmse": result["rmse"], "stopped_by": outcome.stopped_by})
+
+
+def searched(task: Task, problem: Problem, size: float, tell: Tell) -> tuple[Outcome, float, float]:
+    """The optimizer's own outcome, and the wall and CPU time that it took, s."""
+    optimizer = optimizers[task.optimizer].make(**task.settings).with_budget(task.stop["evaluations"])
+    warm_up(optimizer, problem)
     generations = list(read_told(task.told))
     before = generations[-1][0] if generations else 0.0
-    problem.loss(np.full(problem.dimensions, 0.5))  # kernels are there before the clock starts
     begun, cpu, shown = time.perf_counter(), time.process_time(), 0.0
     task.told.parent.mkdir(parents=True, exist_ok=True)
     with task.told.open("r+b" if generations else "wb") as file:
@@ -81,7 +116,7 @@ def search(task: Task, job: Any, records: list[Record], tell: Tell) -> None:
                 tell(generation_event(task, state.evaluations, state.loss / size, seconds))
 
         outcome = drive(
-            optimizers[task.optimizer].make(**task.settings).with_budget(task.stop["evaluations"]),
+            optimizer,
             problem.dimensions,
             problem.loss,
             np.random.SeedSequence([task.seed, task.repeat, zlib.crc32(task.optimizer.encode())]),
@@ -92,30 +127,15 @@ def search(task: Task, job: Any, records: list[Record], tell: Tell) -> None:
         )
     seconds, spent = before + time.perf_counter() - begun, time.process_time() - cpu
     tell(generation_event(task, outcome.evaluations, outcome.loss / size, seconds))
-    begun = time.perf_counter()
-    point, extra = problem.polish(outcome.point) if task.polish else (outcome.point, 0)
-    polishing = time.perf_counter() - begun
-    found, correlation = estimates(problem, point)
-    result = {
-        "run": task.run,
-        "optimizer": task.optimizer,
-        "repeat": task.repeat,
-        "rmse": rmse(problem, point, size),
-        "rmse_before_polish": rmse(problem, outcome.point, size),
-        "parameters": {item.name: {k: v for k, v in item._asdict().items() if k != "name"} for item in found},
-        "fixed": fixed(problem),
-        "correlation": {"names": list(problem.names), "matrix": correlation},
-        "evaluations": outcome.evaluations,
-        "polish_evaluations": extra,
-        "seconds": seconds,
-        "cpu_seconds": spent,
-        "polish_seconds": polishing,
-        "failed_simulations": problem.failed,
-        "stopped_by": outcome.stopped_by,
-        "point": point,
-    }
-    write_json(task.result, result)
-    tell({"event": "run", "run": task.run, "rmse": result["rmse"], "stopped_by": outcome.stopped_by})
+    return outcome, seconds, spent
+
+
+def warm_up(optimizer: Optimizer, problem: Problem) -> None:
+    """Have kernels and libraries there before the clock starts."""
+    problem.loss(np.full(problem.dimensions, 0.5))
+    search = optimizer.search(problem.dimensions, np.random.default_rng(0))
+    next(search)
+    search.close()
 
 
 def rmse(problem: Problem, point: Any, size: float) -> dict[str, float]:
@@ -149,24 +169,28 @@ def read_told(path: Path) -> Iterator[tuple[float, np.ndarray]]:
     at = 0
     while at + 16 <= len(raw):
         seconds, count = struct.unpack_from("<dq", raw, at)
-        if at + 16 + 8 * count > len(raw):
+        if count < 1 or at + 16 + 8 * count > len(raw):
             return
         yield seconds, np.frombuffer(raw, "<f8", count, at + 16)
         at += 16 + 8 * count
 
 
 def work(task: Task, job_text: str, folder: Path, records: list[Record], pipe: Any) -> None:
-    """Entry of the process: results go to the disk, events and errors through the pipe."""
+    """Entry of the process: results go to the disk, events and errors through the pipe, until nobody listens."""
     import signal
 
     from pzt_ident.job import Job
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        search(task, Job.from_text(job_text, folder), records, pipe.send)
-        pipe.send(None)
-    except Exception as error:
-        pipe.send({"event": "failed", "run": task.run, "reason": f"{type(error).__name__}: {error}"})
+    np.seterr(all="ignore")  # a simulation that overflows is counted, not warned about
+    with suppress(ConnectionError):
+        try:
+            search(task, Job.from_text(job_text, folder), records, pipe.send)
+            pipe.send(None)
+        except (InputError, RunError) as error:
+            pipe.send({"event": "failed", "run": task.run, "reason": str(error)})
+        except Exception as error:
+            pipe.send({"event": "failed", "run": task.run, "reason": f"{type(error).__name__}: {error}"})
 
 
 def read_result(task: Task) -> dict[str, Any]:

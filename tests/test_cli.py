@@ -15,7 +15,7 @@ from click.testing import CliRunner, Result
 
 import pzt_ident.run
 from pzt_ident.cli import main
-from pzt_ident.errors import InputError
+from pzt_ident.errors import InputError, RunError
 from pzt_ident.registry import blocks, optimizers
 
 JOB = """\
@@ -147,6 +147,9 @@ DATA_FAULTS = {
     "scored samples": lambda folder: write_table(folder / "identify.csv", rows=3),
     "identify.csv": lambda folder: write_table(folder / "identify.csv", edit=with_gap),
     "time": lambda folder: write_table(folder / "identify.csv", edit=lambda t: np.delete(t, 100, axis=0)),
+    "0.1 V cannot be an RMSE of a response in um": lambda folder: (folder / "job.yaml").write_text(
+        JOB + "stop: {target: 0.1 V}\n"
+    ),
     "NOWHERE": lambda folder: (folder / "job.yaml").write_text(JOB.replace("identify.csv", '"${NOWHERE}/a.csv"')),
     "job.yaml:1:1: nmae: unknown key": lambda folder: (folder / "job.yaml").write_text(JOB.replace("name", "nmae", 1)),
     "job.yaml: no such file": lambda folder: (folder / "job.yaml").unlink(),
@@ -319,6 +322,11 @@ class TestErrors:
             "`pzt-ident resume out` goes on from here\nError: out/history.csv: No space left on device\n"
         )
 
+    def test_a_run_that_came_to_nothing(self, failing):
+        failing(RunError("every run failed: narrow the bounds"))
+        result = call("run", "job.yaml")
+        assert (result.exit_code, result.stderr) == (1, "Error: every run failed: narrow the bounds\n")
+
     def test_unexpected(self, failing):
         failing(ZeroDivisionError("by zero"))
         result = call("run", "job.yaml")
@@ -332,11 +340,8 @@ class TestErrors:
     def test_out_that_cannot_be_written(self, folder):
         (folder / "file").touch()
         result = call("run", "job.yaml", "--out", "file/out")
-        assert result.exit_code == 1
-        assert result.stderr.startswith("Error: ")
-        assert "file" in result.stderr
-        assert "Traceback" not in result.stderr
-        assert result.stderr.count("\n") == 1
+        assert result.exit_code == 2
+        assert result.stderr == f"Error: {Path('file/out')}: Not a directory\n  give another folder with --out\n"
 
     @pytest.mark.parametrize(
         ("arguments", "said"),

@@ -2,20 +2,22 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
 import time
+from multiprocessing import Pipe
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from pzt_ident.errors import InputError
-from pzt_ident.job import load_job
+from pzt_ident.errors import InputError, RunError
+from pzt_ident.job import Job, load_job
 from pzt_ident.pool import run_all
-from pzt_ident.run import resume, run
-from pzt_ident.worker import read_told
+from pzt_ident.run import read, resume, run, tasks_of
+from pzt_ident.worker import read_told, work
 
 JOB = """\
 name: small
@@ -59,7 +61,7 @@ def finished(folder):
 def numbers(out: Path) -> list:
     """All that must not differ between two runs of a job: everything but the clock."""
     result = json.loads((out / "result.json").read_text())
-    clock = ("seconds", "cpu_seconds", "polish_seconds", "failed_simulations")
+    clock = ("seconds", "cpu_seconds", "polish_seconds")
     return [{key: value for key, value in item.items() if key not in clock} for item in result["runs"]]
 
 
@@ -146,6 +148,84 @@ def test_a_full_folder_is_not_written_into(folder, finished):
 def test_resume_needs_a_run(tmp_path):
     with pytest.raises(InputError, match="holds no run"):
         resume(tmp_path)
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+
+
+def test_resume_of_a_finished_run_searches_nothing(finished, tmp_path):
+    out, events = shutil.copytree(finished[0], tmp_path / "out"), []
+    resume(out, report=False, listen=events.append)
+    assert [event["event"] for event in events] == ["finished", "done"]
+    assert (out / "result.json").read_bytes() == (finished[0] / "result.json").read_bytes()
+
+
+def test_resume_counts_only_what_is_missing(finished, tmp_path):
+    out, events = shutil.copytree(finished[0], tmp_path / "out"), []
+    (out / "runs" / "pso-1.json").unlink()
+    resume(out, workers=1, report=False, listen=events.append)
+    assert (events[0]["runs"], events[0]["budget"]) == (["pso-1"], 800)
+    assert numbers(out) == numbers(finished[0])
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new"), [("identify.csv", "1.000000", "1.000001"), ("out/job.yaml", "seed: 3", "seed: 4")]
+)
+def test_resume_refuses_another_job_or_other_data(folder, finished, tmp_path, file, old, new):
+    made = shutil.copytree(folder, tmp_path / "job")
+    edit(made / "out" / "environment.json", str(folder), str(made))
+    assert resume(made / "out", report=False)
+    edit(made / file, old, new)
+    with pytest.raises(InputError) as caught:
+        resume(made / "out", report=False)
+    assert caught.value.where == str(made / file)
+    assert "began with" in caught.value.message or "since this run began" in caught.value.message
+
+
+def hopeless(folder: Path, polish: str) -> Job:
+    """A job in which all but very few of the candidates overflow."""
+    bounds = "parameters:\n  bouc_wen.beta: {bounds: [-60, 1]}\n  bouc_wen.gamma: {bounds: [-60, 60]}\n"
+    text = JOB.replace("model: [bouc_wen]", "model: [bouc_wen]\n" + bounds).replace("pso_vmax", "rga")
+    return Job.from_text(text + f"polish: {polish}\n", folder)
+
+
+@pytest.mark.parametrize("polish", ["true", "false"])
+def test_candidates_that_overflow_are_infinite_and_counted(folder, tmp_path, polish):
+    out = run(hopeless(folder, polish), tmp_path / "out", workers=1, report=False)
+    result = json.loads((out / "result.json").read_text())
+    assert result["failed_runs"] == []
+    for item in result["runs"]:
+        told = np.concatenate([losses for _, losses in read_told(out / "runs" / f"{item['run']}.told")])
+        assert item["failed_simulations"] >= np.isinf(told).sum() > 100
+        assert item["rmse_before_polish"]["identify"] == pytest.approx(told.min() * 1e6)
+        assert item["rmse"]["identify"] <= item["rmse_before_polish"]["identify"]
+    for line in (out / "events.jsonl").read_text().splitlines():
+        json.loads(line, parse_constant=pytest.fail)
+
+
+def test_where_every_candidate_overflows_the_run_says_so(folder, tmp_path):
+    bounds = "parameters:\n  bouc_wen.beta: {bounds: [-400, -300]}\n  bouc_wen.gamma: {bounds: [-1, 1]}\n"
+    job = Job.from_text(JOB.replace("model: [bouc_wen]", "model: [bouc_wen]\n" + bounds), folder)
+    with pytest.raises(RunError) as caught:
+        run(job, tmp_path / "out", workers=1, report=False)
+    said = "every run failed: the simulation of each of its 800 candidates failed: narrow the bounds"
+    assert str(caught.value) == said
+
+
+def test_a_worker_ends_quietly_with_its_parent(folder, tmp_path, capfd):
+    listener, pipe = Pipe(duplex=False)
+    listener.close()
+    job = load_job(folder / "job.yaml")
+    task = tasks_of(job, read(job), tmp_path)[0]
+    handler, errors = signal.getsignal(signal.SIGINT), np.geterr()
+    work(task, job.text, folder, read(job), pipe)
+    signal.signal(signal.SIGINT, handler)
+    np.seterr(**errors)
+    assert capfd.readouterr().err == ""
+    assert not task.result.exists()
 
 
 def unlucky(number, pipe):
