@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,8 @@ def write_signals(path: Path, problem: Problem, point: np.ndarray) -> None:
     import h5netcdf
 
     theta = problem.parameters(point)
-    with replaced(path) as beside, h5netcdf.File(beside, "w") as file:
+    content = BytesIO()  # HDF5 does not survive a full disk
+    with h5netcdf.File(content, "w") as file:
         for plan in (plan for plans in problem.plans.values() for plan in plans):
             record = plan.record
             group = file.create_group(record.name)
@@ -37,6 +39,8 @@ def write_signals(path: Path, problem: Problem, point: np.ndarray) -> None:
                 put(group, f"response_{name}", record.response[axis] / factor(unit), unit, f"measured {name}")
                 put(group, f"model_{name}", (record.response[axis] + residual) / factor(unit), unit, f"model of {name}")
                 put(group, f"residual_{name}", residual / factor(unit), unit, f"model minus measured {name}")
+    with replaced(path) as beside:
+        beside.write_bytes(content.getbuffer())
 
 
 def put(group: object, name: str, values: np.ndarray, unit: str, meaning: str) -> None:

@@ -58,10 +58,11 @@ class Progress:
         return (time.perf_counter() - since) * (self.budget - self.done) / (self.done - before)
 
     def __str__(self) -> str:
+        if not self.budget:
+            return "finishing"
         left = self.seconds_left()
         ahead = "finishing" if self.done >= self.budget else "" if left is None else f"{duration(left)} left"
-        share = f"{100 * self.done / self.budget:.0f} %" if self.budget else "-"
-        said = f"{share}: {self.done} of {self.budget} evaluations, best RMSE {number(self.best)} {self.unit}"
+        said = f"{100 * self.done / self.budget:.0f} %: {self.done} of {self.budget} evaluations, best RMSE {number(self.best)} {self.unit}"
         return f"{said}, {ahead}" if ahead else said
 
 

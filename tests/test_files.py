@@ -1,0 +1,34 @@
+"""Files are whole or not there, whatever happens meanwhile."""
+
+import errno
+import json
+import os
+
+import numpy as np
+import pytest
+
+from pzt_ident.files import replaced, write_json, write_text
+
+
+def test_a_file_takes_its_place_whole(tmp_path):
+    write_text(tmp_path / "new" / "a.txt", "old")
+    with replaced(tmp_path / "new" / "a.txt") as beside:
+        beside.write_text("new")
+        assert (tmp_path / "new" / "a.txt").read_text() == "old"
+    assert (tmp_path / "new" / "a.txt").read_text() == "new"
+    assert os.listdir(tmp_path / "new") == ["a.txt"]
+
+
+def test_a_full_disk_leaves_the_old_file_and_is_named(tmp_path):
+    write_text(tmp_path / "a.txt", "old")
+    with pytest.raises(OSError) as caught, replaced(tmp_path / "a.txt") as beside:
+        beside.write_text("half")
+        raise OSError(errno.ENOSPC, "No space left on device")
+    assert caught.value.filename == str(tmp_path / "a.txt")
+    assert os.listdir(tmp_path) == ["a.txt"]
+    assert (tmp_path / "a.txt").read_text() == "old"
+
+
+def test_json_has_no_word_for_what_is_no_number(tmp_path):
+    write_json(tmp_path / "a.json", {1: (np.float64(1.5), float("nan")), "b": np.array([np.inf, 2])})
+    assert json.loads((tmp_path / "a.json").read_text()) == {"1": [1.5, None], "b": [None, 2]}
