@@ -62,7 +62,8 @@ class Progress:
             return "finishing"
         left = self.seconds_left()
         ahead = "finishing" if self.done >= self.budget else "" if left is None else f"{duration(left)} left"
-        said = f"{100 * self.done / self.budget:.0f} %: {self.done} of {self.budget} evaluations, best RMSE {number(self.best)} {self.unit}"
+        share = f"{100 * self.done / self.budget:.0f} %: {self.done} of {self.budget} evaluations"
+        said = f"{share}, best RMSE {number(self.best)} {self.unit}"
         return f"{said}, {ahead}" if ahead else said
 
 
