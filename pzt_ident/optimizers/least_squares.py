@@ -79,7 +79,7 @@ def descend(x: Array, answer: Array) -> Generator[Array, Array, None]:
             expected = -(gradient @ step + 0.5 * step @ hessian @ step)
             gained = size(answer) - size(answers[chosen])
             if gained > 0:
-                quality = (size(answer) - size(answers[0])) / max(expected, 1e-300)
+                quality = (size(answer) - size(answers[0])) / max(float(expected), 1e-300)
                 damping *= max(1 / 10, 1 - (2 * min(quality, 1.5) - 1) ** 3) if quality > 0 else 4.0
                 growth = 2.0
                 x, answer = candidates[chosen], answers[chosen]
