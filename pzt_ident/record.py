@@ -64,7 +64,7 @@ class Record:
     drive, response: (axes, samples); the response of an axis that is not measured is NaN throughout.
     dt, start: sample time and first time stamp, s. settle: samples simulated but not scored at the start.
     run_in: how often the drive is simulated before the first sample (a periodic record in steady state).
-    sha256: of the file as read.
+    sha256: of the file as read. rows: the first row of the file that the record holds, and the first behind it.
     """
 
     name: str
@@ -77,6 +77,7 @@ class Record:
     run_in: int = 0
     file: str = ""
     sha256: str = ""
+    rows: tuple[int, int] = (0, 0)
     axes: tuple[str, ...] = ("x",)
     drive_units: tuple[str, ...] = ("V",)
     response_units: tuple[str | None, ...] = ("m",)

@@ -90,6 +90,7 @@ def show_job(found: Facts) -> None:
             for row in found["records"]
         ],
     )
+    terminal.show_notes(found["records"])
     terminal.table(
         ("axis", "drive", "response"),
         [(axis["name"], _range(axis, "drive"), _range(axis, "response")) for axis in found["axes"]],

@@ -200,10 +200,18 @@ def show_result(result: dict[str, Any], folder: Path) -> None:
     click.echo(f"RMSE [{unit}]: {_uses(best['rmse'])} ({best['run']})")
     for axis, floor in result["noise_floor"].items():
         click.echo(f"noise floor of {axis} [{unit}]: {number(floor)}")
+    show_notes(result["records"])
     for run in result["failed_runs"]:
         click.echo(f"{_failed(run)} (`pzt-ident resume {folder}` tries it again)")
     page = folder / "report.html"
     click.echo(f"report: {page}" if page.exists() else f"results: {folder}")
+
+
+def show_notes(records: Iterable[dict[str, Any]]) -> None:
+    """What there is to know of each record."""
+    for record in records:
+        for note in record["notes"]:
+            click.echo(f"{record['name']}: {note}")
 
 
 _LEAGUE = ("rmse_best", "rmse_median", "polished_rmse_median")

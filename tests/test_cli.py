@@ -50,6 +50,7 @@ RESULT = {
         },
     },
     "noise_floor": {"x": 0.0289},
+    "records": [{"name": "slow", "notes": ["decimated by 4"]}],
     "failed_runs": [{"run": "pso-0", "reason": "its process was killed by signal 9"}],
 }
 
@@ -108,7 +109,8 @@ class TestRun:
         assert "lumped.mass    0.3     -               kg    not determined" in result.stdout
         assert "RMSE [um]: 0.12 identify, - validate (pso-1)" in result.stdout
         assert "noise floor of x [um]: 0.0289" in result.stdout
-        assert "pso-0 failed: its process was killed by signal 9" in result.stdout
+        assert "slow: decimated by 4" in result.stdout
+        assert "pso-0 failed: its process was killed by signal 9 (`pzt-ident resume out` tries it" in result.stdout
         assert f"report: {Path('out') / 'report.html'}" in result.stdout
         assert "pso-0 failed" in result.stderr
 
@@ -200,6 +202,11 @@ class TestCheck:
         low, high = named["bouc_wen.gain"]["bounds"]
         assert (low, named["bouc_wen.gain"]["unit"]) == (0, "um/V")
         assert 0.1 < high < 1
+
+    def test_says_that_validation_is_none(self, folder):
+        (folder / "job.yaml").write_text(JOB.replace("validate.csv", "identify.csv"))
+        said = "identify_2: rows 0 to 300 are fitted in 'identify_1', so they validate nothing"
+        assert said in call("check", "job.yaml").stdout
 
     def test_quiet(self, folder):
         result = call("check", "job.yaml", "--quiet")
@@ -336,6 +343,13 @@ class TestErrors:
     def test_unexpected_in_full(self, failing):
         failing(ZeroDivisionError("by zero"))
         assert isinstance(call("--debug", "run", "job.yaml").exception, ZeroDivisionError)
+
+    def test_a_report_of_no_run(self, folder):
+        result = call("report", "nowhere")
+        assert result.exit_code == 2
+        assert result.stderr == (
+            f"Error: {Path('nowhere') / 'result.json'}: file is missing\n  give the folder of a finished run\n"
+        )
 
     def test_out_that_cannot_be_written(self, folder):
         (folder / "file").touch()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
 
 import numpy as np
@@ -28,18 +29,39 @@ def read_records(
 ) -> list[Record]:
     """The records of a job, in its order; paths are relative to `folder`, `${VAR}` in them is an environment variable.
 
-    A record goes by its name, else by its file's; names that occur twice are numbered. Raises InputError on
-    whatever is wrong with a file, naming file, channel and row.
+    A record goes by its name, else by its file's; names that occur twice are numbered. A record to validate that
+    holds samples of one to identify has a note of it. Raises InputError on whatever is wrong with a file, naming file,
+    channel and row.
     """
     tables: dict[object, Table] = {}
-    records = [_record(Finder(source, folder, tables), axes, time) for source in sources]
+    records = _named([_record(Finder(source, folder, tables), axes, time) for source in sources])
     _check_kinds(records)
-    total, seen = Counter(record.name for record in records), Counter[str]()
-    for i, record in enumerate(records):
-        seen[record.name] += 1
+    fitted = [record for record in records if record.use == "identify"]
+    return [replace(r, notes=r.notes + _leaks(r, fitted)) if r.use == "validate" else r for r in records]
+
+
+def _named(records: Sequence[Record]) -> list[Record]:
+    total = Counter(record.name for record in records)
+    taken, named = set(total), []
+    for record in records:
         if total[record.name] > 1:
-            records[i] = replace(record, name=f"{record.name}_{seen[record.name]}")
-    return records
+            free = (f"{record.name}_{number}" for number in count(1))
+            record = replace(record, name=next(name for name in free if name not in taken))
+            taken.add(record.name)
+        named.append(record)
+    return named
+
+
+def _leaks(record: Record, fitted: Sequence[Record]) -> tuple[str, ...]:
+    """A note for each of the fitted records that holds some of the same samples of the same file."""
+    notes = []
+    for other in fitted:
+        first, last = max(record.rows[0], other.rows[0]), min(record.rows[1], other.rows[1])
+        if record.sha256 == other.sha256 and first < last:
+            here, there = (r.response[:, first - r.rows[0] : last - r.rows[0]] for r in (record, other))
+            if np.array_equal(here, there, equal_nan=True):
+                notes.append(f"rows {first} to {last} are fitted in {other.name!r}, so they validate nothing")
+    return tuple(notes)
 
 
 def _record(finder: Finder, axes: Mapping[str, Axis], time: Channel | None) -> Record:
@@ -50,6 +72,7 @@ def _record(finder: Finder, axes: Mapping[str, Axis], time: Channel | None) -> R
     rows = _rows([*drives, *responses], where)
     grid = finder.grid(time, rows)
     part = stretch(grid, rows, source.time, where)
+    first = drives[0].first if drives[0] else 0
     samples = len(range(part.start, part.stop, source.decimate))
     _check_length(samples, source, grid.dt, where)
     for response in filter(None, responses):
@@ -65,6 +88,7 @@ def _record(finder: Finder, axes: Mapping[str, Axis], time: Channel | None) -> R
         run_in=source.run_in,
         file=source.file,
         sha256=finder.hash(),
+        rows=(first + part.start, first + part.stop),
         axes=tuple(axes),
         drive_units=tuple(unscaled(drive.unit) for drive in drives if drive),
         response_units=tuple(unscaled(response.unit) if response else None for response in responses),

@@ -96,8 +96,9 @@ def _there(path: Path) -> Path:
 
 
 def _json(path: Path) -> dict[str, Any]:
+    text = _there(path).read_text(encoding="utf-8")
     try:
-        return json.loads(_there(path).read_text(encoding="utf-8"))
+        return json.loads(text)
     except ValueError as error:
         raise InputError(f"not JSON: {error}", where=str(path), remedy="run the job again") from error
 

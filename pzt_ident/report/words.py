@@ -20,8 +20,9 @@ def verdict(results: Results) -> str:
 
 
 def findings(results: Results) -> list[str]:
-    """Sentences on what a reader must know beside the verdict: parameters not found, simulations and runs failed."""
-    return [*_parameters(results), *_failures(results)]
+    """Sentences on what a reader must know beside the verdict: parameters not found, what is special about a record,
+    simulations and runs failed."""
+    return [*_parameters(results), *_notes(results), *_failures(results)]
 
 
 def _over_noise(results: Results, use: str) -> str:
@@ -52,6 +53,10 @@ def _parameters(results: Results) -> list[str]:
             place = f"sits on its {bound} bound" if len(names) == 1 else f"sit on their {bound} bounds"
             said.append(f"{listed(names)} {place}: what fits best may lie beyond.")
     return said
+
+
+def _notes(results: Results) -> list[str]:
+    return [f"Record {record['name']}: {note}." for record in results.result["records"] for note in record["notes"]]
 
 
 def _failures(results: Results) -> list[str]:

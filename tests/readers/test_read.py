@@ -52,6 +52,26 @@ def test_records_of_one_file_are_numbered_and_rates_may_differ(path):
     assert "corners of the drive" in records[1].notes[0]
 
 
+def test_a_number_that_is_a_name_already_is_left_out(path):
+    axes = {"x": Axis(Channel("u"), Channel("x"))}
+    sources = [Source("loop.txt"), Source("loop.txt", name="loop_1"), Source("loop.txt")]
+    records = read_records(sources, axes, Channel("t"), path.parent)
+    assert [record.name for record in records] == ["loop_2", "loop_1", "loop_3"]
+
+
+def test_samples_that_are_fitted_validate_nothing(path):
+    axes = {"x": Axis(Channel("u"), Channel("x")), "y": Axis(Channel("u"))}
+    taken = {"all": {}, "end": {"rows": (200, 400)}, "middle": {"time": (4.0, 5.5)}, "coarse": {"decimate": 2}}
+    sources = [Source("loop.txt", name="fit", rows=(0, 200))]
+    sources += [Source("loop.txt", "validate", name, **more) for name, more in taken.items()]
+    notes = {record.name: record.notes for record in read_records(sources, axes, Channel("t"), path.parent)}
+    said = "rows {} to 200 are fitted in 'fit', so they validate nothing"
+    assert (notes["fit"], notes["end"]) == ((), ())
+    assert notes["all"] == (said.format(0),)
+    assert notes["middle"] == (said.format(100),)
+    assert not any("fitted" in note for note in notes["coarse"])
+
+
 def test_axes_that_are_driven_but_not_measured(path):
     axes = {"x": Axis(Channel("u"), Channel("x")), "y": Axis(Channel("u"))}
     (record,) = read_records([Source("loop.txt")], axes, Channel("t"), path.parent)

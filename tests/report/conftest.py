@@ -157,6 +157,7 @@ def make_run(
             "sample_rate": samples / 40,
             "settle": 1.0 if use == "identify" else 0.0,
             "axes": list(axes),
+            "notes": ["decimated by 4"] if use == "validate" else [],
             "rmse": {axis: 0.30 + 0.075 * (use == "validate") + 0.01 * place for place, axis in enumerate(axes)},
         }
         for name, use in zip(names, uses, strict=True)

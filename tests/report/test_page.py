@@ -126,6 +126,10 @@ def test_failed_simulations_are_counted(plain):
     )
 
 
+def test_what_is_special_about_a_record_is_told(plain):
+    assert "Record multisine.csv: decimated by 4." in findings(read_results(plain))
+
+
 @pytest.mark.parametrize(("names", "text"), [("a", "a"), ("ab", "a and b"), ("abc", "a, b and c")])
 def test_names_are_listed(names, text):
     assert listed(names) == text
