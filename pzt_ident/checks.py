@@ -56,6 +56,8 @@ def _channels(document: Document, channels: Channels, earlier: Earlier) -> None:
         if not name.isidentifier() or name in blocks.words():
             document.fault(at, f"{name!r} cannot name an axis", "use letters and digits, such as x", at_key=True)
         places += [((*at, "drive"), axis.drive), ((*at, "response"), axis.response)]
+        if alone and axis.drive == axis.response:
+            document.fault((*at, "response"), "is the same channel as the drive", "name the measured displacement")
     for at, channel in places:
         if channel is not None:
             _channel(document, at, channel, alone)

@@ -140,6 +140,7 @@ ONE_FAULT = [
     ('[":", 0]', "[1.5]", "records[1].index[0]: 1.5 is not a whole number or a text", "put it in quotes"),
     ("response:", "respnse:", "8:27: channels.axes.x.respnse: unknown key 'respnse'", "did you mean 'response'"),
     (', response: {column: 5, unit: um}', "", "channels.axes: no axis has a response", "give at least one axis"),
+    ("{column: 5, unit: um}", '"u_x [V]"', "8:37: channels.axes.x.response: is the same channel as", "displacement"),
     ('{drive: "u_y [V]"}', "{}", "9:8: channels.axes.y: missing key 'drive'", "add `drive: ...`"),
     ("column: 5", "column: 0", "8:46: channels.axes.x.response.column: there is no column 0", "count from 1"),
     ("column: 5", 'column: "x"', "8:46: channels.axes.x.response.column: 'x' is not a whole number", "such as 5"),

@@ -72,7 +72,8 @@ def _beginning(path: Path) -> bytes:
     except FileNotFoundError:
         raise InputError("no such file", where=str(path), remedy=_missing(path)) from None
     except OSError as error:
-        raise InputError(error.strerror or "cannot be opened", where=str(path)) from None
+        remedy = "give a file that can be read"
+        raise InputError(error.strerror or "cannot be opened", where=str(path), remedy=remedy) from None
     if not beginning:
         raise InputError("the file is empty", where=str(path), remedy="was the recording stopped before it was saved?")
     return beginning

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -75,7 +76,10 @@ def _numbers(column: Column, values: NDArray[Any], first: int, where: str) -> ND
     except (TypeError, ValueError):
         row = next(i for i, value in enumerate(values) if not _is_number(value))
     problem = f"{column.place(first + row)} holds {str(values[row])!r} instead of a number"
-    raise InputError(problem, where=where, remedy="correct the value, or leave the row out with `rows`")
+    remedy = "correct the value, or leave the row out with `rows`"
+    if re.search(r"\d[:-]\d", str(values[row])):
+        remedy = "dates and times of day are not read: leave `time` out and give `sample_rate`"
+    raise InputError(problem, where=where, remedy=remedy)
 
 
 def _is_number(value: Any) -> bool:

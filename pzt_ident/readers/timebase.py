@@ -40,9 +40,9 @@ def grid_of(stamps: Signal) -> Grid:
         row = int(np.argmax(steps <= 0)) + 1
         verb = "repeats" if steps[row - 1] == 0 else "runs backward"
         problem = f"time {verb} at {stamps.place(row)}: {times[row]:.9g} s after {times[row - 1]:.9g} s"
-        raise InputError(
-            problem, where=stamps.where, remedy="remove the row, or leave `time` out and give `sample_rate`"
-        )
+        before = f"`rows: [{stamps.first}, {stamps.first + row}]`"
+        remedy = f"remove the row, take what is before it with {before}, or leave `time` out and give `sample_rate`"
+        raise InputError(problem, where=stamps.where, remedy=remedy)
     dt = float(times[-1] - times[0]) / steps.size
     if np.abs(times - times[0] - dt * np.arange(times.size)).max() > JITTER * dt:
         usual = float(np.median(steps))

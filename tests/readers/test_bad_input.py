@@ -127,6 +127,23 @@ def test_time_that_is_no_grid(tmp_path, problem, stamp, message):
     assert error.where.endswith("loop.csv: time")
 
 
+def test_time_that_starts_again_says_which_rows_to_take(tmp_path, problem):
+    path = write(tmp_path, *ROWS[:4], *ROWS[:2])
+    assert "`rows: [0, 4]`" in problem(path).remedy
+    assert "`rows: [1, 4]`" in problem(path, rows=(1, None)).remedy
+
+
+@pytest.mark.parametrize("stamp", ["12:30:01.5", "2024-03-01", "2024-03-01 12:30:01.5"])
+def test_time_of_day_is_not_read(tmp_path, problem, stamp):
+    error = problem(write(tmp_path, *(f"{stamp},{i % 2},{i}" for i in range(5))))
+    assert "instead of a number" in error.message
+    assert "give `sample_rate`" in error.remedy
+
+
+def test_a_folder_is_no_file(tmp_path, problem):
+    assert problem(tmp_path).message == "Is a directory"
+
+
 def test_a_missing_sample_is_no_grid(tmp_path, problem):
     assert "2 times the usual" in problem(write(tmp_path, *ROWS[:3], *ROWS[4:])).message
 
