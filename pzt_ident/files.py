@@ -1,12 +1,15 @@
-"""Files that are whole or not there: written beside, then renamed."""
+"""Files that are whole or not there: written beside, then renamed; and the folder for what can be made again."""
 
 from __future__ import annotations
 
+import atexit
 import json
 import os
+import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -52,3 +55,20 @@ def plain(content: Any) -> Any:
     if isinstance(content, float) and (content != content or abs(content) == float("inf")):
         return None
     return content
+
+
+@cache
+def cache_folder() -> Path:
+    """$PZT_IDENT_CACHE, else the user's cache folder, else one for this process and those that it starts."""
+    home = os.environ.get("PZT_IDENT_CACHE") or os.environ.get("XDG_CACHE_HOME") or "~/.cache"
+    try:
+        chosen = Path(home).expanduser() / "pzt_ident"
+        chosen.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=chosen).close()
+    except (OSError, RuntimeError):  # the latter where nobody is at home
+        chosen = Path(tempfile.mkdtemp(prefix="pzt_ident-")) / "pzt_ident"
+        chosen.mkdir()
+        atexit.register(shutil.rmtree, chosen.parent, ignore_errors=True)
+        os.environ["PZT_IDENT_CACHE"] = str(chosen.parent)
+        os.environ.setdefault("NUMBA_CACHE_DIR", str(chosen))  # numba needs one too
+    return chosen

@@ -18,7 +18,10 @@ from numba import cfunc, njit, types
 from numba.extending import intrinsic, overload, register_jitable
 
 from pzt_ident import block
+from pzt_ident.files import cache_folder
 
+cache_folder()
+setattr(numba.config, "CACHE_DIR", os.environ.get("NUMBA_CACHE_DIR", ""))  # noqa: B010
 if "NUMBA_CPU_FEATURES" not in os.environ:  # 512 bit vectors where the processor has them: 1.4 times faster here
     setattr(numba.config, "CPU_FEATURES", binding.get_host_cpu_features().flatten() + ",-prefer-256-bit")  # noqa: B010
     setattr(numba.config, "CPU_NAME", binding.get_host_cpu_name())  # noqa: B010

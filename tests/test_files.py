@@ -7,7 +7,7 @@ import os
 import numpy as np
 import pytest
 
-from pzt_ident.files import replaced, write_json, write_text
+from pzt_ident.files import cache_folder, replaced, write_json, write_text
 
 
 def test_a_file_takes_its_place_whole(tmp_path):
@@ -32,3 +32,24 @@ def test_a_full_disk_leaves_the_old_file_and_is_named(tmp_path):
 def test_json_has_no_word_for_what_is_no_number(tmp_path):
     write_json(tmp_path / "a.json", {1: (np.float64(1.5), float("nan")), "b": np.array([np.inf, 2])})
     assert json.loads((tmp_path / "a.json").read_text()) == {"1": [1.5, None], "b": [None, 2]}
+
+
+@pytest.mark.parametrize("variable", ["PZT_IDENT_CACHE", "XDG_CACHE_HOME"])
+def test_a_cache_folder_that_cannot_be_written_is_replaced(variable, tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("no folder")
+    monkeypatch.delenv("PZT_IDENT_CACHE", raising=False)
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "chosen by the user")
+    monkeypatch.setenv(variable, str(tmp_path / "file"))
+    found = cache_folder.__wrapped__()
+    assert found.is_dir()
+    assert tmp_path not in found.parents
+    assert cache_folder.__wrapped__() == found  # in a process started from here
+    assert os.environ["NUMBA_CACHE_DIR"] == "chosen by the user"
+
+
+def test_the_variable_wins_over_the_users_cache_folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "user"))
+    monkeypatch.delenv("PZT_IDENT_CACHE", raising=False)
+    assert cache_folder.__wrapped__() == tmp_path / "user/pzt_ident"
+    monkeypatch.setenv("PZT_IDENT_CACHE", str(tmp_path / "chosen"))
+    assert cache_folder.__wrapped__() == tmp_path / "chosen/pzt_ident"

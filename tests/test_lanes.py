@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from pzt_ident import kernel, lanes
+from pzt_ident.files import cache_folder
 from pzt_ident.hysteresis.bouc_wen import BoucWen
 from pzt_ident.mechanics.lumped import Lumped
 from rig import model, record
@@ -41,7 +42,7 @@ def scaled(u):
 def cache(tmp_path, monkeypatch):
     """An empty cache folder for the time of a test."""
     monkeypatch.setenv("PZT_IDENT_CACHE", str(tmp_path))
-    monkeypatch.setattr(lanes, "folder", lanes.folder.__wrapped__)
+    monkeypatch.setattr(lanes, "cache_folder", cache_folder.__wrapped__)
     return tmp_path / "pzt_ident"
 
 
@@ -116,24 +117,6 @@ def test_a_write_that_fails_leaves_no_kernel(cache, uncompiled, monkeypatch):
     assert kernels(cache) == []
     compile_again()
     assert len(kernels(cache)) == 1
-
-
-@pytest.mark.parametrize("variable", ["PZT_IDENT_CACHE", "XDG_CACHE_HOME"])
-def test_a_folder_that_cannot_be_written_is_replaced(variable, tmp_path, monkeypatch):
-    (tmp_path / "file").write_text("no folder")
-    monkeypatch.delenv("PZT_IDENT_CACHE", raising=False)
-    monkeypatch.setenv(variable, str(tmp_path / "file"))
-    found = lanes.folder.__wrapped__()
-    assert found.is_dir()
-    assert tmp_path not in found.parents
-
-
-def test_the_variable_wins_over_the_users_folder(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "user"))
-    monkeypatch.delenv("PZT_IDENT_CACHE", raising=False)
-    assert lanes.folder.__wrapped__() == tmp_path / "user/pzt_ident"
-    monkeypatch.setenv("PZT_IDENT_CACHE", str(tmp_path / "chosen"))
-    assert lanes.folder.__wrapped__() == tmp_path / "chosen/pzt_ident"
 
 
 def test_physics_is_declared_without_a_compiler():

@@ -17,6 +17,7 @@ from types import FunctionType, ModuleType
 from typing import Any, NamedTuple
 
 from pzt_ident.block import Bank, Block, Coupling, Operator
+from pzt_ident.files import cache_folder
 
 TEMPLATES = Path(__file__).parent
 FUNCTIONS = ("prepare", "start", "step", "travel", "near", "exact", "output")
@@ -58,7 +59,7 @@ def compile_block(block: type[Block], axes: int, driven: bool) -> Compiled:
     author, host = inspect.getsource(inspect.getmodule(block)), inspect.getsource(kernel)  # type: ignore[arg-type]
     sources = [text, kernel.VERSION, str(layout), str(axes), author, host]
     key = hashlib.sha256("\0".join(sources).encode()).hexdigest()[:16]
-    path = folder() / f"{block.__name__.lower()}_{template}_{key}.py"
+    path = cache_folder() / f"{block.__name__.lower()}_{template}_{key}.py"
     if not path.exists():
         write(path, render(text, layout, axes, kernel))
     return Compiled(load(path, block).tile.address, layout)
@@ -99,19 +100,6 @@ def render(text: str, layout: Layout, axes: int, kernel: ModuleType) -> str:
         TILE=kernel.TILE,
         UNROLL=kernel.UNROLL,
     )
-
-
-@cache
-def folder() -> Path:
-    """$PZT_IDENT_CACHE, else the user's cache folder, else a temporary one where that cannot be written."""
-    home = os.environ.get("PZT_IDENT_CACHE") or os.environ.get("XDG_CACHE_HOME") or "~/.cache"
-    try:
-        chosen = Path(home).expanduser() / "pzt_ident"
-        chosen.mkdir(parents=True, exist_ok=True)
-        tempfile.TemporaryFile(dir=chosen).close()
-    except (OSError, RuntimeError):  # the latter where nobody is at home
-        chosen = Path(tempfile.mkdtemp(prefix="pzt_ident-"))
-    return chosen
 
 
 def write(path: Path, text: str) -> None:
