@@ -70,5 +70,6 @@ def cache_folder() -> Path:
         chosen.mkdir()
         atexit.register(shutil.rmtree, chosen.parent, ignore_errors=True)
         os.environ["PZT_IDENT_CACHE"] = str(chosen.parent)
-        os.environ.setdefault("NUMBA_CACHE_DIR", str(chosen))  # numba needs one too
+        for library in ("NUMBA_CACHE_DIR", "MPLCONFIGDIR"):  # they need one too
+            os.environ.setdefault(library, str(chosen))
     return chosen

@@ -39,12 +39,13 @@ def test_a_cache_folder_that_cannot_be_written_is_replaced(variable, tmp_path, m
     (tmp_path / "file").write_text("no folder")
     monkeypatch.delenv("PZT_IDENT_CACHE", raising=False)
     monkeypatch.setenv("NUMBA_CACHE_DIR", "chosen by the user")
+    monkeypatch.setenv("MPLCONFIGDIR", "likewise")
     monkeypatch.setenv(variable, str(tmp_path / "file"))
     found = cache_folder.__wrapped__()
     assert found.is_dir()
     assert tmp_path not in found.parents
     assert cache_folder.__wrapped__() == found  # in a process started from here
-    assert os.environ["NUMBA_CACHE_DIR"] == "chosen by the user"
+    assert (os.environ["NUMBA_CACHE_DIR"], os.environ["MPLCONFIGDIR"]) == ("chosen by the user", "likewise")
 
 
 def test_the_variable_wins_over_the_users_cache_folder(tmp_path, monkeypatch):
