@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import signal
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from multiprocessing.connection import wait
 from typing import Any
 
@@ -18,9 +20,27 @@ def context() -> Any:
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     if sys.platform == "win32":
         return multiprocessing.get_context("spawn")
+    from multiprocessing import forkserver, resource_tracker
+
     made = multiprocessing.get_context("forkserver")
     made.set_forkserver_preload(["pzt_ident.worker", "pzt_ident.job", "pzt_ident.kernel", "scipy.optimize"])
+    resource_tracker.ensure_running()  # it lets Ctrl-C through
+    with uninterrupted():  # neither does the server hear of it
+        forkserver.ensure_running()
     return made
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Ctrl-C waits, where there are signal masks: a process is started whole, or not at all."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def run_all(
@@ -43,9 +63,10 @@ def run_all(
                 name, arguments = waiting.pop(0)
                 ours, theirs = made.Pipe(duplex=False)
                 process = made.Process(target=entry, args=(*arguments, theirs), name=name, daemon=True)
-                process.start()
+                with uninterrupted():
+                    process.start()
+                    running[ours] = name, process
                 theirs.close()
-                running[ours] = name, process
             for ready in wait(list(running)):
                 pipe: Any = ready
                 name, process = running[pipe]
