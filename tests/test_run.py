@@ -133,6 +133,23 @@ def test_a_run_killed_hard_goes_on_to_the_same_result(folder, finished, tmp_path
     assert numbers(out) == numbers(finished[0])
 
 
+@pytest.mark.parametrize("searching", [False, True])
+def test_ctrl_c_ends_all_processes_and_says_how_to_go_on(folder, tmp_path, searching):
+    out = tmp_path / "out"
+    (tmp_path / "job.yaml").write_text((folder / "job.yaml").read_text().replace("{file: ", f"{{file: {folder}/"))
+    edit(tmp_path / "job.yaml", "generations: 40", "generations: 1000000")
+    command = [sys.executable, "-m", "pzt_ident", "run", str(tmp_path / "job.yaml"), "--out", str(out)]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    while not (out / "runs" / "pso-0.told" if searching else out / "events.jsonl").exists():
+        assert process.poll() is None
+        time.sleep(0.01)
+    os.killpg(process.pid, signal.SIGINT)
+    said = process.communicate(timeout=60)[1]  # returns when the last process that could say something has ended
+    assert process.returncode == 130
+    assert said.endswith(f"`pzt-ident resume {out}` goes on from here\nError: interrupted\n")
+    assert "Traceback" not in said
+
+
 def test_bad_data_leave_nothing_behind(folder, tmp_path):
     (tmp_path / "job.yaml").write_text(JOB)
     with pytest.raises(InputError, match=r"identify\.csv"):
