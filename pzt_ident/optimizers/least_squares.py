@@ -11,7 +11,8 @@ import numpy as np
 from pzt_ident.registry import optimizers
 from pzt_ident.search import Array, Optimizer, Search, setting
 
-STEP = 1.5e-8  # of a forward difference: the square root of the rounding error
+ROUNDING = float(np.finfo(np.float64).eps)
+STEP = ROUNDING**0.5  # of a forward difference
 SMALLEST = 1e-11  # move that ends a start
 
 
@@ -58,7 +59,8 @@ def descend(x: Array, answer: Array) -> Generator[Array, Array, None]:
     before: tuple[Array, Array] | None = None
     damping, growth = 1e-3, 2.0
     while True:
-        steps = np.where(x + STEP > 1, -STEP, STEP)
+        wide = np.full(x.size, STEP) if np.ndim(answer) or hessian is None else widths(float(answer), hessian)
+        steps = np.where(x + wide > 1, -wide, wide)
         tried = yield np.clip(x + np.diag(steps), 0, 1)
         if not np.isfinite(tried).all():
             return
@@ -87,6 +89,12 @@ def descend(x: Array, answer: Array) -> Generator[Array, Array, None]:
             damping, growth = damping * growth, growth * 2
         if gained < 1e-14 * size(answer):
             return
+
+
+def widths(loss: float, hessian: Array) -> Array:
+    """Steps at which the rounding error of a difference equals its curvature error: 2 sqrt(eps |f| / H_ii)."""
+    bend = np.maximum(np.diag(hessian), 1e-300)
+    return np.clip(2 * np.sqrt(ROUNDING * abs(loss) / bend), 1e-10, 1e-6)
 
 
 def bounded_step(x: Array, gradient: Array, hessian: Array, damping: float) -> Array:
