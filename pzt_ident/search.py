@@ -193,7 +193,8 @@ def drive(
             answer = np.asarray(residuals(points), dtype=np.float64)
             losses = rms(answer)
         else:
-            losses = answer = finite(evaluate(points) if known is None else known)
+            losses = finite(evaluate(points) if known is None else known)
+            answer = losses.copy()
         _same_shape(losses, points, "function" if known is None else "checkpoint")
         state = progress.take(points, losses)
         ended = progress.ended_by()
