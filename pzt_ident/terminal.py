@@ -202,7 +202,7 @@ def show_result(result: dict[str, Any], folder: Path) -> None:
         click.echo(f"noise floor of {axis} [{unit}]: {number(floor)}")
     show_notes(result["records"])
     for run in result["failed_runs"]:
-        click.echo(f"{_failed(run)} (`pzt-ident resume {folder}` tries it again)")
+        click.echo(_failed(run))
     page = folder / "report.html"
     click.echo(f"report: {page}" if page.exists() else f"results: {folder}")
 
