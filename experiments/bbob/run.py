@@ -89,8 +89,7 @@ def main() -> None:
     ]
     for word in chosen.only:
         entries = {word: partial(ours, word)}
-        if upstream := PAIRS[word]:
-            entries[f"{word}: upstream {upstream.__name__}"] = upstream
+        entries |= {f"{word}: upstream {solve.__name__}": solve for solve in PAIRS[word]}
         for name, solve in entries.items():
             if name not in known:
                 known[name] = distances(solve, chosen.instances)

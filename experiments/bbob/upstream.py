@@ -15,7 +15,7 @@ LOW, HIGH, DIMENSIONS = -5.0, 5.0, 5
 Function = Callable[[np.ndarray], float]
 
 
-def pyswarms(function: Function, seed: int) -> None:
+def pyswarms(function: Function, seed: int, bounds_by: str = "periodic") -> None:
     """GlobalBestPSO with the inertia and pulls of its constriction equivalent, 20 particles, default bound handling."""
     from pzt_ident.optimizers._swarm import quiet
 
@@ -25,8 +25,13 @@ def pyswarms(function: Function, seed: int) -> None:
 
         bounds = np.full(DIMENSIONS, LOW), np.full(DIMENSIONS, HIGH)
         options = {"w": 0.729, "c1": 1.49445, "c2": 1.49445}
-        swarm = GlobalBestPSO(n_particles=20, dimensions=DIMENSIONS, options=options, bounds=bounds)
+        swarm = GlobalBestPSO(20, DIMENSIONS, options, bounds, bh_strategy=bounds_by)
         swarm.optimize(lambda points: np.array([function(x) for x in points]), iters=10_000, verbose=False)
+
+
+def pyswarms_reflective(function: Function, seed: int) -> None:
+    """The same with the best of its ways to handle bounds."""
+    pyswarms(function, seed, "reflective")
 
 
 def deap(function: Function, seed: int) -> None:
@@ -57,6 +62,14 @@ def scipy_differential_evolution(function: Function, seed: int) -> None:
         differential_evolution(function, [(LOW, HIGH)] * DIMENSIONS, polish=False, maxiter=10_000, rng=rng)
 
 
+def scipy_differential_evolution_to_the_end(function: Function, seed: int) -> None:
+    """SciPy's defaults without its polish, its own convergence test turned off."""
+    from scipy.optimize import differential_evolution
+
+    box = [(LOW, HIGH)] * DIMENSIONS
+    differential_evolution(function, box, polish=False, maxiter=10_000, tol=0, rng=np.random.default_rng(seed))
+
+
 def pycma(function: Function, seed: int) -> None:
     """fmin2 with bounds and BIPOP restarts from random places, sigma a fifth of the range."""
     import cma
@@ -79,12 +92,12 @@ def scipy_lbfgsb(function: Function, seed: int) -> None:
         minimize(function, start, method="L-BFGS-B", bounds=[(LOW, HIGH)] * DIMENSIONS)
 
 
-PAIRS = {
-    "pso": pyswarms,
-    "rga": deap,
-    "differential_evolution": scipy_differential_evolution,
-    "cma_es": pycma,
-    "least_squares": scipy_lbfgsb,
-    "csa": None,
-    "pso_vmax": None,
+PAIRS: dict[str, tuple[Callable[[Function, int], None], ...]] = {
+    "pso": (pyswarms, pyswarms_reflective),
+    "rga": (deap,),
+    "differential_evolution": (scipy_differential_evolution, scipy_differential_evolution_to_the_end),
+    "cma_es": (pycma,),
+    "least_squares": (scipy_lbfgsb,),
+    "csa": (),
+    "pso_vmax": (),
 }
