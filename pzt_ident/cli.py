@@ -8,6 +8,7 @@ import json
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from shlex import quote
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -171,7 +172,7 @@ def init(folder: Path, as_json: bool, quiet: bool) -> None:
     job = folder / "job.yaml"
 
     def say() -> None:
-        click.echo("".join(f"wrote {path}\n" for path in written) + f"next: pzt-ident run {job}")
+        click.echo("".join(f"wrote {path}\n" for path in written) + f"next: pzt-ident run {quote(str(job))}")
 
     _answer({"written": [str(path) for path in written], "job": str(job)}, say, as_json, quiet)
 

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from shlex import quote
 from typing import Any, Protocol, TextIO
 
 import click
@@ -85,7 +86,7 @@ def listening(silent: bool) -> Iterator[Listener]:
             yield _lines(progress)
     except (KeyboardInterrupt, OSError):
         if progress.folder and not silent:
-            click.echo(f"`pzt-ident resume {progress.folder}` goes on from here", err=True)
+            click.echo(f"`pzt-ident resume {quote(progress.folder)}` goes on from here", err=True)
         raise
     finally:
         signal.signal(signal.SIGTERM, before)

@@ -283,6 +283,9 @@ class TestInit:
         assert files(folder) == {"job.yaml", "x_identify.csv", "x_validate.csv"}
         assert call("check", str(folder / "job.yaml")).exit_code == 0
 
+    def test_says_what_to_type_next(self, folder):
+        assert "next: pzt-ident run 'my stage/job.yaml'\n" in call("init", "my stage").stdout
+
     def test_overwrites_nothing(self, tmp_path):
         (tmp_path / "x_validate.csv").write_text("mine")
         result = call("init", str(tmp_path))
