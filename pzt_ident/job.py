@@ -6,6 +6,7 @@ from __future__ import annotations
 import copy
 import hashlib
 import json
+import re
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any
@@ -60,7 +61,7 @@ class Job(BaseModel):
         if not isinstance(document.data, dict):
             kind = "empty" if document.data is None else "a list" if isinstance(document.data, list) else "one value"
             reject(file, [Fault(1, 1, "", f"the job is {kind}", "write `name: ...`, `records: ...` and so on")])
-        data = {"name": Path(file).stem} | written_out(document)
+        data = {"name": _folder_name(file)} | written_out(document)
         job = cls._validated(document, data)
         if job is None or document.faults:
             reject(file, document.faults)
@@ -95,6 +96,10 @@ class Job(BaseModel):
 
     def __hash__(self) -> int:
         return hash(self.hash)
+
+
+def _folder_name(file: str) -> str:
+    return re.sub(r"[^\w .+-]+", "-", Path(file).stem).strip(" .+-") or "job"
 
 
 def load_job(path: Path) -> Job:

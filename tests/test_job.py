@@ -98,6 +98,13 @@ def test_short_job_has_defaults():
     assert (job.repeats, job.seed, job.polish, job.effects, job.parameters) == (1, 0, True, (), {})
 
 
+@pytest.mark.parametrize(
+    ("file", "name"), [("a/x-axis.yaml", "x-axis"), ("Tisch (1).yml", "Tisch -1"), ("µ.yaml", "µ"), ("(!).yaml", "job")]
+)
+def test_a_job_without_a_name_has_that_of_its_file(file, name):
+    assert Job.from_text(GOOD.replace("name: stage\n", ""), file=file).name == name
+
+
 def test_hash_is_of_the_content():
     job = Job.from_text(GOOD)
     assert job.hash == Job.from_text("# a comment\n" + GOOD.replace("0.2 kHz", "200")).hash
