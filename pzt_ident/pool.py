@@ -6,12 +6,14 @@ import multiprocessing
 import os
 import signal
 import sys
+import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from multiprocessing.connection import wait
 from typing import Any
 
 Event = dict[str, Any]
+SECONDS_DEAF = 0.1
 
 
 def context() -> Any:
@@ -25,14 +27,14 @@ def context() -> Any:
     made = multiprocessing.get_context("forkserver")
     made.set_forkserver_preload(["pzt_ident.worker", "pzt_ident.job", "pzt_ident.kernel", "scipy.optimize"])
     resource_tracker.ensure_running()  # it lets Ctrl-C through
-    with uninterrupted():  # neither does the server hear of it
+    with masked():  # neither does the server hear of it
         forkserver.ensure_running()
     return made
 
 
 @contextmanager
-def uninterrupted() -> Iterator[None]:
-    """Ctrl-C waits, where there are signal masks: a process is started whole, or not at all."""
+def masked() -> Iterator[None]:
+    """Started inside, a process is deaf to Ctrl-C, where there are signal masks."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -41,6 +43,28 @@ def uninterrupted() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def held_back() -> Iterator[Callable[[], None]]:
+    """An interrupt waits for the next call of what this gives: raised in the middle of an import it can get lost."""
+    asked: list[int] = []
+
+    def check() -> None:
+        if asked:
+            raise KeyboardInterrupt
+
+    main = threading.current_thread() is threading.main_thread()
+    raising = [n for n in (signal.SIGINT, signal.SIGTERM) if signal.getsignal(n) is signal.default_int_handler]
+    changed = raising if main else []
+    for number in changed:
+        signal.signal(number, lambda number, frame: asked.append(number))
+    try:
+        yield check
+    finally:
+        for number in changed:
+            signal.signal(number, signal.default_int_handler)
+    check()
 
 
 def run_all(
@@ -54,39 +78,51 @@ def run_all(
 
     Returns the reason for each name that failed. Ends all processes when interrupted.
     """
-    waiting, made = list(jobs), context()
+    waiting, failed = list(jobs), dict[str, str]()
     running: dict[Any, tuple[str, Any]] = {}
-    failed: dict[str, str] = {}
-    try:
-        while waiting or running:
-            while waiting and len(running) < (workers or os.cpu_count() or 1):
-                name, arguments = waiting.pop(0)
-                ours, theirs = made.Pipe(duplex=False)
-                process = made.Process(target=entry, args=(*arguments, theirs), name=name, daemon=True)
-                with uninterrupted():
-                    process.start()
+    with held_back() as check:
+        made = context()
+        try:
+            while waiting or running:
+                check()
+                while waiting and len(running) < (workers or os.cpu_count() or 1):
+                    name, arguments = waiting.pop(0)
+                    ours, process = started(made, entry, name, arguments)
                     running[ours] = name, process
-                theirs.close()
-            for ready in wait(list(running)):
-                pipe: Any = ready
-                name, process = running[pipe]
-                try:
-                    event = pipe.recv()
-                except EOFError:
-                    event = {"event": "failed", "run": name, "reason": died(process)}
-                if event is None or event["event"] == "failed":
-                    del running[pipe]
-                    process.join()
-                if event is not None:
-                    tell(event)
-                    if event["event"] == "failed":
-                        failed[name] = event["reason"]
-    finally:
-        for _, process in running.values():
-            process.terminate()
-        for _, process in running.values():
-            process.join()
+                for ready in wait(list(running), SECONDS_DEAF):
+                    name, process = running[ready]
+                    event = said(ready, name, process)
+                    if event is None or event["event"] == "failed":
+                        del running[ready]
+                        process.join()
+                    if event is not None:
+                        tell(event)
+                        if event["event"] == "failed":
+                            failed[name] = event["reason"]
+        finally:
+            for _, process in running.values():
+                process.terminate()
+            for _, process in running.values():
+                process.join()
     return failed
+
+
+def started(made: Any, entry: Callable[..., None], name: str, arguments: tuple[Any, ...]) -> tuple[Any, Any]:
+    """Our end of its pipe, and the process."""
+    ours, theirs = made.Pipe(duplex=False)
+    process = made.Process(target=entry, args=(*arguments, theirs), name=name, daemon=True)
+    process.start()
+    theirs.close()
+    return ours, process
+
+
+def said(pipe: Any, name: str, process: Any) -> Event | None:
+    """What came through the pipe; where it broke, why."""
+    try:
+        event: Event | None = pipe.recv()
+    except EOFError:
+        event = {"event": "failed", "run": name, "reason": died(process)}
+    return event
 
 
 def died(process: Any) -> str:
