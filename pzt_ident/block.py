@@ -22,13 +22,15 @@ class Place(IntEnum):
     DELAY = 0
     SLEW = 1
     AMPLIFIER = 2
-    OPERATOR = 3
-    STATIC = 4
+    READOUT = 3
+    OPERATOR = 4
     CREEP = 5
     COUPLING = 6
-    MECHANICS = 7
-    OUTPUT = 8
-    SENSOR = 9
+    GUIDE = 7
+    MECHANICS = 8
+    MODE = 9
+    OUTPUT = 10
+    SENSOR = 11
 
 
 def expm1(x: float) -> float:
@@ -47,11 +49,17 @@ class Block:
     prepare(*parameters[, dt][, span]) -> coefficients; dt in s, span the peak-to-peak drive of the axis.
     start(u, *coefficients) -> states.
     step(*states, u, *coefficients) -> (*states, y).
+
+    What can be missing from a model is an effect and says more of itself: which effects leave the same trace, the
+    experiment that tells them apart, and what to do about it on the rig.
     """
 
     name: ClassVar[str] = ""
     place: ClassVar[Place]
     oversample: ClassVar[int] = 1
+    looks_like: ClassVar[tuple[str, ...]] = ()
+    separate_by: ClassVar[str] = ""
+    remedy: ClassVar[str] = ""
 
     def __init_subclass__(cls) -> None:
         for word, function in list(vars(cls).items()):

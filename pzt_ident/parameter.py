@@ -17,6 +17,7 @@ class Parameter:
     `null` is the value at which the block is exactly the identity; None where there is none.
     `effect` names the effect that the parameter belongs to; unless the job lists it, the parameter stays at its null.
     `count` makes a parameter one of each branch of the block, `weight_1`, `weight_2`, ...
+    `per_record` gives every record one of its own, for what begins anew or at another phase with each measurement.
     `value` is what it is fixed to unless the job frees it with bounds.
     """
 
@@ -27,6 +28,7 @@ class Parameter:
     scale: Literal["linear", "log"] = "linear"
     effect: str | None = None
     count: int | None = None
+    per_record: bool = False
     value: float | None = None
     name: str = ""
 
