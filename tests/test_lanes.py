@@ -21,7 +21,7 @@ from pzt_ident.block import Block, Place
 
 class Times(Block):
     name = "times"
-    place = Place.STATIC
+    place = Place.CREEP
 
     def prepare():
         return ()
