@@ -128,6 +128,21 @@ def _identify(start: Callable[[Listener], Path], as_json: bool, quiet: bool) -> 
 
 
 @main.command()
+@click.argument("source", metavar="JOB-or-DIR", type=EXISTING)
+@click.option("--out", type=EXISTING, help="Folder for the results; DIR, or results/<name>/<time>-<hash>.")
+@output
+def compare(source: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
+    """Say where the model fails: the best run in the folder DIR, or of the job file JOB, which is run first."""
+    from pzt_ident import atlas, terminal
+    from pzt_ident.compare import compare, finished
+
+    with terminal.listening(silent=as_json or quiet) as listen:
+        folder = finished(source, out, listen)
+    found = compare(folder, out or folder)
+    _answer({"folder": str(out or folder), "residuals": found}, lambda: atlas.show_misfits(found), as_json, quiet)
+
+
+@main.command()
 @click.argument("job", type=EXISTING)
 @output
 def check(job: Path, as_json: bool, quiet: bool) -> None:

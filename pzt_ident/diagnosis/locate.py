@@ -1,0 +1,214 @@
+"""Where the misfit is: its share above the noise floor by record, branch, amplitude, rate, frequency and so on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations_with_replacement
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pzt_ident.diagnosis import wording
+from pzt_ident.diagnosis.noise import Floor
+from pzt_ident.diagnosis.sorting import Sorting, Tally, by_frequency, by_line, tally
+from pzt_ident.diagnosis.stretches import Stretch, worst_stretches
+from pzt_ident.diagnosis.views import sortings
+from pzt_ident.record import Record
+from pzt_ident.units import factor
+
+Array = NDArray[np.float64]
+
+CERTAIN = 4.0
+"""Standard deviations of the mean square of white noise beyond which an excess is not chance."""
+FLOOR_ERROR = 0.05
+"""Relative error of the squared noise floor within which there is no misfit to speak of."""
+EXCESS, LIFT = 0.15, 1.5
+"""A dominant part has so much more of the misfit than of the samples, and so many times as much."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A bin: its share of the misfit and of the samples, its RMSE (None where it is empty), and whether it is below
+    the noise, so that its share was cut to 0. `lower` and `upper` are its limits where it has neighbours."""
+
+    label: str
+    lower: float | None
+    upper: float | None
+    share: float
+    samples: float
+    rmse: float | None
+    below_noise: bool
+
+
+@dataclass(frozen=True)
+class Dominant:
+    """The run of bins, `first` to `last`, that has most of the misfit for its samples. sharpness: Kullback-Leibler
+    divergence of the two shares, nat (Kulldorff's scan statistic per unit of misfit)."""
+
+    first: int
+    last: int
+    share: float
+    samples: float
+    sharpness: float
+    sentence: str
+
+
+@dataclass(frozen=True)
+class View:
+    """The misfit sorted by one thing; `covers` is the share of the scored samples that could be sorted so."""
+
+    name: str
+    unit: str
+    covers: float
+    bins: tuple[Part, ...]
+    dominant: Dominant | None
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """Two views crossed: RMSE (None where empty) and share of the misfit, rows by columns."""
+
+    rows: str
+    columns: str
+    row_labels: tuple[str, ...]
+    column_labels: tuple[str, ...]
+    rmse: tuple[tuple[float | None, ...], ...]
+    share: tuple[tuple[float, ...], ...]
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """What the model of one axis leaves, over the scored samples of all records, in the user's unit:
+    rmse^2 = noise_floor^2 + misfit^2, the misfit being 0 where the difference may be chance."""
+
+    axis: str
+    unit: str
+    samples: int
+    rmse: float
+    noise_floor: float
+    noise_source: str
+    misfit: float
+    views: tuple[View, ...]
+    map: Crossing | None
+    worst: tuple[Stretch, ...]
+    sentences: tuple[str, ...]
+
+
+def locate(records: Sequence[Record], residuals: Sequence[Array], floors: Sequence[Floor]) -> list[Misfit]:
+    """Where each measured axis misfits.
+
+    residuals: of each record, (measured axes, samples), SI units, offset removed. floors: one a measured axis.
+    """
+    return [
+        of_axis(records, [part[i, r.settle :] for part, r in zip(residuals, records, strict=True)], axis, floors[i])
+        for i, axis in enumerate(records[0].measured)
+    ]
+
+
+def of_axis(records: Sequence[Record], residuals: list[Array], axis: int, floor: Floor) -> Misfit:
+    """`residuals` are those of the scored samples, (samples,) each."""
+    unit = str(records[0].response_units[axis])
+    parts = [part / factor(unit) for part in residuals]
+    noise, samples = floor.value / factor(unit), sum(part.size for part in parts)
+    square = float(np.square(np.concatenate(parts)).mean())
+    excess = square - noise**2
+    missing = excess if excess > noise**2 * max(FLOOR_ERROR, CERTAIN * np.sqrt(2 / samples)) else 0.0
+    sorted_by = sortings(records, axis)
+    spectral = [by_frequency(parts, [r.dt for r in records]), by_line(parts, [r.drive[:, r.settle :] for r in records])]
+    tallies = [*(tally(sorting, parts) for sorting in sorted_by), *filter(None, spectral)]
+    views = tuple(view(found, noise, samples, missing > 0) for found in tallies)
+    rmse, misfit = float(np.sqrt(square)), float(np.sqrt(missing))
+    return Misfit(
+        records[0].axes[axis],
+        unit,
+        samples,
+        rmse,
+        noise,
+        floor.source,
+        misfit,
+        views,
+        crossing(sorted_by, views, parts, noise) if missing else None,
+        worst_stretches(records, parts, noise) if missing else (),
+        tuple(wording.account(misfit, [found.dominant for found in views])),
+    )
+
+
+def view(found: Tally, noise: float, samples: int, missing: bool) -> View:
+    shares = shares_of(found.squares, found.counts, noise) if missing else np.zeros(found.counts.size)
+    of_samples = found.counts / found.counts.sum()
+    excess = found.squares - found.counts * noise**2
+    with np.errstate(invalid="ignore"):
+        rmse = np.sqrt(found.squares / found.counts)
+    bins = tuple(
+        Part(*own, float(shares[k]), float(of_samples[k]), finite(rmse[k]), bool(excess[k] < 0))
+        for k, own in enumerate(found.bins)
+    )
+    covers = float(found.counts.sum() / samples)
+    return View(found.name, found.unit, covers, bins, dominant(found, shares, of_samples, noise) if missing else None)
+
+
+def shares_of(squares: Array, counts: Array, noise: float) -> Array:
+    """Shares of the excess over the noise, what is below it cut to 0; they sum to 1 unless all is below."""
+    excess = np.maximum(squares - counts * noise**2, 0.0)
+    return excess / (excess.sum() or 1.0)
+
+
+def dominant(found: Tally, shares: Array, samples: Array, noise: float) -> Dominant | None:
+    """The sharpest run of neighbouring bins, where it is sharp enough and beyond chance."""
+    best = None
+    for first, last in runs(found):
+        own = slice(first, last + 1)
+        share, part, count = float(shares[own].sum()), float(samples[own].sum()), float(found.counts[own].sum())
+        chance = CERTAIN * noise**2 * np.sqrt(2 * count)
+        certain = found.squares[own].sum() - noise**2 * count > chance
+        if certain and share - part >= EXCESS and share >= LIFT * part:
+            sharpness = divergence(np.array([share, 1 - share]), np.array([part, 1 - part]))
+            if best is None or sharpness > best.sharpness + 1e-9:
+                best = Dominant(first, last, share, part, sharpness, wording.sentence(found, first, last, share, part))
+    return best
+
+
+def runs(found: Tally) -> list[tuple[int, int]]:
+    """First and last of every run of neighbouring bins; a bin without limits has no neighbours."""
+    ordered = [own.lower is not None for own in found.bins]
+    pairs = combinations_with_replacement(range(len(ordered)), 2)
+    return [(i, j) for i, j in pairs if i == j or all(ordered[i : j + 1])]
+
+
+def divergence(shares: Array, samples: Array) -> float:
+    """sum of share ln(share / samples), nat."""
+    known = (shares > 0) & (samples > 0)
+    return float((shares[known] * np.log(shares[known] / samples[known])).sum())
+
+
+def crossing(sorted_by: list[Sorting], views: Sequence[View], residuals: list[Array], noise: float) -> Crossing | None:
+    """The two views that tell most, crossed; None where fewer than two have more than one bin in use."""
+    telling = [
+        (divergence(np.array([b.share for b in own.bins]), np.array([b.samples for b in own.bins])), -place)
+        for place, own in enumerate(views[: len(sorted_by)])
+        if sum(b.samples > 0 for b in own.bins) > 1
+    ]
+    if len(telling) < 2:
+        return None
+    first, second = sorted(-place for _, place in sorted(telling, reverse=True)[:2])
+    rows, columns = sorted_by[first], sorted_by[second]
+    shape = (len(rows.bins), len(columns.bins))
+    places = np.concatenate([a * shape[1] + b for a, b in zip(rows.places, columns.places, strict=True)])
+    squares = np.bincount(places, np.square(np.concatenate(residuals)), shape[0] * shape[1]).astype(np.float64)
+    counts = np.bincount(places, minlength=squares.size).astype(np.float64)
+    shares = shares_of(squares, counts, noise).reshape(shape)
+    with np.errstate(invalid="ignore"):
+        rmse = np.sqrt(squares / counts).reshape(shape)
+    return Crossing(
+        rows.name,
+        columns.name,
+        tuple(own.label for own in rows.bins),
+        tuple(own.label for own in columns.bins),
+        tuple(tuple(map(finite, row)) for row in rmse),
+        tuple(tuple(map(float, row)) for row in shares),
+    )
+
+
+def finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
