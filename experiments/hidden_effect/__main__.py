@@ -1,0 +1,34 @@
+"""python -m experiments.hidden_effect draw | solve | score"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from experiments.hidden_effect import cases
+
+FOLDER = click.Path(file_okay=False, path_type=Path)
+
+
+@click.group()
+def main() -> None:
+    """Hide effects in a virtual stage, let pzt-ident find them, and count."""
+
+
+@main.command()
+@click.option("--seed", type=int, required=True, help="Seed of the first case; the next ones count on.")
+@click.option("--cases", "count", type=click.IntRange(1), default=1, show_default=True)
+@click.option("--kind", type=click.Choice(list(cases.KINDS)), required=True)
+@click.option("--effect", type=click.Choice(list(cases.EFFECTS)), help="This one instead of one by chance.")
+@click.option("--out", type=FOLDER, required=True)
+def draw(seed: int, count: int, kind: str, effect: str | None, out: Path) -> None:
+    """Write cases/NAME with records and job, and sealed/NAME.json with the truth."""
+    for number in range(seed, seed + count):
+        case, truth = cases.draw(kind, number, effect)
+        cases.write(case, truth, out)
+        click.echo(case.name)
+
+
+if __name__ == "__main__":
+    main()
