@@ -43,6 +43,16 @@ def log1p(x: float) -> float:
     return math.log1p(x) if x > -1 else math.nan
 
 
+def sin(x: float) -> float:
+    """sin(x) for blocks, likewise; good to 1e-15 while |x| < 1e4."""
+    return math.sin(x) if math.isfinite(x) else math.nan
+
+
+def cos(x: float) -> float:
+    """cos(x) for blocks, likewise; good to 1e-15 while |x| < 1e4."""
+    return math.cos(x) if math.isfinite(x) else math.nan
+
+
 class Block:
     """One box of the signal chain, acting on each axis with that axis' own parameters.
 

@@ -8,7 +8,7 @@ the hash of its source; the driver calls it through its address, so no combinati
 from __future__ import annotations
 
 import os
-from math import log
+from math import log, pi
 from typing import Any
 
 import numba
@@ -63,6 +63,7 @@ mantissa = bitwise(
 SHIFT = 1.5 * 2**52
 PER_LN2 = 1 / log(2)
 LN2_HIGH, LN2_LOW = float.fromhex("0x1.62e42fefap-1"), float.fromhex("0x1.cf79abc9e3b3ap-40")
+PI_HIGH, PI_LOW = float.fromhex("0x1.921fb54442p+1"), float.fromhex("0x1.a308d313198a3p-40")
 
 
 @register_jitable(forceinline=True)
@@ -95,6 +96,30 @@ def log1p_lanes(x):
     return n * LN2_HIGH + (2 * s + (2 * s * z * p + (rounding + n * LN2_LOW)))
 
 
+@register_jitable(forceinline=True)
+def half_wave(x, n, turns):
+    """(-1)^n sin(x - turns pi), the argument within pi / 2 of zero; Chebyshev fit to (sin(r) / r - 1) / r^2."""
+    r = (x - turns * PI_HIGH) - turns * PI_LOW
+    z = r * r
+    p = -2.505210761393476e-08 + z * (1.6058977114074673e-10 + z * (-7.643963965925357e-13 + z * 2.731365867494017e-15))
+    p = 0.008333333333333316 + z * (-0.00019841269841254885 + z * (2.7557319219139183e-06 + z * p))
+    odd = n - 2 * ((0.5 * n + SHIFT) - SHIFT)
+    return (1 - 2 * abs(odd)) * (r + r * z * (-0.16666666666666666 + z * p))
+
+
+@register_jitable(forceinline=True)
+def sin_lanes(x):
+    n = (x / pi + SHIFT) - SHIFT
+    return half_wave(x, n, n)
+
+
+@register_jitable(forceinline=True)
+def cos_lanes(x):
+    """By sin(x + pi / 2), so that x is reduced before anything is added to it."""
+    n = (x / pi + 0.5 + SHIFT) - SHIFT
+    return half_wave(x, n, n - 0.5)
+
+
 @overload(block.expm1, jit_options={"forceinline": True})
 def _expm1(x):
     return lambda x: expm1_lanes(x)
@@ -103,6 +128,16 @@ def _expm1(x):
 @overload(block.log1p, jit_options={"forceinline": True})
 def _log1p(x):
     return lambda x: log1p_lanes(x)
+
+
+@overload(block.sin, jit_options={"forceinline": True})
+def _sin(x):
+    return lambda x: sin_lanes(x)
+
+
+@overload(block.cos, jit_options={"forceinline": True})
+def _cos(x):
+    return lambda x: cos_lanes(x)
 
 
 @intrinsic

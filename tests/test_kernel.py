@@ -8,7 +8,7 @@ from numba import njit
 
 from pzt_ident import block, kernel
 
-EXPM1, LOG1P = kernel.expm1_lanes, kernel.log1p_lanes
+EXPM1, LOG1P, SIN, COS = kernel.expm1_lanes, kernel.log1p_lanes, kernel.sin_lanes, kernel.cos_lanes
 
 
 @njit(fastmath={"contract"}, error_model="numpy")
@@ -24,6 +24,14 @@ def log1p(x):
     found = np.empty_like(x)
     for i in range(x.size):
         found[i] = LOG1P(x[i])
+    return found
+
+
+@njit(fastmath={"contract"}, error_model="numpy")
+def waves(x):
+    found = np.empty((2, x.size))
+    for i in range(x.size):
+        found[0, i], found[1, i] = SIN(x[i]), COS(x[i])
     return found
 
 
@@ -72,8 +80,29 @@ def test_inverse_of_each_other():
     np.testing.assert_allclose(expm1(log1p(x)), x, rtol=1e-13)
 
 
+def test_waves_over_many_turns():
+    x = np.concatenate([both_signs(-300, 4), np.random.default_rng(1).uniform(-7, 7, 40000)])
+    np.testing.assert_allclose(waves(x), [np.sin(x), np.cos(x)], rtol=0, atol=1e-15)
+    small = both_signs(-300, -1)
+    np.testing.assert_allclose(waves(small)[0], np.sin(small), rtol=1e-15)
+
+
+def test_waves_where_their_argument_is_split():
+    """At odd multiples of pi / 2 the half wave changes; the digits of a zero are those of the argument."""
+    x = math.pi * np.arange(-6000, 6000) / 2
+    x = np.concatenate([x, np.nextafter(x, 1e9), np.nextafter(x, -1e9)])
+    np.testing.assert_allclose(waves(x), [np.sin(x), np.cos(x)], rtol=0, atol=1e-15)
+
+
+def test_waves_begin_at_rest_and_end_in_no_number():
+    assert waves(np.zeros(1)).ravel().tolist() == [0, 1]
+    assert np.isnan(waves(np.array([np.nan, np.inf]))).all()
+
+
 def test_authors_have_them_in_plain_python():
-    assert block.expm1(1e-20) == block.log1p(1e-20) == 1e-20
+    assert block.expm1(1e-20) == block.log1p(1e-20) == block.sin(1e-20) == 1e-20
+    assert block.cos(0.0) == 1
+    assert math.isnan(block.sin(math.inf)) and math.isnan(block.cos(math.inf))
     assert math.isnan(block.log1p(-1.0)) and math.isnan(block.log1p(-5.0))
 
 
