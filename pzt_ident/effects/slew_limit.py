@@ -1,0 +1,36 @@
+"""Amplifier whose current limits how fast the voltage of a capacitive load can change."""
+
+from math import inf
+
+from pzt_ident.block import Block, Place
+from pzt_ident.parameter import Parameter
+from pzt_ident.registry import blocks
+
+
+@blocks.register
+class SlewLimit(Block):
+    """The current limit holds the voltage's rate: |dU_a/dt| <= 1 / slowness, slowness = C / I_max.
+
+    Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems. Exact for a command that is linear
+    between samples: a voltage behind one that comes back meets it within the sample and may then lag on its other side.
+    """
+
+    place = Place.SLEW
+    slowness = Parameter("s/drive", (0, 0.1), "Capacitance over the greatest current.", null=0)
+    looks_like = ("amplifier_lag", "sensor_lag")
+    separate_by = "Sweep the amplitude at one frequency: this sets in where frequency times amplitude is too much."
+    remedy = "Stay below the slew rate, round the corners of the drive, or take an amplifier of more current."
+
+    def prepare(slowness, dt):
+        return (dt / slowness if slowness != 0 else inf,)
+
+    def start(u, limit):
+        return u, u
+
+    def step(y, before, u, limit):
+        sign = 1.0 if before >= y else -1.0
+        comes = sign * (before - u)
+        met = min(1.0, abs(before - y) / (limit + abs(comes)))
+        follows = u if abs(u - y) <= limit else y + (limit if u > y else -limit)
+        y = y + sign * limit * (2 * met - 1) if comes > limit else follows
+        return y, u, y
