@@ -1,0 +1,28 @@
+"""Displacement of another axis that the sensor of one axis sees."""
+
+from pzt_ident.block import Coupling, Place
+from pzt_ident.parameter import Parameter
+from pzt_ident.registry import blocks
+
+
+@blocks.register
+class KinematicCoupling(Coupling):
+    """The sensor of axis 1 stands askew or off the axis of rotation (Abbe): y1 <- x1 + ratio x2, behind the mechanics.
+
+    Yong, Moheimani, Kenton & Leang (2012), Rev. Sci. Instrum. 83, 121101.
+    """
+
+    place = Place.OUTPUT
+    ratio = Parameter("1", (-0.2, 0.2), "Share of the other axis' displacement in this axis' reading.", null=0)
+    looks_like = ("cross_coupling",)
+    separate_by = (
+        "Chirp the other axis beyond the resonances of both with this one at rest: this coupling rings at the other "
+        "axis' resonance, stiffness coupling at this axis' own."
+    )
+    remedy = "Align the sensors with the axes, or take the identified share of the other axis out of the readings."
+
+    def prepare(ratio):
+        return (ratio,)
+
+    def step(y, other, ratio):
+        return y + ratio * other
