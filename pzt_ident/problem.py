@@ -109,12 +109,10 @@ class Problem:
             problem = f"the drive of axis {self.model.axes[slot.axis]} is constant: nothing to scale {slot.name} by"
             remedy = "is it the right column? Else give the parameter `bounds` or a `value`"
             raise InputError(problem, where=records[0].file or records[0].name, remedy=remedy)
-        size, sign = 1.0, 1
-        for token in re.findall(r"[\w.]+|[*/]", slot.parameter.unit):
-            if token in "*/":
-                sign = 1 if token == "*" else -1
-            else:
-                size *= (spans[token] if token in spans else factor(token) if token != "1" else 1.0) ** sign
+        size = 1.0
+        for joint, token, power in re.findall(r"([*/]?)([\w.]+)(?:\^(\d+))?", slot.parameter.unit):
+            one = spans[token] if token in spans else factor(token)
+            size *= one ** ((-1 if joint == "/" else 1) * int(power or 1))
         return size
 
     def _enough(self, identify: list[Record]) -> None:
