@@ -1,0 +1,32 @@
+"""Error of an encoder that repeats with its grating."""
+
+from math import pi
+
+from pzt_ident.block import Block, Place, cos, sin
+from pzt_ident.parameter import Parameter
+from pzt_ident.registry import blocks
+
+
+@blocks.register
+class EncoderCyclicError(Block):
+    """Unequal signals between lines of the grating: y = x + a sin(2 pi x / p) + b (cos(2 pi x / p) - 1).
+
+    Fleming (2013), Sensors and Actuators A 190, 106 (sub-divisional error). Zero at x = 0; valid for |x| < 1000 p.
+    """
+
+    place = Place.SENSOR
+    sine = Parameter("response", (-0.02, 0.02), "Error of the first harmonic, odd about x = 0.", null=0)
+    cosine = Parameter("response", (-0.02, 0.02), "Error of the first harmonic, even about x = 0.", null=0)
+    pitch = Parameter("response", (0.01, 2), "Period of the grating's signal.", scale="log")
+    looks_like = ("quadratic_gain", "cubic_stiffness", "saturation")
+    separate_by = "Shift the encoder head by half a pitch and repeat: this error changes its sign, all others stay."
+    remedy = "Correct offset, gain and phase of the encoder's signals, or subtract the error tabulated over a pitch."
+
+    def prepare(sine, cosine, pitch):
+        return sine, cosine, 2 * pi / pitch
+
+    def start(u, sine, cosine, wave):
+        return ()
+
+    def step(u, sine, cosine, wave):
+        return u + sine * sin(wave * u) + cosine * (cos(wave * u) - 1)
