@@ -14,6 +14,12 @@ class CrossCoupling(Coupling):
 
     place = Place.COUPLING
     ratio = Parameter("1", (-0.2, 0.2), "Stiffness coupling k12 / k11 from the other axis.", null=0)
+    looks_like = ("kinematic_coupling",)
+    separate_by = (
+        "Chirp the other axis beyond the resonances of both with this one at rest: stiffness coupling rings at this "
+        "axis' own resonance, a kinematic one at the other's."
+    )
+    remedy = "Feed the identified share of the other axis' drive forward, or decouple the axes in the controller."
 
     def prepare(ratio):
         return (ratio,)
