@@ -37,9 +37,11 @@ def model(*chain, axes=None, measured=None):
 
 
 def response(chain, parameters, *drives, dt=1e-3, **more):
-    """Response of one candidate, (axes, samples), or (samples,) for one axis. Parameters as named in `Model.names`."""
+    """Response of one candidate, (axes, samples), or (samples,) for one axis. Parameters as named in `Model.names`;
+    those that belong to an effect are at their null unless given."""
     made = model(*chain, axes=len(drives))
-    theta = np.array([[parameters[name] for name in made.names]])
+    nulls = {slot.name: slot.parameter.null for slot in made.slots if slot.parameter.effect}
+    theta = np.array([[(nulls | parameters)[name] for name in made.names]])
     found = made.simulate(record(*drives, dt=dt, **more), theta)[0]
     return found if len(drives) > 1 else found[0]
 
@@ -60,7 +62,8 @@ def size(unit, drive, response):
     """What the bounds of a parameter in `drive` or `response` units are multiples of."""
     spans = {"drive": drive, "response": response}
     top, _, bottom = unit.partition("/")
-    return spans.get(top, 1) / spans.get(bottom, 1)
+    below, _, power = bottom.partition("^")
+    return spans.get(top, 1) / spans.get(below, 1) ** int(power or 1)
 
 
 def path(*levels, points=100):

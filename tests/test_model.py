@@ -51,7 +51,8 @@ def test_names_carry_the_axis_only_where_there_are_several():
         "x.bouc_wen.gain",
         "y.bouc_wen.gain",
         "x.lumped.mass",
-        "y.lumped.damping",
+        "x.lumped.extra_damping",
+        "y.lumped.load",
     )
     assert model("cross_coupling").names == ("x.cross_coupling.ratio", "y.cross_coupling.ratio")
     assert model("cross_coupling", axes=2, measured=[0]).names == ("cross_coupling.ratio",)

@@ -16,6 +16,7 @@ from pzt_ident.search import Stop, drive
 
 TRUTH = {"bouc_wen.gain": 0.082, "bouc_wen.alpha": 0.56, "bouc_wen.beta": 0.015, "bouc_wen.gamma": 0.055}
 MECHANICS = {"lumped.mass": 0.16, "lumped.damping": 100.0, "lumped.stiffness": 7e7}
+NONE = {"lumped.load": 0.0, "lumped.extra_damping": 0.0}
 
 
 def wish(bounds=None, value=None):
@@ -31,7 +32,7 @@ def made(words, truth, noise=0.0, offset=3e-6, **more):
     records = []
     for use, u in drives.items():
         blank = Record(use, use, 1e-3, u[None], np.zeros((1, u.size)) + u * 1e-7, response_units=("um",), **more)
-        si = [truth[name] * (1e-6 if name.endswith("gain") else 1) for name in model.names]
+        si = [(truth | NONE)[name] * (1e-6 if name.endswith("gain") else 1) for name in model.names]
         y = model.simulate(blank, np.array([si]))[0] + offset + rng.normal(0, noise, (1, u.size))
         records.append(Record(use, use, 1e-3, u[None], y, response_units=("um",), **more))
     return model, records
@@ -53,6 +54,23 @@ def test_loss_is_the_norm_of_the_residuals():
     residuals = problem.residuals(points)
     assert residuals.shape == (30, 3500) == (30, problem.scored)
     np.testing.assert_allclose(np.linalg.norm(residuals, axis=1), problem.loss(points), rtol=1e-9)
+
+
+def test_a_term_is_searched_for_where_its_effect_is_listed():
+    model, records = made(["bouc_wen", "lumped", "load_mass"], TRUTH | MECHANICS)
+    problem = Problem(model, records, effects=["load_mass"])
+    column = problem.names.index("lumped.load")
+    assert (problem.lower[column], problem.upper[column], problem.units[column]) == (0, 1, "kg")
+    assert "lumped.extra_damping" not in problem.names
+    assert "lumped.load" not in Problem(model, records).names
+
+
+def test_bounds_may_be_multiples_of_a_power_of_a_span():
+    model, records = made(["bouc_wen", "cubic_stiffness"], TRUTH | {"cubic_stiffness.cubic": 0.0})
+    problem = Problem(model, records)
+    span = np.ptp(records[0].response) * 1e6
+    assert problem.units[-1] == "1/um^2"
+    assert problem.upper[-1] == pytest.approx(0.5 / span**2)
 
 
 def test_relative_bounds_are_multiples_of_the_spans():

@@ -19,8 +19,11 @@ class Lumped(Block):
     mass = Parameter("kg", (0.01, 10), "Moving mass.", scale="log")
     damping = Parameter("N*s/m", (0, 1e4), "Viscous damping.")
     stiffness = Parameter("N/m", (1e5, 1e9), "Stiffness of flexure and actuator together.", scale="log")
+    load = Parameter("kg", (0, 1), "Mass of a payload, added to the moving mass.", null=0, effect="load_mass")
+    extra_damping = Parameter("N*s/m", (0, 1e3), "Added to the damping.", null=0, effect="viscous_damping")
 
-    def prepare(mass, damping, stiffness, dt):
+    def prepare(mass, damping, stiffness, load, extra_damping, dt):
+        mass, damping = mass + load, damping + extra_damping
         omega = sqrt(stiffness / mass)
         zeta = damping / (2 * sqrt(stiffness * mass))
         angle = omega * dt

@@ -19,7 +19,7 @@ def displacement(force, ratio, dt, scale=1.0):
 
 
 def coefficients(ratio, dt=1e-3):
-    return Lumped.prepare(MASS, ratio * CRITICAL, STIFFNESS, dt)
+    return Lumped.prepare(MASS, ratio * CRITICAL, STIFFNESS, 0.0, 0.0, dt)
 
 
 def test_undamped_far_beyond_nyquist():

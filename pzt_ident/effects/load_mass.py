@@ -1,0 +1,16 @@
+"""Payload on the stage."""
+
+from pzt_ident.block import Term
+from pzt_ident.registry import blocks
+
+
+@blocks.register
+class LoadMass(Term):
+    """A load moves with the stage and lowers its resonance: m <- m + load in the equation of the mechanics.
+
+    f1 falls by (1 + load / m)^(-1/2); slow records do not show it.
+    """
+
+    looks_like = ("resonance",)
+    separate_by = "Chirp with small amplitude through the resonance, with and without a known mass on the stage."
+    remedy = "Take the load off or fix it firmly, and lower the bandwidth or the notch to the resonance with the load."

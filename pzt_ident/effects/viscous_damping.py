@@ -1,0 +1,16 @@
+"""Damping beyond that of the bare mechanics."""
+
+from pzt_ident.block import Term
+from pzt_ident.registry import blocks
+
+
+@blocks.register
+class ViscousDamping(Term):
+    """Air films, cables and grease add damping: b <- b + extra_damping in the equation of the mechanics.
+
+    Below the resonance the response lags by b omega / k, and ringing fades sooner.
+    """
+
+    looks_like = ("amplifier_lag", "sensor_lag", "delay")
+    separate_by = "Chirp with small amplitude through the resonance: damping lowers its peak, a lag or delay does not."
+    remedy = "Free the moving parts of films and cables, or keep it and put the lag into the feedforward."
