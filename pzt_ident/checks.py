@@ -112,14 +112,18 @@ def _effects(document: Document, words: tuple[str, ...], earlier: Earlier) -> No
             document.fault(at, f"{word!r} is not an effect", f"move it to `model: [{word}]`")
         elif word not in known:
             document.fault(at, f"unknown effect {word!r}", nearest(word, known))
-        elif word in blocks and "channels" in earlier and len(earlier["channels"].axes) < 2 and _couples(word):
+        elif word in blocks and "model" in earlier and word not in terms and _is(word, "Term"):
+            owners = [block.name for block in blocks if any(p.effect == word for p in block.parameters().values())]
+            message = f"no block of this model has a term for {word!r}"
+            document.fault(at, message, f"put one of these into `model`: {', '.join(owners)}")
+        elif word in blocks and "channels" in earlier and len(earlier["channels"].axes) < 2 and _is(word, "Coupling"):
             document.fault(at, f"{word!r} needs a second axis", "give the other axis, at least its `drive`")
 
 
-def _couples(word: str) -> bool:
-    from pzt_ident.block import Coupling
+def _is(word: str, kind: str) -> bool:
+    from pzt_ident import block
 
-    return issubclass(blocks[word], Coupling)
+    return issubclass(blocks[word], getattr(block, kind))
 
 
 def _parameters(document: Document, settings: dict[str, Setting], earlier: Earlier) -> None:

@@ -217,6 +217,18 @@ def test_an_effect_among_the_blocks_is_moved():
     assert "model[2]: 'cross_coupling' is an effect\n  move it to `effects: [cross_coupling]`" in message
 
 
+def test_a_term_needs_its_block():
+    message = faults(GOOD.replace("[cross_coupling]", "[load_mass]").replace("lumped]", "bouc_wen_oscillator]"))
+    assert "11:11: effects[0]: no block of this model has a term for 'load_mass'\n" in message
+    assert "put one of these into `model`: lumped" in message
+
+
+def test_a_parameter_of_a_term_needs_its_effect():
+    text = GOOD.replace("x.lumped.mass: {value: 0.1566}", "lumped.load: {bounds: [0, 0.2]}")
+    assert "'load_mass'\n  add `effects: [load_mass]`" in faults(text)
+    Job.from_text(text.replace("[cross_coupling]", "[load_mass]"))
+
+
 def test_all_faults_come_at_once_in_order():
     text = GOOD
     changes = {"use: identify": "use: identfy", "500 ms": "-1", "lumped]": "lumpd]", "[1e-6, 1]": "[2, 1]"}
