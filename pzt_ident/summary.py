@@ -10,6 +10,7 @@ import click
 import numpy as np
 
 from pzt_ident import terminal
+from pzt_ident.block import Term
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.registry import blocks, optimizers
 from pzt_ident.units import factor
@@ -123,7 +124,7 @@ def words(kind: str) -> dict[str, str]:
     own = {
         item.name: _headline(item) for item in blocks if (blocks.folder(item.name) == "effects") == (kind == "effects")
     }
-    return own | (_terms() if kind == "effects" else {})
+    return (_terms() if kind == "effects" else {}) | own
 
 
 def _terms() -> dict[str, str]:
@@ -148,23 +149,28 @@ def of_word(name: str) -> Facts:
         return _optimizer(name)
     terms = _terms()
     if name in terms:
-        owned = [_owned(row, block.name) for block in blocks for row in _declared(block) if row["effect"] == name]
-        return {"name": name, "kind": "effect", "doc": terms[name], "parameters": owned}
+        return {"name": name, "kind": "effect", "doc": terms[name], "parameters": _owned(name)}
     raise InputError(f"unknown word {name!r}", remedy=nearest(name, [*blocks.words(), *optimizers.words(), *terms]))
 
 
-def _owned(row: Facts, block: str) -> Facts:
-    return row | {"name": f"{block}.{row['name']}"}
+def _owned(effect: str) -> list[Facts]:
+    """The parameters of all blocks that belong to an effect."""
+    every = [row | {"name": f"{block.name}.{row['name']}"} for block in blocks for row in _declared(block)]
+    return [row for row in every if row["effect"] == effect]
 
 
 def _block(name: str) -> Facts:
-    block = blocks[name]
-    facts = {"name": name, "kind": blocks.folder(name), "doc": inspect.getdoc(block), "place": block.place.name.lower()}
-    return facts | {"parameters": _declared(block)}
+    block, kind = blocks[name], blocks.folder(name)
+    facts = {"name": name, "kind": kind, "doc": inspect.getdoc(block)}
+    if kind == "effects":
+        facts |= {key: getattr(block, key) for key in ("looks_like", "separate_by", "remedy")}
+    if issubclass(block, Term):
+        return facts | {"parameters": _owned(name)}
+    return facts | {"place": block.place.name.lower(), "parameters": _declared(block)}
 
 
 def _declared(block: type[Any]) -> list[Facts]:
-    keys = ("unit", "bounds", "null", "value", "scale", "effect", "doc")
+    keys = ("unit", "bounds", "null", "value", "scale", "effect", "per_record", "doc")
     return [
         {"name": word} | {key: getattr(declared, key) for key in keys} for word, declared in block.parameters().items()
     ]
@@ -196,6 +202,9 @@ def show_word(found: Facts) -> None:
         if any("drive" in row["unit"] or "response" in row["unit"] for row in found["parameters"]):
             click.echo("Bounds in units of drive and response are multiples of the data's own peak-to-peak values,")
             click.echo("those of response/drive with either sign where the response does not rise with the drive.")
+    for title, key in (("Leaves the same trace as", "looks_like"), ("To tell", "separate_by"), ("To do", "remedy")):
+        if said := found.get(key):
+            click.echo(f"\n{title}: {said if isinstance(said, str) else ', '.join(said)}")
 
 
 def _allowed(row: Facts) -> str:
@@ -210,4 +219,5 @@ def _meaning(row: Facts) -> str:
     """What a parameter is, and what it takes to have it searched for."""
     fixed = "" if row["value"] is None else f" Fixed at {row['value']:g} unless the job gives bounds."
     effect = "" if row["effect"] is None else f" With the effect {row['effect']} only."
-    return row["doc"] + fixed + effect
+    own = " Each record has its own." if row["per_record"] else ""
+    return row["doc"] + fixed + effect + own

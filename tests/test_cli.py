@@ -244,6 +244,7 @@ class TestWords:
             "value": None,
             "scale": "linear",
             "effect": None,
+            "per_record": False,
             "doc": "",
         }
 
@@ -262,6 +263,14 @@ class TestWords:
         assert json.loads(call("list", "effects", "--json").stdout)["skewness"] == "a term of skewed"
         shown = call("show", "skewness").stdout
         assert "skewed.skew  1/drive  -1 to 1  0     Skew. With the effect skewness only." in shown
+
+    def test_effect_says_what_to_do(self):
+        for word in ("creep", "drift", "load_mass"):
+            effect, shown = blocks[word], call("show", word).stdout
+            assert f"\nLeaves the same trace as: {', '.join(effect.looks_like)}\n" in shown
+            assert f"\nTo tell: {effect.separate_by}\n" in shown
+            assert f"\nTo do: {effect.remedy}\n" in shown
+        assert "lumped.load  kg" in shown
 
     def test_unknown(self):
         result = call("show", "bouc_wenn")
