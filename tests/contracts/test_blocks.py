@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pzt_ident.block import Bank, Coupling, Operator, Place
+from pzt_ident.block import Addition, Bank, Coupling, Operator, Place, Term
 from pzt_ident.model import Plan
 from pzt_ident.registry import blocks
 from pzt_ident.units import is_unit
@@ -16,10 +16,18 @@ from twins import plain
 from twins.blocks import Identity
 
 WORDS = blocks.words()
-SINGLE = [word for word in WORDS if blocks[word].oversample == 1]
+CHAINED = [word for word in WORDS if not issubclass(blocks[word], Term | Addition)]
+SINGLE = [word for word in CHAINED if blocks[word].oversample == 1]
 OPERATORS = [word for word in WORDS if issubclass(blocks[word], Operator)]
 EFFECTS = [word for word in WORDS if blocks.folder(word) == "effects"]
+TERMS = [word for word in WORDS if issubclass(blocks[word], Term)]
+ADDITIONS = [word for word in WORDS if issubclass(blocks[word], Addition)]
 SPAN = np.array([0.0, 100.0])
+CATALOGUE = """
+creep thermal_relaxation rate_dependence amplifier_lag sensor_lag slew_limit delay asymmetry quadratic_gain saturation
+distributed_memory amplitude_gain cross_coupling kinematic_coupling resonance load_mass viscous_damping cubic_stiffness
+friction drift periodic_disturbance encoder_cyclic_error
+"""
 
 
 def legs(levels, points):
@@ -64,7 +72,7 @@ def made(word, drive, count=3, seed=1, **more):
 @pytest.mark.parametrize("word", WORDS)
 def test_declarations_are_complete(word):
     block = blocks[word]
-    assert isinstance(block.place, Place)
+    assert issubclass(block, Term) or isinstance(block.place, Place)
     assert "=" in block.__doc__ or "<-" in block.__doc__, "the equation"
     assert word == block.name == block.__module__.rpartition(".")[2]
     for name, declared in block.parameters().items():
@@ -78,17 +86,50 @@ def test_declarations_are_complete(word):
 
 
 @pytest.mark.parametrize("word", EFFECTS)
+def test_effect_says_what_else_it_may_be_and_what_to_do(word):
+    effect = blocks[word]
+    assert {"looks_like", "separate_by", "remedy"} <= set(vars(effect))
+    assert set(effect.looks_like) <= set(CATALOGUE.split()) - {word}
+    for sentence in (effect.separate_by, effect.remedy):
+        assert re.fullmatch(r"[A-Z].{30,}[a-z%]\.", sentence)
+
+
+@pytest.mark.parametrize("word", [word for word in EFFECTS if word not in TERMS])
+def test_effect_has_a_null(word):
+    assert any(declared.null is not None for declared in blocks[word].parameters().values())
+
+
+@pytest.mark.parametrize("word", TERMS)
+def test_term_is_a_parameter_of_a_block(word):
+    assert not blocks[word].parameters()
+    assert any(declared.effect == word for block in blocks for declared in block.parameters().values())
+
+
+@pytest.mark.parametrize("word", ADDITIONS)
+def test_addition_of_any_size_is_taken_in_closed_form(word):
+    """The amounts are parameters of each record; the shape of what is added is the same for all."""
+    addition = blocks[word]
+    chain, measured, theta = made(word, waves(8, 150), settle=20)
+    rng = np.random.default_rng(9)
+    for candidate in theta:
+        signals = addition.basis(measured.time, *candidate)
+        amounts = [declared.per_record for declared in addition.parameters().values()].count(True)
+        assert len(signals) == amounts
+        measured.response[:] = measured.drive + 3 + rng.normal(size=amounts) @ np.array(signals)
+        np.testing.assert_allclose(Plan(chain, measured).errors(candidate), 0, atol=1e-9)
+
+
+@pytest.mark.parametrize("word", EFFECTS)
 @quick
 @given(drive=drives, seed=seeds)
 def test_effect_is_exactly_the_identity_at_its_null(word, drive, seed):
     chain, measured, theta = made(word, drive, seed=seed)
     nulls = [slot.parameter.null for slot in chain.slots]
-    assert any(null is not None for null in nulls)
     theta[:, [null is not None for null in nulls]] = [null for null in nulls if null is not None]
     assert np.array_equal(chain.simulate(measured, theta), np.broadcast_to(measured.drive, (3, *measured.drive.shape)))
 
 
-@pytest.mark.parametrize("word", WORDS)
+@pytest.mark.parametrize("word", CHAINED)
 @quick
 @given(drive=drives, seed=seeds)
 def test_compiled_is_what_the_author_wrote(word, drive, seed):
@@ -99,7 +140,7 @@ def test_compiled_is_what_the_author_wrote(word, drive, seed):
 
 
 @pytest.mark.parametrize("samples", [1, 2, 3, 63, 64, 65, 127, 129, 1000])
-@pytest.mark.parametrize("word", WORDS)
+@pytest.mark.parametrize("word", CHAINED)
 def test_tiles_leave_no_seam(word, samples):
     if blocks[word].oversample > 1 and samples == 1:
         pytest.skip("no spline through one sample")
@@ -107,14 +148,14 @@ def test_tiles_leave_no_seam(word, samples):
     assert_close(chain.simulate(measured, theta)[0], plain.simulate(chain, measured, theta[0]))
 
 
-@pytest.mark.parametrize("word", WORDS)
+@pytest.mark.parametrize("word", CHAINED)
 def test_batch_is_each_alone(word):
     chain, measured, theta = made(word, waves(1), count=70)
     alone = [chain.simulate(measured, candidate)[0] for candidate in theta]
     assert_close(chain.simulate(measured, theta), np.array(alone))
 
 
-@pytest.mark.parametrize("word", WORDS)
+@pytest.mark.parametrize("word", CHAINED)
 def test_a_candidate_that_fails_leaves_the_others_alone(word):
     chain, measured, theta = made(word, waves(2), count=70)
     failing = theta.copy()
@@ -127,7 +168,7 @@ def test_a_candidate_that_fails_leaves_the_others_alone(word):
     assert np.isnan(squares[3]).all()
 
 
-@pytest.mark.parametrize("word", WORDS)
+@pytest.mark.parametrize("word", CHAINED)
 def test_output_waits_for_the_drive(word):
     """A spline between samples looks some 25 samples ahead, its weight falling by 0.27 a sample."""
     ahead = 0 if blocks[word].oversample == 1 else 25
@@ -176,7 +217,7 @@ def test_run_in_is_the_drive_again(word):
     assert_close(chain.simulate(measured, theta), chain.simulate(again, theta)[..., 180:])
 
 
-@pytest.mark.parametrize("word", WORDS)
+@pytest.mark.parametrize("word", CHAINED)
 @pytest.mark.parametrize("more", [{}, {"settle": 70}, {"run_in": 2}, {"run_in": 1, "settle": 129}])
 def test_squares_are_those_of_the_residuals(word, more):
     chain, measured, theta = made(word, waves(5), count=30, **more)
@@ -187,7 +228,7 @@ def test_squares_are_those_of_the_residuals(word, more):
     np.testing.assert_allclose(plan.squares(theta), (residuals**2).sum(axis=-1), rtol=1e-10)
 
 
-@pytest.mark.parametrize("word", WORDS)
+@pytest.mark.parametrize("word", CHAINED)
 def test_nothing_before_the_settling_or_constant_is_scored(word):
     chain, measured, theta = made(word, waves(7), settle=80)
     expected = Plan(chain, measured).squares(theta)
@@ -198,5 +239,5 @@ def test_nothing_before_the_settling_or_constant_is_scored(word):
 
 def test_kinds_are_all_there():
     """What the laws above are shown on."""
-    kinds = {kind for kind in (Operator, Bank, Coupling) if any(issubclass(blocks[word], kind) for word in WORDS)}
-    assert kinds == {Operator, Bank, Coupling}
+    kinds = {Operator, Bank, Coupling, Term, Addition}
+    assert {kind for kind in kinds if any(issubclass(blocks[word], kind) for word in WORDS)} == kinds
