@@ -30,5 +30,31 @@ def draw(seed: int, count: int, kind: str, effect: str | None, out: Path) -> Non
         click.echo(case.name)
 
 
+@main.command()
+@click.argument("folder", type=FOLDER)
+@click.option("--workers", type=click.IntRange(1), default=2, show_default=True)
+@click.option("--retry", is_flag=True, help="Try again what failed before.")
+def solve(folder: Path, workers: int, retry: bool) -> None:
+    """Run `pzt-ident improve` on each case of FOLDER that has no result yet."""
+    from experiments.hidden_effect.solve import solve
+
+    for case in solve(folder, workers, retry):
+        click.echo(f"{case.name}: failed, see {folder / 'solved' / case.name}", err=True)
+
+
+@main.command()
+@click.argument("folder", type=FOLDER)
+@click.option("--out", type=FOLDER, help="Default: FOLDER/score.")
+def score(folder: Path, out: Path | None) -> None:
+    """Hold the results in FOLDER against the truth: tables, confusion matrix and staircases."""
+    from experiments.hidden_effect import figures, score
+
+    out = out or folder / "score"
+    scores, failed = score.score(folder)
+    score.write(scores, failed, out)
+    figures.draw(scores, out)
+    click.echo((out / "score.json").read_text(encoding="utf-8"), nl=False)
+
+
 if __name__ == "__main__":
     main()

@@ -82,11 +82,10 @@ def cycles(low: float, high: float, count: int) -> list[float]:
 def rich(rng: np.random.Generator) -> list[Drive]:
     """Rates, holds, nested loops and chirps to identify; other rates and other holds to validate."""
     a, b = 1 + rng.uniform(-0.06, 0.06, 2)  # of the amplitudes and the rates
-    rates = Track(1000).rest(1.2).triangles(*cycles(0, 130 * a, 2), speed=130 * b)
-    rates.triangles(*cycles(0, 130 * a, 4), speed=1300 * b).ramp(0.1, x=65).rest(1)
-    rates.sine(20 * b, 10, x=50 * a).rest(0.3).sine(80 * b, 40, x=40 * a).rest(1.5)
-    rates.triangles(0, *cycles(0, 60 * a, 2), speed=300 * b).rest(2)
-    holds = Track(250).rest(1).ramp(0.05, x=80 * a).rest(5).ramp(0.02, x=76 * a).rest(20)
+    rates = Track(1000).rest(1).triangles(*cycles(0, 130 * a, 2), speed=130 * b)
+    rates.triangles(*cycles(0, 130 * a, 4), speed=1300 * b).ramp(0.1, x=65).rest(0.5)
+    rates.sine(20 * b, 10, x=50 * a).rest(1).triangles(0, *cycles(0, 60 * a, 2), speed=300 * b).rest(1)
+    holds = Track(200).rest(1).ramp(0.05, x=80 * a).rest(5).ramp(0.02, x=76 * a).rest(20)
     holds.ramp(0.05, x=35 * a).rest(6).ramp(0.05, x=100 * a).rest(1).ramp(0.05, x=96 * a).rest(4).ramp(0.05, x=0).rest(
         2
     )
@@ -97,12 +96,13 @@ def rich(rng: np.random.Generator) -> list[Drive]:
     nested.ramp(1, y=90 * a).ramp(1, y=0).ramp(0.5, x=90 * a, y=60).ramp(0.8, x=30, y=60).ramp(0.8, x=70, y=10).rest(
         0.5
     )
-    fast = Track(10000).ramp(0.03, x=40 * a).rest(0.05).chirp(20, 2000, 0.3, x=4 * a).rest(0.03)
-    fast.ramp(0.03, x=100 * a).rest(0.03).chirp(20, 2000, 0.2, x=5 * a).rest(0.03)
-    fast.ramp(0.02, y=40).rest(0.02).chirp(50, 2000, 0.25, y=8 * a).rest(0.05)
-    others = Track(10000).ramp(0.02, x=70 * a).rest(0.03).sine(45 * b, 8, x=35 * a).rest(0.02)
-    others.chirp(1900, 30, 0.22, x=5 * a).rest(0.02).ramp(0.01, x=25).rest(0.03).chirp(100, 1500, 0.1, x=7)
-    others.ramp(0.02, y=55 * a).rest(0.02).chirp(1800, 100, 0.2, y=6).rest(0.05)
+    fast = Track(20000).ramp(0.03, x=65).rest(0.03).sine(80 * b, 12, x=40 * a).rest(0.03)
+    fast.ramp(0.02, x=40 * a).rest(0.03).chirp(20, 2500, 0.2, x=3 * a).rest(0.03)
+    fast.ramp(0.03, x=100 * a).rest(0.03).chirp(20, 2000, 0.1, x=3 * a).rest(0.02)
+    fast.ramp(0.02, y=40).rest(0.02).chirp(50, 2000, 0.1, y=6 * a).rest(0.03)
+    others = Track(20000).ramp(0.02, x=70 * a).rest(0.03).sine(45 * b, 5, x=35 * a).rest(0.02)
+    others.chirp(2300, 30, 0.14, x=3 * a).rest(0.02).ramp(0.02, x=25).rest(0.03).chirp(100, 1500, 0.05, x=4)
+    others.ramp(0.02, y=55 * a).rest(0.02).chirp(1800, 100, 0.08, y=6).rest(0.03)
     slow = Track(250).rest(1).triangles(*cycles(0, 110 * a, 1), *cycles(-20, 148, 2), 0, speed=210 * b)
     slow.triangles(70, 20, 55, 35, 55, 20, 70, speed=60).ramp(0.04, x=110 * a).rest(5).ramp(0.02, x=104 * a).rest(5)
     slow.ramp(0.04, x=20).rest(3).ramp(0.4, y=70 * a).ramp(0.4, y=20).ramp(0.6, x=80, y=80).ramp(0.6, x=0, y=0).rest(1)
@@ -145,8 +145,8 @@ def short(rng: np.random.Generator) -> list[Drive]:
     a, b = 1 + rng.uniform(-0.06, 0.06, 2)
     first = Track(250).rest(1).triangles(*cycles(0, 120 * a, 2), speed=240 * b).ramp(0.04, x=80).rest(3)
     first.triangles(40, 70, 50, 70, 0, speed=200).ramp(0.2, y=70 * a).ramp(0.2, y=0).rest(1)
-    second = Track(5000).ramp(0.02, x=50).sine(60 * b, 6, x=40).chirp(20, 1500, 0.15, x=4).ramp(0.02, y=30)
-    second.chirp(50, 1500, 0.1, y=8).rest(0.03)
+    second = Track(10000).ramp(0.02, x=50).sine(60 * b, 3, x=40).chirp(20, 1500, 0.1, x=3).ramp(0.02, y=30)
+    second.chirp(50, 1500, 0.05, y=8).rest(0.01)
     other = (
         Track(500)
         .rest(1)

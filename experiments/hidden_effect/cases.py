@@ -108,16 +108,20 @@ class Bench:
 
     def scale(self, dose: Dose, wanted: float) -> tuple[Dose, float]:
         """The strength, up to the one given, at which the effect has the wanted size; and the size it has."""
-        low, high = 0.0, dose.strength
-        most = size = self.size(self.respond([dose]) - self.plain)
+        size = self.size(self.respond([dose]) - self.plain)
+        low, high, slope = 0.0, dose.strength, 1.0
         for _ in range(8):
-            if abs(size / wanted - 1) < 0.03 or (dose.strength == high and size < wanted and size == most):
+            if abs(size / wanted - 1) < 0.03 or (size < wanted and dose.strength == high):
                 break
             low, high = (dose.strength, high) if size < wanted else (low, dose.strength)
-            guess = dose.strength * wanted / size if size > 0 else 0.0
-            inside = low + 0.02 * (high - low) < guess < high
+            before, last = dose.strength, size
+            guess = before * (wanted / size) ** (1 / slope) if size > 0 else 0.0
+            ends = low + 0.03 * (high - low), high - 0.03 * (high - low)
+            inside = min(ends) < guess < max(ends)
             dose = replace(dose, strength=guess if inside else (low + high) / 2)
             size = self.size(self.respond([dose]) - self.plain)
+            if last > 0 < size != last:
+                slope = float(np.clip(np.log(size / last) / np.log(dose.strength / before), 0.3, 6))
         return dose, size
 
 
@@ -130,13 +134,20 @@ def draw(kind: str, seed: int, effect: str | None = None) -> tuple[Case, dict[st
         y = Axis(*(value * rng.uniform(0.9, 1.1) for value in x))
         case = Case(f"{kind}-{seed}", kind, campaign, Stage(x, y), draw_sensor(rng), [])
         bench = Bench(case.stage, case.drives(), noise_floor(case))
-        names = list(OUTSIDE if kind == "outside" else CATALOGUE)
-        chosen = [effect] if effect else rng.choice(names, KINDS[kind], replace=False).tolist()
+        chosen = [effect] if effect else _choose(rng, kind, seed)
         found = [_draw_dose(rng, bench, name) for name in chosen]
         case = replace(case, doses=[dose for dose, _ in found])
         joint = _joint(bench, case.doses)
         if all(size >= SIZES[0] for size in joint):
             return case, {"effects": [_entry(*pair, left) for pair, left in zip(found, joint, strict=True)]}
+
+
+def _choose(rng: np.random.Generator, kind: str, seed: int) -> list[str]:
+    """One after the other where every effect can be seen, else by chance."""
+    names = list(OUTSIDE if kind == "outside" else CATALOGUE)
+    if kind in ("single", "outside"):
+        return [names[seed % len(names)]]
+    return rng.choice(names, KINDS[kind], replace=False).tolist()
 
 
 def _draw_dose(rng: np.random.Generator, bench: Bench, name: str) -> tuple[Dose, float]:

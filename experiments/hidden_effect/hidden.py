@@ -100,7 +100,7 @@ def draw_jumps(rng: np.random.Generator) -> Shape:
 CATALOGUE = {
     "creep": Hidden(0.03, "1/decade", of_stage=creep),
     "thermal_relaxation": Hidden(0.4, "1/s", of_stage=quantity("relaxation")),
-    "rate_dependence": Hidden(0.1, "1/decade", of_stage=quantity("rate")),
+    "rate_dependence": Hidden(0.15, "1/decade", of_stage=quantity("rate")),
     "amplifier_lag": Hidden(1.5e-3, "s", of_stage=quantity("amplifier_lag")),
     "sensor_lag": Hidden(1.5e-3, "s", of_stage=quantity("sensor_lag")),
     "slew_limit": Hidden(2e-4, "s/V", of_stage=inverse("slew")),
@@ -120,7 +120,7 @@ CATALOGUE = {
         quantity("mode_share"),
     ),
     "load_mass": Hidden(0.3, "kg", of_stage=quantity("load")),
-    "viscous_damping": Hidden(1500.0, "N s/m", of_stage=quantity("more_damping")),
+    "viscous_damping": Hidden(1000.0, "N s/m", of_stage=quantity("more_damping")),
     "cubic_stiffness": Hidden(1e-3, "1/um^2", of_stage=quantity("cubic")),
     "friction": Hidden(
         0.5,

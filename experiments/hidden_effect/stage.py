@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 NONE = np.zeros(0)
+compiled = njit(cache=True, error_model="numpy")
 RATE = 130.0  # V/s, of a 0.5 Hz triangle over 130 V: alpha is meant at this rate
 LEAST_RATE = 0.1  # V/s, below which the rate counts as this
 
@@ -98,28 +99,28 @@ def simulate(stage: Stage, time: Array, u_x: Array, u_y: Array, hours: float = 0
     return _sense(x, stage.sensor_lag, step)[::count].copy()
 
 
-@njit(cache=True)
+@compiled
 def _at(samples: Array, place: float) -> float:
     place = min(max(place, 0.0), len(samples) - 1.0)
     left = min(int(place), len(samples) - 2)
     return samples[left] + (place - left) * (samples[left + 1] - samples[left])
 
 
-@njit(cache=True)
+@compiled
 def _low_pass(y: float, u0: float, u1: float, time: float, step: float) -> float:
     """time y' + y = u over a step on which u is a straight line, exactly."""
     lag = (u1 - u0) * time / step
     return u1 - lag + (y - u0 + lag) * math.exp(-step / time)
 
 
-@njit(cache=True)
+@compiled
 def _driver(stage: Stage, command: float) -> float:
     if stage.resolution > 0:
         command = stage.resolution * round(command / stage.resolution)
     return min(command, stage.clip)
 
 
-@njit(cache=True)
+@compiled
 def _slope(axis: Axis, stage: Stage, h: float, u: float, rate: float) -> float:
     """dh/dt with the effects inside the hysteresis."""
     alpha = axis.alpha
@@ -129,7 +130,7 @@ def _slope(axis: Axis, stage: Stage, h: float, u: float, rate: float) -> float:
     return plain + stage.asymmetry * u * abs(rate) - stage.relaxation * h
 
 
-@njit(cache=True)
+@compiled
 def _hysteresis(axis: Axis, stage: Stage, h: float, u0: float, u1: float, step: float) -> float:
     rate, middle = (u1 - u0) / step, (u0 + u1) / 2
     k1 = _slope(axis, stage, h, u0, rate)
@@ -139,7 +140,7 @@ def _hysteresis(axis: Axis, stage: Stage, h: float, u0: float, u1: float, step: 
     return h + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
 
 
-@njit(cache=True)
+@compiled
 def _plays(weights: Array, thresholds: Array, plays: Array, u: float) -> float:
     total = 0.0
     for i in range(len(weights)):
@@ -148,7 +149,7 @@ def _plays(weights: Array, thresholds: Array, plays: Array, u: float) -> float:
     return total
 
 
-@njit(cache=True)
+@compiled
 def _force(stage: Stage, u: float, u_y: float, h: float, poled: float, rising: bool) -> float:
     """Free stroke f in um."""
     stroke = u if stage.saturation == 0 else math.tanh(stage.saturation * u) / stage.saturation
@@ -159,13 +160,13 @@ def _force(stage: Stage, u: float, u_y: float, h: float, poled: float, rising: b
     return f
 
 
-@njit(cache=True)
+@compiled
 def _pole(poled: float, u: float) -> float:
     """Share of domains in line: lost below 0 V, won back from 40 V to 120 V."""
     return min(max(poled, (u - 40) / 80), 1.0) if u > 0 else min(poled, max(1 + u / 20, 0.0))
 
 
-@njit(cache=True)
+@compiled
 def _pull(stage: Stage, f: float, x: float, v: float, z: float) -> tuple[float, float]:
     """Acceleration of x and rate of the bristles z, in pre-sliding lengths."""
     back = x + stage.cubic * x * x * x
@@ -179,7 +180,7 @@ def _pull(stage: Stage, f: float, x: float, v: float, z: float) -> tuple[float, 
     return pull / (axis.mass + stage.load), bristles
 
 
-@njit(cache=True)
+@compiled
 def _move(stage: Stage, state: tuple, f0: float, f1: float, step: float) -> tuple:
     """One step of RK4 for (x, v, z)."""
     x, v, z = state
@@ -199,7 +200,7 @@ def _move(stage: Stage, state: tuple, f0: float, f1: float, step: float) -> tupl
     )
 
 
-@njit(cache=True)
+@compiled
 def _free_stroke(stage: Stage, u_x: Array, u_y: Array, count: int, step: float) -> Array:
     """f at every step: driver, hysteresis and static nonlinearity."""
     f = np.empty((len(u_x) - 1) * count + 1)
@@ -220,7 +221,7 @@ def _free_stroke(stage: Stage, u_x: Array, u_y: Array, count: int, step: float) 
     return f
 
 
-@njit(cache=True)
+@compiled
 def _add_creep(stage: Stage, f: Array, count: int, interval: float) -> None:
     """A ladder of Kelvin-Voigt elements, exact for f linear between the samples."""
     ladder, before, start = np.zeros(len(stage.creep)), 0.0, f[0]
@@ -235,7 +236,7 @@ def _add_creep(stage: Stage, f: Array, count: int, interval: float) -> None:
         last, before = now, after
 
 
-@njit(cache=True)
+@compiled
 def _mechanics(stage: Stage, f: Array, step: float) -> Array:
     x = np.empty(len(f))
     state = (f[0], 0.0, 0.0)
@@ -246,7 +247,7 @@ def _mechanics(stage: Stage, f: Array, step: float) -> Array:
     return x
 
 
-@njit(cache=True)
+@compiled
 def _sense(x: Array, lag: float, step: float) -> Array:
     if lag == 0:
         return x
