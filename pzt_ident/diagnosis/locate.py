@@ -30,7 +30,10 @@ EXCESS, LIFT = 0.15, 1.5
 @dataclass(frozen=True)
 class Part:
     """A bin: its share of the misfit and of the samples, its RMSE (None where it is empty), and whether it is below
-    the noise, so that its share was cut to 0. `lower` and `upper` are its limits where it has neighbours."""
+    the noise, so that its share was cut to 0. `lower` and `upper` are its limits where it has neighbours.
+
+    Of the spectrum `samples` is the share of the bandwidth and `rmse` the part of the RMSE that lies in the band.
+    """
 
     label: str
     lower: float | None
@@ -139,7 +142,7 @@ def view(found: Tally, noise: float, samples: int, missing: bool) -> View:
     of_samples = found.counts / found.counts.sum()
     excess = found.squares - found.counts * noise**2
     with np.errstate(invalid="ignore"):
-        rmse = np.sqrt(found.squares / found.counts)
+        rmse = np.sqrt(found.squares / (found.counts.sum() if found.name in wording.SPECTRAL else found.counts))
     bins = tuple(
         Part(*own, float(shares[k]), float(of_samples[k]), finite(rmse[k]), bool(excess[k] < 0))
         for k, own in enumerate(found.bins)
@@ -170,9 +173,10 @@ def dominant(found: Tally, shares: Array, samples: Array, noise: float) -> Domin
 
 
 def runs(found: Tally) -> list[tuple[int, int]]:
-    """First and last of every run of neighbouring bins; a bin without limits has no neighbours."""
+    """First and last of every run of neighbouring bins; a bin without limits has no neighbours, an empty one is no
+    end."""
     ordered = [own.lower is not None for own in found.bins]
-    pairs = combinations_with_replacement(range(len(ordered)), 2)
+    pairs = combinations_with_replacement(np.flatnonzero(found.counts).tolist(), 2)
     return [(i, j) for i, j in pairs if i == j or all(ordered[i : j + 1])]
 
 

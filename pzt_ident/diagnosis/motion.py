@@ -49,7 +49,7 @@ def motion(drive: Array, dt: float) -> Motion:
     amplitudes = np.array([np.ptp(drive[first : last + 1]) for first, last in pairwise(ends)])
     ways = np.sign([drive[last] - drive[first] for first, last in pairwise(ends)]).astype(np.intp)
     holds = held(drive, turns, amplitudes, 8 * noise)
-    smooth = 1 + int(10 * noise * samples / amplitudes.sum())
+    smooth = 1 + int(20 * noise * samples / amplitudes.sum())
     return Motion(
         np.where(holds, 0, np.repeat(ways, lengths)),
         np.repeat(amplitudes, lengths),

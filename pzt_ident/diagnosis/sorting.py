@@ -66,6 +66,7 @@ def linear(name: str, unit: str, values: list[Array], zero: bool = False, bins: 
     first = np.round(low / step)
     count = int(np.round(high / step) - first) + 1
     edges = ((first - 0.5 + np.arange(count + 1)) * step).tolist()
+    edges[0] = max(edges[0], 0.0) if low >= 0 else edges[0]
     places = [np.clip(np.round(part / step) - first, 0, count - 1).astype(np.intp) for part in values]
     return Sorting(name, unit, between(edges, unit), places)
 

@@ -28,7 +28,7 @@ def sortings(records: Sequence[Record], axis: int) -> list[Sorting]:
         linear("amplitude", unit, [found.amplitude / factor(unit) for found in own], zero=True),
         logarithmic("rate", f"{unit}/s", rates, 1e-3 * fastest, WAYS[2]),
         logarithmic(
-            "since reversal", "s", [found.since for found in own], max(min(r.dt for r in records), 1e-4 * latest)
+            "time since reversal", "s", [found.since for found in own], max(min(r.dt for r in records), 1e-4 * latest)
         ),
         doubling("cycle", [found.cycle for found in own]),
         linear("position", position, [r.response[axis, r.settle :] / factor(position) for r in records]),

@@ -35,7 +35,7 @@ def where(name: str, unit: str, bins: Sequence[Bin], first: int, last: int) -> s
             return f"in half cycles of {limits} peak to peak"
         case "rate":
             return "where the drive is holding" if bins[first].lower is None else f"where the drive moves at {limits}"
-        case "since reversal":
+        case "time since reversal":
             return after(bins, first, last)
         case "cycle":
             begun, ended = int(bins[first].lower or 1), int(bins[last].upper or 1)
@@ -45,7 +45,7 @@ def where(name: str, unit: str, bins: Sequence[Bin], first: int, last: int) -> s
         case "drive":
             return f"where the drive of {other} is {limits}"
         case "frequency":
-            return f"at frequencies of {limits}"
+            return f"at frequencies of {limits}" if bins[first].lower else f"below {bins[last].upper:.4g} {unit}"
     return f"in the {label} of the drive" if label.endswith("harmonics") and "between" not in label else f"{label}"
 
 

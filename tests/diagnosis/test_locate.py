@@ -1,0 +1,243 @@
+"""Residuals of known place: what is found there has a closed form."""
+
+import json
+from dataclasses import asdict, replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pzt_ident.diagnosis.locate import locate
+from pzt_ident.diagnosis.noise import Floor
+from pzt_ident.diagnosis.sorting import doubling, linear, logarithmic, power
+from pzt_ident.diagnosis.stretches import heaviest
+from pzt_ident.record import Record
+
+DT = 1e-3
+TIME = DT * np.arange(8000)
+TRIANGLE = 100 * np.abs((TIME + 1) % 2 - 1)
+OTHER = 40 * np.abs((TIME / 1.6 + 1) % 2 - 1)
+FALLING = TIME % 2 >= 1
+SILENT = Floor(0.0, "none")
+
+
+def record(name="loops", use="identify", drive=TRIANGLE, other=None, settle=0):
+    drives = np.array([drive] if other is None else [drive, other])
+    response = np.full_like(drives, np.nan)
+    response[0] = 1e-7 * drive
+    axes = ("x", "y")[: len(drives)]
+    return Record(
+        name,
+        use,
+        DT,
+        drives,
+        response,
+        settle=settle,
+        axes=axes,
+        drive_units=("V",) * len(axes),
+        response_units=("um", None)[: len(axes)],
+    )
+
+
+def found(residuals, records=None, floor=SILENT):
+    """Residuals in um."""
+    records = records or [record(name=f"record {i}") for i in range(len(residuals))]
+    (axis,) = locate(records, [1e-6 * np.atleast_2d(part) for part in residuals], [floor])
+    return axis
+
+
+def view(axis, name):
+    (chosen,) = [one for one in axis.views if one.name == name]
+    return chosen
+
+
+def share(axis, name, *labels):
+    return sum(part.share for part in view(axis, name).bins if part.label in labels)
+
+
+def said(axis):
+    return "\n".join(axis.sentences)
+
+
+def test_all_on_the_falling_branch():
+    axis = found([0.3 * FALLING])
+    branch = {part.label: part for part in view(axis, "branch").bins}
+    assert branch["falling"].share == pytest.approx(1, abs=2e-3)
+    assert branch["falling"].samples == pytest.approx(0.5, abs=2e-3)
+    assert branch["falling"].rmse == pytest.approx(0.3, rel=2e-3)
+    assert (axis.rmse, axis.misfit, axis.unit) == (pytest.approx(0.3 / 2**0.5), pytest.approx(0.3 / 2**0.5), "um")
+    assert "100 % of the misfit lies where the drive is falling, which is 50 % of the samples." in axis.sentences
+
+
+def test_after_reversals():
+    axis = found([0.2 * (TIME % 1 < 0.1)])
+    chosen = view(axis, "time since reversal").dominant
+    assert (chosen.share, chosen.samples) == (pytest.approx(1, abs=0.01), pytest.approx(0.1, abs=2e-3))
+    assert "within 0.1 s after a reversal or stop, which is 10 % of the samples." in said(axis)
+
+
+def test_in_one_record():
+    axis = found([0.1 * np.ones(8000), 0.3 * np.ones(8000)])
+    assert share(axis, "record", "record 0") == pytest.approx(0.1)
+    assert view(axis, "record").dominant.share == pytest.approx(0.9)
+    assert axis.sentences[0].startswith("90 % of the misfit lies in record record 1, which is 50 %")
+
+
+def test_in_holds():
+    drive = np.interp(TIME, [0, 1, 3, 4, 5, 6, 7, 8], [0, 100, 100, 0, 100, 0, 100, 0])
+    axis = found([1.0 * ((TIME > 1) & (TIME < 3))], [record(drive=drive)])
+    assert share(axis, "branch", "holding") == pytest.approx(1, abs=0.01)
+    assert share(axis, "rate", "holding") == pytest.approx(1, abs=0.01)
+    assert "where the drive is holding" in said(axis)
+
+
+def test_in_large_and_fast_half_cycles():
+    drive = np.where(TIME < 4, TRIANGLE, 0.2 * TRIANGLE)
+    axis = found([0.1 * (TIME < 4)], [record(drive=drive)])
+    assert view(axis, "amplitude").dominant.sentence == (
+        "100 % of the misfit lies in half cycles of 90 to 110 V peak to peak, which is 50 % of the samples."
+    )
+    assert share(axis, "rate", "30 to 100 V/s", "100 to 300 V/s") == pytest.approx(1, abs=2e-3)
+
+
+def test_in_a_band_of_frequency():
+    axis = found([0.5 * np.sin(2 * np.pi * 7 * TIME)])
+    assert share(axis, "frequency", "3 to 10 Hz") == pytest.approx(1)
+    assert view(axis, "frequency").dominant.samples == pytest.approx(7 / 500, rel=0.02)
+    assert "at frequencies of 3 to 10 Hz" in said(axis)
+
+
+LINES = [(3, "odd harmonics"), (4, "even harmonics"), (2.5, "between the harmonics")]
+
+
+@pytest.mark.parametrize(("order", "kind"), LINES)
+def test_in_lines(order, kind):
+    axis = found([np.cos(2 * np.pi * order * TIME / 2)])
+    assert share(axis, "lines", kind) == pytest.approx(1)
+
+
+def test_lines_only_where_the_drive_repeats():
+    chirp = np.sin(2 * np.pi * (TIME + TIME**2))
+    assert not [one for one in found([chirp], [record(drive=chirp)]).views if one.name == "lines"]
+    both = found([chirp, chirp], [record(drive=chirp), record()])
+    assert view(both, "lines").covers == pytest.approx(0.5)
+
+
+def test_tied_to_another_axis():
+    falling = TIME % 3.2 >= 1.6
+    axis = found([0.1 * falling], [record(other=OTHER)])
+    assert share(axis, "branch of y", "falling") == pytest.approx(1, abs=2e-3)
+    assert "where the drive of y is falling" in said(axis)
+    assert "where the drive is" not in said(axis)
+    level = found([OTHER > 35], [record(other=OTHER)])
+    assert "100 % of the misfit lies where the drive of y is 35 to 45 V" in said(level)
+
+
+def test_an_axis_that_is_not_driven_is_no_view():
+    names = {one.name for one in found([FALLING], [record(other=0 * TIME)]).views}
+    assert not [name for name in names if name.endswith("of y")]
+
+
+def test_what_is_not_scored_does_not_count():
+    axis = found([1.0 * (TIME < 1)], [record(settle=1000)])
+    assert (axis.misfit, axis.samples) == (0, 7000)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_white_noise_at_the_floor_is_no_misfit(seed):
+    rng = np.random.default_rng(seed)
+    axis = found([0.05 * rng.normal(size=8000) for _ in range(3)], floor=Floor(5e-8, "rest segments"))
+    assert (axis.misfit, axis.map, axis.worst) == (0, None, ())
+    assert not [one for one in axis.views if one.dominant]
+    assert axis.sentences == ("Nothing is left above the noise.",)
+
+
+def test_noise_takes_no_share():
+    noise = 0.05 * np.random.default_rng(1).normal(size=8000)
+    axis = found([noise + 0.1 * FALLING], floor=Floor(5e-8, "rest segments"))
+    assert share(axis, "branch", "falling") == pytest.approx(1, abs=0.02)
+    assert axis.misfit == pytest.approx(0.1 / 2**0.5, rel=0.02)
+
+
+def test_a_misfit_that_is_everywhere_dominates_nowhere_in_time():
+    axis = found([0.1 * np.random.default_rng(1).normal(size=8000)], floor=Floor(5e-8, "rest segments"))
+    assert axis.misfit == pytest.approx(0.1 * 0.75**0.5, rel=0.02)
+    assert axis.sentences == ("No record, branch, amplitude, rate or band stands out: the misfit is spread evenly.",)
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.floats(0, 0.9), st.integers(1, 3), st.integers(0, 500))
+def test_shares_sum_to_one_and_squares_add(seed, floor, count, settle):
+    rng = np.random.default_rng(seed)
+    drives = [np.cumsum(rng.normal(size=1000)) for _ in range(count)]
+    records = [
+        replace(record(f"{i}", drive=drive, other=drive[::-1].copy()), dt=DT * 3**i, settle=settle)
+        for i, drive in enumerate(drives)
+    ]
+    residuals = [rng.normal(size=1000) * rng.uniform(0, 2, 1000) for _ in drives]
+    axis = found(residuals, records, Floor(1e-6 * floor, "told"))
+    for one in axis.views:
+        assert sum(part.share for part in one.bins) == pytest.approx(1 if axis.misfit else 0)
+        assert sum(part.samples for part in one.bins) == pytest.approx(1)
+        squares = [(part.rmse or 0) ** 2 * (1 if one.name == "frequency" else part.samples) for part in one.bins]
+        if one.covers == 1:
+            assert sum(squares) == pytest.approx(axis.rmse**2)
+    if axis.misfit:
+        assert axis.rmse**2 == pytest.approx(axis.noise_floor**2 + axis.misfit**2)
+        assert sum(map(sum, axis.map.share)) == pytest.approx(1)
+    assert json.loads(json.dumps(asdict(axis)))["axis"] == "x"
+
+
+def test_the_map_crosses_the_two_views_that_tell_most():
+    axis = found([0.1 * FALLING, 0 * TIME])
+    assert (axis.map.rows, axis.map.row_labels) == ("record", ("record 0", "record 1"))
+    assert (axis.map.columns, axis.map.column_labels) == ("branch", ("rising", "falling", "holding"))
+    np.testing.assert_allclose(axis.map.share, [[0, 1, 0], [0, 0, 0]], atol=2e-3)
+    assert axis.map.rmse[0] == (pytest.approx(0, abs=5e-3), pytest.approx(0.1, rel=2e-3), None)
+
+
+def test_the_worst_stretches():
+    burst = (TIME > 2) & (TIME < 2.5)
+    axis = found([0.1 + 0 * TIME, 0.1 + burst + 0.8 * (TIME > 7.5)])
+    first, second = axis.worst
+    assert first.record == "record 1"
+    assert (first.start, first.end) == (pytest.approx(2, abs=0.05), pytest.approx(2.5, abs=0.05))
+    assert first.rmse == pytest.approx(1.1, rel=0.05)
+    assert (second.start, second.end) == (pytest.approx(7.5, abs=0.05), pytest.approx(7.999, abs=0.05))
+    total = 0.01 * (16_000 - 998) + 1.21 * 499 + 0.81 * 499
+    assert first.share == pytest.approx(1.21 * 499 / total, rel=0.05)
+
+
+@given(st.lists(st.integers(-5, 5), min_size=1, max_size=14))
+def test_the_heaviest_run_is_the_heaviest(weights):
+    runs = heaviest(np.array(weights, dtype=float), 3)
+    sums = [sum(weights[i:j]) for i, j in combinations(range(len(weights) + 1), 2)]
+    if max(sums) <= 0:
+        assert not runs
+    else:
+        assert sum(weights[slice(*runs[0])]) == max(sums)
+        covered = [place for first, last in runs for place in range(first, last)]
+        assert len(covered) == len(set(covered))
+
+
+@given(st.lists(st.floats(1e-6, 1e6), min_size=1, max_size=30), st.integers(0, 5))
+def test_every_value_is_in_its_bin(values, shift):
+    values = np.array(values)
+    for sorting in (linear("a", "V", [values]), logarithmic("b", "s", [values], 1e-4 * values.max())):
+        for value, place in zip(values, sorting.places[0], strict=True):
+            own, slack = sorting.bins[place], 1e-9 * values.max()
+            assert own.lower - slack <= value <= own.upper + slack
+    whole = np.round(values).astype(int) + 1
+    sorting = doubling("c", [whole])
+    for value, place in zip(whole, sorting.places[0], strict=True):
+        assert sorting.bins[place].lower <= value <= sorting.bins[place].upper
+
+
+@given(st.integers(2, 300), st.integers(0, 100))
+def test_parseval(samples, seed):
+    values = np.random.default_rng(seed).normal(size=samples)
+    energy, freedom = power(values)
+    assert energy.sum() == pytest.approx((values**2).sum())
+    assert freedom.sum() == samples
