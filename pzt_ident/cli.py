@@ -134,11 +134,13 @@ def _identify(start: Callable[[Listener], Path], as_json: bool, quiet: bool) -> 
 def compare(source: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
     """Say where the model fails: the best run in the folder DIR, or of the job file JOB, which is run first."""
     from pzt_ident import atlas, terminal
-    from pzt_ident.compare import compare, finished
+    from pzt_ident.compare import compare, draw, finished
 
     with terminal.listening(silent=as_json or quiet) as listen:
         folder = finished(source, out, listen)
     found = compare(folder, out or folder)
+    for _ in terminal.tracked(draw(folder, out or folder, found), "figures", as_json or quiet):
+        pass
     _answer({"folder": str(out or folder), "residuals": found}, lambda: atlas.show_misfits(found), as_json, quiet)
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from collections.abc import Iterator
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -38,6 +39,18 @@ def compare(folder: Path, out: Path) -> dict[str, Any]:
     found = misfits(results)
     write_json(out / "residuals.json", found)
     return found
+
+
+def draw(folder: Path, out: Path, found: dict[str, Any]) -> Iterator[object]:
+    """Draw what `compare` found into `figures/` of the folder `out`, and the folder's report again where it has one.
+    Yields what is done."""
+    from pzt_ident.report.figures import write_misfit_figures
+
+    yield from write_misfit_figures(replace(read_results(folder), misfit=found), out / "figures")
+    if out == folder and (folder / "report.html").exists():
+        from pzt_ident.report.page import write_report
+
+        yield write_report(folder)
 
 
 def misfits(results: Results) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pzt_ident.files import replaced
+from pzt_ident.report import misfit_figures as misfit
 from pzt_ident.report import residual_figures as residual
 from pzt_ident.report import search_figures as search
 from pzt_ident.report import signal_figures as signal
@@ -33,7 +34,12 @@ class Plate:
 
 def plates(results: Results) -> list[Plate]:
     """Every figure that these results have, in the order of the report."""
-    return [*_signal_plates(results), *_residual_plates(results), *_search_plates(results)]
+    return [
+        *_signal_plates(results),
+        *_residual_plates(results),
+        *misfit_plates(results),
+        *_search_plates(results),
+    ]
 
 
 def render(plate: Plate, width: float, forms: Sequence[str]) -> dict[str, bytes]:
@@ -56,6 +62,14 @@ def write_paper_figures(results: Results, folder: Path) -> Iterator[Plate]:
     for plate in plates(results):
         _write(plate, COLUMN, ("svg", "pdf"), folder)
         _write(plate, PAGE, ("pdf",), folder)
+        yield plate
+
+
+def write_misfit_figures(results: Results, folder: Path) -> Iterator[Plate]:
+    """Write the figures of the misfit, SVG and PDF at 88 and 180 mm. Yields what is done."""
+    for plate in misfit_plates(results):
+        for width in (COLUMN, PAGE):
+            _write(plate, width, ("svg", "pdf"), folder)
         yield plate
 
 
@@ -119,6 +133,39 @@ def _residual_plates(results: Results) -> Iterator[Plate]:
         partial(residual.histogram_height, axes=len(results.axes)),
         partial(residual.draw_histogram, traces=results.traces, noise=floor),
     )
+
+
+def misfit_plates(results: Results) -> Iterator[Plate]:
+    """Of each axis that has a misfit."""
+    for axis, traces in _by_axis(results):
+        found = results.misfit.get("axes", {}).get(axis, {})
+        if not found.get("misfit"):
+            continue
+        yield Plate(
+            f"misfit-shares-{slug(axis)}",
+            "misfit",
+            f"Share of the squared misfit of axis {axis} above the noise in each bin, and share of the samples (of the "
+            "bandwidth, for frequency and lines) in it. A bar that reaches beyond its tick misfits more than its due.",
+            partial(misfit.shares_height, misfit=found),
+            partial(misfit.draw_shares, misfit=found),
+        )
+        if found["map"]:
+            yield Plate(
+                f"misfit-map-{slug(axis)}",
+                "misfit",
+                f"RMSE of axis {axis} where {found['map']['rows']} and {found['map']['columns']}, which tell most, "
+                "cross; the number is the share of the misfit, %. Grey: no samples.",
+                partial(misfit.map_height, misfit=found),
+                partial(misfit.draw_misfit_map, misfit=found),
+            )
+        if failing := misfit.failing(found, traces):
+            yield Plate(
+                f"misfit-worst-{slug(axis)}",
+                "misfit",
+                f"The stretches with most of the misfit of axis {axis}: in time, and on the measured loop.",
+                partial(misfit.worst_height, records=len(failing)),
+                partial(misfit.draw_worst, misfit=found, traces=failing),
+            )
 
 
 def _search_plates(results: Results) -> Iterator[Plate]:

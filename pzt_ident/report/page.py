@@ -37,6 +37,7 @@ def write_report(folder: Path) -> Path:
         tables=tables,
         figures=sections,
         verdict=verdict(results),
+        misfits=list(results.misfit.get("axes", {}).values()),
         findings=findings(results),
         failed_simulations=sum(run["failed_simulations"] for run in results.result["runs"]),
         optimizers=listed(row["optimizer"] for row in results.result["league"]),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -46,7 +46,8 @@ class Trace:
 
 @dataclass(frozen=True, eq=False)
 class Results:
-    """What a run wrote: `result` is result.json, `history` has one row a generation, `job` is the job's text."""
+    """What a run wrote: `result` is result.json, `history` has one row a generation, `job` is the job's text, `misfit`
+    is residuals.json, empty where the run was not compared."""
 
     folder: Path
     result: dict[str, Any]
@@ -54,6 +55,7 @@ class Results:
     traces: tuple[Trace, ...]
     environment: dict[str, Any]
     job: str
+    misfit: dict[str, Any] = field(default_factory=dict)
 
     @property
     def unit(self) -> str:
@@ -86,6 +88,7 @@ def read_results(folder: Path) -> Results:
         _traces(_there(folder / "signals.nc"), [record["name"] for record in result["records"]]),
         _json(folder / "environment.json"),
         _there(folder / "job.yaml").read_text(encoding="utf-8"),
+        _json(folder / "residuals.json") if (folder / "residuals.json").exists() else {},
     )
 
 
