@@ -7,7 +7,7 @@ from pzt_ident.registry import blocks
 
 @blocks.register
 class CrossCoupling(Coupling):
-    """f1 <- f1 + (k12 / k11) f2, ahead of the mechanics of axis 1.
+    """The guide passes force from axis to axis: f1 <- f1 + (k12 / k11) f2, ahead of the mechanics of axis 1.
 
     Lin & Lin (2012), Mechatronics 22, 614, eq. 6 and 20: only the ratios k12 / k11 and k21 / k22 matter.
     """
