@@ -11,7 +11,7 @@ import numpy as np
 
 from experiments.hidden_effect.campaign import Drive
 from experiments.hidden_effect.cases import opened, write_record
-from experiments.hidden_effect.solve import solve_case
+from experiments.hidden_effect.solve import run
 
 LATER = 7  # the record's number, after all others
 
@@ -31,7 +31,7 @@ def follow(folder: Path, name: str) -> Path | None:
         more = "records:\n  - {file: proposed.csv, use: identify}\n"
         (job / "job.yaml").write_text(text.replace("records:\n", more, 1), encoding="utf-8")
     solved = folder / "followed" / name / "solved"
-    solve_case(job, solved)
+    run("improve", job / "job.yaml", solved)
     return solved
 
 

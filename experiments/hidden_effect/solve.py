@@ -23,11 +23,11 @@ def solve(folder: Path, workers: int = 2, retry: bool = False) -> list[Path]:
 
 def solve_case(case: Path, out: Path, retry: bool = False) -> bool:
     kind = case.name.rpartition("-")[0]
-    commands = ["improve", "diagnose"] if kind in TWO_ROUNDS else ["improve"]
-    return all([_run(command, case / "job.yaml", out, retry) for command in commands])
+    diagnosed = kind not in TWO_ROUNDS or run("diagnose", case / "job.yaml", out, retry)
+    return run("improve", case / "job.yaml", out, retry) and diagnosed
 
 
-def _run(command: str, job: Path, out: Path, retry: bool) -> bool:
+def run(command: str, job: Path, out: Path, retry: bool) -> bool:
     """One command into out/COMMAND; whether its result is there."""
     result = out / command / {"improve": "improvement.json", "diagnose": "diagnosis.json"}[command]
     failure = out / f"{command}_failed.json"
