@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from pzt_ident.diagnosis import wording
 from pzt_ident.diagnosis.noise import Floor
-from pzt_ident.diagnosis.sorting import Sorting, Tally, by_frequency, by_line, tally
+from pzt_ident.diagnosis.sorting import Bin, Sorting, Tally, by_frequency, by_line, tally
 from pzt_ident.diagnosis.stretches import Stretch, worst_stretches
-from pzt_ident.diagnosis.views import sortings
+from pzt_ident.diagnosis.views import MOVING, sortings
 from pzt_ident.record import Record
 from pzt_ident.units import factor
 
@@ -21,10 +21,12 @@ Array = NDArray[np.float64]
 
 CERTAIN = 4.0
 """Standard deviations of the mean square of white noise beyond which an excess is not chance."""
-FLOOR_ERROR = 0.05
-"""Relative error of the squared noise floor within which there is no misfit to speak of."""
+FLOOR_ERROR = 0.3
+"""Relative error of the squared noise floor: coloured noise looks a tenth smaller in short rests than it is."""
 EXCESS, LIFT = 0.15, 1.5
 """A dominant part has so much more of the misfit than of the samples, and so many times as much."""
+CAMPAIGN = ("record", "amplitude", "rate")
+"""Views in which the records of a campaign differ by design."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,7 @@ class Part:
 @dataclass(frozen=True)
 class Dominant:
     """The run of bins, `first` to `last`, that has most of the misfit for its samples. sharpness: Kullback-Leibler
-    divergence of the two shares, nat (Kulldorff's scan statistic per unit of misfit)."""
+    divergence of its share from what is due to it, nat (Kulldorff's scan statistic per unit of misfit)."""
 
     first: int
     last: int
@@ -83,7 +85,7 @@ class Crossing:
 @dataclass(frozen=True)
 class Misfit:
     """What the model of one axis leaves, over the scored samples of all records, in the user's unit:
-    rmse^2 = noise_floor^2 + misfit^2, the misfit being 0 where the difference may be chance."""
+    rmse^2 = noise_floor^2 + misfit^2; the misfit is 0 where the difference may be chance or an error of the floor."""
 
     axis: str
     unit: str
@@ -120,7 +122,8 @@ def of_axis(records: Sequence[Record], residuals: list[Array], axis: int, floor:
     sorted_by = sortings(records, axis)
     spectral = [by_frequency(parts, [r.dt for r in records]), by_line(parts, [r.drive[:, r.settle :] for r in records])]
     tallies = [*(tally(sorting, parts) for sorting in sorted_by), *filter(None, spectral)]
-    views = tuple(view(found, noise, samples, missing > 0) for found in tallies)
+    due = {sorting.name: of_records(sorting, parts, noise) for sorting in sorted_by if sorting.name not in CAMPAIGN}
+    views = tuple(view(found, noise, samples, missing > 0, due.get(found.name)) for found in tallies)
     rmse, misfit = float(np.sqrt(square)), float(np.sqrt(missing))
     return Misfit(
         records[0].axes[axis],
@@ -137,7 +140,8 @@ def of_axis(records: Sequence[Record], residuals: list[Array], axis: int, floor:
     )
 
 
-def view(found: Tally, noise: float, samples: int, missing: bool) -> View:
+def view(found: Tally, noise: float, samples: int, missing: bool, due: Array | None) -> View:
+    """`due`: the shares of the misfit that the bins would have from their records alone."""
     shares = shares_of(found.squares, found.counts, noise) if missing else np.zeros(found.counts.size)
     of_samples = found.counts / found.counts.sum()
     excess = found.squares - found.counts * noise**2
@@ -148,7 +152,16 @@ def view(found: Tally, noise: float, samples: int, missing: bool) -> View:
         for k, own in enumerate(found.bins)
     )
     covers = float(found.counts.sum() / samples)
-    return View(found.name, found.unit, covers, bins, dominant(found, shares, of_samples, noise) if missing else None)
+    most = dominant(found, shares, of_samples, of_samples if due is None else due, noise) if missing else None
+    return View(found.name, found.unit, covers, bins, most)
+
+
+def of_records(sorting: Sorting, residuals: list[Array], noise: float) -> Array:
+    """Shares of the misfit in the bins, were the misfit of each record spread evenly over its samples."""
+    squares = np.array([np.square(part).sum() for part in residuals])
+    shares = shares_of(squares, np.array([part.size for part in residuals], dtype=np.float64), noise)
+    counts = np.array([np.bincount(places, minlength=len(sorting.bins)) / places.size for places in sorting.places])
+    return shares @ counts
 
 
 def shares_of(squares: Array, counts: Array, noise: float) -> Array:
@@ -157,27 +170,30 @@ def shares_of(squares: Array, counts: Array, noise: float) -> Array:
     return excess / (excess.sum() or 1.0)
 
 
-def dominant(found: Tally, shares: Array, samples: Array, noise: float) -> Dominant | None:
-    """The sharpest run of neighbouring bins, where it is sharp enough and beyond chance."""
+def dominant(found: Tally, shares: Array, samples: Array, due: Array, noise: float) -> Dominant | None:
+    """The sharpest run of neighbouring bins, where it is sharp enough, beyond chance, and not due to its records."""
     best = None
     for first, last in runs(found):
         own = slice(first, last + 1)
         share, part, count = float(shares[own].sum()), float(samples[own].sum()), float(found.counts[own].sum())
-        chance = CERTAIN * noise**2 * np.sqrt(2 * count)
-        certain = found.squares[own].sum() - noise**2 * count > chance
-        if certain and share - part >= EXCESS and share >= LIFT * part:
-            sharpness = divergence(np.array([share, 1 - share]), np.array([part, 1 - part]))
+        fair = max(part, float(due[own].sum()))
+        certain = found.squares[own].sum() - noise**2 * count > CERTAIN * noise**2 * np.sqrt(2 * count)
+        if certain and share - fair >= EXCESS and share >= LIFT * fair:
+            sharpness = divergence(np.array([share, 1 - share]), np.array([fair, 1 - fair]))
             if best is None or sharpness > best.sharpness + 1e-9:
                 best = Dominant(first, last, share, part, sharpness, wording.sentence(found, first, last, share, part))
     return best
 
 
 def runs(found: Tally) -> list[tuple[int, int]]:
-    """First and last of every run of neighbouring bins; a bin without limits has no neighbours, an empty one is no
-    end."""
-    ordered = [own.lower is not None for own in found.bins]
+    """First and last of every run of neighbouring bins, no end of it empty; bins without limits have no neighbours,
+    but rising and falling are moving."""
     pairs = combinations_with_replacement(np.flatnonzero(found.counts).tolist(), 2)
-    return [(i, j) for i, j in pairs if i == j or all(ordered[i : j + 1])]
+    return [(i, j) for i, j in pairs if i == j or joined(found.bins[i : j + 1])]
+
+
+def joined(bins: Sequence[Bin]) -> bool:
+    return all(own.lower is not None for own in bins) or tuple(own.label for own in bins) == MOVING
 
 
 def divergence(shares: Array, samples: Array) -> float:

@@ -104,7 +104,7 @@ def half_decades(low: float, high: float) -> list[float]:
 
 
 def between(edges: Sequence[float], unit: str) -> tuple[Bin, ...]:
-    return tuple(Bin(f"{low:.4g} to {high:.4g} {unit}".rstrip(), low, high) for low, high in pairwise(edges))
+    return tuple(Bin(f"{low:.6g} to {high:.6g} {unit}".rstrip(), low, high) for low, high in pairwise(edges))
 
 
 def round_up(value: float) -> float:

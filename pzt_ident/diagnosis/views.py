@@ -11,7 +11,8 @@ from pzt_ident.diagnosis.sorting import Array, Sorting, doubling, linear, logari
 from pzt_ident.record import Record
 from pzt_ident.units import factor
 
-WAYS = ("rising", "falling", "holding")
+MOVING = ("rising", "falling")
+WAYS = (*MOVING, "holding")
 
 
 def sortings(records: Sequence[Record], axis: int) -> list[Sorting]:

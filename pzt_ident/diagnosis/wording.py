@@ -30,7 +30,7 @@ def where(name: str, unit: str, bins: Sequence[Bin], first: int, last: int) -> s
             return f"in record {label}"
         case "branch":
             drive = f"the drive of {other}" if other else "the drive"
-            return f"where {drive} is {label}"
+            return f"where {drive} is {label if first == last else 'moving'}"
         case "amplitude":
             return f"in half cycles of {limits} peak to peak"
         case "rate":
@@ -45,22 +45,22 @@ def where(name: str, unit: str, bins: Sequence[Bin], first: int, last: int) -> s
         case "drive":
             return f"where the drive of {other} is {limits}"
         case "frequency":
-            return f"at frequencies of {limits}" if bins[first].lower else f"below {bins[last].upper:.4g} {unit}"
+            return f"at frequencies of {limits}" if bins[first].lower else f"below {bins[last].upper:.6g} {unit}"
     return f"in the {label} of the drive" if label.endswith("harmonics") and "between" not in label else f"{label}"
 
 
 def span(bins: Sequence[Bin], first: int, last: int, unit: str) -> str:
     lower, upper = bins[first].lower, bins[last].upper
-    return f"{lower:.4g} to {upper:.4g} {unit}".rstrip() if lower is not None else bins[first].label
+    return f"{lower:.6g} to {upper:.6g} {unit}".rstrip() if lower is not None else bins[first].label
 
 
 def after(bins: Sequence[Bin], first: int, last: int) -> str:
     lower, upper = bins[first].lower, bins[last].upper
     if not lower:
-        return f"within {upper:.4g} s after a reversal or stop"
+        return f"within {upper:.6g} s after a reversal or stop"
     if last == len(bins) - 1:
-        return f"later than {lower:.4g} s after a reversal or stop"
-    return f"{lower:.4g} to {upper:.4g} s after a reversal or stop"
+        return f"later than {lower:.6g} s after a reversal or stop"
+    return f"{lower:.6g} to {upper:.6g} s after a reversal or stop"
 
 
 def percent(share: float) -> str:
@@ -75,4 +75,5 @@ def account(misfit: float, dominants: Iterable[Dominant | None]) -> list[str]:
     found = [one for one in dominants if one]
     if not found:
         return ["No record, branch, amplitude, rate or band stands out: the misfit is spread evenly."]
-    return [one.sentence for one in sorted(found, key=lambda one: ("bandwidth" in one.sentence, -one.sharpness))]
+    ranked = sorted(found, key=lambda one: ("bandwidth" in one.sentence, -one.sharpness))
+    return list(dict.fromkeys(one.sentence for one in ranked))

@@ -93,6 +93,20 @@ def test_in_holds():
     assert "where the drive is holding" in said(axis)
 
 
+def test_wherever_the_drive_moves():
+    drive = np.interp(TIME, [0, 1, 7, 8], [0, 100, 100, 0])
+    axis = found([1.0 * ((TIME < 1) | (TIME > 7))], [record(drive=drive)])
+    assert "where the drive is moving, which is 25 % of the samples." in said(axis)
+
+
+def test_what_follows_from_the_record_is_not_said_of_its_cycles():
+    slow = 100 * np.abs((TIME / 4 + 1) % 2 - 1)
+    axis = found([0.5 + 0 * TIME, 0 * TIME], [record(), record(drive=slow)])
+    assert share(axis, "cycle", "3 to 4") == pytest.approx(0.5, abs=2e-3)
+    assert not view(axis, "cycle").dominant
+    assert view(axis, "record").dominant.share == 1
+
+
 def test_in_large_and_fast_half_cycles():
     drive = np.where(TIME < 4, TRIANGLE, 0.2 * TRIANGLE)
     axis = found([0.1 * (TIME < 4)], [record(drive=drive)])
