@@ -10,7 +10,7 @@ import numpy as np
 
 from pzt_ident.report.numbers import percent, unit
 from pzt_ident.report.residual_figures import colour_bar
-from pzt_ident.report.results import Trace
+from pzt_ident.report.results import Floats, Trace
 from pzt_ident.report.style import (
     COLUMN,
     INK,
@@ -110,23 +110,32 @@ def _printed(text: str, of: str) -> str:
 
 
 def map_height(width: float, misfit: Facts) -> float:
-    rows = sum(any(value is not None for value in row) for row in misfit["map"]["rmse"])
-    return 8 + _foot(misfit["map"]) + (4.2 if width == COLUMN else 6.0) * rows
+    _, rows, columns = _cells(misfit["map"])
+    return 8 + _foot(columns, width) + (4.2 if width == COLUMN else 6.0) * len(rows)
 
 
-def _foot(crossed: Facts) -> float:
-    """What the labels of the columns take, mm."""
-    return 7 + 1.05 * min(max(map(len, crossed["column_labels"])), 20)
+def _cells(crossed: Facts) -> tuple[Floats, dict[int, str], dict[int, str]]:
+    """RMSE of the cells, and numbers and labels of the rows and columns in use."""
+    rmse = np.array(crossed["rmse"], dtype=float)
+    rows, columns = (np.flatnonzero(np.isfinite(rmse).any(axis=way)).tolist() for way in (1, 0))
+    labels = ({k: crossed["row_labels"][k] for k in rows}, {k: crossed["column_labels"][k] for k in columns})
+    return rmse[np.ix_(rows, columns)], *labels
+
+
+def _foot(columns: dict[int, str], width: float) -> float:
+    """What the labels of the columns take, mm: 10 or, where they do not fit side by side and stand upright, more."""
+    longest = 1.05 * min(max(map(len, columns.values())), 20)
+    return 10.0 if longest < (width - _LABELS - 17) / len(columns) else 7 + max(longest, 4)
 
 
 def draw_misfit_map(figure: Figure, misfit: Facts) -> None:
     """RMSE where two views cross, as a colour, with the share of the misfit in it, %, as a number."""
     crossed = misfit["map"]
-    rmse, share = np.array(crossed["rmse"], dtype=float), np.array(crossed["share"])
-    rows, columns = (np.flatnonzero(np.isfinite(rmse).any(axis=way)) for way in (1, 0))
-    rmse, share = rmse[np.ix_(rows, columns)], share[np.ix_(rows, columns)]
+    rmse, rows, columns = _cells(crossed)
+    share = np.array(crossed["share"])[np.ix_(list(rows), list(columns))]
     title = f"Misfit by {crossed['rows']} and {crossed['columns']}, axis {misfit['axis']}"
-    frame = Frame(heading(figure, title) + 1, left=_LABELS, right=17, bottom=_foot(crossed))
+    foot = _foot(columns, width_of(figure))
+    frame = Frame(heading(figure, title) + 1, left=_LABELS, right=17, bottom=foot)
     axes = panels(figure, 1, 1, frame)[0, 0]
     axes.set_facecolor(SHADE)
     image = axes.imshow(rmse, vmin=0, cmap="YlOrBr", aspect="auto", interpolation="none")
@@ -136,9 +145,9 @@ def draw_misfit_map(figure: Figure, misfit: Facts) -> None:
             axes.text(j, i, f"{100 * part:.0f}", ha="center", va="center", size=5.5, color="white" if dark else INK)
     units = {view["name"]: view["unit"] for view in misfit["views"]}
     for axis, name, chosen in ((axes.yaxis, "rows", rows), (axes.xaxis, "columns", columns)):
-        words = [crossed[f"{name[:-1]}_labels"][k] for k in chosen]
-        axis.set_ticks(range(chosen.size), [fit(_printed(word, units[crossed[name]]), 22, 6) for word in words])
-    axes.tick_params(axis="x", rotation=90)
+        of = units[crossed[name]]
+        axis.set_ticks(range(len(chosen)), [fit(_printed(word, of), 22, 6) for word in chosen.values()])
+    axes.tick_params(axis="x", rotation=90 if foot > 10 else 0)
     axes.tick_params(length=0)
     axes.set_xlabel(crossed["columns"])
     label(colour_bar(figure, image, frame), "RMSE", misfit["unit"], (float(np.nanmax(rmse)),))
@@ -156,16 +165,14 @@ def worst_height(width: float, records: int) -> float:
 
 def draw_worst(figure: Figure, misfit: Facts, traces: Sequence[Trace], bins: int = 300) -> None:
     """The residual in time and the measured loop of each record that has a worst stretch, those coloured."""
-    colours = dict(enumerate(PALETTE))
-    keys = [
-        key(f"{place + 1}: {percent(one['share'])} of the misfit", color=colours[place], linewidth=2)
-        for place, one in enumerate(misfit["worst"])
-    ]
+    drawn = [one for one in misfit["worst"] if one["record"] in {trace.record for trace in traces}]
+    ranked = list(zip(PALETTE, drawn, strict=False))
+    keys = [key(f"{percent(one['share'])} of the misfit", color=colour, linewidth=2) for colour, one in ranked]
     top = heading(figure, f"Worst stretches, axis {misfit['axis']}", keys)
     shape = (2 * len(traces), 1) if width_of(figure) == COLUMN else (len(traces), 2)
     grid = panels(figure, *shape, Frame(top + 4)).reshape(len(traces), 2)
     for (left, right), trace in zip(grid, traces, strict=True):
-        marked = [(colours[k], one) for k, one in enumerate(misfit["worst"]) if one["record"] == trace.record]
+        marked = [(colour, one) for colour, one in ranked if one["record"] == trace.record]
         _in_time(left, trace, marked, bins)
         _on_loop(right, trace, marked, 2 * bins)
 
