@@ -110,7 +110,7 @@ class Bench:
         """The strength, up to the one given, at which the effect has the wanted size; and the size it has."""
         size = self.size(self.respond([dose]) - self.plain)
         low, high, slope = 0.0, dose.strength, 1.0
-        for _ in range(8):
+        for _ in range(14):
             if abs(size / wanted - 1) < 0.03 or (size < wanted and dose.strength == high):
                 break
             low, high = (dose.strength, high) if size < wanted else (low, dose.strength)
