@@ -89,6 +89,8 @@ def simulate(stage: Stage, time: Array, u_x: Array, u_y: Array, hours: float = 0
     if stage.force_coupling != 0 or stage.kinematic_coupling != 0:
         y = _free_stroke(Stage(stage.y, stage.y), u_y, u_y, count, step)
         f += stage.force_coupling * y
+    if stage.friction != 0:
+        _add_friction(stage, f, step)
     x = _mechanics(stage, f, step)
     if share != 0:
         omega = 2 * math.pi * stage.mode_frequency
@@ -167,37 +169,25 @@ def _pole(poled: float, u: float) -> float:
 
 
 @compiled
-def _pull(stage: Stage, f: float, x: float, v: float, z: float) -> tuple[float, float]:
-    """Acceleration of x and rate of the bristles z, in pre-sliding lengths."""
-    back = x + stage.cubic * x * x * x
-    bristles = 0.0
-    if stage.friction != 0:
-        back += stage.friction * z
-        limit = 1 + (stage.stiction - 1) * math.exp(-((v / stage.stribeck) ** 2))
-        bristles = (v - abs(v) * z / limit) / stage.presliding
+def _pull(stage: Stage, f: float, x: float, v: float) -> float:
+    """Acceleration of x."""
     axis = stage.x
-    pull = axis.stiffness * (f - back) - (axis.damping + stage.more_damping) * v
-    return pull / (axis.mass + stage.load), bristles
+    pull = axis.stiffness * (f - x - stage.cubic * x * x * x) - (axis.damping + stage.more_damping) * v
+    return pull / (axis.mass + stage.load)
 
 
 @compiled
-def _move(stage: Stage, state: tuple, f0: float, f1: float, step: float) -> tuple:
-    """One step of RK4 for (x, v, z)."""
-    x, v, z = state
+def _move(stage: Stage, x: float, v: float, f0: float, f1: float, step: float) -> tuple[float, float]:
+    """One step of RK4."""
     half, middle = step / 2, (f0 + f1) / 2
-    a1, b1 = _pull(stage, f0, x, v, z)
+    a1 = _pull(stage, f0, x, v)
     v2 = v + half * a1
-    a2, b2 = _pull(stage, middle, x + half * v, v2, z + half * b1)
+    a2 = _pull(stage, middle, x + half * v, v2)
     v3 = v + half * a2
-    a3, b3 = _pull(stage, middle, x + half * v2, v3, z + half * b2)
+    a3 = _pull(stage, middle, x + half * v2, v3)
     v4 = v + step * a3
-    a4, b4 = _pull(stage, f1, x + step * v3, v4, z + step * b3)
-    sixth = step / 6
-    return (
-        x + sixth * (v + 2 * v2 + 2 * v3 + v4),
-        v + sixth * (a1 + 2 * a2 + 2 * a3 + a4),
-        z + sixth * (b1 + 2 * b2 + 2 * b3 + b4),
-    )
+    a4 = _pull(stage, f1, x + step * v3, v4)
+    return x + step / 6 * (v + 2 * v2 + 2 * v3 + v4), v + step / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
 
 
 @compiled
@@ -237,13 +227,25 @@ def _add_creep(stage: Stage, f: Array, count: int, interval: float) -> None:
 
 
 @compiled
+def _add_friction(stage: Stage, f: Array, step: float) -> None:
+    """LuGre with bristles that follow the stage but not its ringing, which would shake them loose."""
+    z, before = 0.0, f[0]
+    for i in range(1, len(f)):
+        push, before = f[i] - before, f[i]
+        sign = 1.0 if push > 0 else -1.0
+        speed = abs(push) / step
+        limit = sign * (1 + (stage.stiction - 1) * math.exp(-((speed / stage.stribeck) ** 2)))
+        moved = abs(push) / (1 + stage.friction / stage.presliding * (1 - z / limit))
+        z = limit + (z - limit) * math.exp(-moved / (stage.presliding * abs(limit)))
+        f[i] -= stage.friction * z
+
+
+@compiled
 def _mechanics(stage: Stage, f: Array, step: float) -> Array:
     x = np.empty(len(f))
-    state = (f[0], 0.0, 0.0)
-    x[0] = f[0]
+    x[0], v = f[0], 0.0
     for i in range(1, len(f)):
-        state = _move(stage, state, f[i - 1], f[i], step)
-        x[i] = state[0]
+        x[i], v = _move(stage, x[i - 1], v, f[i - 1], f[i], step)
     return x
 
 
