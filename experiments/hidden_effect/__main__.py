@@ -52,7 +52,8 @@ def score(folder: Path, out: Path | None) -> None:
     out = out or folder / "score"
     scores, failed = score.score(folder)
     score.write(scores, failed, out)
-    figures.draw(scores, out)
+    if scores:
+        figures.draw(scores, out)
     click.echo((out / "score.json").read_text(encoding="utf-8"), nl=False)
 
 
