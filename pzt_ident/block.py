@@ -9,11 +9,14 @@ from __future__ import annotations
 
 import inspect
 import math
+from collections.abc import Callable
 from enum import IntEnum
 from functools import cache
 from typing import ClassVar
 
 from pzt_ident.parameter import Parameter
+
+TILES = 3  # signals that an axis carries: its own, what drives its operator's prompt response, and its mechanics
 
 
 class Place(IntEnum):
@@ -24,13 +27,14 @@ class Place(IntEnum):
     AMPLIFIER = 2
     READOUT = 3
     OPERATOR = 4
-    CREEP = 5
-    COUPLING = 6
-    GUIDE = 7
-    MECHANICS = 8
-    MODE = 9
-    OUTPUT = 10
-    SENSOR = 11
+    STATIC = 5
+    CREEP = 6
+    COUPLING = 7
+    GUIDE = 8
+    MECHANICS = 9
+    MODE = 10
+    OUTPUT = 11
+    SENSOR = 12
 
 
 def expm1(x: float) -> float:
@@ -91,7 +95,11 @@ class Block:
     @cache
     def arguments(cls) -> tuple[str, ...]:
         """What `prepare` asks for."""
-        return tuple(inspect.signature(cls.prepare).parameters)  # type: ignore[attr-defined]
+        return asked(cls.prepare)  # type: ignore[attr-defined]
+
+
+def asked(function: Callable[..., object]) -> tuple[str, ...]:
+    return tuple(inspect.signature(function).parameters)
 
 
 class Operator(Block):
@@ -106,6 +114,11 @@ class Operator(Block):
     3e-13 while |rate further| <= 0.1, the rate being the first coefficient of a regime.
     exact(q, distance, along, against) -> q, through a sign change of q, for any q.
     output(h, u, *shared) -> y.
+
+    Effects inside the operator's own equation are parameters that name them. They are asked for only where a job
+    lists one: terms(*parameters[, dt][, span]) -> coefficients,
+    lift(distance, u, sign, *coefficients) -> the factor on what drives q, u in the middle of the step, sign of du, and
+    fade(*coefficients) -> the share of h that is left after a sample.
     """
 
 
@@ -117,6 +130,27 @@ class Bank(Block):
     """
 
     branches: ClassVar[int]
+
+
+class Term(Block):
+    """An effect inside the equation of other blocks, which is written there: parameters of theirs name it."""
+
+
+class Shift(Block):
+    """A delay: y(t) = u(t - prepare(...)[0] samples) of the drive, which is linear between its samples."""
+
+
+class Beside(Block):
+    """A path beside the mechanics: step(*states, x, f, *coefficients) -> (*states, y), from f, the force that the
+    mechanics is driven by, and x, what comes out of it."""
+
+
+class Addition(Block):
+    """What adds to the response of each record in amounts of that record's own: y = x + sum_i a_i b_i(t).
+
+    basis(t, *parameters) -> (b_1, b_2, ...), arrays over t, s from the start of the record. The amounts, parameters
+    of each record, are taken in closed form together with the offset, on any record.
+    """
 
 
 class Coupling(Block):

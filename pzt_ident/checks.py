@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 from pzt_ident import units
@@ -136,7 +136,7 @@ def _parameters(document: Document, settings: dict[str, Setting], earlier: Earli
         return
     model = _chain((*earlier["model"], *earlier["effects"]), axes)
     spelled = {name: slot for slot in model.slots for name in model.spellings(slot)}
-    if spelled and not any(_free(model, slot, settings, earlier["effects"]) for slot in model.slots):
+    if spelled and not any(_free(model, slot, settings) for slot in model.slots):
         document.fault(("parameters",), "every parameter is fixed", "free at least one: give it `bounds`")
     for name, setting in settings.items():
         at: Loc = ("parameters", name)
@@ -144,20 +144,17 @@ def _parameters(document: Document, settings: dict[str, Setting], earlier: Earli
             _stranger(document, name, earlier, spelled)
             continue
         declared = spelled[name].parameter
-        if declared.effect and declared.effect not in earlier["effects"]:
-            document.fault(at, f"belongs to the effect {declared.effect!r}", f"add `effects: [{declared.effect}]`")
         least = setting.bounds[0] if setting.bounds else setting.value
         if declared.scale == "log" and least is not None and least <= 0:
             document.fault(at, f"{least:g} is not above 0", "give a value or lower bound above 0")
 
 
-def _free(model: Model, slot: Slot, settings: Mapping[str, Setting], effects: Collection[str]) -> bool:
+def _free(model: Model, slot: Slot, settings: Mapping[str, Setting]) -> bool:
     """Whether a parameter is searched for."""
     setting = next((settings[name] for name in model.spellings(slot) if name in settings), None)
     if setting is not None:
         return setting.bounds is not None
-    declared = slot.parameter
-    return declared.value is None and (declared.effect is None or declared.effect in effects)
+    return slot.parameter.value is None
 
 
 def _chain(words: Iterable[str], axes: Mapping[str, Axis]) -> Model:
@@ -195,6 +192,11 @@ def _stranger(document: Document, name: str, earlier: Earlier, spelled: Mapping[
         said = f"{block!r} is not in this model", "list it under `model` or `effects`, or take this out"
     elif block not in chosen:
         said = f"unknown parameter {name!r}", nearest(name, spelled)
+    elif declared := blocks[block].parameters().get(word):
+        effect = declared.effect or block
+        said = f"belongs to the effect {effect!r}", f"add `effects: [{effect}]`"
+        if declared.per_record:
+            said = "is taken in closed form for each record", "take it out"
     else:
         alike = [known for known in spelled if f"{block}." in known and known.count(".") == name.count(".")]
         said = f"{block!r} has no parameter {word!r}", nearest(name, alike)

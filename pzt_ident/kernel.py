@@ -18,6 +18,7 @@ from numba import cfunc, njit, types
 from numba.extending import intrinsic, overload, register_jitable
 
 from pzt_ident import block
+from pzt_ident.block import TILES
 from pzt_ident.files import cache_folder
 
 cache_folder()
@@ -166,6 +167,20 @@ def fill(samples, first, fresh, drive, runs, scratch, tile):
 
 
 @compiled
+def keep_prompt(samples, first, fresh, drive, runs, scratch, tile):
+    """What the operator's prompt response is driven by, ahead of the readout."""
+    for i in range(samples * WIDTH):
+        tile[TILE * WIDTH + i] = tile[i]
+
+
+@compiled
+def keep_force(samples, first, fresh, drive, runs, scratch, tile):
+    """What the mechanics is driven by."""
+    for i in range(samples * WIDTH):
+        tile[2 * TILE * WIDTH + i] = tile[i]
+
+
+@compiled
 def errors(samples, first, fresh, response, runs, sums, tile):
     """Sum of e and e^2, e = y - response."""
     whole = samples - samples % 2
@@ -189,11 +204,11 @@ def run(program, signals, scratch, axes, samples, since, stride, output, take):
     program: (steps, 5) of address, scratch row, row of signals, tile, from which sample on.
     signals: (rows, 1 + samples + PADDING), a sample of rest before the record; the row behind a drive's holds its runs.
     scratch: (groups, rows * WIDTH). output: (groups * WIDTH, axes, samples after `since` / stride) or empty, filled
-    from the tiles numbered in `take`, every `stride`-th sample.
+    from the signals of the axes in `take`, every `stride`-th sample.
     """
-    room = np.zeros(axes * TILE * WIDTH + 8)
+    room = np.zeros(TILES * axes * TILE * WIDTH + 8)
     start = (-room.ctypes.data // 8) % 8  # on a cache line
-    tiles = room[start : start + axes * TILE * WIDTH].reshape(axes, TILE * WIDTH)
+    tiles = room[start : start + TILES * axes * TILE * WIDTH].reshape(TILES * axes, TILE * WIDTH)
     for group in range(scratch.shape[0]):
         for first in range(0, samples, TILE):
             count = min(TILE, samples - first)
@@ -217,7 +232,7 @@ def run(program, signals, scratch, axes, samples, since, stride, output, take):
                     for i in range(begin, first + count, stride):
                         for j in range(WIDTH):
                             output[group * WIDTH + j, axis, (i - since) // stride] = tiles[
-                                take[axis], (i - first) * WIDTH + j
+                                TILES * take[axis], (i - first) * WIDTH + j
                             ]
 
 

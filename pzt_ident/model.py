@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.block import Bank, Block, Coupling, Operator
+from pzt_ident.block import TILES, Addition, Bank, Beside, Block, Coupling, Operator, Place, Shift, Term, asked
 from pzt_ident.parameter import Parameter
 from pzt_ident.record import Record
 
@@ -33,13 +34,26 @@ class Model:
 
     theta is (candidates, parameters) in SI units, in the order of `slots`; a simulation is (candidates, measured axes,
     samples). An axis without a response is simulated as far as the last coupling, with the parameters of the first
-    measured axis. Parameter names carry the axis where more than one is measured.
+    measured axis. Parameter names carry the axis where more than one is measured. A parameter that belongs to an effect
+    is there only where the effect is among the blocks.
     """
 
     def __init__(self, blocks: Sequence[type[Block]], axes: Sequence[str], measured: Sequence[int]) -> None:
-        self.blocks = tuple(sorted(blocks, key=lambda block: block.place))
+        chain = [block for block in blocks if not issubclass(block, Term | Addition)]
+        self.blocks = tuple(sorted(chain, key=lambda block: block.place))
+        self.additions = tuple(block for block in blocks if issubclass(block, Addition))
+        self._listed = {block.name for block in blocks if issubclass(block, Term)}
         self.axes, self.measured = tuple(axes), tuple(measured)
-        self.slots = tuple(slot for block in self.blocks for slot in self._slots(block))
+        self.slots = tuple(slot for block in (*self.blocks, *self.additions) for slot in self._slots(block))
+
+    def terms(self, block: type[Block]) -> set[str]:
+        """The effects that act inside a block's equation."""
+        return self._listed & {parameter.effect for parameter in block.parameters().values() if parameter.effect}
+
+    @property
+    def reads_out(self) -> bool:
+        """Whether the prompt response of an operator is driven by another signal than its memory."""
+        return {Place.READOUT, Place.OPERATOR} <= {block.place for block in self.blocks}
 
     def _slots(self, block: type[Block]) -> list[Slot]:
         found = []
@@ -49,6 +63,8 @@ class Model:
             for other in others:
                 suffix = f"_from_{self.axes[other]}" if len(others) > 1 else ""
                 for word, parameter in block.parameters().items():
+                    if parameter.per_record or (parameter.effect and parameter.effect not in self._listed):
+                        continue
                     name = f"{prefix}{block.name}.{word}{suffix}"
                     found.append(Slot(name, block, word, axis, other, parameter))
         return found
@@ -91,50 +107,83 @@ class Plan:
     """A model made ready for one record: the kernel's program and the layout of its scratch."""
 
     def __init__(self, model: Model, record: Record) -> None:
+        from pzt_ident.lanes import Variant
+
         self.model, self.record = model, record
         self.program: list[tuple[int, ...]] = []
         self.given: list[tuple[int, int]] = []  # row of the scratch, column of theta
         self.known: list[tuple[int, float]] = []  # row of the scratch, the same number for every candidate
         self.rows = 0
-        fresh = set(range(len(model.axes)))  # axes whose tile does not hold a signal yet
+        self._fresh = set(range(len(model.axes)))  # axes whose tile does not hold a signal yet
         last = max((i for i, block in enumerate(model.blocks) if issubclass(block, Coupling)), default=-1)
         for number, block in enumerate(model.blocks):
             if issubclass(block, Coupling):
-                self._fill(fresh)
-                self._add(block, 0, driven=False)
+                self._fill(set(self._fresh))
+                self._add(block, 0, Variant(axes=len(model.axes)))
                 continue
             for axis in range(len(model.axes)):
                 if axis in model.measured or number < last:
-                    driven = axis in fresh and issubclass(block, Operator)
-                    self._fill(fresh & (set() if driven else {axis}))
-                    self._add(block, axis, driven)
-                    fresh.discard(axis)
-        self._fill(fresh & set(model.measured))
+                    self._keep(number, axis)
+                    self._append(block, axis)
+        self._fill(self._fresh & set(model.measured))
         self._measured = np.array(model.measured, dtype=np.int64)
         self.sums = self.rows
         self.rows += 2 * len(model.measured)
 
+    def _append(self, block: type[Block], axis: int) -> None:
+        """A block of one axis, in the variant that the others around it ask for."""
+        from pzt_ident.lanes import Variant
+
+        operator = block.place == Place.OPERATOR
+        readout = operator and self.model.reads_out
+        terms = issubclass(block, Operator) and bool(self.model.terms(block))
+        driven = axis in self._fresh and issubclass(block, Operator) and not (readout or terms)
+        if not (driven or issubclass(block, Shift)):
+            self._fill(self._fresh & {axis})
+        self._fresh.discard(axis)
+        self._add(block, axis, Variant(driven, readout, terms))
+
+    def _keep(self, number: int, axis: int) -> None:
+        """Ahead of the first block of a stage, put aside what a readout or a path beside the mechanics needs of it."""
+        from pzt_ident.kernel import address, keep_force, keep_prompt
+
+        blocks = self.model.blocks
+        beside = any(issubclass(block, Beside) for block in blocks)
+        stages = [(keep_prompt, Place.READOUT, self.model.reads_out), (keep_force, Place.GUIDE, beside)]
+        for keep, first, needed in stages:
+            enters = blocks[number].place >= first and (number == 0 or blocks[number - 1].place < first)
+            if enters and needed:
+                self._fill(self._fresh & {axis})
+                self.program.append((address(keep), 0, 2 * axis, TILES * axis, 0))
+
     def _fill(self, axes: set[int]) -> None:
         from pzt_ident.kernel import address, fill
 
-        self.program += [(address(fill), 0, 2 * axis, axis, 0) for axis in sorted(axes)]
-        axes.clear()
+        self.program += [(address(fill), 0, 2 * axis, TILES * axis, 0) for axis in sorted(axes)]
+        self._fresh -= axes
 
-    def _add(self, block: type[Block], axis: int, driven: bool) -> None:
+    def _add(self, block: type[Block], axis: int, variant: Any) -> None:
         from pzt_ident.lanes import compile_block
 
         axes = range(len(self.model.axes))
         coupling = issubclass(block, Coupling)
-        made = compile_block(block, len(axes) if coupling else 1, driven)  # type: ignore[arg-type]
-        self.program.append((made.address, self.rows, 2 * axis, axis, 0))
+        made = compile_block(block, variant)  # type: ignore[arg-type]
+        tile = TILES * axis + (1 if block.place == Place.READOUT and self.model.reads_out else 0)
+        self.program.append((made.address, self.rows, 2 * axis, tile, 0))
         places = [(a, b) for a in axes for b in axes if b != a] if coupling else [(axis, axis)]
         branches = range(block.branches) if issubclass(block, Bank) else [0]
+        words = (*block.arguments(), *(asked(block.terms) if variant.terms else ()))  # type: ignore[attr-defined]
+        nulls = {p.name: p.null or 0.0 for p in block.parameters().values() if p.effect}
+        nulls = {p.name: p.null or 0.0 for p in block.parameters().values() if p.effect}
         row = self.rows + made.layout.first_given
         for axis, other in places:
             columns = self.model.columns(block, axis, other)
-            known = {"dt": self.record.dt / self.model.oversample, "span": float(np.ptp(self.record.drive[axis]))}
+            known = nulls | {
+                "dt": self.record.dt / self.model.oversample,
+                "span": float(np.ptp(self.record.drive[axis])),
+            }
             for branch in branches:
-                for word in block.arguments():
+                for word in words:
                     column = columns.get(word) if columns else None
                     if column is None:
                         self.known.append((row, (known | {"branch": branch}).get(word, 0.0)))
@@ -202,7 +251,10 @@ class Plan:
 
         since = self.record.run_in * self.record.samples + self.record.settle
         behind = 2 * len(self.model.axes)
-        sums = [(address(errors), self.sums + 2 * i, behind + i, a, since) for i, a in enumerate(self.model.measured)]
+        sums = [
+            (address(errors), self.sums + 2 * i, behind + i, TILES * a, since)
+            for i, a in enumerate(self.model.measured)
+        ]
         return np.array(self.program + sums, dtype=np.int64)
 
     def _run(self, theta: Array, program: NDArray[np.int64], output: Array) -> Array:
@@ -234,7 +286,7 @@ class Plan:
         from pzt_ident import kernel
 
         theta = np.atleast_2d(theta)
-        if self.model.oversample > 1:
+        if self.model.oversample > 1 or self.model.additions:
             error = self.residuals(theta)
             return np.einsum("mas,mas->ma", error, error)
         scratch = self._run(theta, self._scoring, np.empty((0, 0, 0)))
@@ -245,8 +297,34 @@ class Plan:
         return left.swapaxes(1, 2).reshape(-1, len(self.model.measured))[: theta.shape[0]]
 
     def residuals(self, theta: Array) -> Array:
-        """Model minus measurement over the scored samples, each with its free offset removed."""
+        """Model minus measurement over the scored samples, what each record adds of its own removed."""
+        return self.errors(theta)[:, :, self.record.settle :]
+
+    def errors(self, theta: Array) -> Array:
+        """Model minus measurement over all samples: (candidates, measured axes, samples). The offset of the record and
+        the amounts of its additions are those of least squares over the scored samples."""
+        theta = np.atleast_2d(theta)
         error = self.simulate(theta) - self.record.response[list(self.model.measured)]
-        error = error[:, :, self.record.settle :]
-        error -= error.mean(axis=2, keepdims=True)
+        settle = self.record.settle
+        if not self.model.additions:
+            error -= error[:, :, settle:].mean(axis=2, keepdims=True)
+            return error
+        for i, axis in enumerate(self.model.measured):
+            shapes = [slot.axis == axis and slot.block in self.model.additions for slot in self.model.slots]
+            kinds, which = np.unique(theta[:, shapes], axis=0, return_inverse=True)
+            for kind in range(len(kinds)):
+                same = np.flatnonzero(which.ravel() == kind)
+                basis = self._basis(axis, theta[same[0]])
+                q, r = np.linalg.qr(basis[settle:])
+                seen = np.abs(np.diag(r)) > 1e-9 * np.abs(r).max()
+                amounts = np.linalg.lstsq(r[:, seen], q.T @ error[same, i, settle:].T, rcond=None)[0]
+                error[same, i] -= (basis[:, seen] @ amounts).T
         return error
+
+    def _basis(self, axis: int, theta: Array) -> Array:
+        """One, and the signals of all additions of an axis: (samples, signals)."""
+        time, signals = self.record.time, [np.ones(self.record.samples)]
+        for block in self.model.additions:
+            columns = self.model.columns(block, axis, axis) or {}
+            signals += block.basis(time, *(theta[columns[word]] for word in asked(block.basis)[1:]))  # type: ignore[attr-defined]
+        return np.array(signals).T

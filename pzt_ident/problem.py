@@ -40,7 +40,6 @@ class Problem:
         model: Model,
         records: Sequence[Record],
         wishes: Mapping[str, Wish] | None = None,
-        effects: Sequence[str] = (),
     ) -> None:
         self.model, self.records = model, tuple(records)
         self.failed = 0
@@ -48,10 +47,10 @@ class Problem:
         if not identify:
             raise InputError("no record to identify from", where="records", remedy="give one of them `use: identify`")
         self.plans = {use: [Plan(model, r) for r in records if r.use == use] for use in ("identify", "validate")}
-        self._settle(identify, wishes or {}, set(effects))
+        self._settle(identify, wishes or {})
         self._enough(identify)
 
-    def _settle(self, identify: list[Record], wishes: Mapping[str, Wish], effects: set[str]) -> None:
+    def _settle(self, identify: list[Record], wishes: Mapping[str, Wish]) -> None:
         """Which parameters are free, within which bounds, and what the others are fixed to."""
         count = len(self.model.slots)
         self.all_units = [self._unit(slot, identify[0]) for slot in self.model.slots]
@@ -63,8 +62,6 @@ class Problem:
             parameter = slot.parameter
             if wish and wish.bounds is None and wish.value is not None:
                 self.theta[column] = wish.value * self._factor[column]
-            elif parameter.effect and parameter.effect not in effects and parameter.null is not None:
-                self.theta[column] = parameter.null
             elif parameter.value is not None and not wish:
                 self.theta[column] = parameter.value * self._size(slot, identify)
             else:

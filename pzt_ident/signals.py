@@ -15,7 +15,7 @@ from pzt_ident.units import factor
 def write_signals(path: Path, problem: Problem, point: np.ndarray) -> None:
     """One group a record: time, and for each axis the drive and, where measured, response, model and residual.
 
-    The model carries the record's free offset; residual is model minus response. Units are the user's.
+    The model carries the record's free offset and additions; residual is model minus response. Units are the user's.
     """
     import h5netcdf
 
@@ -31,11 +31,10 @@ def write_signals(path: Path, problem: Problem, point: np.ndarray) -> None:
             for axis, name in enumerate(record.axes):
                 unit = record.drive_units[axis]
                 put(group, f"drive_{name}", record.drive[axis] / factor(unit), unit, f"drive of {name}")
-            simulated = plan.simulate(theta)[0]
+            errors = plan.errors(theta)[0]
             for i, axis in enumerate(record.measured):
                 name, unit = record.axes[axis], str(record.response_units[axis])
-                residual = simulated[i] - record.response[axis]
-                residual = residual - residual[record.settle :].mean()
+                residual = errors[i]
                 put(group, f"response_{name}", record.response[axis] / factor(unit), unit, f"measured {name}")
                 put(group, f"model_{name}", (record.response[axis] + residual) / factor(unit), unit, f"model of {name}")
                 put(group, f"residual_{name}", residual / factor(unit), unit, f"model minus measured {name}")

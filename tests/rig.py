@@ -39,7 +39,9 @@ def model(*chain, axes=None, measured=None):
 def response(chain, parameters, *drives, dt=1e-3, **more):
     """Response of one candidate, (axes, samples), or (samples,) for one axis. Parameters as named in `Model.names`;
     those that belong to an effect are at their null unless given."""
-    made = model(*chain, axes=len(drives))
+    chosen = [blocks[item] if isinstance(item, str) else item for item in chain]
+    named = {f"{block.name}.{word}": p.effect for block in chosen for word, p in block.parameters().items() if p.effect}
+    made = model(*chain, *{named[name] for name in parameters if name in named}, axes=len(drives))
     nulls = {slot.name: slot.parameter.null for slot in made.slots if slot.parameter.effect}
     theta = np.array([[(nulls | parameters)[name] for name in made.names]])
     found = made.simulate(record(*drives, dt=dt, **more), theta)[0]

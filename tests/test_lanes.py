@@ -57,8 +57,8 @@ def kernels(cache):
     return sorted(path.name for path in cache.glob("*.py"))
 
 
-def compile_again(block=Lumped, axes=1, driven=False):
-    return lanes.compile_block.__wrapped__(block, axes, driven)
+def compile_again(block=Lumped, **variant):
+    return lanes.compile_block.__wrapped__(block, lanes.Variant(**variant))
 
 
 def author(path, factor):

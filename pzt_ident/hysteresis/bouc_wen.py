@@ -1,10 +1,13 @@
 """Bouc-Wen hysteresis driven by the voltage."""
 
-from math import inf
+from math import exp, inf, log
 
 from pzt_ident.block import Operator, Place, expm1, log1p
 from pzt_ident.parameter import Parameter
 from pzt_ident.registry import blocks
+
+
+RATE = 100.0  # V/s, at which alpha is meant
 
 
 @blocks.register
@@ -14,6 +17,11 @@ class BoucWen(Operator):
     Lin & Lin (2012), Mechatronics 22, 614, eq. 5. The state is h / (alpha d), in volts. On a monotone step of length s,
     counted along the motion, q(s) = q0 exp(-r s) + (1 - exp(-r s)) / r, with r = beta - gamma where q < 0 and
     r = beta + gamma where q > 0.
+
+    Effects, each off at zero:
+    dh/dt = alpha d (1 + rate log10(|du/dt| / RATE)) du/dt + asymmetry alpha d u |du/dt| - ... - relaxation h,
+    the bracket held over a step at its value in the middle and h relaxing behind it: second order in the step, and
+    first order in dt * relaxation.
     """
 
     place = Place.OPERATOR
@@ -21,6 +29,12 @@ class BoucWen(Operator):
     alpha = Parameter("1", (0, 1), "Share of the prompt response that hysteresis takes back just after a rest.")
     beta = Parameter("1/drive", (0, 60), "Forgetting per volt on both branches.")
     gamma = Parameter("1/drive", (-30, 60), "Forgetting per volt, with the sign of h along the motion.")
+
+    asymmetry = Parameter(
+        "1/drive", (-1, 1), "Part of the drive term that grows with the voltage.", 0, effect="asymmetry"
+    )
+    rate = Parameter("1", (-0.3, 0.3), "Growth of alpha per decade of drive rate.", 0, effect="rate_dependence")
+    relaxation = Parameter("1/s", (0, 1), "Fading of h with time, 1 / tau.", 0, effect="thermal_relaxation")
 
     def prepare(gain, alpha, beta, gamma):
         return (gain, alpha * gain), regime(beta + gamma), regime(beta - gamma)
@@ -50,6 +64,16 @@ class BoucWen(Operator):
 
     def output(h, u, gain, slope):
         return gain * u - slope * h
+
+    def terms(asymmetry, rate, relaxation, dt):
+        return asymmetry, rate / log(10), 1 / (dt * RATE), exp(-dt * relaxation)
+
+    def lift(distance, u, sign, asymmetry, rate, faster, keep):
+        speed = min(max(distance * faster, 1e-4), 1e6)
+        return max(1 + sign * asymmetry * u + rate * log1p(speed - 1), 0.01)
+
+    def fade(asymmetry, rate, faster, keep):
+        return keep
 
 
 def regime(rate):

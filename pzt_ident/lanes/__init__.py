@@ -16,16 +16,17 @@ from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, NamedTuple
 
-from pzt_ident.block import Bank, Block, Coupling, Operator
+from pzt_ident.block import Bank, Beside, Block, Coupling, Operator, Shift, asked
 from pzt_ident.files import cache_folder
 
 TEMPLATES = Path(__file__).parent
-FUNCTIONS = ("prepare", "start", "step", "travel", "near", "exact", "output")
+FUNCTIONS = ("prepare", "start", "step", "travel", "near", "exact", "output", "terms", "lift", "fade")
 
 
 class Layout(NamedTuple):
     """Rows of WIDTH numbers in a block's scratch: states of all copies (branches, or pairs of axes), coefficients of
-    all, what `prepare` is given of all, then work. An operator's coefficients are shared, along, against."""
+    all, what `prepare` is given of all, then work. An operator's coefficients are shared, along, against, and those of
+    its terms, which have their own share of what is given."""
 
     states: int
     coefficients: int
@@ -33,14 +34,16 @@ class Layout(NamedTuple):
     copies: int
     work: int
     shared: int
+    terms: int
+    given_terms: int
 
     @property
     def first_given(self) -> int:
-        return self.copies * (self.states + self.coefficients)
+        return self.copies * (self.states + self.coefficients) + self.terms
 
     @property
     def rows(self) -> int:
-        return self.copies * (self.states + self.coefficients + self.given) + self.work
+        return self.first_given + self.copies * self.given + self.given_terms + self.work
 
 
 class Compiled(NamedTuple):
@@ -48,43 +51,57 @@ class Compiled(NamedTuple):
     layout: Layout
 
 
+class Variant(NamedTuple):
+    """`driven`: the block reads the drive, the same in every lane, and is the first of its axis. `readout`: what drives
+    an operator's prompt response has a tile of its own. `terms`: effects act in its equation. `axes`: of a coupling."""
+
+    driven: bool = False
+    readout: bool = False
+    terms: bool = False
+    axes: int = 1
+
+
 @cache
-def compile_block(block: type[Block], axes: int, driven: bool) -> Compiled:
-    """The block's C function. `driven`: it reads the drive, the same in every lane, and is the first of its axis."""
+def compile_block(block: type[Block], variant: Variant = Variant()) -> Compiled:  # noqa: B008
+    """The block's C function."""
     from pzt_ident import kernel
 
-    template = template_of(block, driven)
-    layout = layout_of(block, axes, kernel.TILE)
+    template = template_of(block, variant)
+    layout = layout_of(block, variant, kernel.TILE)
     text = (TEMPLATES / f"{template}.jinja").read_text()
-    author, host = inspect.getsource(inspect.getmodule(block)), inspect.getsource(kernel)  # type: ignore[arg-type]
-    sources = [text, kernel.VERSION, str(layout), str(axes), author, host]
+    sources = [text, kernel.VERSION, str(layout), str(variant), inspect.getsource(kernel), *authors(block)]
     key = hashlib.sha256("\0".join(sources).encode()).hexdigest()[:16]
     path = cache_folder() / f"{block.__name__.lower()}_{template}_{key}.py"
     if not path.exists():
-        write(path, render(text, layout, axes, kernel))
+        write(path, render(text, block, layout, variant, kernel))
     return Compiled(load(path, block).tile.address, layout)
 
 
-def template_of(block: type[Block], driven: bool) -> str:
+def template_of(block: type[Block], variant: Variant) -> str:
     if issubclass(block, Operator):
-        return "driven_operator" if driven else "operator"
-    return "coupling" if issubclass(block, Coupling) else "bank" if issubclass(block, Bank) else "plain"
+        return "driven_operator" if variant.driven else "operator"
+    named = {Coupling: "coupling", Bank: "bank", Shift: "shift"}
+    return next((name for kind, name in named.items() if issubclass(block, kind)), "plain")
 
 
-def layout_of(block: type[Block], axes: int, tile: int) -> Layout:
+def layout_of(block: type[Block], variant: Variant, tile: int) -> Layout:
     """Counted by asking the block itself, with parameters in the middle of their bounds."""
     known = {p.name: sum(p.bounds) / 2 for p in block.parameters().values()} | {"dt": 1e-3, "span": 1.0, "branch": 0}
     prepared = block.prepare(*(known[word] for word in block.arguments()))  # type: ignore[attr-defined]
-    operator, coupling = issubclass(block, Operator), issubclass(block, Coupling)
+    operator, stateless = issubclass(block, Operator), issubclass(block, Coupling | Shift)
     count = sum(len(part) for part in prepared) if operator else len(prepared)
     example = () if operator else prepared
-    states = 0 if coupling else len(block.start(0.0, *example))  # type: ignore[attr-defined]
-    copies = block.branches if issubclass(block, Bank) else axes * (axes - 1) if coupling else 1
+    states = 0 if stateless else len(block.start(0.0, *example))  # type: ignore[attr-defined]
+    axes = variant.axes
+    copies = block.branches if issubclass(block, Bank) else axes * (axes - 1) if issubclass(block, Coupling) else 1
     work = 7 if operator else tile if issubclass(block, Bank) else 0
-    return Layout(states, count, len(block.arguments()), copies, work, len(prepared[0]) if operator else 0)
+    asking = asked(block.terms) if variant.terms else ()  # type: ignore[attr-defined]
+    terms = len(block.terms(*(known[word] for word in asking))) if variant.terms else 0  # type: ignore[attr-defined]
+    shared = len(prepared[0]) if operator else 0
+    return Layout(states, count, len(block.arguments()), copies, work, shared, terms, len(asking))
 
 
-def render(text: str, layout: Layout, axes: int, kernel: ModuleType) -> str:
+def render(text: str, block: type[Block], layout: Layout, variant: Variant, kernel: ModuleType) -> str:
     from jinja2 import Environment, StrictUndefined
 
     made = Environment(trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined).from_string(text)
@@ -95,7 +112,12 @@ def render(text: str, layout: Layout, axes: int, kernel: ModuleType) -> str:
         given=layout.first_given,
         shared=layout.shared,
         copies=layout.copies,
-        axes=axes,
+        T=[f"e{i}" for i in range(layout.terms)],
+        GT=layout.given_terms,
+        readout=variant.readout,
+        beside=issubclass(block, Beside),
+        axes=variant.axes,
+        TILES=kernel.TILES,
         W=kernel.WIDTH,
         TILE=kernel.TILE,
         UNROLL=kernel.UNROLL,
@@ -135,6 +157,13 @@ def helpers(function: FunctionType) -> set[FunctionType]:
     found: set[FunctionType] = set()
     for word in function.__code__.co_names:
         helper = function.__globals__.get(word)
-        if isinstance(helper, FunctionType) and helper.__module__ == function.__module__:
+        if isinstance(helper, FunctionType) and helper.__module__ != Block.__module__:
             found |= {helper} | helpers(helper)
     return found
+
+
+def authors(block: type[Block]) -> list[str]:
+    """The sources of all files that a block's functions come from."""
+    own = [function for word in FUNCTIONS if (function := getattr(block, word, None))]
+    every = {block.__module__} | {each.__module__ for function in own for each in {function} | helpers(function)}
+    return [inspect.getsource(sys.modules[name]) for name in sorted(every)]

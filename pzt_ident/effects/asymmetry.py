@@ -1,0 +1,17 @@
+"""A loop that is not point-symmetric about its centre."""
+
+from pzt_ident.block import Term
+from pzt_ident.registry import blocks
+
+
+@blocks.register
+class Asymmetry(Term):
+    """Domains switch more easily in one direction of the voltage: dh/dt <- dh/dt + delta u |du/dt|.
+
+    The form of the asymmetric Bouc-Wen operator of Zhu & Wang (2012), Sens. Actuators A 181, 51; delta is the
+    operator's asymmetry times alpha d.
+    """
+
+    looks_like = ("quadratic_gain", "creep")
+    separate_by = "Cycle one loop until it has settled and compare the branches turned about its centre."
+    remedy = "Invert the asymmetric operator in the feedforward, or work on one branch only."

@@ -1,0 +1,22 @@
+"""Time that passes between command and voltage."""
+
+from pzt_ident.block import Place, Shift
+from pzt_ident.parameter import Parameter
+from pzt_ident.registry import blocks
+
+
+@blocks.register
+class Delay(Shift):
+    """Transport and sampling delay of command or reading: y(t) = u(t - time), for any fraction of a sample.
+
+    Phase in proportion to frequency without loss of amplitude, where a lag loses it.
+    """
+
+    place = Place.DELAY
+    time = Parameter("s", (0, 0.01), "Dead time.", null=0)
+    looks_like = ("amplifier_lag", "sensor_lag", "viscous_damping")
+    separate_by = "Chirp with a small amplitude beyond 500 Hz, sampled ten times faster."
+    remedy = "Record the voltage at the amplifier, or shift the reference ahead by the delay."
+
+    def prepare(time, dt):
+        return (time / dt,)

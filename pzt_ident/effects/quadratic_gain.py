@@ -1,0 +1,28 @@
+"""A gain that changes with the voltage."""
+
+from pzt_ident.block import Block, Place
+from pzt_ident.parameter import Parameter
+from pzt_ident.registry import blocks
+
+
+@blocks.register
+class QuadraticGain(Block):
+    """Electrostriction bends both branches the same way: y = d (u + curvature u^2) - h.
+
+    Hall (2001), J. Mater. Sci. 36, 4575. The memory h is driven by u itself.
+    """
+
+    place = Place.READOUT
+    curvature = Parameter("1/drive", (-0.5, 0.5), "Growth of the gain per volt, over twice the gain.", null=0)
+    looks_like = ("saturation", "cubic_stiffness", "encoder_cyclic_error")
+    separate_by = "Repeat the loop under a known preload, and with the encoder shifted by half a pitch."
+    remedy = "Linearise the drive by the identified parabola, or drive by charge."
+
+    def prepare(curvature):
+        return (curvature,)
+
+    def start(u, curvature):
+        return ()
+
+    def step(u, curvature):
+        return u + curvature * u * u

@@ -1,0 +1,17 @@
+"""Hysteresis that widens with the rate of the drive."""
+
+from pzt_ident.block import Term
+from pzt_ident.registry import blocks
+
+
+@blocks.register
+class RateDependence(Term):
+    """Domain walls that follow late: alpha <- alpha (1 + rate log10(|du/dt| / (100 V/s))).
+
+    Logarithmic in the rate, as in Ang, Khosla & Riviere (2007), IEEE/ASME Trans. Mechatronics 12, 134, and zero for
+    small amplitudes, where a lag is linear in the rate and in the amplitude. Absorbed by alpha in data of one rate.
+    """
+
+    looks_like = ("amplifier_lag", "sensor_lag", "viscous_damping", "thermal_relaxation")
+    separate_by = "Repeat one loop at rates two decades apart, and a small amplitude at the fastest."
+    remedy = "Run at the rate that the model was identified at, or schedule the feedforward on the rate."

@@ -1,0 +1,34 @@
+"""A second mode of the flexure."""
+
+from math import pi
+
+from pzt_ident.block import Beside, Place
+from pzt_ident.hold import oscillate, oscillator
+from pzt_ident.parameter import Parameter
+from pzt_ident.registry import blocks
+
+
+@blocks.register
+class Resonance(Beside):
+    """A second mode in parallel to the first: y = (1 - share) x + share G2 f, G2 = 1 / (s^2/w^2 + 2 zeta s/w + 1).
+
+    Solved exactly for f linear on each step. A negative share makes a pole before a zero.
+    """
+
+    place = Place.MODE
+    share = Parameter("1", (-0.4, 0.4), "Part of the static response that the second mode carries.", null=0)
+    frequency = Parameter("Hz", (100, 2e4), "Natural frequency of the second mode.", scale="log")
+    damping = Parameter("1", (1e-3, 0.3), "Damping ratio of the second mode.", scale="log")
+    looks_like = ("load_mass",)
+    separate_by = "Chirp with a small amplitude through all modes, sampled ten times faster than the highest."
+    remedy = "Put a notch at the identified frequency, or shape the reference so that it does not ring."
+
+    def prepare(share, frequency, damping, dt):
+        return share, *oscillator(2 * pi * frequency, damping, dt)
+
+    def start(u, share, r11, r12, r21, r22, b1, b2):
+        return 0.0, 0.0, u
+
+    def step(w, v, before, x, f, share, r11, r12, r21, r22, b1, b2):
+        w, v = oscillate(w, v, f - before, r11, r12, r21, r22, b1, b2)
+        return w, v, f, x + share * (f + w - x)

@@ -1,0 +1,17 @@
+"""Hysteresis that forgets with time."""
+
+from pzt_ident.block import Term
+from pzt_ident.registry import blocks
+
+
+@blocks.register
+class ThermalRelaxation(Term):
+    """Thermally activated switching lets the hysteretic part relax: dh/dt <- dh/dt - h / tau.
+
+    Smith, Seelecke, Ounaies & Smith (2003), J. Intell. Mater. Syst. Struct. 14, 719, in its simplest form. Unlike
+    creep it does not grow with the step but with h, and a small step back arrests it.
+    """
+
+    looks_like = ("creep", "drift", "rate_dependence")
+    separate_by = "Step up, wait, step back by five percent and hold for a minute: relaxation stops, creep goes on."
+    remedy = "End every approach with a small step back, which arrests the relaxation."

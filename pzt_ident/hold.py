@@ -1,0 +1,35 @@
+"""Exact steps of linear elements whose input is linear between its samples (first-order hold)."""
+
+from math import cos, exp, sin, sqrt
+
+
+def oscillator(omega, zeta, dt):
+    """x'' / omega^2 + 2 zeta x' / omega + x = f: coefficients for `oscillate`.
+
+    With w = x - f and v = x' / omega, (w, v) turns by exp(A T) and is pushed by b (f1 - f0). Valid undamped, over- and
+    critically damped, and beyond Nyquist.
+    """
+    angle = omega * dt
+    cosine, sine = rotation(zeta, angle)
+    r11, r12 = cosine + zeta * sine, sine
+    r21, r22 = -sine, cosine - zeta * sine
+    lag, speed = 2 * zeta / angle, 1 / angle
+    return r11, r12, r21, r22, r11 * lag - r12 * speed - lag, r21 * lag - r22 * speed + speed
+
+
+def oscillate(w, v, push, r11, r12, r21, r22, b1, b2):
+    """(w, v) after a sample over which f moves by `push`; x = f + w."""
+    return r11 * w + r12 * v + b1 * push, r21 * w + r22 * v + b2 * push
+
+
+def rotation(zeta, angle):
+    """exp(-zeta a) cos(s a) and exp(-zeta a) sin(s a) / s with s = sqrt(1 - zeta^2), real for every zeta >= 0."""
+    square = (1 - zeta) * (1 + zeta) * angle**2
+    x, decay = sqrt(abs(square)), exp(-zeta * angle)
+    if x < 1e-2:
+        series = 1 - square / 6 * (1 - square / 20 * (1 - square / 42))
+        return decay * (1 - square / 2 * (1 - square / 12 * (1 - square / 30))), decay * angle * series
+    if zeta < 1:
+        return decay * cos(x), decay * angle * sin(x) / x
+    slow, fast = exp(-(angle**2) / (x + zeta * angle)), exp(-x - zeta * angle)
+    return (slow + fast) / 2, angle * (slow - fast) / (2 * x)
