@@ -174,7 +174,6 @@ class Plan:
         branches = range(block.branches) if issubclass(block, Bank) else [0]
         words = (*block.arguments(), *(asked(block.terms) if variant.terms else ()))  # type: ignore[attr-defined]
         nulls = {p.name: p.null or 0.0 for p in block.parameters().values() if p.effect}
-        nulls = {p.name: p.null or 0.0 for p in block.parameters().values() if p.effect}
         row = self.rows + made.layout.first_given
         for axis, other in places:
             columns = self.model.columns(block, axis, other)
