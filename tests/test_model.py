@@ -47,13 +47,14 @@ def test_blocks_stand_in_the_order_of_the_signal():
 def test_names_carry_the_axis_only_where_there_are_several():
     assert model(*AXIS).names[:2] == ("bouc_wen.gain", "bouc_wen.alpha")
     assert model(*AXIS, axes=2, measured=[1]).names[:1] == ("bouc_wen.gain",)
-    assert model(*AXIS, axes=2).names[::4] == (
+    assert model(*AXIS, "viscous_damping", "load_mass", axes=2).names[::4] == (
         "x.bouc_wen.gain",
         "y.bouc_wen.gain",
         "x.lumped.mass",
         "x.lumped.extra_damping",
         "y.lumped.load",
     )
+    assert model(*AXIS).names[-1] == "lumped.stiffness"
     assert model("cross_coupling").names == ("x.cross_coupling.ratio", "y.cross_coupling.ratio")
     assert model("cross_coupling", axes=2, measured=[0]).names == ("cross_coupling.ratio",)
     assert model(Turn, axes=3, measured=[0, 1]).names == (

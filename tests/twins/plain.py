@@ -1,29 +1,56 @@
 """Slow twin of the kernel: the author's own functions, one candidate, one sample after the other, in plain Python."""
 
 import math
+from itertools import permutations
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.signal import resample
 
-from pzt_ident.block import Bank, Coupling, Operator
+from pzt_ident.block import Bank, Beside, Coupling, Operator, Place, Shift, asked
 
 
 def simulate(model, record, theta):
-    """What `Model.simulate` gives for one candidate: (measured axes, samples). Once a number overflows, NaN."""
-    times = model.oversample
-    signals = [np.tile(fine(row, times, record.run_in), record.run_in + 1) for row in record.drive]
-    for block in model.blocks:
-        before = list(signals)
-        for axis in range(len(signals)):
-            others = [b for b in range(len(signals)) if b != axis] if issubclass(block, Coupling) else [axis]
-            for other in others:
-                known = {"dt": [record.dt / times], "span": [np.ptp(record.drive[axis])]}
-                if values := parameters(model, block, axis, other, theta):
-                    inputs = (signals[axis], before[other])
-                    signals[axis] = act(block, values | known, *inputs)
-    since = record.run_in * record.samples * times
-    return np.array([signals[axis][since::times] for axis in model.measured])
+    """What `Model.simulate` gives for one candidate: (measured axes, samples). Once a number overflows, NaN.
+
+    The prompt response of an operator is driven by what the readouts make of the drive, its memory by the drive.
+    """
+    drives = [np.tile(fine(row, model.oversample, record.run_in), record.run_in + 1) for row in record.drive]
+    early = [block for block in model.blocks if block.place < Place.READOUT]
+    readouts = [block for block in model.blocks if block.place == Place.READOUT]
+    middle = [block for block in model.blocks if Place.READOUT < block.place < Place.GUIDE]
+    late = [block for block in model.blocks if block.place >= Place.GUIDE]
+
+    entering = through(early, model, record, theta, drives)
+    prompt = through(readouts, model, record, theta, entering)
+    operated = any(block.place == Place.OPERATOR for block in middle)
+    forces = through(middle, model, record, theta, entering if operated else prompt, prompt)
+    signals = through(late, model, record, theta, forces, forces)
+    since = record.run_in * record.samples * model.oversample
+    return np.array([signals[axis][since :: model.oversample] for axis in model.measured])
+
+
+def through(chain, model, record, theta, signals, aside=None):
+    """The signals of all axes behind some blocks; `aside` are those that a block may read besides."""
+    for block in chain:
+        if issubclass(block, Coupling):
+            signals = couple(block, model, record, theta, signals)
+            continue
+        given = [parameters(model, block, record, axis, axis, theta) for axis in range(len(signals))]
+        terms = bool(model.terms(block))
+        signals = [act(block, *each, terms) for each in zip(given, signals, aside or signals, strict=True)]
+    return signals
+
+
+def couple(block, model, record, theta, before):
+    after = list(before)
+    for axis, other in permutations(range(len(before)), 2):
+        values = parameters(model, block, record, axis, other, theta)
+        if values is not None:
+            numbers = asking(block.prepare, values)
+            pairs = zip(after[axis], before[other], strict=True)
+            after[axis] = np.array([block.step(y, f, *numbers) for y, f in pairs])
+    return after
 
 
 def fine(drive, times, periodic):
@@ -35,64 +62,71 @@ def fine(drive, times, periodic):
     return CubicSpline(np.arange(len(drive)), drive)(after_the_last)
 
 
-def parameters(model, block, axis, other, theta):
+def parameters(model, block, record, axis, other, theta):
     """Values by name; an axis that is not measured takes those of the first that is, and nothing from another axis."""
+    found = {"dt": [record.dt / model.oversample], "span": [np.ptp(record.drive[axis])]}
+    found |= {declared.name: [declared.null] for declared in block.parameters().values() if declared.effect}
     if axis not in model.measured:
         if other != axis:
             return None
         axis = other = model.measured[0]
-    found = {}
+    own = {}
     for slot, value in zip(model.slots, theta, strict=True):
         if (slot.block, slot.axis, slot.other) == (block, axis, other):
-            found.setdefault(slot.parameter.name, []).append(value)
-    return found or {"": [None]}
+            own.setdefault(slot.parameter.name, []).append(value)
+    return found | own
 
 
-def prepare(block, values, branch=0):
-    """The author's `prepare`, of one branch."""
+def asking(function, values, branch=0):
+    """The author's `prepare` or `terms`, of one branch."""
     own = {word: each[branch] if len(each) > 1 else each[0] for word, each in values.items()} | {"branch": branch}
-    return block.prepare(*(own[word] for word in block.arguments()))
+    return function(*(own[word] for word in asked(function)))
 
 
-def act(block, values, signal, other):
+def act(block, values, signal, aside, terms):
     if issubclass(block, Operator):
-        return operator(block, prepare(block, values), signal)
+        numbers = asking(block.terms, values) if terms else None
+        return operator(block, asking(block.prepare, values), numbers, signal, aside)
     if issubclass(block, Bank):
-        return bank(block, [prepare(block, values, branch) for branch in range(block.branches)], signal)
-    numbers = prepare(block, values)
-    if issubclass(block, Coupling):
-        return np.array([block.step(y, f, *numbers) for y, f in zip(signal, other, strict=True)])
-    return plain(block, numbers, signal)
+        prompt = aside if block.place == Place.OPERATOR else signal
+        return bank(block, [asking(block.prepare, values, branch) for branch in range(block.branches)], signal, prompt)
+    numbers = asking(block.prepare, values)
+    if issubclass(block, Shift):
+        late = np.arange(len(signal)) - numbers[0]
+        return np.interp(late, np.arange(len(signal)), signal)
+    return plain(block, numbers, signal, *([aside] if issubclass(block, Beside) else []))
 
 
-def plain(block, numbers, signal):
-    state, result = block.start(signal[0], *numbers), []
-    for u in signal:
-        *state, y = np.atleast_1d(block.step(*state, u, *numbers)).tolist()
+def plain(block, numbers, *inputs):
+    state, result = block.start(inputs[0][0], *numbers), []
+    for each in zip(*inputs, strict=True):
+        *state, y = np.atleast_1d(block.step(*state, *each, *numbers)).tolist()
         result.append(y)
     return np.array(result)
 
 
-def bank(block, each, signal):
+def bank(block, each, signal, prompt):
     states, result = [block.start(signal[0], *numbers) for numbers in each], []
-    for u in signal:
+    for u, v in zip(signal, prompt, strict=True):
         total = 0.0
         for i, numbers in enumerate(each):
             *states[i], y = block.step(*states[i], u, *numbers)
             total += y
-        result.append(block.output(u, total, *each[0]))
+        result.append(block.output(v, total, *each[0]))
     return np.array(result)
 
 
-def operator(block, coefficients, signal):
-    """Only `exact`, in every sample."""
+def operator(block, coefficients, terms, signal, prompt):
+    """Only `exact`, in every sample. A factor on what drives h is one on h itself, as long as it is the same."""
     shared, along, against = coefficients
     (h,), before, result = block.start(signal[0]), signal[0], []
-    for u in signal:
-        sign = 1.0 if u >= before else -1.0
+    for u, v in zip(signal, prompt, strict=True):
+        sign, distance = 1.0 if u >= before else -1.0, abs(u - before)
+        up = block.lift(distance, (u + before) / 2, sign, *terms) if terms else 1.0
         try:
-            h, before = sign * block.exact(sign * h, abs(u - before), along, against), u
+            h, before = sign * up * block.exact(sign * h / up, distance, along, against), u
         except OverflowError:
             h = math.nan
-        result.append(block.output(h, u, *shared))
+        h *= block.fade(*terms) if terms else 1.0
+        result.append(block.output(h, v, *shared))
     return np.array(result)
