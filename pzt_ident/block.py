@@ -74,6 +74,8 @@ class Block:
     looks_like: ClassVar[tuple[str, ...]] = ()
     separate_by: ClassVar[str] = ""
     remedy: ClassVar[str] = ""
+    sizes: ClassVar[tuple[float, ...]] = (0.05,)  # of its range, at which its trace is looked for: one if it is linear
+    trials: ClassVar[int] = 6  # values over the range of a parameter that means nothing at the null
 
     def __init_subclass__(cls) -> None:
         for word, function in list(vars(cls).items()):

@@ -146,6 +146,54 @@ def compare(source: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
 
 @main.command()
 @click.argument("job", type=EXISTING)
+@click.option("--out", type=EXISTING, help="Folder for the results; results/<name>/<time>-<hash> if not given.")
+@output
+def diagnose(job: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
+    """Say which physical effect the model of a job file JOB misses."""
+    from pzt_ident import staircase, terminal
+    from pzt_ident.improve import diagnose
+    from pzt_ident.job import load_job
+
+    with terminal.listening(silent=as_json or quiet):
+        folder = diagnose(load_job(job), out, staircase.told(as_json or quiet))
+    found = json.loads((folder / "diagnosis.json").read_text(encoding="utf-8"))
+    say = lambda: staircase.show_diagnosis(found, folder)  # noqa: E731
+    _answer({"folder": str(folder), "diagnosis": found}, say, as_json, quiet)
+
+
+@main.command()
+@click.argument("job", type=EXISTING)
+@click.argument("effect")
+@click.option("-o", "--out", type=EXISTING, required=True, help="The new job file.")
+@output
+def add(job: Path, effect: str, out: Path, as_json: bool, quiet: bool) -> None:
+    """Write the job file JOB with an EFFECT more, comments kept."""
+    from pzt_ident.amend import add
+
+    made = add(job, effect, out)
+    said = f"wrote {out}: effects {', '.join(made.effects)}\nnext: pzt-ident run {quote(str(out))}"
+    _answer({"job": str(out), "effects": list(made.effects)}, lambda: click.echo(said), as_json, quiet)
+
+
+@main.command()
+@click.argument("job", type=EXISTING)
+@click.option("--out", type=EXISTING, help="Folder for the results; results/<name>/<time>-<hash> if not given.")
+@output
+def improve(job: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
+    """Add what the model of a job file JOB misses, effect by effect, and watch the error fall."""
+    from pzt_ident import staircase, terminal
+    from pzt_ident.improve import improve
+    from pzt_ident.job import load_job
+
+    with terminal.listening(silent=as_json or quiet):
+        folder = improve(load_job(job), out, staircase.told(as_json or quiet))
+    found = json.loads((folder / "improvement.json").read_text(encoding="utf-8"))
+    say = lambda: staircase.show_improvement(found, folder)  # noqa: E731
+    _answer({"folder": str(folder), "improvement": found}, say, as_json, quiet)
+
+
+@main.command()
+@click.argument("job", type=EXISTING)
 @output
 def check(job: Path, as_json: bool, quiet: bool) -> None:
     """Say what is in a job file JOB and its data. Writes nothing."""

@@ -17,7 +17,7 @@ from pzt_ident import checks
 from pzt_ident.document import Document, Fault, Loc, reject
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.record import Source
-from pzt_ident.sections import Channels, Choice, Count, Setting, Stopping
+from pzt_ident.sections import Channels, Choice, Count, Limits, Setting, Stopping
 from pzt_ident.shorthand import written_out
 
 
@@ -40,6 +40,7 @@ class Job(BaseModel):
     seed: Annotated[int, Field(ge=0)] = 0
     polish: bool = True
     stop: Stopping = Stopping()
+    limits: Limits = Limits()
 
     _text: str = PrivateAttr("")
     _folder: Path = PrivateAttr(Path())

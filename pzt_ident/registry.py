@@ -71,7 +71,13 @@ class Registry(Generic[T]):
                 self._items[word] = entry.load()
 
 
-blocks: Registry[Any] = Registry(
+class Blocks(Registry[Any]):
+    def effects(self) -> list[str]:
+        """The words of what may be missing from a model: each says how to tell it from what it looks like."""
+        return [word for word in self.words() if self[word].remedy]
+
+
+blocks = Blocks(
     "block or effect", ("pzt_ident.hysteresis", "pzt_ident.mechanics", "pzt_ident.effects"), "pzt_ident.block"
 )
 optimizers: Registry[Any] = Registry("optimizer", ("pzt_ident.optimizers",), "pzt_ident.optimizer")

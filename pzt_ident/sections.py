@@ -53,3 +53,12 @@ class Stopping:
     seconds: Positive | None = None
     target: Quantity | None = None
     stagnation: Count | None = None
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a proposed drive may do, in the user's units: lowest and highest drive, its rate per second, length in s."""
+
+    drive: tuple[float, float] | None = None
+    slew: Positive | None = None
+    duration: Positive | None = None

@@ -38,7 +38,7 @@ def motion(drive: Array, dt: float) -> Motion:
     """The motion of a drive of shape (samples,); what is smaller than half a percent of its span, or than its noise,
     is no motion."""
     samples, span = drive.size, float(np.ptp(drive))
-    noise = max([1e-6 * span, *rough(drive[None], drive)])
+    noise = max([1e-6 * span, *(size for size, _ in rough(drive[None], drive))])
     turn = max(0.005 * span, 8 * noise)
     if span <= turn:
         still, zero = np.zeros(samples, dtype=np.intp), np.zeros(samples)

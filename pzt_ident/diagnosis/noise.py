@@ -12,6 +12,9 @@ from pzt_ident.record import Record
 Array = NDArray[np.float64]
 
 
+LINE = 30.0
+
+
 class Floor(NamedTuple):
     """Standard deviation of the noise, SI units, and what it was taken from."""
 
@@ -25,17 +28,18 @@ def noise_floor(records: list[Record], axis: int) -> Floor:
     Never less than the quantiser's q / sqrt(12) where the response takes few values. The high-frequency part is weak
     evidence: it takes slow noise for signal and fast signal for noise.
     """
-    signals = [(r.drive, r.response[axis], r.settle) for r in records]
-    step = min((quantiser(y) for _, y, _ in signals), default=0.0)
+    signals = [(r.drive, r.response[axis], r.settle, r.dt) for r in records]
+    step = min((quantiser(y) for _, y, _, _ in signals), default=0.0)
     least = step / np.sqrt(12)
     for find, source in (
         (resting, "rest segments"),
         (repeated, "repeated periods"),
         (rough, "high frequencies (weak)"),
     ):
-        found = [value for u, y, settle in signals for value in find(u[:, settle:], y[settle:])]
+        found = [(v, n * dt) for u, y, settle, dt in signals for v, n in find(u[:, settle:], y[settle:])]
         if found:
-            value = float(np.sqrt(np.mean(np.square(found))))
+            values, seconds = np.array(found).T
+            value = float(np.sqrt(np.average(values**2, weights=seconds)))
             return Floor(value, source) if value > least else Floor(least, "quantiser")
     return Floor(least, "quantiser")
 
@@ -51,8 +55,9 @@ def quantiser(response: Array) -> float:
     return step if np.allclose(whole, np.round(whole), atol=0.05) else 0.0
 
 
-def resting(drive: Array, response: Array, least: int = 100) -> list[float]:
-    """Scatter about a quartic, which follows creep, in the last four fifths of every stretch of constant drive."""
+def resting(drive: Array, response: Array, least: int = 100) -> list[tuple[float, int]]:
+    """Scatter about a quartic, which follows creep, and about the lines of the mains and the floor, in the last four
+    fifths of every stretch of constant drive, and the samples there."""
     span = np.ptp(drive, axis=1, keepdims=True)
     still = (np.abs(np.diff(drive, axis=1)) <= 1e-6 * np.maximum(span, 1e-300)).all(axis=0)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(int), [0]])))
@@ -60,11 +65,11 @@ def resting(drive: Array, response: Array, least: int = 100) -> list[float]:
     for first, last in zip(edges[::2], edges[1::2], strict=True):
         first += (last - first) // 5
         if last - first >= least:
-            found.append(scatter(response[first:last], 4))
+            found.append((float(np.std(without_lines(about(response[first:last], 4)))), last - first))
     return found
 
 
-def repeated(drive: Array, response: Array, least: int = 3) -> list[float]:
+def repeated(drive: Array, response: Array, least: int = 3) -> list[tuple[float, int]]:
     """Half the variance of the difference of successive periods, each about its own line."""
     period = period_of(drive)
     if not period or response.size < least * period:
@@ -73,18 +78,46 @@ def repeated(drive: Array, response: Array, least: int = 3) -> list[float]:
     for first in range(0, response.size - 2 * period + 1, period):
         change = response[first + period : first + 2 * period] - response[first : first + period]
         found.append(scatter(change, 1) / np.sqrt(2))
-    return [float(np.median(found))]
+    return [(float(np.median(found)), response.size)]
 
 
-def rough(drive: Array, response: Array) -> list[float]:
+def rough(drive: Array, response: Array) -> list[tuple[float, int]]:
     """Third differences of white noise have twenty times its variance."""
     third = np.diff(response, 3)
-    return [float(np.median(np.abs(third)) / 0.6745 / np.sqrt(20))] if third.size > 10 else []
+    size = float(np.median(np.abs(third)) / 0.6745 / np.sqrt(20)) if third.size > 10 else 0.0
+    return [(size, third.size)] if third.size > 10 else []
 
 
 def scatter(signal: Array, degree: int) -> float:
+    return float(np.std(about(signal, degree)))
+
+
+def about(signal: Array, degree: int) -> Array:
+    """What is left of a polynomial."""
     x = np.linspace(-1, 1, signal.size)
-    return float(np.std(signal - np.polynomial.Polynomial.fit(x, signal, degree)(x)))
+    return np.asarray(signal - np.polynomial.Polynomial.fit(x, signal, degree)(x))
+
+
+def without_lines(noise: Array, most: int = 5, near: int = 25) -> Array:
+    """Sinusoids taken out whose power stands LINE times above that of the frequencies around them."""
+    from scipy.optimize import minimize_scalar
+
+    t = np.arange(noise.size)
+
+    def left(frequency: float) -> Array:
+        waves = np.column_stack([np.cos(2 * np.pi * frequency * t), np.sin(2 * np.pi * frequency * t)])
+        return np.asarray(noise - waves @ np.linalg.lstsq(waves, noise, rcond=None)[0])
+
+    for _ in range(most):
+        power = np.abs(np.fft.rfft(noise * np.hanning(noise.size))) ** 2
+        peak = int(np.argmax(power[3:])) + 3 if power.size > 2 * near else 0
+        around = np.concatenate([power[max(1, peak - near) : max(1, peak - 2)], power[peak + 3 : peak + near]])
+        if not peak or power[peak] <= LINE * around.mean():
+            break
+        ends = ((peak - 1) / noise.size, (peak + 1) / noise.size)
+        best = minimize_scalar(lambda f: float(np.var(left(f))), bounds=ends, method="bounded", options={"xatol": 1e-9})
+        noise = left(float(best.x))
+    return noise
 
 
 def period_of(drive: Array, tolerance: float = 2e-3) -> int:

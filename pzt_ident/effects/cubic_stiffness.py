@@ -15,6 +15,7 @@ class CubicStiffness(Block):
     """
 
     place = Place.GUIDE
+    sizes = (0.02, 0.2)
     cubic = Parameter("1/response^2", (-0.1, 0.5), "Cubic over linear stiffness, k3 / k.", null=0)
     looks_like = ("quadratic_gain", "saturation", "encoder_cyclic_error")
     separate_by = "Load the stage with a known force or change its preload, or measure the resonance at several biases."

@@ -4,12 +4,12 @@ from pzt_ident.block import Bank, Place
 from pzt_ident.parameter import Parameter
 from pzt_ident.registry import blocks
 
-PLAYS = 6
+PLAYS = 10
 
 
 @blocks.register
 class DistributedMemory(Bank):
-    """Domains of many coercive voltages: y = d (u + sum_i w_i F_i[u]) - h, plays of half-width r_i = reach i / 6.
+    """Domains of many coercive voltages: y = d (u + sum_i w_i F_i[u]) - h, plays of half-width r_i = reach i / 10.
 
     Prandtl-Ishlinskii plays, p <- max(u - r, min(u + r, p)); Kuhnen (2003), Eur. J. Control 9, 407. They keep their
     return points, where Bouc-Wen drifts through nested loops.

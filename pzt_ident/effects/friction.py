@@ -15,6 +15,7 @@ class Friction(Block):
     """
 
     place = Place.GUIDE
+    sizes = (0.02, 0.1, 0.5)
     force = Parameter("response", (0, 0.1), "Sliding friction over the stiffness.", null=0)
     reach = Parameter("response", (1e-3, 0.5), "Displacement over which friction builds up.", scale="log")
     looks_like = ("distributed_memory", "delay", "amplifier_lag")

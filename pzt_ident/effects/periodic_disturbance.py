@@ -25,3 +25,15 @@ class PeriodicDisturbance(Addition):
     def basis(t, frequency):
         phase = 2 * np.pi * frequency * t
         return np.sin(phase), np.cos(phase)
+
+    def guess(times, residuals, low, high):
+        """The strongest lines of the residuals of all records, Hz."""
+        grid = np.arange(low, high, 0.1 / max(t[-1] - t[0] for t in times))
+        power = np.zeros(grid.size)
+        for t, residual in zip(times, residuals, strict=True):
+            rate = (t.size - 1) / (t[-1] - t[0])
+            size = 2 ** int(np.ceil(np.log2(8 * t.size)))
+            lines = np.abs(np.fft.rfft(residual, size)) ** 2 / t.size
+            power += np.interp(grid, np.arange(lines.size) * rate / size, lines, right=0)
+        peaks = np.flatnonzero((power[1:-1] > power[:-2]) & (power[1:-1] >= power[2:])) + 1
+        return grid[peaks[np.argsort(-power[peaks])[:3]]]

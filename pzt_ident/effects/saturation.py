@@ -13,6 +13,7 @@ class Saturation(Block):
     """
 
     place = Place.READOUT
+    sizes = (0.1, 0.3, 0.8)
     knee = Parameter("1/drive", (0, 2), "One over the voltage at which the response saturates.", null=0)
     looks_like = ("quadratic_gain", "cubic_stiffness", "encoder_cyclic_error")
     separate_by = "Drive to both polarities up to the limits of the amplifier, and repeat under a known preload."

@@ -6,7 +6,6 @@ from pzt_ident.block import Operator, Place, expm1, log1p
 from pzt_ident.parameter import Parameter
 from pzt_ident.registry import blocks
 
-
 RATE = 100.0  # V/s, at which alpha is meant
 
 

@@ -31,7 +31,7 @@ def write_report(folder: Path) -> Path:
     sections: dict[str, list[tuple[Plate, Markup]]] = {}
     for plate, svg in drawn:
         sections.setdefault(plate.section, []).append((plate, inline(svg, plate.name)))
-    page = _template().render(
+    page = template("template.html").render(
         results=results,
         result=results.result,
         tables=tables,
@@ -46,10 +46,14 @@ def write_report(folder: Path) -> Path:
     return results.folder / "report.html"
 
 
-def _template() -> Template:
+def template(name: str) -> Template:
+    """A page of this folder, with the look that all of them share."""
     from jinja2 import Environment, StrictUndefined
+    from markupsafe import Markup
 
+    folder = files("pzt_ident.report")
     environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    environment.globals["zip"] = zip
+    css = Markup(folder.joinpath("page.css").read_text(encoding="utf-8"))
+    environment.globals.update(zip=zip, css=css)
     environment.filters.update(quantity=numbers.quantity, count=numbers.count, number=numbers.number)
-    return environment.from_string(files("pzt_ident.report").joinpath("template.html").read_text(encoding="utf-8"))
+    return environment.from_string(folder.joinpath(name).read_text(encoding="utf-8"))

@@ -1,0 +1,99 @@
+"""Add what is missing, effect by effect, and take back what turns out not to be needed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from pzt_ident.diagnosis.refit import Case, Fit, refit
+from pzt_ident.diagnosis.score import misfit
+from pzt_ident.diagnosis.verdict import Candidate, Diagnosis, diagnose, drop, earns, pair
+
+MOST = 8  # steps
+BEAM = 3  # first picks that are followed
+
+
+@dataclass
+class Step:
+    """One stair: the fit after it, what it added or removed, and its look-alikes in these data."""
+
+    fit: Fit
+    added: str | None = None
+    removed: str | None = None
+    tied: tuple[str, ...] = ()
+    explained: float = 0.0
+    expected: float | None = None  # share of the misfit that the score promised
+
+
+Tell = Callable[[Step], None]
+
+
+def improve(case: Case, first: Fit, tell: Tell = lambda step: None) -> tuple[list[Step], Diagnosis]:
+    """The staircase, the model as given first, and the diagnosis of its last model.
+
+    Where the best first pick leads to no adequate model, the next best ones are tried: it may have been a proxy.
+    """
+    found = diagnose(case, first)
+    picks: list[Candidate | None] = [*found.passing[:BEAM]] or [None]
+    ways: list[tuple[list[Step], Diagnosis]] = []
+    for pick in picks:
+        ways.append(climb(case, first, found, pick, tell))
+        if ways[-1][1].verdict in ("adequate", "refused"):
+            break
+    return min(ways, key=lambda way: (way[1].verdict != "adequate", way[0][-1].fit.identify))
+
+
+def climb(case: Case, first: Fit, found: Diagnosis, pick: Candidate | None, tell: Tell) -> tuple[list[Step], Diagnosis]:
+    """One way up: the first pick, then always the best."""
+    steps = [Step(first)]
+    tell(steps[0])
+    while len(steps) <= MOST:
+        now = steps[-1].fit
+        if pick is not None and pick.fit is not None:
+            tied = tuple(found.tied) if pick is found.best else (pick.score.effect,)
+            gained = explained(case, now, pick.fit)
+            new = [Step(pick.fit, pick.score.effect, None, tied, gained, pick.score.explained)]
+        else:
+            new = [] if found.verdict in ("adequate", "refused") else both(case, now, found)
+        if not new:
+            break
+        new += unneeded(case, first, new[-1].fit)
+        seen = {frozenset(step.fit.effects) for step in steps}
+        if frozenset(new[-1].fit.effects) in seen:
+            break
+        for step in new:
+            tell(step)
+        steps += new
+        found = diagnose(case, steps[-1].fit)
+        pick = found.best
+    return steps, found
+
+
+def both(case: Case, now: Fit, found: Diagnosis) -> list[Step]:
+    """Two effects that hide each other, as two stairs."""
+    fit = pair(case, now, found.candidates)
+    if fit is None:
+        return []
+    one, two = fit.effects[-2:]
+    half = refit(case, now, (*now.effects, one), {})
+    return [
+        Step(half, one, None, (one,), explained(case, now, half)),
+        Step(fit, two, None, (two,), explained(case, half, fit)),
+    ]
+
+
+def explained(case: Case, before: Fit, after: Fit) -> float:
+    """Share of the misfit above the noise that a stair removes."""
+    gone = drop(before.identify, after.identify)
+    return gone * abs(gone) / misfit(case, before)
+
+
+def unneeded(case: Case, first: Fit, now: Fit) -> list[Step]:
+    """Take back effects, other than the newest and those of the job itself, that no longer earn their place."""
+    found: list[Step] = []
+    for effect in now.effects[len(first.effects) : -1]:
+        without = refit(case, now, tuple(word for word in now.effects if word != effect), {})
+        if not earns(case, without, now):
+            found.append(Step(without, None, effect, (), explained(case, now, without)))
+            now = without
+    return found

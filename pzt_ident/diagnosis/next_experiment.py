@@ -1,0 +1,130 @@
+"""The drive that tells rivals apart best, within what the rig may do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pzt_ident.diagnosis.refit import Case, Fit
+from pzt_ident.model import Plan
+from pzt_ident.record import Record
+
+Array = NDArray[np.float64]
+
+CHIRP = (20.0, 2000.0)  # Hz
+HOLD = 20.0  # s
+
+
+@dataclass(frozen=True)
+class Reach:
+    """What the rig may do: drive, SI units, its rate, a second, and the length of a record, s."""
+
+    low: float
+    high: float
+    rate: float
+    duration: float
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """drive: (axes, samples), SI units. apart: least rms difference between two rivals, in noise floors."""
+
+    name: str
+    why: str
+    splits: tuple[str, ...]
+    dt: float
+    drive: Array
+    apart: float
+
+
+def propose(case: Case, rivals: dict[str, Fit], reach: Reach) -> Proposal | None:
+    """Simulate all rivals on each protocol; the one that sets the closest two of them apart the most."""
+    best: Proposal | None = None
+    axes = len(case.records[0].axes)
+    axis = case.records[0].measured[0]
+    for name, why, dt, drive in protocols(reach, axes, axis):
+        responses = [respond(case, fit, dt, drive) for fit in rivals.values()]
+        apart = min(float(np.sqrt(np.mean((one - two) ** 2))) / case.floor for one, two in combinations(responses, 2))
+        if np.isfinite(apart) and (best is None or apart > best.apart):
+            best = Proposal(name, why, tuple(rivals), dt, drive, apart)
+    return best
+
+
+def respond(case: Case, fit: Fit, dt: float, drive: Array) -> Array:
+    """Response of the first measured axis about its mean."""
+    first = case.records[0]
+    blank: Record = replace(first, dt=dt, drive=drive, response=np.zeros_like(drive), settle=0, run_in=0)
+    found = Plan(fit.problem.model, blank).simulate(fit.problem.parameters(fit.point))[0, 0]
+    return found - found.mean()
+
+
+def protocols(reach: Reach, axes: int, axis: int) -> Iterator[tuple[str, str, float, Array]]:
+    """Name, what it shows, sample time and drives of each protocol."""
+    span, middle = reach.high - reach.low, (reach.low + reach.high) / 2
+    quick = min(reach.rate / (2 * span), 50.0)  # cycles a second that the rate allows
+    own = [
+        ("slow triangles", "rate and creep play no part", 1e-3, turns(reach, [1, 0] * 3, min(0.5, quick), 1e-3)),
+        ("two rates", "a lag grows with the rate, hysteresis with its logarithm", 1e-4,
+         np.concatenate([turns(reach, [1, 0], quick / 30, 1e-4), turns(reach, [1, 0] * 5, quick, 1e-4)])),
+        ("steps and holds", "creep follows the step, relaxation stops after a small step back, drift does not care",
+         1e-2, holds(reach, [0.6, 0.57, 0.3, 0.9, 0.1], 1e-2)),
+        ("nested loops", "memory closes its loops, a gain does not", 1e-3,
+         turns(reach, [1, 0.2, 0.8, 0.3, 0.7, 0.4, 0.7, 0.3, 0.8, 0.2, 1, 0], min(0.5, quick), 1e-3)),
+        ("two amplitudes", "a gain that grows with the amplitude, or bends", 1e-3,
+         turns(reach, [0.4, 0, 0.4, 0, 1, 0, 1, 0], min(0.5, quick), 1e-3)),
+        ("small chirp", "phase against frequency: delay, lag and modes part", 5e-5, chirp(reach, middle, 5e-5)),
+    ]  # fmt: skip
+    for name, why, dt, u in own:
+        yield from bounded(reach, name, why, dt, u, axes, axis)
+    if axes > 1:
+        for other in (a for a in range(axes) if a != axis):
+            slow = turns(reach, [1, 0] * 2, min(0.5, quick), 1e-3)
+            yield from bounded(reach, "the other axis alone", "what comes through a coupling", 1e-3, slow, axes, other)
+            fast = chirp(reach, middle, 5e-5)
+            why = "couplings ring at different modes"
+            yield from bounded(reach, "chirp of the other axis", why, 5e-5, fast, axes, other)
+
+
+def bounded(
+    reach: Reach, name: str, why: str, dt: float, u: Array, axes: int, axis: int
+) -> Iterator[tuple[str, str, float, Array]]:
+    u = u[: int(reach.duration / dt)]
+    if u.size > 100:
+        drive = np.zeros((axes, u.size)) + min(max(0.0, reach.low), reach.high)
+        drive[axis] = u
+        yield name, why, dt, drive
+
+
+def turns(reach: Reach, levels: list[float], frequency: float, dt: float) -> Array:
+    """Ramps between shares of the range, a full range in half a period."""
+    speed = 2 * frequency * (reach.high - reach.low)
+    corners = reach.low + (reach.high - reach.low) * np.array([0.0, *levels])
+    times = np.concatenate([[0], np.cumsum(np.abs(np.diff(corners)) / speed)])
+    return np.interp(np.arange(0, times[-1], dt), times, corners)
+
+
+def holds(reach: Reach, levels: list[float], dt: float) -> Array:
+    """Ramps as fast as is allowed, each held."""
+    span = reach.high - reach.low
+    times, corners = [0.0, 1.0], [reach.low, reach.low]
+    hold = min(HOLD, reach.duration / (len(levels) + 1))
+    for level in levels:
+        corner = reach.low + span * level
+        times += [times[-1] + max(abs(corner - corners[-1]) / reach.rate, dt), times[-1] + hold]
+        corners += [corner, corner]
+    return np.interp(np.arange(0, times[-1], dt), times, corners)
+
+
+def chirp(reach: Reach, middle: float, dt: float) -> Array:
+    """A few percent of the range about its middle, logarithmic in frequency, slower where the rate asks for it."""
+    seconds = min(2.0, reach.duration / 2)
+    t = np.arange(0, seconds, dt)
+    growth = np.log(CHIRP[1] / CHIRP[0]) / seconds
+    frequency = CHIRP[0] * np.exp(growth * t)
+    size = np.minimum(0.03 * (reach.high - reach.low), reach.rate / (2 * np.pi * frequency))
+    ramp = np.linspace(reach.low, middle, max(2, int((middle - reach.low) / reach.rate / dt) + 1))
+    return np.concatenate([ramp, middle + size * np.sin(2 * np.pi * (frequency - CHIRP[0]) / growth)])

@@ -1,0 +1,119 @@
+"""Fits of a job's model with effects added, good enough that what is left is the model's fault."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pzt_ident.diagnosis.noise import noise_floor
+from pzt_ident.model import Model
+from pzt_ident.problem import Problem
+from pzt_ident.record import Record
+from pzt_ident.registry import blocks
+
+Array = NDArray[np.float64]
+
+STARTS = 240  # chance points, of which the best few are refined
+REFINED = 4
+AGREE = 0.01  # of the loss, between the two best of them
+DAMPINGS = 10.0 ** np.arange(-5, 4)
+
+
+class Case:
+    """A model, its records and what is free, to which effects can be added."""
+
+    def __init__(self, words: Sequence[str], effects: Sequence[str], records: Sequence[Record], wishes: Any) -> None:
+        self.words, self.effects = tuple(words), tuple(effects)
+        self.records, self.wishes = tuple(records), wishes
+
+    def problem(self, effects: Sequence[str]) -> Problem:
+        chosen = [blocks[word] for word in (*self.words, *effects)]
+        first = self.records[0]
+        return Problem(Model(chosen, first.axes, first.measured), self.records, self.wishes)
+
+    @cached_property
+    def floor(self) -> float:
+        """Noise floor of all measured axes together, SI units."""
+        found = [noise_floor(list(self.records), axis).value for axis in self.records[0].measured]
+        return float(np.sqrt(np.mean(np.square(found))))
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A model with its effects at its best point; RMSE in SI units, validate None without such records."""
+
+    effects: tuple[str, ...]
+    problem: Problem
+    point: Array
+    identify: float
+    validate: float | None
+    converged: bool = True
+
+    def value(self, name: str) -> float:
+        return float(self.problem.physical(self.point)[0][self.problem.names.index(name)])
+
+
+def made(effects: tuple[str, ...], problem: Problem, point: Array, converged: bool = True) -> Fit:
+    validate = float(problem.loss(point, "validate")[0])
+    return Fit(
+        effects, problem, point, float(problem.loss(point)[0]), None if np.isnan(validate) else validate, converged
+    )
+
+
+def first_fit(case: Case, seed: int, known: dict[str, float] | None = None) -> Fit:
+    """The job's own model, from chance points; not converged where the two best of their minima differ."""
+    problem = case.problem(case.effects)
+    rng = np.random.default_rng(seed)
+    starts = rng.uniform(size=(STARTS, problem.dimensions))
+    order = np.argsort(problem.loss(starts), kind="stable")[:REFINED]
+    with ThreadPoolExecutor(2) as pool:
+        ends = list(pool.map(lambda i: descend(problem, starts[i]), order))
+    losses = problem.loss(np.array(ends))
+    best, second = np.argsort(losses)[:2]
+    agreed = bool(losses[second] <= (1 + AGREE) * losses[best] + 0.1 * case.floor)
+    return made(case.effects, problem, ends[best], agreed)
+
+
+def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, float]) -> Fit:
+    """The model with other effects, from the parameters it had and a guess (user's units) of the new ones."""
+    problem = case.problem(effects)
+    old = dict(zip(before.problem.names, before.problem.physical(before.point)[0], strict=True))
+    middle = problem.physical(np.full(problem.dimensions, 0.5))[0]
+    start = {name: guess.get(name, old.get(name, middle[i])) for i, name in enumerate(problem.names)}
+    return made(effects, problem, descend(problem, problem.unit_point(start)))
+
+
+def descend(problem: Problem, point: Array, most: int = 40) -> Array:
+    """Levenberg-Marquardt in the cube on normal equations, all dampings tried in one batch; the point reached."""
+    point = np.clip(point, 0, 1)
+    loss, slow = problem.loss(point)[0], 0
+    for _ in range(most):
+        jacobian, residual = problem.jacobian(point), problem.residuals(point)[0]
+        gradient, curvature = jacobian.T @ residual, jacobian.T @ jacobian
+        free = ~(((point <= 0) & (gradient > 0)) | ((point >= 1) & (gradient < 0)))
+        tries = np.array([stepped(point, gradient, curvature, free, damping) for damping in DAMPINGS])
+        losses = problem.loss(tries)
+        best = int(np.argmin(losses))
+        if not losses[best] < loss:
+            break
+        slow = slow + 1 if losses[best] > (1 - 1e-5) * loss else 0
+        point, loss = tries[best], losses[best]
+        if slow == 2:
+            break
+    return point
+
+
+def stepped(point: Array, gradient: Array, curvature: Array, free: NDArray[np.bool_], damping: float) -> Array:
+    if not free.any():
+        return point
+    own = curvature[np.ix_(free, free)]
+    scale = np.maximum(np.diag(own), 1e-12 * max(np.diag(own).max(), 1e-300))
+    step = np.zeros(point.size)
+    step[free] = -np.linalg.lstsq(own + damping * np.diag(scale), gradient[free], rcond=None)[0]
+    return np.clip(point + np.clip(step, -0.3, 0.3), 0, 1)

@@ -1,0 +1,169 @@
+"""Which effect would explain what the model leaves: projected scores, without fitting anything.
+
+For each effect the change of the response as it leaves its null, less what the fitted parameters could do as well
+(projection out of their derivatives), is held against the residual.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pzt_ident.block import Addition, Coupling, Term
+from pzt_ident.diagnosis.refit import Case, Fit
+from pzt_ident.problem import Problem
+from pzt_ident.registry import blocks
+
+Array = NDArray[np.float64]
+
+
+@dataclass
+class Score:
+    """What the data say of an effect without a refit. `guess` in the user's units; `visibility` is the share of its
+    trace that the fitted parameters cannot take up, `power` the largest plausible rms of that, in noise floors."""
+
+    effect: str
+    explained: float = 0.0
+    guess: dict[str, float] = field(default_factory=dict)
+    visibility: float = 0.0
+    power: float = 0.0
+    trace: Array = field(default_factory=lambda: np.zeros(0), repr=False)
+
+
+def applicable(case: Case, effects: tuple[str, ...]) -> list[str]:
+    """The effects that this model can take and does not have."""
+    chain = [blocks[word] for word in (*case.words, *effects)]
+    terms = {parameter.effect for block in chain for parameter in block.parameters().values()}
+    axes = len(case.records[0].axes)
+    found = []
+    for word in blocks.effects():
+        block = blocks[word]
+        fits = (not issubclass(block, Term) or word in terms) and (not issubclass(block, Coupling) or axes > 1)
+        if fits and word not in effects:
+            found.append(word)
+    return found
+
+
+class Scorer:
+    """The residual of a fit and what its parameters could have done, both over the scored samples."""
+
+    def __init__(self, case: Case, fit: Fit) -> None:
+        self.case, self.fit = case, fit
+        jacobian = fit.problem.jacobian(fit.point)
+        size = np.linalg.norm(jacobian, axis=0)
+        u, s, _ = np.linalg.svd(jacobian / np.where(size > 0, size, 1), full_matrices=False)
+        self.basis = u[:, s > 1e-7 * s.max(initial=1e-300)]
+        self.raw = fit.problem.residuals(fit.point)[0]
+        self.residual = self.project(self.raw)
+        self.misfit = misfit(case, fit)
+
+    def project(self, signals: Array) -> Array:
+        return signals - self.basis @ (self.basis.T @ signals)
+
+    def score(self, effect: str) -> Score:
+        problem = self.case.problem((*self.fit.effects, effect))
+        if issubclass(blocks[effect], Addition):
+            return self._addition(effect, problem)
+        found = Score(effect)
+        for guess, columns in self._trials(effect, problem):
+            trace = self.project(columns.T)
+            amounts = np.linalg.lstsq(trace, -self.residual, rcond=1e-8)[0].astype(float)
+            left = self.residual + trace @ amounts
+            explained = (self.residual @ self.residual - left @ left) / self.misfit
+            size = np.linalg.norm(columns, axis=1).max()
+            seen = float(np.linalg.norm(trace, axis=0).max() / max(size, 1e-300))
+            power = float(np.linalg.norm(trace, axis=0).max() / self.case.floor)
+            found.visibility, found.power = max(found.visibility, seen), max(found.power, power)
+            if explained > found.explained and self._possible(problem, guess, amounts):
+                found.explained, found.trace = float(explained), trace @ amounts
+                found.guess = self._scaled(problem, guess, amounts)
+        return found
+
+    def _possible(self, problem: Problem, guess: dict[str, tuple[float, float]], amounts: Array) -> bool:
+        """Whether the amounts go the way that the bounds allow."""
+        lower = dict(zip(problem.names, problem.lower, strict=True))
+        one_sided = [lower[name] >= null for name, (null, step) in guess.items() if step != 0]
+        return all(amount >= 0 or not bounded for amount, bounded in zip(amounts, one_sided, strict=True))
+
+    def _scaled(self, problem: Problem, guess: dict[str, tuple[float, float]], amounts: Array) -> dict[str, float]:
+        left, found = list(amounts), {}
+        low, high = (dict(zip(problem.names, bound, strict=True)) for bound in (problem.lower, problem.upper))
+        for name, (null, step) in guess.items():
+            value = null + (left.pop(0) * step if step else 0)
+            found[name] = float(np.clip(value, low[name], high[name]))
+        return found
+
+    def _trials(self, effect: str, problem: Problem) -> Iterator[tuple[dict[str, tuple[float, float]], Array]]:
+        """Each shape and size: {parameter: (null, step)} of those that grow from a null, and (traces, samples)."""
+        new = [i for i, name in enumerate(problem.names) if name not in self.fit.problem.names]
+        slots = {i: problem.model.slots[problem.free[i]] for i in new}
+        growing = [i for i in new if slots[i].parameter.null is not None]
+        shapes = [i for i in new if i not in growing]
+        old = dict(zip(self.fit.problem.names, self.fit.problem.physical(self.fit.point)[0], strict=True))
+        base = np.array(
+            [old.get(name, slots[i].parameter.null if i in growing else 0) for i, name in enumerate(problem.names)],
+            float,
+        )  # type: ignore[arg-type]
+        grids = [spread(problem, i, blocks[effect].trials) for i in shapes]
+        for values in product(*grids):
+            for size in blocks[effect].sizes:
+                start = base.copy()
+                start[shapes] = values
+                tries, steps = [start], []
+                for i in growing:
+                    step = size * (problem.upper[i] - start[i] or problem.lower[i] - start[i])
+                    steps.append(step)
+                    tries.append(start.copy())
+                    tries[-1][i] += step
+                moved = self._residuals(problem, np.array(tries))
+                if not np.isfinite(moved).all():
+                    continue
+                guess = {problem.names[i]: (start[i], step) for i, step in zip(growing, steps, strict=True)}
+                guess |= {problem.names[i]: (value, 0.0) for i, value in zip(shapes, values, strict=True)}
+                yield guess, (moved[1:] - moved[0])
+
+    def _residuals(self, problem: Problem, physical: Array) -> Array:
+        return problem.residuals(
+            np.array([problem.unit_point(dict(zip(problem.names, row, strict=True))) for row in physical])
+        )
+
+    def _addition(self, effect: str, problem: Problem) -> Score:
+        """What a record may add of its own is not in the chain: what it leaves says all."""
+        found, block = Score(effect), blocks[effect]
+        shapes = [i for i, name in enumerate(problem.names) if name not in self.fit.problem.names]
+        old = dict(zip(self.fit.problem.names, self.fit.problem.physical(self.fit.point)[0], strict=True))
+        guess = getattr(block, "guess", None)
+        plans = self.fit.problem.plans["identify"]
+        if guess:
+            parts = np.split(self.raw, np.cumsum([plan.scored * len(plan.model.measured) for plan in plans])[:-1])
+            times = [plan.record.time[plan.record.settle :] for plan in plans]
+            grids = [guess(times, parts, problem.lower[shapes[0]], problem.upper[shapes[0]])]
+        else:
+            grids = [spread(problem, i, block.trials) for i in shapes]
+        for values in product(*grids):
+            start = np.array([old.get(name, 0.0) for name in problem.names])
+            start[shapes] = values
+            left = self.project(self._residuals(problem, start[None])[0])
+            explained = (self.residual @ self.residual - left @ left) / self.misfit
+            if explained > found.explained:
+                found.explained, found.trace = float(explained), left - self.residual
+                found.guess = {problem.names[i]: float(value) for i, value in zip(shapes, values, strict=True)}
+        found.visibility, found.power = 1.0, float("inf")
+        return found
+
+
+def misfit(case: Case, fit: Fit) -> float:
+    """Mean square above the noise floor; where it is lost in the noise, the least that could be told from it."""
+    return max(fit.identify**2 - case.floor**2, (0.3 * case.floor) ** 2)
+
+
+def spread(problem: Problem, i: int, count: int) -> Array:
+    """Values over the range of a parameter, in the user's units."""
+    shares = (np.arange(count) + 0.5) / count
+    point = np.full((count, problem.dimensions), 0.5)
+    point[:, i] = shares
+    return problem.physical(point)[:, i]

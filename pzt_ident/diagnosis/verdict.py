@@ -1,0 +1,143 @@
+"""What the refits of the short list say: missing, a tie, nothing, or something that no effect explains."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from itertools import combinations
+
+import numpy as np
+
+from pzt_ident.diagnosis.refit import Case, Fit, refit
+from pzt_ident.diagnosis.score import Score, Scorer, applicable, misfit
+
+SHORT = 6  # effects that are refitted
+LEAST = 0.02  # of the misfit: what scores less is not refitted
+CLEAR = 0.4  # noise floors: an effect removes at least this much, root mean square
+SHARE = 0.08  # and at least this much of the misfit
+TIED = 0.2  # noise floors between two refits: less than that, these data cannot tell
+AT_NOISE = 1.25  # noise floors: a model that leaves no more is adequate
+VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
+
+
+@dataclass
+class Candidate:
+    score: Score
+    fit: Fit | None = None
+    decision: str = "not missing"
+
+
+@dataclass
+class Diagnosis:
+    """verdict and reason, candidates best first, and which of them these data cannot tell from the best."""
+
+    verdict: str
+    reason: str
+    before: Fit
+    candidates: list[Candidate]
+    tied: list[str]
+    passing: list[Candidate] = field(default_factory=list)
+
+    @property
+    def best(self) -> Candidate | None:
+        return next((item for item in self.candidates if item.decision == "missing"), None)
+
+
+def drop(before: float | None, after: float | None) -> float:
+    """What an effect removes, root mean square, negative where the error grew; infinite without records."""
+    if before is None or after is None:
+        return np.inf
+    return float(np.sign(before - after) * np.sqrt(abs(before**2 - after**2)))
+
+
+def earns(case: Case, before: Fit, after: Fit) -> bool:
+    """Whether an effect removes enough, of the identify records and of those that the fit never saw."""
+    gone = drop(before.identify, after.identify)
+    own = drop(before.validate, after.validate)
+    return gone > CLEAR * case.floor and gone**2 > SHARE * misfit(case, before) and own > CLEAR / 2 * case.floor
+
+
+def diagnose(case: Case, before: Fit, tell: Callable[[str], None] = lambda said: None) -> Diagnosis:
+    """Score every effect, refit the short list, judge."""
+    if not before.converged:
+        reason = "Two starts of the fit do not agree: what is left may be the search's fault. Narrow the bounds."
+        return Diagnosis("refused", reason, before, [], [])
+    scorer = Scorer(case, before)
+    with ThreadPoolExecutor(2) as pool:
+        scores = list(pool.map(scorer.score, applicable(case, before.effects)))
+    candidates = sorted((Candidate(score) for score in scores), key=lambda item: -item.score.explained)
+    tell(f"{len(candidates)} effects scored")
+    if before.identify <= AT_NOISE * case.floor and not any(_worth(case, before, item) for item in candidates):
+        settle(case, candidates)
+        said = f"The model is adequate: it leaves {before.identify / case.floor:.2f} noise floors."
+        return Diagnosis("adequate", said, before, candidates, [])
+    shortlist = [item for item in candidates if item.score.explained > LEAST][:SHORT]
+    refits(case, before, shortlist)
+    candidates.sort(key=lambda item: (item.fit.identify if item.fit else np.inf, -item.score.explained))
+    settle(case, candidates)
+    passing = [item for item in shortlist if item.fit and earns(case, before, item.fit)]
+    if not passing:
+        return nothing(case, before, candidates)
+    best = min(passing, key=lambda item: item.fit.identify)  # type: ignore[union-attr]
+    tied = [item for item in passing if drop(item.fit.identify, best.fit.identify) < TIED * case.floor]  # type: ignore[union-attr]
+    best = min(tied, key=lambda item: (item.fit.problem.dimensions, item.fit.identify))  # type: ignore[union-attr]
+    best.decision = "missing"
+    candidates.sort(key=lambda item: (item is not best, item.fit.identify if item.fit else np.inf))
+    words = [best.score.effect, *(item.score.effect for item in tied if item is not best)]
+    verdict = "missing" if len(words) == 1 else "inconclusive"
+    rest = sorted((item for item in passing if item not in tied), key=lambda item: item.fit.identify)  # type: ignore[union-attr]
+    return Diagnosis(verdict, sentence(case, before, best, words), before, candidates, words, [best, *rest])
+
+
+def _worth(case: Case, before: Fit, item: Candidate) -> bool:
+    """Whether the score promises more than what counts as an effect."""
+    return item.score.explained * misfit(case, before) > (CLEAR * case.floor) ** 2
+
+
+def refits(case: Case, before: Fit, items: list[Candidate]) -> None:
+    def one(item: Candidate) -> Fit:
+        return refit(case, before, (*before.effects, item.score.effect), item.score.guess)
+
+    with ThreadPoolExecutor(2) as pool:
+        for item, fit in zip(items, pool.map(one, items), strict=True):
+            item.fit = fit
+
+
+def settle(case: Case, candidates: list[Candidate]) -> None:
+    for item in candidates:
+        if item.score.power < VISIBLE:
+            item.decision = "cannot be seen"
+        elif item.fit is None:
+            item.decision = "not missing" if item.score.explained <= LEAST else "too small"
+
+
+def nothing(case: Case, before: Fit, candidates: list[Candidate]) -> Diagnosis:
+    left = before.identify / case.floor
+    if left <= AT_NOISE:
+        return Diagnosis(
+            "adequate", f"The model is adequate: it leaves {left:.2f} noise floors.", before, candidates, []
+        )
+    said = f"No effect of the catalogue explains the misfit of {left:.1f} noise floors."
+    return Diagnosis("unexplained", said, before, candidates, [])
+
+
+def sentence(case: Case, before: Fit, best: Candidate, words: list[str]) -> str:
+    assert best.fit is not None
+    share = drop(before.identify, best.fit.identify) ** 2 / misfit(case, before)
+    floors = f"{before.identify / case.floor:.1f} to {best.fit.identify / case.floor:.1f} noise floors"
+    said = f"it explains {min(share, 1):.0%} of the misfit; the RMSE falls from {floors}."
+    if len(words) == 1:
+        return f"Missing: {words[0]}. {said[0].upper()}{said[1:]}"
+    return f"{' or '.join(words)}: these data cannot tell them apart. {words[0]} is the simplest of them: {said}"
+
+
+def pair(case: Case, before: Fit, candidates: list[Candidate]) -> Fit | None:
+    """Two effects that hide each other: of the pairs of the short list the one whose refit is best, if it earns."""
+    words = [item for item in candidates if item.score.explained > LEAST][:4]
+    tries = [
+        refit(case, before, (*before.effects, a.score.effect, b.score.effect), a.score.guess | b.score.guess)
+        for a, b in combinations(words, 2)
+    ]
+    good = [fit for fit in tries if earns(case, before, fit)]
+    return min(good, key=lambda fit: fit.identify, default=None)

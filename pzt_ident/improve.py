@@ -1,0 +1,178 @@
+"""From a job to what its model is missing, and to the job that has it: `diagnosis.json`, `improvement.json`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pzt_ident.amend import with_effects
+from pzt_ident.diagnosis import improve as stairs
+from pzt_ident.diagnosis.next_experiment import Proposal, Reach, propose
+from pzt_ident.diagnosis.noise import noise_floor
+from pzt_ident.diagnosis.refit import Case, Fit, first_fit
+from pzt_ident.diagnosis.verdict import Diagnosis
+from pzt_ident.diagnosis.verdict import diagnose as judge
+from pzt_ident.files import write_json, write_text
+from pzt_ident.job import Job
+from pzt_ident.registry import blocks
+from pzt_ident.run import environment, make_empty, problem_of, read, unit_of
+from pzt_ident.units import factor
+
+Tell = Callable[[dict[str, Any]], None]
+
+
+def case_of(job: Job) -> Case:
+    """Raises InputError where the job or its data are wrong."""
+    records = read(job)
+    problem_of(job, records)
+    return Case(job.model, job.effects, records, job.parameters)
+
+
+def folder_for(job: Job, out: Path | None) -> Path:
+    return out or Path("results") / job.name / f"{datetime.now():%Y%m%d-%H%M%S}-{job.hash}"
+
+
+def diagnose(job: Job, out: Path | None = None, tell: Tell = lambda event: None) -> Path:
+    """Fit the job's model, say what it misses; writes `diagnosis.json` into the folder that is returned."""
+    case = case_of(job)
+    folder = folder_for(job, out)
+    make_empty(folder)
+    with np.errstate(all="ignore"):
+        first = first_fit(case, job.seed)
+        tell(stair(case, stairs.Step(first)))
+        found = judge(case, first)
+        content = diagnosis_of(job, case, found, folder)
+    write_text(folder / "job.yaml", with_effects(job, job.effects, folder))
+    write_json(folder / "environment.json", environment(job, list(case.records)))
+    write_json(folder / "diagnosis.json", content)
+    return folder
+
+
+def improve(job: Job, out: Path | None = None, tell: Tell = lambda event: None) -> Path:
+    """Diagnose, add what is missing and diagnose again, until nothing is missing or nothing more is known.
+
+    Writes `improved.yaml`, `diagnosis.json` of the last model, the page with the staircase, and `improvement.json`.
+    """
+    from pzt_ident.report.staircase import write_staircase
+
+    case = case_of(job)
+    folder = folder_for(job, out)
+    make_empty(folder)
+    with np.errstate(all="ignore"):
+        steps, last = stairs.improve(case, first_fit(case, job.seed), lambda step: tell(stair(case, step)))
+        diagnosis = diagnosis_of(job, case, last, folder)
+    verdict = "unexplained" if last.verdict in ("missing", "inconclusive") else last.verdict
+    effects = list(steps[-1].fit.effects)
+    content = {
+        "name": job.name,
+        "steps": [stair(case, step) for step in steps],
+        "verdict": verdict,
+        "reason": last.reason,
+        "effects": [word for word in effects if word not in job.effects],
+        "noise_floor": floors(case),
+        "unit": unit_of(list(case.records)),
+        "next_experiment": diagnosis["next_experiment"],
+    }
+    write_text(folder / "improved.yaml", with_effects(job, effects, folder))
+    write_text(folder / "job.yaml", with_effects(job, job.effects, folder))
+    write_json(folder / "environment.json", environment(job, list(case.records)))
+    write_json(folder / "diagnosis.json", diagnosis)
+    write_json(folder / "improvement.json", content)
+    write_staircase(folder, content, diagnosis)
+    return folder
+
+
+def size_of(case: Case) -> float:
+    return factor(unit_of(list(case.records)))
+
+
+def floors(case: Case) -> dict[str, float]:
+    first = case.records[0]
+    return {
+        first.axes[a]: noise_floor(list(case.records), a).value / factor(str(first.response_units[a]))
+        for a in first.measured
+    }
+
+
+def errors_of(case: Case, fit: Fit) -> dict[str, float | None]:
+    size = size_of(case)
+    return {"identify": fit.identify / size, "validate": None if fit.validate is None else fit.validate / size}
+
+
+def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
+    problem, point = step.fit.problem, step.fit.point
+    values = problem.physical(point)[0]
+    units = zip(problem.names, values, problem.units, strict=True)
+    return {
+        "event": "step",
+        "added": step.added,
+        "removed": step.removed,
+        "class": list(step.tied),
+        "rmse": errors_of(case, step.fit),
+        "explained": step.explained,
+        "expected": step.expected,
+        "parameters": {name: {"value": float(value), "unit": unit} for name, value, unit in units},
+    }
+
+
+def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[str, Any]:
+    rivals = {item.score.effect: item.fit for item in found.candidates if item.fit and item.score.effect in found.tied}
+    proposal = propose(case, rivals, reach_of(job, case)) if len(rivals) > 1 else None
+    return {
+        "verdict": found.verdict,
+        "reason": found.reason,
+        "unit": unit_of(list(case.records)),
+        "noise_floor": floors(case),
+        "rmse": errors_of(case, found.before),
+        "candidates": [
+            {
+                "effect": item.score.effect,
+                "class": found.tied if item.score.effect in found.tied else [item.score.effect],
+                "explained": item.score.explained,
+                "expected": item.score.guess,
+                "visibility": item.score.visibility,
+                "power": item.score.power if np.isfinite(item.score.power) else None,
+                "rmse": errors_of(case, item.fit) if item.fit else None,
+                "decision": item.decision,
+                "physics": (blocks[item.score.effect].__doc__ or "").splitlines()[0],
+                "looks_like": list(blocks[item.score.effect].looks_like),
+                "separate_by": blocks[item.score.effect].separate_by,
+                "remedy": blocks[item.score.effect].remedy,
+            }
+            for item in found.candidates
+        ],
+        "next_experiment": written(case, proposal, folder) if proposal else None,
+    }
+
+
+def reach_of(job: Job, case: Case) -> Reach:
+    """The job's limits; where it gives none, what the records themselves did."""
+    axis = case.records[0].measured[0]
+    unit = factor(str(case.records[0].drive_units[axis]))
+    drives = [record.drive[axis] for record in case.records]
+    rate = max(float(np.abs(np.diff(r.drive[axis])).max()) / r.dt for r in case.records)
+    length = max(r.samples * r.dt for r in case.records)
+    limits = job.limits
+    low, high = limits.drive or (min(u.min() for u in drives) / unit, max(u.max() for u in drives) / unit)
+    slew = limits.slew * unit if limits.slew else rate
+    return Reach(low * unit, high * unit, slew, limits.duration or max(length, 60.0))
+
+
+def written(case: Case, proposal: Proposal, folder: Path) -> dict[str, Any]:
+    """The proposal and its drive as CSV."""
+    first = case.records[0]
+    size = [factor(str(unit)) for unit in first.drive_units]
+    header = ",".join(
+        ["time [s]", *(f"u_{axis} [{unit}]" for axis, unit in zip(first.axes, first.drive_units, strict=True))]
+    )
+    time = np.arange(proposal.drive.shape[1]) * proposal.dt
+    rows = np.column_stack([time, *(row / s for row, s in zip(proposal.drive, size, strict=True))])
+    text = "\n".join([header, *(",".join(f"{value:.9g}" for value in row) for row in rows)]) + "\n"
+    path = folder / "next_experiment.csv"
+    write_text(path, text)
+    said = f"{proposal.name}: {proposal.why}; sets them {proposal.apart:.1f} noise floors apart"
+    return {"splits": list(proposal.splits), "file": path.name, "why": said}

@@ -1,0 +1,81 @@
+"""A diagnosis and a staircase on the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+
+from pzt_ident.terminal import number, table
+
+Facts = dict[str, Any]
+
+
+def told(silent: bool) -> Callable[[Facts], None]:
+    """Each stair on stderr as it is climbed."""
+
+    def tell(step: Facts) -> None:
+        if not silent:
+            what = f"+ {step['added']}" if step["added"] else f"- {step['removed']}" if step["removed"] else "as given"
+            click.echo(f"{what}: RMSE {number(step['rmse']['identify'])}", err=True)
+
+    return tell
+
+
+def show_diagnosis(found: Facts, folder: Path) -> None:
+    """The candidates that were refitted or come next, and the verdict."""
+    unit = found["unit"]
+    rows = [
+        (
+            item["effect"],
+            f"{100 * item['explained']:.0f} %",
+            ", ".join(f"{name.split('.')[-1]} {number(value)}" for name, value in list(item["expected"].items())[:3]),
+            f"{item['visibility']:.2f}",
+            number(item["rmse"]["identify"]) if item["rmse"] else "",
+            number(item["rmse"]["validate"]) if item["rmse"] else "",
+            item["decision"],
+        )
+        for item in found["candidates"]
+        if item["rmse"] or item["explained"] > 0.01
+    ]
+    table(("effect", "explains", "expected", "visible", f"identify [{unit}]", f"validate [{unit}]", "decision"), rows)
+    floor = ", ".join(f"{number(value)} ({axis})" for axis, value in found["noise_floor"].items())
+    click.echo(f"RMSE [{unit}]: {number(found['rmse']['identify'])} identify, noise floor {floor}")
+    click.echo(found["reason"])
+    _advise(found, folder)
+    click.echo(f"diagnosis: {folder / 'diagnosis.json'}")
+
+
+def _advise(found: Facts, folder: Path) -> None:
+    best = next((item for item in found["candidates"] if item["decision"] == "missing"), None)
+    if best:
+        click.echo(f"{best['effect']}: {best['physics']}\non the rig: {best['remedy']}")
+    if found["next_experiment"]:
+        proposal = found["next_experiment"]
+        click.echo(f"to tell {' from '.join(proposal['splits'])}, run {folder / proposal['file']} ({proposal['why']})")
+
+
+def show_improvement(found: Facts, folder: Path) -> None:
+    """The staircase, the verdict, and where the improved job is."""
+    unit, floor = found["unit"], max(found["noise_floor"].values())
+    rows = [
+        (
+            f"+ {step['added']}" if step["added"] else f"- {step['removed']}" if step["removed"] else "as given",
+            number(step["rmse"]["identify"]),
+            number(step["rmse"]["validate"]),
+            f"{step['rmse']['identify'] / floor:.2f}",
+            "" if step["expected"] is None else f"{100 * min(step['expected'], 1):.0f} %",
+            f"{100 * step['explained']:.0f} %" if step["added"] or step["removed"] else "",
+            " or ".join(step["class"]),
+        )
+        for step in found["steps"]
+    ]
+    table(
+        ("step", f"identify [{unit}]", f"validate [{unit}]", "in floors", "expected", "explained", "these data say"),
+        rows,
+    )
+    click.echo(f"noise floor [{unit}]: {number(floor)}")
+    click.echo(f"{found['verdict']}: {found['reason']}")
+    click.echo(f"improved job: {folder / 'improved.yaml'}\nreport: {folder / 'report.html'}")
