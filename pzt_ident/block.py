@@ -144,7 +144,7 @@ class Shift(Block):
 
 class Beside(Block):
     """A path beside the mechanics: step(*states, x, f, *coefficients) -> (*states, y), from f, the force that the
-    mechanics is driven by, and x, what comes out of it."""
+    mechanics is driven by, and x, what comes out of it; start(f, *coefficients) is under the first force."""
 
 
 class Addition(Block):

@@ -26,8 +26,8 @@ class Resonance(Beside):
     def prepare(share, frequency, damping, dt):
         return share, *oscillator(2 * pi * frequency, damping, dt)
 
-    def start(u, share, r11, r12, r21, r22, b1, b2):
-        return 0.0, 0.0, u
+    def start(f, share, r11, r12, r21, r22, b1, b2):
+        return 0.0, 0.0, f
 
     def step(w, v, before, x, f, share, r11, r12, r21, r22, b1, b2):
         w, v = oscillate(w, v, f - before, r11, r12, r21, r22, b1, b2)

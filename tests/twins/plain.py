@@ -98,7 +98,7 @@ def act(block, values, signal, aside, terms):
 
 
 def plain(block, numbers, *inputs):
-    state, result = block.start(inputs[0][0], *numbers), []
+    state, result = block.start(inputs[-1][0], *numbers), []
     for each in zip(*inputs, strict=True):
         *state, y = np.atleast_1d(block.step(*state, *each, *numbers)).tolist()
         result.append(y)
