@@ -1,0 +1,45 @@
+"""Hysteresis that widens with the rate: that of another alpha at each rate, the same one at 100 V/s."""
+
+import numpy as np
+import pytest
+
+from rig import path, response
+
+KNOWN = {"bouc_wen.gain": 0.08, "bouc_wen.alpha": 0.4, "bouc_wen.beta": 0.04, "bouc_wen.gamma": -0.01}
+DRIVE = path(0, 80, 10, 60, 0, points=70).round(9)
+
+
+def driven(drive, dt, rate=0.1):
+    return response(["bouc_wen"], KNOWN | {"bouc_wen.rate": rate}, drive, dt=dt)
+
+
+@pytest.mark.parametrize("speed", [1.0, 100.0, 2e4])
+def test_at_one_rate_it_is_another_alpha(speed):
+    drive = path(0, 80, 0, 80, 0, points=80)
+    wider = KNOWN | {"bouc_wen.alpha": 0.4 * (1 + 0.1 * np.log10(speed / 100))}
+    np.testing.assert_allclose(driven(drive, 1 / speed), response(["bouc_wen"], wider, drive), rtol=0, atol=1e-12)
+
+
+def test_each_leg_has_the_alpha_of_its_own_rate():
+    """Rising from zero h = alpha d / r (1 - exp(-r s)); what is there already is forgotten at any rate alike."""
+    rate, slow, fast = 0.03, 0.4 * 0.08, 0.4 * 0.08 * 1.1
+    drive = np.append(np.arange(41.0), np.arange(50.0, 101, 10))  # 100 V/s, then 1000 V/s
+    s = drive - 40
+    first = slow / rate * -np.expm1(-rate * drive)
+    then = slow / rate * -np.expm1(-rate * 40) * np.exp(-rate * s) + fast / rate * -np.expm1(-rate * s)
+    np.testing.assert_allclose(driven(drive, 0.01), 0.08 * drive - np.where(s > 0, then, first), rtol=0, atol=1e-12)
+
+
+def test_a_hold_changes_nothing():
+    held = np.repeat(DRIVE[70], 50)
+    found = driven(np.concatenate([DRIVE[:71], held, DRIVE[71:]]), 1e-3)
+    np.testing.assert_array_equal(found[71:121], found[70])
+    np.testing.assert_allclose(np.delete(found, slice(71, 121)), driven(DRIVE, 1e-3), rtol=0, atol=1e-13)
+
+
+def test_neither_standing_nor_jumping_is_without_bounds():
+    """Below 0.01 V/s and above 100 MV/s alpha is what it is there; it never turns over."""
+    for speed, there in ((1e-9, 1e-3), (1e12, 1e9)):
+        np.testing.assert_allclose(driven(DRIVE, 1 / speed), driven(DRIVE, 1 / there), rtol=0, atol=1e-12)
+    far = driven(DRIVE, 1e3, rate=0.3), response(["bouc_wen"], KNOWN | {"bouc_wen.alpha": 0.004}, DRIVE)
+    np.testing.assert_allclose(*far, rtol=0, atol=1e-12)
