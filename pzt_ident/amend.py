@@ -8,8 +8,9 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from pzt_ident.errors import InputError
+from pzt_ident.errors import InputError, nearest
 from pzt_ident.job import Job, load_job
+from pzt_ident.registry import blocks
 
 
 def add(job: Path, effect: str, out: Path) -> Job:
@@ -22,6 +23,10 @@ def add(job: Path, effect: str, out: Path) -> Job:
     before = load_job(job)
     if out.exists():
         raise InputError("exists already", where=str(out), remedy="give another file with -o")
+    if effect in before.effects:
+        raise InputError(f"{effect!r} is in its effects already", where=str(job), remedy="add another effect")
+    if effect not in blocks:
+        raise InputError(f"unknown effect {effect!r}", remedy=nearest(effect, blocks.effects()))
     text = with_effects(before, (*before.effects, effect), out.parent)
     made = Job.from_text(text, out.parent, str(out))
     write_text(out, text)
@@ -31,26 +36,37 @@ def add(job: Path, effect: str, out: Path) -> Job:
 def with_effects(job: Job, effects: Sequence[str], folder: Path) -> str:
     """The job's text with these effects, its paths as seen from another folder."""
     from ruamel.yaml import YAML
+    from ruamel.yaml.comments import CommentedSeq
 
     yaml = YAML()
     yaml.preserve_quotes = True
-    yaml.width = 120
+    yaml.width = 10_000
     document: Any = yaml.load(job.text)
-    found = document.get("effects")
-    if found is None:
-        place = list(document).index("model") + 1 if "model" in document else len(document)
-        document.insert(place, "effects", list(effects))
-    else:
-        found[:] = [word for word in found if word in effects]
-        found.extend(word for word in effects if word not in found)
+    if "effects" not in document:
+        document.insert(list(document).index("model") + 1, "effects", CommentedSeq())
+    found = document["effects"]
+    if not found:
+        found.fa.set_flow_style()
+    for word in [word for word in found if word not in effects]:
+        found.remove(word)
+    found.extend(word for word in effects if word not in found)
     if job.folder.resolve() != folder.resolve():
-        document["records"] = moved(document["records"], job.folder, folder)
+        moved(document, job.folder, folder)
+    yaml.indent(**indents(document))
     written = StringIO()
     yaml.dump(document, written)
     return written.getvalue()
 
 
-def moved(item: Any, before: Path, after: Path) -> Any:
+def indents(document: Any) -> dict[str, int]:
+    """How far the job's own mappings and lists are set in."""
+    axes, records = document["channels"], document["records"]
+    mapping = 2 if axes.fa.flow_style() else axes.lc.col
+    dash = 0 if records.fa.flow_style() else records.lc.col
+    return {"mapping": mapping, "sequence": dash + 2, "offset": dash}
+
+
+def moved(item: Any, before: Path, after: Path) -> None:
     """Every `file` below, relative to another folder; absolute paths and those with a variable stay."""
     if isinstance(item, list):
         for part in item:
@@ -62,4 +78,3 @@ def moved(item: Any, before: Path, after: Path) -> Any:
                     item[key] = os.path.relpath(before.resolve() / value, after.resolve())
             else:
                 moved(value, before, after)
-    return item
