@@ -89,11 +89,11 @@ def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, fl
     return made(effects, problem, descend(problem, problem.unit_point(start)))
 
 
-def descend(problem: Problem, point: Array, most: int = 40) -> Array:
+def descend(problem: Problem, point: Array, most: int = 60) -> Array:
     """Levenberg-Marquardt in the cube on normal equations, all dampings tried in one batch; the point reached."""
     point = np.clip(point, 0, 1)
     loss, slow = problem.loss(point)[0], 0
-    for _ in range(most):
+    for _ in range(most if np.isfinite(loss) else 0):
         jacobian, residual = problem.jacobian(point), problem.residuals(point)[0]
         gradient, curvature = jacobian.T @ residual, jacobian.T @ jacobian
         free = ~(((point <= 0) & (gradient > 0)) | ((point >= 1) & (gradient < 0)))
@@ -104,7 +104,7 @@ def descend(problem: Problem, point: Array, most: int = 40) -> Array:
             break
         slow = slow + 1 if losses[best] > (1 - 1e-5) * loss else 0
         point, loss = tries[best], losses[best]
-        if slow == 2:
+        if slow == 4:
             break
     return point
 

@@ -1,0 +1,125 @@
+"""Fits that are good enough to blame what is left on the model, and the steps that they are made of."""
+
+import numpy as np
+import pytest
+import stage
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pzt_ident.block import Block, Place
+from pzt_ident.diagnosis import refit
+from pzt_ident.diagnosis.refit import descend, first_fit, stepped
+from pzt_ident.parameter import Parameter
+from pzt_ident.registry import blocks
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return stage.case()
+
+
+@pytest.fixture(scope="module")
+def creeping():
+    return stage.case(stage.EFFECTS["creep"])
+
+
+def test_the_floor_is_the_noise(plain):
+    assert plain.floor == pytest.approx(stage.NOISE, rel=0.1)
+
+
+def test_the_first_fit_finds_the_stage(plain):
+    fit = first_fit(plain, 0)
+    assert fit.converged
+    assert fit.identify == pytest.approx(stage.NOISE, rel=0.1)
+    assert fit.validate == pytest.approx(stage.NOISE, rel=0.1)
+    assert fit.value("bouc_wen.gain") == pytest.approx(0.082, rel=0.01)
+    assert fit.value("bouc_wen.alpha") == pytest.approx(0.55, rel=0.05)
+
+
+def test_the_first_fit_is_a_function_of_its_seed(creeping):
+    assert np.array_equal(first_fit(creeping, 3).point, first_fit(creeping, 3).point)
+
+
+def test_a_fit_whose_starts_end_apart_has_not_converged(plain, monkeypatch):
+    monkeypatch.setattr(refit, "descend", lambda problem, point: point)
+    assert not first_fit(plain, 0).converged
+
+
+def test_without_records_to_validate_there_is_no_error_of_them(plain):
+    alone = refit.Case(plain.words, (), plain.records[:1], {})
+    assert first_fit(alone, 0).validate is None
+
+
+def test_a_refit_goes_on_from_what_was_found(creeping):
+    before = first_fit(creeping, 0)
+    after = refit.refit(creeping, before, ("creep",), {"creep.ratio": 0.05, "creep.tau": 2.0})
+    assert after.effects == ("creep",)
+    assert after.value("creep.ratio") == pytest.approx(0.08, rel=0.15)
+    assert after.identify == pytest.approx(stage.NOISE, rel=0.1)
+    assert before.identify > 3 * after.identify
+    back = refit.refit(creeping, after, (), {})
+    assert back.identify == pytest.approx(before.identify, rel=1e-3)
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.lists(st.floats(-0.2, 1.2), min_size=4, max_size=4))
+def test_descent_stays_in_the_cube_and_never_climbs(creeping, start):
+    problem = creeping.problem(())
+    ahead = np.clip(start, 0, 1)
+    end = descend(problem, np.array(start), most=6)
+    assert np.all((end >= 0) & (end <= 1))
+    assert problem.loss(end)[0] <= problem.loss(ahead)[0]
+
+
+def test_descent_comes_to_rest(creeping):
+    problem = creeping.problem(())
+    end = first_fit(creeping, 0).point
+    gradient = problem.jacobian(end).T @ problem.residuals(end)[0]
+    inside = (end > 0) & (end < 1)
+    assert np.abs(gradient[inside]).max() < 1e-4 * problem.loss(end)[0] ** 2 / 1e-2
+
+
+@given(st.lists(st.floats(0, 1), min_size=3, max_size=3), st.floats(1e-5, 1e4), st.integers(0, 7), st.integers(0, 99))
+def test_a_step_is_short_and_moves_nothing_that_is_held(point, damping, held, seed):
+    rng = np.random.default_rng(seed)
+    jacobian, residual = rng.normal(size=(20, 3)), rng.normal(size=20)
+    free = np.array([bool(held >> i & 1) for i in range(3)])
+    end = stepped(np.array(point), jacobian.T @ residual, jacobian.T @ jacobian, free, damping)
+    assert np.array_equal(end[~free], np.array(point)[~free])
+    assert np.all(np.abs(end - point) <= 0.3 + 1e-12)
+    assert np.all((end >= 0) & (end <= 1))
+
+
+def test_a_step_without_damping_is_newtons():
+    curvature, gradient = np.diag([2.0, 4.0]), np.array([0.2, -0.4])
+    end = stepped(np.array([0.5, 0.5]), gradient, curvature, np.array([True, True]), 0.0)
+    assert end == pytest.approx([0.4, 0.6])
+
+
+class Failing(Block):
+    """Fails above a half."""
+
+    name = "failing"
+    place = Place.OUTPUT
+    share = Parameter("1", (0, 1), "What it takes to fail.", null=0)
+    remedy = separate_by = "none"
+
+    def prepare(share):
+        return (share if share < 0.5 else float("nan"),)
+
+    def start(u, share):
+        return ()
+
+    def step(u, share):
+        return u + share * u
+
+
+def test_a_descent_from_where_the_simulation_fails_is_no_success(plain, monkeypatch):
+    monkeypatch.setitem(blocks._items, "failing", Failing)
+    problem = plain.problem(("failing",))
+    start = np.array([0.5, 0.5, 0.5, 0.5, 0.9])
+    with np.errstate(invalid="ignore"):
+        assert problem.loss(descend(problem, start))[0] == np.inf
+        inside = descend(problem, np.array([0.5, 0.5, 0.5, 0.5, 0.49]))
+    assert np.isfinite(problem.loss(inside)[0])
+    assert inside[4] < 0.5
