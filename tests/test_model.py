@@ -22,11 +22,15 @@ def noise(axes, samples=150, seed=0):
     return np.random.default_rng(seed).uniform(0, 100, (axes, samples)).cumsum(axis=1) % 97
 
 
+measured_axes = st.sampled_from([(1, (0,)), (2, (0,)), (2, (1,)), (2, (0, 1)), (3, (0, 2)), (3, (0, 1, 2))])
+seeds, periods = st.integers(0, 1000), st.sampled_from([{}, {"run_in": 1}])
+
+
 @given(
     chain=st.lists(st.sampled_from([Identity, Turn, *blocks.words()]), max_size=4, unique=True),
-    measured=st.sampled_from([(1, (0,)), (2, (0,)), (2, (1,)), (2, (0, 1)), (3, (0, 2)), (3, (0, 1, 2))]),
-    seed=st.integers(0, 1000),
-    more=st.sampled_from([{}, {"run_in": 1}]),
+    measured=measured_axes,
+    seed=seeds,
+    more=periods,
 )
 @settings(deadline=None, max_examples=40, derandomize=True)
 def test_every_chain_is_its_blocks_one_after_the_other(chain, measured, seed, more):
@@ -37,6 +41,24 @@ def test_every_chain_is_its_blocks_one_after_the_other(chain, measured, seed, mo
     theta = candidates(chain, SPAN, 3, seed)
     expected = np.array([plain.simulate(chain, made, candidate) for candidate in theta])
     assert_close(chain.simulate(made, theta), expected, rounding(chain, made, theta))
+
+
+TERMS = ["asymmetry", "rate_dependence", "thermal_relaxation"]
+AROUND = [*TERMS, "delay", "amplifier_lag", "quadratic_gain", "creep", "cross_coupling"]
+
+
+@given(st.lists(st.sampled_from(AROUND), unique=True), measured_axes, seeds, periods)
+@settings(deadline=None, max_examples=40, derandomize=True)
+def test_whatever_stands_around_hysteresis(around, measured, seed, more):
+    """A memory that does not run away: |gamma| <= beta."""
+    axes, measured = measured
+    chain = model("bouc_wen", *around, axes=axes, measured=measured)
+    made = record(*noise(axes, 150, seed), measured=measured, **more)
+    theta = candidates(chain, SPAN, 3, seed)
+    beta, gamma = ([name.endswith(f"bouc_wen.{word}") for name in chain.names] for word in ("beta", "gamma"))
+    theta[:, gamma] = np.clip(theta[:, gamma], -theta[:, beta], theta[:, beta])
+    expected = np.array([plain.simulate(chain, made, candidate) for candidate in theta])
+    assert_close(chain.simulate(made, theta), expected)
 
 
 def test_blocks_stand_in_the_order_of_the_signal():

@@ -40,6 +40,7 @@ CHAINS = [
     *map(" ".join, HOSTS),
     *map(" ".join, product(at(Place.READOUT), at(Place.OPERATOR))),
     *map(" ".join, product(at(Place.MECHANICS), BESIDE)),
+    *map(" ".join, product(OPERATORS, ADDITIONS)),
     " ".join(["bouc_wen", *(term for host, term in HOSTS if host == "bouc_wen"), *at(Place.READOUT)]),
 ]
 SPAN = np.array([0.0, 100.0])
