@@ -314,10 +314,10 @@ class Plan:
             for kind in range(len(kinds)):
                 same = np.flatnonzero(which.ravel() == kind)
                 basis = self._basis(axis, theta[same[0]])
-                q, r = np.linalg.qr(basis[settle:])
-                seen = np.abs(np.diag(r)) > 1e-9 * np.abs(r).max()
-                amounts = np.linalg.lstsq(r[:, seen], q.T @ error[same, i, settle:].T, rcond=None)[0]
-                error[same, i] -= (basis[:, seen] @ amounts).T
+                basis /= np.linalg.norm(basis, axis=0)
+                own = basis[settle:]
+                amounts = np.linalg.lstsq(own.T @ own, own.T @ error[same, i, settle:].T, rcond=1e-12)[0]
+                error[same, i] -= (basis @ amounts).T
         return error
 
     def _basis(self, axis: int, theta: Array) -> Array:

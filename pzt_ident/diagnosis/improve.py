@@ -6,11 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from pzt_ident.diagnosis.refit import Case, Fit, refit
-from pzt_ident.diagnosis.score import misfit
-from pzt_ident.diagnosis.verdict import Candidate, Diagnosis, diagnose, drop, earns, pair
+from pzt_ident.diagnosis.score import applicable, misfit
+from pzt_ident.diagnosis.verdict import TIED, Candidate, Diagnosis, diagnose, drop, earns, pair
+from pzt_ident.registry import blocks
 
-MOST = 8  # steps
-BEAM = 3  # first picks that are followed
+MOST = 6  # steps
+BEAM = 2  # first picks that are followed
 
 
 @dataclass
@@ -58,6 +59,7 @@ def climb(case: Case, first: Fit, found: Diagnosis, pick: Candidate | None, tell
         if not new:
             break
         new += unneeded(case, first, new[-1].fit)
+        new += swapped(case, first, new[-1].fit)
         seen = {frozenset(step.fit.effects) for step in steps}
         if frozenset(new[-1].fit.effects) in seen:
             break
@@ -96,4 +98,26 @@ def unneeded(case: Case, first: Fit, now: Fit) -> list[Step]:
         if not earns(case, without, now):
             found.append(Step(without, None, effect, (), explained(case, now, without)))
             now = without
+    return found
+
+
+def swapped(case: Case, first: Fit, now: Fit) -> list[Step]:
+    """Put look-alikes in the place of effects that were picked before the others were known, where that leaves less."""
+    found: list[Step] = []
+    own = now.effects[len(first.effects) :]
+    for effect in own if len(own) > 1 else ():
+        rest = tuple(word for word in now.effects if word != effect)
+        possible = applicable(case, rest)
+        tries = [refit(case, now, (*rest, word), {}) for word in blocks[effect].looks_like if word in possible]
+        best = min(tries, key=lambda fit: fit.identify, default=now)
+        if drop(now.identify, best.identify) > TIED * case.floor and drop(now.validate, best.validate) > 0:
+            without = refit(case, now, rest, {})
+            word = best.effects[-1]
+            found += [
+                Step(without, None, effect, (), explained(case, now, without)),
+                Step(best, word, None, (word,), explained(case, without, best)),
+            ]
+            now = best
+            found += unneeded(case, first, now)
+            now = found[-1].fit
     return found

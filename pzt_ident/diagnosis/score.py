@@ -69,15 +69,15 @@ class Scorer:
         if issubclass(blocks[effect], Addition):
             return self._addition(effect, problem)
         found = Score(effect)
-        for guess, columns in self._trials(effect, problem):
+        for size, guess, columns in self._trials(effect, problem):
             trace = self.project(columns.T)
             amounts = np.linalg.lstsq(trace, -self.residual, rcond=1e-8)[0].astype(float)
             left = self.residual + trace @ amounts
             explained = (self.residual @ self.residual - left @ left) / self.misfit
-            size = np.linalg.norm(columns, axis=1).max()
-            seen = float(np.linalg.norm(trace, axis=0).max() / max(size, 1e-300))
-            power = float(np.linalg.norm(trace, axis=0).max() / self.case.floor)
-            found.visibility, found.power = max(found.visibility, seen), max(found.power, power)
+            left_over, whole = np.linalg.norm(trace, axis=0).max(), np.linalg.norm(columns, axis=1).max()
+            found.visibility = max(found.visibility, float(left_over / max(whole, 1e-300)))
+            if size == max(blocks[effect].sizes):
+                found.power = max(found.power, float(left_over / size / self.case.floor))
             if explained > found.explained and self._possible(problem, guess, amounts):
                 found.explained, found.trace = float(explained), trace @ amounts
                 found.guess = self._scaled(problem, guess, amounts)
@@ -97,8 +97,8 @@ class Scorer:
             found[name] = float(np.clip(value, low[name], high[name]))
         return found
 
-    def _trials(self, effect: str, problem: Problem) -> Iterator[tuple[dict[str, tuple[float, float]], Array]]:
-        """Each shape and size: {parameter: (null, step)} of those that grow from a null, and (traces, samples)."""
+    def _trials(self, effect: str, problem: Problem) -> Iterator[tuple[float, dict[str, tuple[float, float]], Array]]:
+        """Each size and shape, {parameter: (null, step)} of those that grow from a null, and (traces, samples)."""
         new = [i for i, name in enumerate(problem.names) if name not in self.fit.problem.names]
         slots = {i: problem.model.slots[problem.free[i]] for i in new}
         growing = [i for i in new if slots[i].parameter.null is not None]
@@ -124,7 +124,7 @@ class Scorer:
                     continue
                 guess = {problem.names[i]: (start[i], step) for i, step in zip(growing, steps, strict=True)}
                 guess |= {problem.names[i]: (value, 0.0) for i, value in zip(shapes, values, strict=True)}
-                yield guess, (moved[1:] - moved[0])
+                yield size, guess, moved[1:] - moved[0]
 
     def _residuals(self, problem: Problem, physical: Array) -> Array:
         return problem.residuals(

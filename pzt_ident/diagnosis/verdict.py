@@ -15,7 +15,7 @@ from pzt_ident.diagnosis.score import Score, Scorer, applicable, misfit
 SHORT = 6  # effects that are refitted
 LEAST = 0.02  # of the misfit: what scores less is not refitted
 CLEAR = 0.4  # noise floors: an effect removes at least this much, root mean square
-SHARE = 0.08  # and at least this much of the misfit
+SHARE = 0.15  # and at least this much of the misfit
 TIED = 0.2  # noise floors between two refits: less than that, these data cannot tell
 AT_NOISE = 1.25  # noise floors: a model that leaves no more is adequate
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave

@@ -5,22 +5,23 @@ from pzt_ident.effects._lag import decay
 from pzt_ident.parameter import Parameter
 from pzt_ident.registry import blocks
 
-BRANCHES = 8
+BRANCHES = 10
 
 
 @blocks.register
 class Creep(Bank):
-    """Domains go on switching after a change: y = f + sum_i x_i,  tau_i dx_i/dt + x_i = ratio / 8 (f - f(0)).
+    """Domains go on switching after a change: y = f + sum_i x_i,  tau_i dx_i/dt + x_i = ratio / 10 (f - f(0)).
 
     Croft, Shed & Devasia (2001), J. Dyn. Syst. Meas. Control 123, 35. The times stand evenly on a logarithmic scale
     over `decades` around tau: one Kelvin-Voigt element at 0, close to a logarithm of time within wide ones.
     """
 
     place = Place.CREEP
+    trials = 5
     branches = BRANCHES
     ratio = Parameter("1", (-0.1, 0.4), "Final creep over the prompt response.", null=0)
     tau = Parameter("s", (0.01, 1000), "Geometric centre of the time constants.", scale="log")
-    decades = Parameter("1", (0, 5), "Decades that the time constants are spread over.", value=4)
+    decades = Parameter("1", (0, 7), "Decades that the time constants are spread over.")
     looks_like = ("thermal_relaxation", "drift", "amplitude_gain")
     separate_by = "Step up and hold, step down and hold, back by 5 % and hold, then a null record at constant voltage."
     remedy = "Wait after large steps, or add the identified creep to the feedforward."

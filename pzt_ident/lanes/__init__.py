@@ -16,7 +16,7 @@ from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, NamedTuple
 
-from pzt_ident.block import Bank, Beside, Block, Coupling, Operator, Shift, asked
+from pzt_ident.block import Bank, Beside, Block, Coupling, Operator, Place, Shift, asked
 from pzt_ident.files import cache_folder
 
 TEMPLATES = Path(__file__).parent
@@ -67,7 +67,7 @@ def compile_block(block: type[Block], variant: Variant = Variant()) -> Compiled:
     from pzt_ident import kernel
 
     template = template_of(block, variant)
-    layout = layout_of(block, variant, kernel.TILE)
+    layout = layout_of(block, variant)
     text = (TEMPLATES / f"{template}.jinja").read_text()
     sources = [text, kernel.VERSION, str(layout), str(variant), inspect.getsource(kernel), *authors(block)]
     key = hashlib.sha256("\0".join(sources).encode()).hexdigest()[:16]
@@ -84,7 +84,7 @@ def template_of(block: type[Block], variant: Variant) -> str:
     return next((name for kind, name in named.items() if issubclass(block, kind)), "plain")
 
 
-def layout_of(block: type[Block], variant: Variant, tile: int) -> Layout:
+def layout_of(block: type[Block], variant: Variant) -> Layout:
     """Counted by asking the block itself, with parameters in the middle of their bounds."""
     known = {p.name: sum(p.bounds) / 2 for p in block.parameters().values()} | {"dt": 1e-3, "span": 1.0, "branch": 0}
     prepared = block.prepare(*(known[word] for word in block.arguments()))  # type: ignore[attr-defined]
@@ -94,7 +94,7 @@ def layout_of(block: type[Block], variant: Variant, tile: int) -> Layout:
     states = 0 if stateless else len(block.start(0.0, *example))  # type: ignore[attr-defined]
     axes = variant.axes
     copies = block.branches if issubclass(block, Bank) else axes * (axes - 1) if issubclass(block, Coupling) else 1
-    work = 7 if operator else tile if issubclass(block, Bank) else 0
+    work = 7 if operator else 0
     asking = asked(block.terms) if variant.terms else ()  # type: ignore[attr-defined]
     terms = len(block.terms(*(known[word] for word in asking))) if variant.terms else 0  # type: ignore[attr-defined]
     shared = len(prepared[0]) if operator else 0
@@ -117,6 +117,8 @@ def render(text: str, block: type[Block], layout: Layout, variant: Variant, kern
         readout=variant.readout,
         beside=issubclass(block, Beside),
         axes=variant.axes,
+        place=block.place,
+        Place=Place,
         TILES=kernel.TILES,
         W=kernel.WIDTH,
         TILE=kernel.TILE,
