@@ -4,8 +4,8 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
-import rig
 
+import rig
 from pzt_ident.diagnosis.refit import Case
 
 NOISE = 5e-9  # m

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-import stage
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import stage
 from pzt_ident.block import Block, Place
 from pzt_ident.diagnosis import refit
 from pzt_ident.diagnosis.refit import descend, first_fit, stepped

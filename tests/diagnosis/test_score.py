@@ -1,0 +1,118 @@
+"""Scores without a refit: sign and size of what is missing, and what the fitted parameters can do as well."""
+
+import numpy as np
+import pytest
+
+import stage
+from pzt_ident.diagnosis.refit import first_fit
+from pzt_ident.diagnosis.score import Scorer, applicable, misfit
+
+
+def scored(made, effect):
+    return Scorer(made, first_fit(made, 0)).score(effect)
+
+
+HIDDEN = [
+    ("creep", "creep.ratio", {"creep.ratio": 0.05, "creep.tau": 1.0, "creep.decades": 4.0}, 0.6),
+    ("creep", "creep.ratio", {"creep.ratio": -0.03, "creep.tau": 1.0, "creep.decades": 4.0}, 0.6),
+    ("quadratic_gain", "quadratic_gain.curvature", {"quadratic_gain.curvature": 1e-4}, 0.1),
+    ("quadratic_gain", "quadratic_gain.curvature", {"quadratic_gain.curvature": -1e-4}, 0.1),
+    ("amplifier_lag", "amplifier_lag.tau", {"amplifier_lag.tau": 1e-3}, 0.1),
+    ("asymmetry", "bouc_wen.asymmetry", {"bouc_wen.asymmetry": 8e-4}, 0.15),
+    ("asymmetry", "bouc_wen.asymmetry", {"bouc_wen.asymmetry": -8e-4}, 0.15),
+    ("thermal_relaxation", "bouc_wen.relaxation", {"bouc_wen.relaxation": 0.02}, 0.15),
+]
+
+
+@pytest.mark.parametrize(("effect", "name", "hidden", "close"), HIDDEN)
+def test_the_expected_value_of_a_small_effect_has_its_sign_and_size(effect, name, hidden, close):
+    score = scored(stage.case(hidden), effect)
+    assert score.guess[name] == pytest.approx(hidden[name], rel=close)
+    assert score.explained == pytest.approx(1, abs=0.1)
+    assert 0.05 < score.visibility <= 1 + 1e-9
+
+
+def test_the_trace_is_what_the_residual_lacks():
+    made = stage.case(stage.EFFECTS["quadratic_gain"])
+    scorer = Scorer(made, first_fit(made, 0))
+    score = scorer.score("quadratic_gain")
+    left = scorer.residual + score.trace
+    assert np.linalg.norm(left) == pytest.approx(made.floor, rel=0.1)
+    assert np.abs(scorer.basis.T @ score.trace).max() < 1e-9 * np.linalg.norm(score.trace)
+
+
+STEPS = [np.repeat([0.0, *levels, 0], 300) for levels in ([20, 60, 30, 100, 50], [40, 10, 90])]
+KNOWN = {"lumped.mass": 0.15, "lumped.stiffness": 7e7, "lumped.damping": 2000.0}
+
+
+def test_what_a_fitted_parameter_can_do_as_well_leaves_no_trace():
+    def seen(free):
+        fixed = {name: value for name, value in KNOWN.items() if name != free}
+        made = stage.case(KNOWN, fixed, model=("bouc_wen", "lumped"), drives=STEPS, dt=2e-5)
+        return scored(made, "viscous_damping")
+
+    known, fitted = seen(None), seen("lumped.damping")
+    assert fitted.visibility < 0.05 < 0.5 < known.visibility
+    assert fitted.power < 0.1 * known.power
+    assert fitted.explained < 0.05
+
+
+def test_an_effect_whose_null_is_on_its_bound_goes_one_way_only():
+    made = stage.case(fixed={"amplifier_lag.tau": 2e-3}, effects=["amplifier_lag"])
+    assert scored(made, "sensor_lag").explained == 0
+    score = scored(stage.case({"amplifier_lag.tau": 2e-3}), "sensor_lag")
+    assert score.explained > 0.5
+
+
+def test_guesses_are_within_the_bounds():
+    made = stage.case(stage.EFFECTS["creep"])
+    scorer = Scorer(made, first_fit(made, 0))
+    for effect in applicable(made, ()):
+        score = scorer.score(effect)
+        problem = made.problem((effect,))
+        bounds = dict(zip(problem.names, zip(problem.lower, problem.upper, strict=True), strict=True))
+        for name, value in score.guess.items():
+            low, high = bounds[name]
+            assert low <= value <= high, name
+        assert np.isfinite(score.explained) and score.explained <= 1.1
+
+
+def test_what_a_record_may_add_of_its_own():
+    made = stage.with_response(stage.case(), lambda r: 40e-9 * np.sin(2 * np.pi * 7.3 * r.time + len(r.name)))
+    score = scored(made, "periodic_disturbance")
+    assert score.explained == pytest.approx(1, abs=0.05)
+    assert score.guess["periodic_disturbance.frequency"] == pytest.approx(7.3, rel=0.01)
+
+
+def test_applicable_is_what_the_model_can_take_and_has_not():
+    plain = applicable(stage.case(), ())
+    assert "creep" in plain and "asymmetry" in plain
+    assert not {"load_mass", "viscous_damping", "cross_coupling", "kinematic_coupling"} & set(plain)
+    assert {"load_mass", "viscous_damping"} <= set(applicable(stage.case(model=("bouc_wen", "lumped")), ()))
+    assert "creep" not in applicable(stage.case(), ("creep",))
+
+
+def test_the_misfit_is_never_less_than_what_could_be_told_from_the_noise():
+    made = stage.case()
+    fit = first_fit(made, 0)
+    assert misfit(made, fit) == pytest.approx((0.3 * made.floor) ** 2)
+    made = stage.case(stage.EFFECTS["quadratic_gain"])
+    fit = first_fit(made, 0)
+    assert misfit(made, fit) == pytest.approx(fit.identify**2 - made.floor**2)
+
+
+def test_power_is_what_the_strongest_plausible_effect_would_leave():
+    made = stage.case()
+    fit = first_fit(made, 0)
+    score = Scorer(made, fit).score("amplifier_lag")
+    problem = made.problem(("amplifier_lag",))
+    old = dict(zip(fit.problem.names, fit.problem.physical(fit.point)[0], strict=True))
+    off, full = problem.residuals(np.array([problem.unit_point(old | {"amplifier_lag.tau": tau}) for tau in (0, 5e-3)]))
+    left = np.linalg.norm(Scorer(made, fit).project(full - off)) / made.floor
+    assert score.power == pytest.approx(left, rel=0.1)
+
+
+def test_a_drive_that_rests_shows_no_lag():
+    still = [np.interp(np.arange(2000), [0, 900, 1000, 2000], [0, 0, level, level]) for level in (50, 80)]
+    made = stage.case(drives=still, dt=1.0)
+    assert scored(made, "amplifier_lag").power < 0.3
