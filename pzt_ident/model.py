@@ -314,9 +314,13 @@ class Plan:
             for kind in range(len(kinds)):
                 same = np.flatnonzero(which.ravel() == kind)
                 basis = self._basis(axis, theta[same[0]])
-                basis /= np.linalg.norm(basis, axis=0)
+                size = np.linalg.norm(basis, axis=0)
+                if not np.isfinite(size).all():
+                    error[same, i] = np.nan
+                    continue
+                basis /= np.where(size > 0, size, 1)
                 own = basis[settle:]
-                amounts = np.linalg.lstsq(own.T @ own, own.T @ error[same, i, settle:].T, rcond=1e-12)[0]
+                amounts = np.linalg.pinv(own.T @ own, rcond=1e-12) @ (own.T @ error[same, i, settle:].T)
                 error[same, i] -= (basis @ amounts).T
         return error
 
