@@ -104,7 +104,7 @@ def turns(reach: Reach, levels: list[float], frequency: float, dt: float) -> Arr
     speed = 2 * frequency * (reach.high - reach.low)
     corners = reach.low + (reach.high - reach.low) * np.array([0.0, *levels])
     times = np.concatenate([[0], np.cumsum(np.abs(np.diff(corners)) / speed)])
-    return np.interp(np.arange(0, times[-1], dt), times, corners)
+    return np.interp(np.arange(0, min(times[-1], reach.duration), dt), times, corners)
 
 
 def holds(reach: Reach, levels: list[float], dt: float) -> Array:
@@ -116,7 +116,7 @@ def holds(reach: Reach, levels: list[float], dt: float) -> Array:
         corner = reach.low + span * level
         times += [times[-1] + max(abs(corner - corners[-1]) / reach.rate, dt), times[-1] + hold]
         corners += [corner, corner]
-    return np.interp(np.arange(0, times[-1], dt), times, corners)
+    return np.interp(np.arange(0, min(times[-1], reach.duration), dt), times, corners)
 
 
 def chirp(reach: Reach, middle: float, dt: float) -> Array:
@@ -125,6 +125,6 @@ def chirp(reach: Reach, middle: float, dt: float) -> Array:
     t = np.arange(0, seconds, dt)
     growth = np.log(CHIRP[1] / CHIRP[0]) / seconds
     frequency = CHIRP[0] * np.exp(growth * t)
-    size = np.minimum(0.03 * (reach.high - reach.low), reach.rate / (2 * np.pi * frequency))
-    ramp = np.linspace(reach.low, middle, max(2, int((middle - reach.low) / reach.rate / dt) + 1))
+    size = np.minimum(0.03 * (reach.high - reach.low), 0.9 * reach.rate / (2 * np.pi * frequency))
+    ramp = np.arange(reach.low, middle, reach.rate * dt)
     return np.concatenate([ramp, middle + size * np.sin(2 * np.pi * (frequency - CHIRP[0]) / growth)])
