@@ -1,0 +1,135 @@
+"""What is said of a model: missing, a tie, adequate, unexplained, refused, and what these data cannot show."""
+
+import numpy as np
+import pytest
+
+import rig
+import stage
+from pzt_ident.diagnosis import refit
+from pzt_ident.diagnosis.refit import first_fit
+from pzt_ident.diagnosis.score import Score
+from pzt_ident.diagnosis.verdict import Candidate, diagnose, drop, earns, settle
+
+
+def judged(made):
+    return diagnose(made, first_fit(made, 0))
+
+
+def decisions(found):
+    return {item.score.effect: item.decision for item in found.candidates}
+
+
+def of(found, effect):
+    return next(item for item in found.candidates if item.score.effect == effect)
+
+
+@pytest.mark.parametrize("effect", ["creep", "quadratic_gain", "amplifier_lag"])
+def test_what_is_missing_is_named_and_its_refit_is_at_the_noise_on_records_that_it_never_saw(effect):
+    made = stage.case(stage.EFFECTS[effect])
+    found = judged(made)
+    assert found.verdict == "missing"
+    assert found.tied == [effect]
+    assert found.reason.startswith(f"Missing: {effect}. It explains ")
+    assert found.candidates[0].score.explained > 0.95
+    best = found.candidates[0]
+    assert best is found.best and best.score.effect == effect
+    assert [item for item, said in decisions(found).items() if said == "missing"] == [effect]
+    assert best.fit.identify == pytest.approx(stage.NOISE, rel=0.1)
+    assert best.fit.validate == pytest.approx(stage.NOISE, rel=0.1)
+    assert found.before.validate > 1.5 * best.fit.validate
+
+
+def test_candidates_stand_best_first_and_each_once():
+    found = judged(stage.case(stage.EFFECTS["creep"]))
+    rmse = [item.fit.identify if item.fit else np.inf for item in found.candidates]
+    assert rmse == sorted(rmse)
+    words = [item.score.effect for item in found.candidates]
+    assert len(set(words)) == len(words)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_nothing_is_missing_at_the_noise(seed):
+    found = judged(stage.case(seed=seed))
+    assert found.verdict == "adequate"
+    assert "leaves 1.0" in found.reason or "leaves 0.9" in found.reason
+    assert found.best is None
+    assert "missing" not in decisions(found).values()
+
+
+def test_coloured_noise_is_no_effect():
+    rng = np.random.default_rng(5)
+
+    def coloured(record):
+        return 0.5 * stage.NOISE * np.convolve(rng.normal(size=record.samples + 19), np.ones(20) / np.sqrt(20), "valid")
+
+    found = judged(stage.with_response(stage.case(), coloured))
+    assert found.verdict == "adequate"
+
+
+def test_what_no_effect_explains_is_given_no_name():
+    def strange(record):
+        pattern = np.sign(np.sin(0.37 * record.drive[0]) + 0.3 * np.sin(np.pi * record.time**1.5))
+        return 12 * stage.NOISE * pattern * (np.gradient(record.drive[0]) != 0)
+
+    found = judged(stage.with_response(stage.case(), strange))
+    assert found.verdict == "unexplained"
+    assert "No effect of the catalogue explains the misfit" in found.reason
+    assert found.best is None
+
+
+def test_a_fit_that_has_not_converged_is_blamed_on_no_effect(monkeypatch):
+    made = stage.case(stage.EFFECTS["creep"])
+    monkeypatch.setattr(refit, "descend", lambda problem, point: point)
+    found = judged(made)
+    assert found.verdict == "refused"
+    assert "do not agree" in found.reason and "bounds" in found.reason
+    assert found.candidates == []
+
+
+LINEAR = {"bouc_wen.alpha": 0.0, "bouc_wen.beta": 0.01, "bouc_wen.gamma": 0.0}
+
+
+def test_lags_before_and_behind_a_linear_stage_are_the_same_to_these_data():
+    found = judged(stage.case(stage.EFFECTS["sensor_lag"] | LINEAR, LINEAR))
+    assert found.verdict == "inconclusive"
+    assert {"amplifier_lag", "sensor_lag"} <= set(found.tied)
+    assert "these data cannot tell them apart" in found.reason
+    assert all(word in found.reason for word in found.tied)
+    assert "cannot be seen" not in [of(found, word).decision for word in found.tied]
+
+
+def test_what_leaves_less_than_the_noise_at_its_strongest_cannot_be_seen():
+    unseen, none, small = (
+        Score("delay", 0.5, power=0.1),
+        Score("creep", 0.001, power=3.0),
+        Score("drift", 0.1, power=3.0),
+    )
+    items = [Candidate(score) for score in (unseen, none, small)]
+    settle(stage.case(), items)
+    assert [item.decision for item in items] == ["cannot be seen", "not missing", "too small"]
+
+
+def test_an_effect_that_helps_only_the_records_that_were_fitted_earns_nothing():
+    made = stage.case(stage.EFFECTS["creep"])
+    before = first_fit(made, 0)
+    after = judged(made).best.fit
+    assert earns(made, before, after)
+    assert not earns(made, after, before)
+    worse = refit.Fit(after.effects, after.problem, after.point, after.identify, 1.01 * before.validate)
+    assert not earns(made, before, worse)
+    alone = refit.Fit(after.effects, after.problem, after.point, after.identify, None)
+    assert earns(made, before, alone)
+
+
+def test_a_drop_is_root_mean_square_and_has_a_sign():
+    assert drop(5.0, 4.0) == pytest.approx(3)
+    assert drop(4.0, 5.0) == pytest.approx(-3)
+    assert drop(None, 4.0) == drop(4.0, None) == np.inf
+    assert drop(4.0, np.inf) == -np.inf
+
+
+def test_drives_of_one_level_only_leave_a_gain_that_grows_unseen():
+    one = [np.tile(rig.triangle(100, 2, 60), 4), np.tile(rig.triangle(100, 2, 60), 3)]
+    found = judged(stage.case(drives=one))
+    assert of(found, "amplitude_gain").score.visibility < 0.05
+    assert decisions(found)["amplitude_gain"] != "missing"
