@@ -10,8 +10,9 @@ from pzt_ident.diagnosis.score import applicable, misfit
 from pzt_ident.diagnosis.verdict import TIED, Candidate, Diagnosis, diagnose, drop, earns, pair
 from pzt_ident.registry import blocks
 
-MOST = 6  # steps
+MOST = 5  # steps
 BEAM = 2  # first picks that are followed
+HOPELESS = 4.0  # noise floors: where the first way leaves more, another order of the same effects does not help
 
 
 @dataclass
@@ -39,7 +40,8 @@ def improve(case: Case, first: Fit, tell: Tell = lambda step: None) -> tuple[lis
     ways: list[tuple[list[Step], Diagnosis]] = []
     for pick in picks:
         ways.append(climb(case, first, found, pick, tell))
-        if ways[-1][1].verdict in ("adequate", "refused"):
+        left = ways[-1][0][-1].fit.identify / case.floor
+        if ways[-1][1].verdict in ("adequate", "refused") or left > HOPELESS:
             break
     return min(ways, key=lambda way: (way[1].verdict != "adequate", way[0][-1].fit.identify))
 

@@ -89,7 +89,7 @@ def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, fl
     return made(effects, problem, descend(problem, problem.unit_point(start)))
 
 
-def descend(problem: Problem, point: Array, most: int = 60) -> Array:
+def descend(problem: Problem, point: Array, most: int = 30) -> Array:
     """Levenberg-Marquardt in the cube on normal equations, all dampings tried in one batch; the point reached."""
     point = np.clip(point, 0, 1)
     loss, slow = problem.loss(point)[0], 0
@@ -102,9 +102,9 @@ def descend(problem: Problem, point: Array, most: int = 60) -> Array:
         best = int(np.argmin(losses))
         if not losses[best] < loss:
             break
-        slow = slow + 1 if losses[best] > (1 - 1e-5) * loss else 0
+        slow = slow + 1 if losses[best] > (1 - 1e-4) * loss else 0
         point, loss = tries[best], losses[best]
-        if slow == 4:
+        if slow == 3:
             break
     return point
 

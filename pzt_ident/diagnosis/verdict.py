@@ -12,7 +12,7 @@ import numpy as np
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.score import Score, Scorer, applicable, misfit
 
-SHORT = 6  # effects that are refitted
+SHORT = 5  # effects that are refitted
 LEAST = 0.02  # of the misfit: what scores less is not refitted
 CLEAR = 0.4  # noise floors: an effect removes at least this much, root mean square
 SHARE = 0.15  # and at least this much of the misfit
@@ -134,7 +134,7 @@ def sentence(case: Case, before: Fit, best: Candidate, words: list[str]) -> str:
 
 def pair(case: Case, before: Fit, candidates: list[Candidate]) -> Fit | None:
     """Two effects that hide each other: of the pairs of the short list the one whose refit is best, if it earns."""
-    words = [item for item in candidates if item.score.explained > LEAST][:4]
+    words = [item for item in candidates if item.score.explained > LEAST][:3]
     tries = [
         refit(case, before, (*before.effects, a.score.effect, b.score.effect), a.score.guess | b.score.guess)
         for a, b in combinations(words, 2)
