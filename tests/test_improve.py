@@ -1,0 +1,204 @@
+"""diagnose and improve from the command line: what they write, say and refuse."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import stage
+from pzt_ident.cli import main
+from pzt_ident.job import load_job
+
+LINEAR = {"bouc_wen.alpha": 0.0, "bouc_wen.beta": 0.01, "bouc_wen.gamma": 0.0}
+KNOWN = "parameters: {" + ", ".join(f"{name}: {{value: {value}}}" for name, value in LINEAR.items()) + "}\n"
+CANDIDATE = {"effect", "class", "explained", "expected", "visibility", "rmse", "decision"}
+DECISIONS = {"missing", "not missing", "cannot be seen", "too small"}
+
+
+def call(*arguments):
+    return CliRunner().invoke(main, list(map(str, arguments)))
+
+
+def read(path):
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module")
+def lagging(tmp_path_factory):
+    """A job whose records cannot tell a lag ahead of the stage from one behind it."""
+    made = stage.case(stage.EFFECTS["sensor_lag"] | LINEAR)
+    return stage.write(tmp_path_factory.mktemp("lagging"), made.records, stage.JOB + KNOWN)
+
+
+@pytest.fixture(scope="module")
+def bent(tmp_path_factory):
+    made = stage.case(stage.EFFECTS["quadratic_gain"])
+    return stage.write(tmp_path_factory.mktemp("bent"), made.records)
+
+
+@pytest.fixture(scope="module")
+def improved(bent, tmp_path_factory):
+    out = tmp_path_factory.mktemp("out") / "results" / "one"
+    answer = call("improve", bent, "--out", out)
+    assert answer.exit_code == 0, answer.output
+    return answer, out
+
+
+@pytest.fixture(scope="module")
+def diagnosed(lagging, tmp_path_factory):
+    out = tmp_path_factory.mktemp("out") / "tie"
+    answer = call("diagnose", lagging, "--out", out)
+    assert answer.exit_code == 0, answer.output
+    return answer, out
+
+
+class TestDiagnose:
+    def test_the_file_has_what_was_agreed(self, diagnosed):
+        found = read(diagnosed[1] / "diagnosis.json")
+        assert {"verdict", "reason", "unit", "noise_floor", "rmse", "candidates", "next_experiment"} <= set(found)
+        assert found["unit"] == "um"
+        assert found["noise_floor"] == {"x": pytest.approx(0.005, rel=0.1)}
+        assert set(found["rmse"]) == {"identify", "validate"}
+        for item in found["candidates"]:
+            assert set(item) >= CANDIDATE
+            assert item["decision"] in DECISIONS
+            assert item["effect"] in item["class"]
+            assert item["rmse"] is None or set(item["rmse"]) == {"identify", "validate"}
+            assert all(isinstance(value, float) for value in item["expected"].values())
+
+    def test_a_tie_is_a_class_and_is_said(self, diagnosed):
+        found = read(diagnosed[1] / "diagnosis.json")
+        assert found["verdict"] == "inconclusive"
+        best = found["candidates"][0]
+        assert best["decision"] == "missing"
+        assert {"amplifier_lag", "sensor_lag"} <= set(best["class"])
+        assert {item["effect"] for item in found["candidates"] if set(item["class"]) == set(best["class"])} == set(
+            best["class"]
+        )
+        assert "cannot tell them apart" in diagnosed[0].stdout
+
+    def test_the_drive_to_run_next_stays_within_the_limits(self, diagnosed):
+        answer, out = diagnosed
+        proposal = read(out / "diagnosis.json")["next_experiment"]
+        assert set(proposal) == {"splits", "file", "why"}
+        assert {"amplifier_lag", "sensor_lag"} <= set(proposal["splits"])
+        assert f"run {out / proposal['file']}" in answer.stdout
+        path = out / proposal["file"]
+        assert path.read_text(encoding="utf-8").splitlines()[0] == "time [s],u_x [V]"
+        time, drive = np.loadtxt(path, delimiter=",", skiprows=1).T
+        assert time[0] == 0 and time[-1] <= 30
+        assert np.allclose(np.diff(time), time[1], rtol=1e-4)
+        assert drive.min() >= 0 and drive.max() <= 120
+        assert np.abs(np.diff(drive)).max() / time[1] <= 300 * 1.001
+
+    def test_says_what_to_do_on_the_rig(self, diagnosed):
+        assert "on the rig: " in diagnosed[0].stdout
+        assert f"diagnosis: {diagnosed[1] / 'diagnosis.json'}" in diagnosed[0].stdout
+
+    def test_the_folder_holds_the_job_and_where_it_ran(self, diagnosed, lagging):
+        assert load_job(diagnosed[1] / "job.yaml").model == load_job(lagging).model
+        assert read(diagnosed[1] / "environment.json")["job_name"] == "small"
+
+    def test_json_is_all_there_is(self, bent, tmp_path):
+        answer = call("diagnose", bent, "--out", tmp_path / "out", "--json")
+        assert answer.stderr == ""
+        found = json.loads(answer.stdout)
+        assert found == {"folder": str(tmp_path / "out"), "diagnosis": read(tmp_path / "out" / "diagnosis.json")}
+        assert found["diagnosis"]["verdict"] == "missing"
+        assert found["diagnosis"]["next_experiment"] is None
+        assert found["diagnosis"]["candidates"][0]["expected"] == {
+            "quadratic_gain.curvature": pytest.approx(3e-4, rel=0.1)
+        }
+
+
+class TestImprove:
+    def test_the_file_has_what_was_agreed(self, improved):
+        found = read(improved[1] / "improvement.json")
+        assert {"steps", "verdict", "effects", "noise_floor", "unit"} <= set(found)
+        assert (found["verdict"], found["effects"], found["unit"]) == ("adequate", ["quadratic_gain"], "um")
+        for step in found["steps"]:
+            assert {"added", "removed", "class", "rmse", "explained"} <= set(step)
+            assert set(step["rmse"]) == {"identify", "validate"}
+        assert [step["added"] for step in found["steps"]] == [None, "quadratic_gain"]
+        assert found["steps"][0]["class"] == [] and found["steps"][0]["removed"] is None
+        floor = found["noise_floor"]["x"]
+        assert found["steps"][0]["rmse"]["validate"] > 3 * floor
+        assert found["steps"][1]["rmse"]["validate"] == pytest.approx(floor, rel=0.1)
+
+    def test_the_diagnosis_is_of_the_last_model(self, improved):
+        found = read(improved[1] / "diagnosis.json")
+        last = read(improved[1] / "improvement.json")["steps"][-1]
+        assert found["verdict"] == "adequate"
+        assert found["rmse"] == last["rmse"]
+        assert "quadratic_gain" not in [item["effect"] for item in found["candidates"]]
+
+    def test_the_improved_job_checks(self, improved):
+        path = improved[1] / "improved.yaml"
+        assert load_job(path).effects == ("quadratic_gain",)
+        text = path.read_text(encoding="utf-8")
+        assert text.startswith("# nested loops\nname: small\n")
+        assert "effects: [quadratic_gain] # none yet" in text
+        answer = call("check", path)
+        assert answer.exit_code == 0, answer.output
+        assert "quadratic_gain.curvature" in answer.stdout
+
+    def test_the_terminal_shows_the_staircase(self, improved):
+        answer, out = improved
+        assert "+ quadratic_gain: RMSE 0.00" in answer.stderr
+        lines = answer.stdout.splitlines()
+        assert any(line.startswith("as given") for line in lines)
+        assert any(line.startswith("+ quadratic_gain") and "100 %" in line for line in lines)
+        assert "adequate: " in answer.stdout
+        assert f"improved job: {out / 'improved.yaml'}" in answer.stdout
+
+    def test_the_page_shows_it_too(self, improved):
+        page = (improved[1] / "report.html").read_text(encoding="utf-8")
+        assert "+ quadratic_gain" in page and "as given" in page
+        assert "<svg" in page
+        assert "http-equiv" not in page and "<script src" not in page
+        drawn = {path.name for path in (improved[1] / "figures").iterdir()}
+        assert drawn == {f"staircase-{width}.{form}" for width in (88, 180) for form in ("pdf", "svg")}
+
+    def test_quiet_says_nothing_and_the_folder_has_a_name(self, bent, tmp_path, monkeypatch):
+        monkeypatch.chdir(tmp_path)
+        answer = call("improve", bent, "--quiet")
+        assert (answer.exit_code, answer.output) == (0, "")
+        (folder,) = Path("results/small").iterdir()
+        assert load_job(folder / "improved.yaml").effects == ("quadratic_gain",)
+        assert call("check", folder / "improved.yaml").exit_code == 0
+
+
+@pytest.mark.parametrize("command", ["diagnose", "improve"])
+class TestRefusals:
+    def test_a_folder_with_something_in_it(self, command, bent, tmp_path):
+        (tmp_path / "mine.txt").write_text("mine")
+        answer = call(command, bent, "--out", tmp_path)
+        assert answer.exit_code == 2
+        assert f"{tmp_path}: this folder is not empty" in answer.stderr
+        assert answer.stdout == ""
+        assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+
+    def test_no_job(self, command, tmp_path):
+        answer = call(command, tmp_path / "job.yaml", "--out", tmp_path / "out")
+        assert answer.exit_code == 2
+        assert "no such file" in answer.stderr
+        assert not list(tmp_path.iterdir())
+
+    def test_a_wrong_job(self, command, tmp_path):
+        path = tmp_path / "job.yaml"
+        path.write_text(stage.JOB.replace("effects: []", "effects: [crep]"), encoding="utf-8")
+        answer = call(command, path, "--out", tmp_path / "out")
+        assert answer.exit_code == 2
+        assert "unknown effect 'crep'\n  did you mean 'creep'" in answer.stderr
+        assert list(tmp_path.iterdir()) == [path]
+
+    def test_missing_data(self, command, tmp_path):
+        path = tmp_path / "job.yaml"
+        path.write_text(stage.JOB, encoding="utf-8")
+        answer = call(command, path, "--out", tmp_path / "out", "--json")
+        assert answer.exit_code == 2
+        assert "identify.csv" in answer.stderr and "Traceback" not in answer.output
+        assert answer.stdout == ""
+        assert list(tmp_path.iterdir()) == [path]
