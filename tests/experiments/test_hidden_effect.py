@@ -249,3 +249,19 @@ def test_as_many_pairs_as_there_can_be():
     found = score.Answer(("a", "b"), classes, "adequate")
     assert set(score.match(("c", "d"), found)) == {("c", "a"), ("d", "b")}
     assert set(score.match(("d", "c"), found)) == {("c", "a"), ("d", "b")}
+
+
+def test_one_case_from_the_draw_to_the_score(tmp_path):
+    def call(*line):
+        return CliRunner().invoke(main, list(map(str, line)), catch_exceptions=False)
+
+    call("draw", "--seed", 11, "--kind", "short", "--effect", "quadratic_gain", "--out", tmp_path)
+    assert call("solve", tmp_path, "--workers", 1).output == ""
+    found = json.loads(call("score", tmp_path).output)
+    assert found["failed"] == []
+    (row,) = found["kinds"]
+    assert [row[key] for key in ("kind", "cases", "exact", "adequate")] == ["short", 1, 1, 1]
+    assert row["validate_median"] < 1.5
+    steps = json.loads((tmp_path / "solved/short-11/improve/improvement.json").read_text(encoding="utf-8"))["steps"]
+    assert [step["added"] for step in steps] == [None, "quadratic_gain"]
+    assert steps[0]["rmse"]["validate"] > 5 * steps[1]["rmse"]["validate"]
