@@ -1,5 +1,5 @@
-"""Markdown tables out of the result.json of finished runs; `python -m experiments.NAME.table FOLDER` prints those of
-the jobs in FOLDER, one folder each."""
+"""Markdown tables out of the result.json or improvement.json of finished jobs; `python -m experiments.NAME.table
+FOLDER` prints those of the jobs in FOLDER, one folder each."""
 
 from __future__ import annotations
 
@@ -23,9 +23,13 @@ NAMES = {
 
 
 def command(text: Callable[[Mapping[str, Result]], str]) -> None:
-    if len(sys.argv) != 2 or not (found := sorted(Path(sys.argv[1]).glob("*/result.json"))):
+    if len(sys.argv) != 2 or not (found := finished(Path(sys.argv[1]))):
         sys.exit("give the folder in which each finished job has a folder")
     print(text({path.parent.name: json.loads(path.read_text(encoding="utf-8")) for path in found}))
+
+
+def finished(folder: Path) -> list[Path]:
+    return sorted(path for kind in ("result", "improvement") for path in folder.glob(f"*/{kind}.json"))
 
 
 def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
@@ -86,3 +90,18 @@ def records(result: Result) -> str:
         for axis, rmse in record["rmse"].items()
     ]
     return table(["record", "axis", f"RMSE [{unit}]", f"noise floor [{unit}]"], rows)
+
+
+def staircase(improvement: Result) -> str:
+    """One row a step of `improve`, its verdict below."""
+    unit, floor = improvement["unit"], max(improvement["noise_floor"].values())
+    header = ["step", f"identify [{unit}]", f"validate [{unit}]", "in noise floors", "these data cannot tell it from"]
+    rows = []
+    for step in improvement["steps"]:
+        sign, word = ("+", step["added"]) if step["added"] else ("−", step["removed"])
+        errors = step["rmse"]
+        alike = ", ".join(rival for rival in step["class"] if rival != word)
+        cells = [number(errors["identify"]), number(errors["validate"]), number(errors["identify"] / floor, 3)]
+        rows.append([f"{sign} {word}" if word else "as given", *cells, alike])
+    said = f"Noise floor {number(floor, 3)} {unit}. Verdict: {improvement['verdict']}. {improvement['reason']}"
+    return f"{table(header, rows)}\n\n{said}"

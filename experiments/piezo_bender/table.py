@@ -1,11 +1,11 @@
-"""What Bouc-Wen reaches on the bender, and what its ring-down says."""
+"""What Bouc-Wen reaches on the bender, what it misses, and what its ring-down says."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
 
-from experiments.tables import Result, command, league, number, parameters, records, table
+from experiments.tables import Result, command, league, number, parameters, records, staircase, table
 
 PUBLISHED = {"straight line": 1.875, "sparse regression, published equation": 0.0915}  # um, fitted where scored
 
@@ -35,6 +35,7 @@ def resonance(result: Result) -> str:
 def text(results: Mapping[str, Result]) -> str:
     loops, ring = results["bouc_wen"], results["ring_down"]
     parts = ["**Loops**", scores(loops), records(loops), league(loops), parameters(loops)]
+    parts += ["**What is missing**", staircase(results["missing"])]
     return "\n\n".join([*parts, "**Ring-down**", resonance(ring), records(ring)])
 
 
