@@ -11,7 +11,7 @@ import numpy as np
 
 from pzt_ident.amend import with_effects
 from pzt_ident.diagnosis import improve as stairs
-from pzt_ident.diagnosis.next_experiment import Proposal, Reach, propose
+from pzt_ident.diagnosis.next_experiment import LEAST, Proposal, Reach, propose
 from pzt_ident.diagnosis.noise import noise_floor
 from pzt_ident.diagnosis.refit import Case, Fit, first_fit
 from pzt_ident.diagnosis.verdict import Diagnosis
@@ -108,7 +108,6 @@ def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
     values = problem.physical(point)[0]
     units = zip(problem.names, values, problem.units, strict=True)
     return {
-        "event": "step",
         "added": step.added,
         "removed": step.removed,
         "class": list(step.tied),
@@ -174,5 +173,6 @@ def written(case: Case, proposal: Proposal, folder: Path) -> dict[str, Any]:
     text = "\n".join([header, *(",".join(f"{value:.9g}" for value in row) for row in rows)]) + "\n"
     path = folder / "next_experiment.csv"
     write_text(path, text)
-    said = f"{proposal.name}: {proposal.why}; sets them {proposal.apart:.1f} noise floors apart"
+    apart = f"them {proposal.apart:.1f} noise floors" if proposal.apart > LEAST else "some of them"
+    said = f"{proposal.name}: {proposal.why}; sets {apart} apart"
     return {"splits": list(proposal.splits), "file": path.name, "why": said}

@@ -55,6 +55,8 @@ def _advise(found: Facts, folder: Path) -> None:
     if found["next_experiment"]:
         proposal = found["next_experiment"]
         click.echo(f"to tell {' from '.join(proposal['splits'])}, run {folder / proposal['file']} ({proposal['why']})")
+    elif best and found["verdict"] == "inconclusive":
+        click.echo(f"no drive within the limits tells them apart. On the rig: {best['separate_by']}")
 
 
 def show_improvement(found: Facts, folder: Path) -> None:

@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 
 CHIRP = (20.0, 2000.0)  # Hz
 HOLD = 20.0  # s
+LEAST, AMPLE = 0.3, 3.0  # noise floors between two rivals: less does not tell them apart, more is no better
 
 
 @dataclass(frozen=True)
@@ -42,15 +43,20 @@ class Proposal:
 
 
 def propose(case: Case, rivals: dict[str, Fit], reach: Reach) -> Proposal | None:
-    """Simulate all rivals on each protocol; the one that sets the closest two of them apart the most."""
+    """Simulate all rivals on each protocol; the one that tells the most of them apart, the closest two by the most.
+
+    None where no protocol within reach tells any two of them apart.
+    """
     best: Proposal | None = None
+    most = (0.0, 0.0)
     axes = len(case.records[0].axes)
     axis = case.records[0].measured[0]
     for name, why, dt, drive in protocols(reach, axes, axis):
         responses = [respond(case, fit, dt, drive) for fit in rivals.values()]
-        apart = min(float(np.sqrt(np.mean((one - two) ** 2))) / case.floor for one, two in combinations(responses, 2))
-        if np.isfinite(apart) and (best is None or apart > best.apart):
-            best = Proposal(name, why, tuple(rivals), dt, drive, apart)
+        pairs = [float(np.sqrt(np.mean((a - b) ** 2))) / case.floor for a, b in combinations(responses, 2)]
+        told = (sum(min(apart, AMPLE) for apart in pairs if apart > LEAST), min(pairs))
+        if np.isfinite(pairs).all() and told[0] > 0 and told > most:
+            best, most = Proposal(name, why, tuple(rivals), dt, drive, min(pairs)), told
     return best
 
 
@@ -114,7 +120,8 @@ def holds(reach: Reach, levels: list[float], dt: float) -> Array:
     hold = min(HOLD, reach.duration / (len(levels) + 1))
     for level in levels:
         corner = reach.low + span * level
-        times += [times[-1] + max(abs(corner - corners[-1]) / reach.rate, dt), times[-1] + hold]
+        there = times[-1] + max(abs(corner - corners[-1]) / reach.rate, dt)
+        times += [there, there + hold]
         corners += [corner, corner]
     return np.interp(np.arange(0, min(times[-1], reach.duration), dt), times, corners)
 

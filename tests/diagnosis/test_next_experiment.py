@@ -62,6 +62,15 @@ def test_a_rig_that_may_do_much_is_offered_every_protocol():
     assert {"steps and holds", "small chirp", "the other axis alone"} <= set(names)
 
 
+def test_holds_last_as_long_whatever_the_ramps_take():
+    for rate in (1e5, 5.0):
+        drive, dt = next(
+            (drive[0], dt) for name, _, dt, drive in protocols(Reach(0.0, 100.0, rate, 200.0), 1, 0) if "holds" in name
+        )
+        level = np.isclose(drive, 60)
+        assert level.sum() * dt == pytest.approx(20, abs=0.1)
+
+
 def test_the_other_axis_moves_alone():
     other = [drive for name, _, _, drive in protocols(REACH, 2, 0) if "other axis" in name]
     assert all(np.ptp(drive[0]) == 0 < np.ptp(drive[1]) for drive in other)
@@ -76,9 +85,16 @@ def test_the_proposal_sets_the_rivals_furthest_apart(made, rivals):
         assert np.sqrt(np.mean((one - two) ** 2)) / made.floor <= found.apart * (1 + 1e-9)
 
 
-def test_what_is_apart_is_the_closest_pair(made, rivals):
-    same = rivals | {"again": rivals["delay"]}
-    assert propose(made, same, REACH).apart == pytest.approx(0, abs=1e-9)
+def test_where_two_stay_alike_the_others_are_told_apart(made, rivals):
+    found, same = propose(made, rivals, REACH), propose(made, rivals | {"again": rivals["delay"]}, REACH)
+    assert same.apart == pytest.approx(0, abs=1e-9)
+    one, two = (respond(made, fit, same.dt, same.drive) for fit in rivals.values())
+    assert np.sqrt(np.mean((one - two) ** 2)) > 3 * made.floor
+    assert found.apart > 3
+
+
+def test_what_no_drive_tells_apart_is_asked_of_none(made, rivals):
+    assert propose(made, {"delay": rivals["delay"], "again": rivals["delay"]}, REACH) is None
 
 
 def test_a_rig_that_may_do_nothing_is_asked_nothing(made, rivals):
