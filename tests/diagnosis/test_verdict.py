@@ -1,5 +1,7 @@
 """What is said of a model: missing, a tie, adequate, unexplained, refused, and what these data cannot show."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -15,6 +17,12 @@ def judged(made):
     return diagnose(made, first_fit(made, 0))
 
 
+@cache
+def missing(effect):
+    made = stage.case(stage.EFFECTS[effect])
+    return made, judged(made)
+
+
 def decisions(found):
     return {item.score.effect: item.decision for item in found.candidates}
 
@@ -25,8 +33,7 @@ def of(found, effect):
 
 @pytest.mark.parametrize("effect", ["creep", "quadratic_gain", "amplifier_lag"])
 def test_what_is_missing_is_named_and_its_refit_is_at_the_noise_on_records_that_it_never_saw(effect):
-    made = stage.case(stage.EFFECTS[effect])
-    found = judged(made)
+    _, found = missing(effect)
     assert found.verdict == "missing"
     assert found.tied == [effect]
     assert found.reason.startswith(f"Missing: {effect}. It explains ")
@@ -40,7 +47,7 @@ def test_what_is_missing_is_named_and_its_refit_is_at_the_noise_on_records_that_
 
 
 def test_candidates_stand_best_first_and_each_once():
-    found = judged(stage.case(stage.EFFECTS["creep"]))
+    _, found = missing("creep")
     rmse = [item.fit.identify if item.fit else np.inf for item in found.candidates]
     assert rmse == sorted(rmse)
     words = [item.score.effect for item in found.candidates]
@@ -110,9 +117,8 @@ def test_what_leaves_less_than_the_noise_at_its_strongest_cannot_be_seen():
 
 
 def test_an_effect_that_helps_only_the_records_that_were_fitted_earns_nothing():
-    made = stage.case(stage.EFFECTS["creep"])
-    before = first_fit(made, 0)
-    after = judged(made).best.fit
+    made, found = missing("creep")
+    before, after = found.before, found.best.fit
     assert earns(made, before, after)
     assert not earns(made, after, before)
     worse = refit.Fit(after.effects, after.problem, after.point, after.identify, 1.01 * before.validate)
