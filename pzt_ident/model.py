@@ -320,8 +320,9 @@ class Plan:
                     continue
                 basis /= np.where(size > 0, size, 1)
                 own = basis[settle:]
-                amounts = np.linalg.pinv(own.T @ own, rcond=1e-12) @ (own.T @ error[same, i, settle:].T)
-                error[same, i] -= (basis @ amounts).T
+                solve = np.linalg.pinv(own.T @ own, rcond=1e-12)
+                for _ in range(2):  # the second time takes back the rounding of the first
+                    error[same, i] -= (basis @ (solve @ (own.T @ error[same, i, settle:].T))).T
         return error
 
     def _basis(self, axis: int, theta: Array) -> Array:
