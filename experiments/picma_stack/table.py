@@ -1,10 +1,10 @@
-"""What Bouc-Wen and what eight plays reach on the stack."""
+"""What Bouc-Wen and what eight plays reach on the stack, and what is missing in Bouc-Wen."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from experiments.tables import Result, command, league, parameters, records
+from experiments.tables import Result, command, league, parameters, records, staircase
 
 
 def text(results: Mapping[str, Result]) -> str:
@@ -12,6 +12,8 @@ def text(results: Mapping[str, Result]) -> str:
     for job, model in (("bouc_wen", "Bouc-Wen"), ("plays", "eight plays")):
         result = results[job]
         parts += [f"**{model}**", records(result), league(result), parameters(result)]
+    for job, start in (("missing", "as identified above"), ("one_sample_late", "the sensor one sample late")):
+        parts += [f"**What is missing, {start}**", staircase(results[job])]
     return "\n\n".join(parts)
 
 
