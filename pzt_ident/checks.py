@@ -85,14 +85,14 @@ def _model(document: Document, words: tuple[str, ...], earlier: Earlier) -> None
     if not words:
         document.fault(("model",), "the model has no block", "list at least one, see `pzt-ident list blocks`")
     folders: dict[str, str] = {}
-    operators = [word for word in blocks.words() if blocks.folder(word) != "effects"]
+    operators = [word for word in blocks.words() if word not in blocks.effects()]
     for i, word in enumerate(words):
         at: Loc = ("model", i)
         if word not in blocks:
             document.fault(at, f"unknown block {word!r}", nearest(word, operators))
             continue
         folder = blocks.folder(word)
-        if folder == "effects":
+        if word in blocks.effects():
             document.fault(at, f"{word!r} is an effect", f"move it to `effects: [{word}]`")
         elif folder in folders:
             message = f"{word!r} beside {folders[folder]!r}: two blocks of {folder}"
@@ -103,7 +103,7 @@ def _model(document: Document, words: tuple[str, ...], earlier: Earlier) -> None
 def _effects(document: Document, words: tuple[str, ...], earlier: Earlier) -> None:
     chosen = [blocks[word] for word in earlier.get("model", ()) if word in blocks]
     terms = {declared.effect for block in chosen for declared in block.parameters().values() if declared.effect}
-    known = terms | {word for word in blocks.words() if blocks.folder(word) == "effects"}
+    known = terms | set(blocks.effects())
     for i, word in enumerate(words):
         at: Loc = ("effects", i)
         if word in words[:i]:

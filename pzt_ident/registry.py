@@ -73,7 +73,7 @@ class Registry(Generic[T]):
 
 class Blocks(Registry[Any]):
     def effects(self) -> list[str]:
-        """The words of what may be missing from a model: each says how to tell it from what it looks like."""
+        """The words of what may be missing from a model: each says what to do about it on the rig."""
         return [word for word in self.words() if self[word].remedy]
 
 

@@ -122,7 +122,7 @@ def words(kind: str) -> dict[str, str]:
     if kind == "optimizers":
         return {item.name: _headline(item) for item in optimizers}
     own = {
-        item.name: _headline(item) for item in blocks if (blocks.folder(item.name) == "effects") == (kind == "effects")
+        item.name: _headline(item) for item in blocks if bool(item.remedy) == (kind == "effects")
     }
     return (_terms() if kind == "effects" else {}) | own
 
