@@ -59,6 +59,22 @@ def with_response(made, change):
     return Case(made.words, made.effects, changed, made.wishes)
 
 
+def beside(made, other):
+    """One stage of two axes from two stages of one."""
+    records = [
+        replace(
+            one,
+            drive=np.vstack([one.drive, two.drive]),
+            response=np.vstack([one.response, two.response]),
+            axes=("x", "y"),
+            drive_units=("V", "V"),
+            response_units=("um", "um"),
+        )
+        for one, two in zip(made.records, other.records, strict=True)
+    ]
+    return Case(made.words, made.effects, records, made.wishes)
+
+
 JOB = """\
 # nested loops
 name: small

@@ -108,8 +108,7 @@ class Scorer:
             [old.get(name, slots[i].parameter.null if i in growing else 0) for i, name in enumerate(problem.names)],
             float,
         )  # type: ignore[arg-type]
-        grids = [spread(problem, i, blocks[effect].trials) for i in shapes]
-        for values in product(*grids):
+        for values in spread(problem, shapes, blocks[effect].trials):
             for size in blocks[effect].sizes:
                 start = base.copy()
                 start[shapes] = values
@@ -137,14 +136,17 @@ class Scorer:
         shapes = [i for i, name in enumerate(problem.names) if name not in self.fit.problem.names]
         old = dict(zip(self.fit.problem.names, self.fit.problem.physical(self.fit.point)[0], strict=True))
         guess = getattr(block, "guess", None)
+        trials: Iterator[tuple[float, ...]] = spread(problem, shapes, block.trials)
         plans = self.fit.problem.plans["identify"]
         if guess:
-            parts = np.split(self.raw, np.cumsum([plan.scored * len(plan.model.measured) for plan in plans])[:-1])
+            measured = problem.model.measured
+            parts = np.split(self.raw, np.cumsum([plan.scored * len(measured) for plan in plans])[:-1])
             times = [plan.record.time[plan.record.settle :] for plan in plans]
-            grids = [guess(times, parts, problem.lower[shapes[0]], problem.upper[shapes[0]])]
-        else:
-            grids = [spread(problem, i, block.trials) for i in shapes]
-        for values in product(*grids):
+            own = [measured.index(problem.model.slots[problem.free[i]].axis) for i in shapes]
+            lines = [[part.reshape(len(measured), -1)[axis] for part in parts] for axis in own]
+            bounds = [(problem.lower[i], problem.upper[i]) for i in shapes]
+            trials = product(*(guess(times, line, *bound) for line, bound in zip(lines, bounds, strict=True)))
+        for values in trials:
             start = np.array([old.get(name, 0.0) for name in problem.names])
             start[shapes] = values
             left = self.project(self._residuals(problem, start[None])[0])
@@ -161,9 +163,11 @@ def misfit(case: Case, fit: Fit) -> float:
     return max(fit.identify**2 - case.floor**2, (0.3 * case.floor) ** 2)
 
 
-def spread(problem: Problem, i: int, count: int) -> Array:
-    """Values over the range of a parameter, in the user's units."""
-    shares = (np.arange(count) + 0.5) / count
-    point = np.full((count, problem.dimensions), 0.5)
-    point[:, i] = shares
-    return problem.physical(point)[:, i]
+def spread(problem: Problem, columns: list[int], count: int) -> Iterator[tuple[float, ...]]:
+    """Values of parameters over their ranges, in the user's units; on each axis the same share of them."""
+    kinds = [problem.model.slots[problem.free[i]].parameter for i in columns]
+    own = list(dict.fromkeys(kinds))
+    for shares in product((np.arange(count) + 0.5) / count, repeat=len(own)):
+        point = np.full(problem.dimensions, 0.5)
+        point[columns] = [shares[own.index(kind)] for kind in kinds]
+        yield tuple(problem.physical(point)[0][columns])

@@ -116,3 +116,17 @@ def test_a_drive_that_rests_shows_no_lag():
     still = [np.interp(np.arange(2000), [0, 900, 1000, 2000], [0, 0, level, level]) for level in (50, 80)]
     made = stage.case(drives=still, dt=1.0)
     assert scored(made, "amplifier_lag").power < 0.3
+
+
+def test_every_axis_has_its_own_amounts_and_its_own_line():
+    def hummed(frequency):
+        return stage.with_response(stage.case(), lambda r: 30e-9 * np.sin(2 * np.pi * frequency * r.time))
+
+    made = stage.beside(hummed(7.3), hummed(21.0))
+    score = scored(made, "periodic_disturbance")
+    assert score.explained == pytest.approx(1, abs=0.05)
+    assert list(score.guess.values()) == pytest.approx([7.3, 21.0], rel=0.01)
+    made = stage.beside(stage.case(stage.EFFECTS["creep"]), stage.case(stage.EFFECTS["creep"]))
+    scorer = Scorer(made, first_fit(made, 0))
+    assert scorer.score("creep").explained > 0.9
+    assert len(list(scorer._trials("creep", made.problem(("creep",))))) <= 36
