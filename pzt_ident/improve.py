@@ -74,6 +74,7 @@ def improve(job: Job, out: Path | None = None, tell: Tell = lambda event: None) 
         "reason": last.reason,
         "effects": [word for word in effects if word not in job.effects],
         "noise_floor": floors(case),
+        "floor": case.floor / size_of(case),
         "unit": unit_of(list(case.records)),
         "next_experiment": diagnosis["next_experiment"],
     }

@@ -61,7 +61,7 @@ def _advise(found: Facts, folder: Path) -> None:
 
 def show_improvement(found: Facts, folder: Path) -> None:
     """The staircase, the verdict, and where the improved job is."""
-    unit, floor = found["unit"], max(found["noise_floor"].values())
+    unit, floor = found["unit"], found["floor"]
     rows = [
         (
             f"+ {step['added']}" if step["added"] else f"- {step['removed']}" if step["removed"] else "as given",

@@ -124,6 +124,7 @@ class TestImprove:
         assert [step["added"] for step in found["steps"]] == [None, "quadratic_gain"]
         assert found["steps"][0]["class"] == [] and found["steps"][0]["removed"] is None
         floor = found["noise_floor"]["x"]
+        assert found["floor"] == pytest.approx(floor)
         assert found["steps"][0]["rmse"]["validate"] > 3 * floor
         assert found["steps"][1]["rmse"]["validate"] == pytest.approx(floor, rel=0.1)
 

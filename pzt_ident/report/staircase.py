@@ -53,7 +53,7 @@ def write_staircase(folder: Path, improvement: Facts, diagnosis: Facts) -> Path:
 
 def draw_staircase(figure: Figure, improvement: Facts) -> None:
     """RMSE after each step on the records of both uses, and the noise floor."""
-    steps, floor, unit = improvement["steps"], max(improvement["noise_floor"].values()), improvement["unit"]
+    steps, floor, unit = improvement["steps"], improvement["floor"], improvement["unit"]
     places = range(len(steps))
     handles = [patch("noise floor", **NOISE)]
     uses = [use for use in ("identify", "validate") if steps[0]["rmse"][use] is not None]
