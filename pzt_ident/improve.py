@@ -65,13 +65,15 @@ def improve(job: Job, out: Path | None = None, tell: Tell = lambda event: None) 
     with np.errstate(all="ignore"):
         steps, last = stairs.improve(case, first_fit(case, job.seed), lambda step: tell(stair(case, step)))
         diagnosis = diagnosis_of(job, case, last, folder)
-    verdict = "unexplained" if last.verdict in ("missing", "inconclusive") else last.verdict
+    verdict, reason = last.verdict, last.reason
+    if verdict in ("missing", "inconclusive"):
+        verdict, reason = "unexplained", f"The next step was tried and taken back, or is one too many. {reason}"
     effects = list(steps[-1].fit.effects)
     content = {
         "name": job.name,
         "steps": [stair(case, step) for step in steps],
         "verdict": verdict,
-        "reason": last.reason,
+        "reason": reason,
         "effects": [word for word in effects if word not in job.effects],
         "noise_floor": floors(case),
         "floor": case.floor / size_of(case),
