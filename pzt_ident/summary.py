@@ -121,9 +121,7 @@ def words(kind: str) -> dict[str, str]:
     """The words of a kind (`blocks`, `effects` or `optimizers`) with the first line of what they are."""
     if kind == "optimizers":
         return {item.name: _headline(item) for item in optimizers}
-    own = {
-        item.name: _headline(item) for item in blocks if bool(item.remedy) == (kind == "effects")
-    }
+    own = {item.name: _headline(item) for item in blocks if bool(item.remedy) == (kind == "effects")}
     return (_terms() if kind == "effects" else {}) | own
 
 

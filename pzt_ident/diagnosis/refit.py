@@ -76,7 +76,7 @@ def first_fit(case: Case, seed: int, known: dict[str, float] | None = None) -> F
         ends = list(pool.map(lambda i: descend(problem, starts[i]), order))
     losses = problem.loss(np.array(ends))
     best, second = np.argsort(losses)[:2]
-    agreed = bool(losses[second] <= (1 + AGREE) * losses[best] + 0.1 * case.floor)
+    agreed = bool(losses[second] <= (1 + AGREE) * losses[best] + 0.1 * case.floor) and bool(np.isfinite(losses[best]))
     return made(case.effects, problem, ends[best], agreed)
 
 

@@ -82,7 +82,8 @@ def diagnose(case: Case, before: Fit, tell: Callable[[str], None] = lambda said:
     best = min(passing, key=lambda item: item.fit.identify)  # type: ignore[union-attr]
     tied = [item for item in passing if drop(item.fit.identify, best.fit.identify) < TIED * case.floor]  # type: ignore[union-attr]
     best = min(tied, key=lambda item: (item.fit.problem.dimensions, item.fit.identify))  # type: ignore[union-attr]
-    best.decision = "missing"
+    for item in tied:
+        item.decision = "missing"
     candidates.sort(key=lambda item: (item is not best, item.fit.identify if item.fit else np.inf))
     words = [best.score.effect, *(item.score.effect for item in tied if item is not best)]
     verdict = "missing" if len(words) == 1 else "inconclusive"
