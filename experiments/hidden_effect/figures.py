@@ -66,6 +66,9 @@ def _staircase(axes: Axes, one: Score) -> None:
     axes.axhline(1, color="0.5", linewidth=1)
     axes.text(0, 1.02, "noise floor", color="0.4", fontsize=8, transform=axes.get_yaxis_transform())
     axes.set_yscale("log")
+    axes.set_ylim(0.8, 1.3 * max(max(step["identify"], step["validate"]) for step in one.steps))
+    for which in (axes.yaxis.set_major_formatter, axes.yaxis.set_minor_formatter):
+        which(lambda value, place: f"{value:g}" if f"{value:e}"[0] in "125" else "")
     axes.set_xticks(places, [_label(step) for step in one.steps], rotation=25, ha="right", fontsize=8)
     axes.set_ylabel("RMSE [noise floors]")
     axes.set_title(f"{one.kind.replace('_', ' ')}: {', '.join(one.hidden) or 'nothing hidden'}", fontsize=9)
