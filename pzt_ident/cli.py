@@ -150,15 +150,10 @@ def compare(source: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
 @output
 def diagnose(job: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
     """Say which physical effect the model of a job file JOB misses."""
-    from pzt_ident import staircase, terminal
+    from pzt_ident import staircase
     from pzt_ident.improve import diagnose
-    from pzt_ident.job import load_job
 
-    with terminal.listening(silent=as_json or quiet):
-        folder = diagnose(load_job(job), out, staircase.told(as_json or quiet))
-    found = json.loads((folder / "diagnosis.json").read_text(encoding="utf-8"))
-    say = lambda: staircase.show_diagnosis(found, folder)  # noqa: E731
-    _answer({"folder": str(folder), "diagnosis": found}, say, as_json, quiet)
+    _diagnose(diagnose, "diagnosis", staircase.show_diagnosis, job, out, as_json, quiet)
 
 
 @main.command()
@@ -181,15 +176,29 @@ def add(job: Path, effect: str, out: Path, as_json: bool, quiet: bool) -> None:
 @output
 def improve(job: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
     """Add what the model of a job file JOB misses, effect by effect, and watch the error fall."""
-    from pzt_ident import staircase, terminal
+    from pzt_ident import staircase
     from pzt_ident.improve import improve
+
+    _diagnose(improve, "improvement", staircase.show_improvement, job, out, as_json, quiet)
+
+
+def _diagnose(
+    work: Callable[..., Path],
+    name: str,
+    show: Callable[[dict[str, Any], Path], None],
+    job: Path,
+    out: Path | None,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    from pzt_ident import staircase, terminal
     from pzt_ident.job import load_job
 
-    with terminal.listening(silent=as_json or quiet):
-        folder = improve(load_job(job), out, staircase.told(as_json or quiet))
-    found = json.loads((folder / "improvement.json").read_text(encoding="utf-8"))
-    say = lambda: staircase.show_improvement(found, folder)  # noqa: E731
-    _answer({"folder": str(folder), "improvement": found}, say, as_json, quiet)
+    silent = as_json or quiet
+    with terminal.listening(silent):
+        folder = work(load_job(job), out, staircase.told(silent))
+    found = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
+    _answer({"folder": str(folder), name: found}, lambda: show(found, folder), as_json, quiet)
 
 
 @main.command()

@@ -1,6 +1,14 @@
 """Exact steps of linear elements whose input is linear between its samples (first-order hold)."""
 
-from math import cos, exp, sin, sqrt
+from math import cos, exp, expm1, sin, sqrt
+
+
+def decay(tau, dt):
+    """What a lag of the time constant `tau` keeps over a sample, and its share of the input's change."""
+    if tau == 0:
+        return 0.0, 0.0
+    lost = -expm1(-dt / tau)
+    return 1 - lost, lost * tau / dt
 
 
 def oscillator(omega, zeta, dt):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -19,35 +18,31 @@ from pzt_ident.diagnosis.verdict import diagnose as judge
 from pzt_ident.files import write_json, write_text
 from pzt_ident.job import Job
 from pzt_ident.registry import blocks
-from pzt_ident.run import environment, make_empty, problem_of, read, unit_of
+from pzt_ident.run import environment, folder_for, make_empty, problem_of, read, unit_of
 from pzt_ident.units import factor
 
 Tell = Callable[[dict[str, Any]], None]
 
 
-def case_of(job: Job) -> Case:
-    """Raises InputError where the job or its data are wrong."""
+def begun(job: Job, out: Path | None) -> tuple[Case, Path]:
+    """The case, and a folder that holds the job and what it runs on. Raises InputError where job or data are wrong."""
     records = read(job)
     problem_of(job, records)
-    return Case(job.model, job.effects, records, job.parameters)
-
-
-def folder_for(job: Job, out: Path | None) -> Path:
-    return out or Path("results") / job.name / f"{datetime.now():%Y%m%d-%H%M%S}-{job.hash}"
+    folder = folder_for(job, out)
+    make_empty(folder)
+    write_text(folder / "job.yaml", with_effects(job, job.effects, folder))
+    write_json(folder / "environment.json", environment(job, records))
+    return Case(job.model, job.effects, records, job.parameters), folder
 
 
 def diagnose(job: Job, out: Path | None = None, tell: Tell = lambda event: None) -> Path:
     """Fit the job's model, say what it misses; writes `diagnosis.json` into the folder that is returned."""
-    case = case_of(job)
-    folder = folder_for(job, out)
-    make_empty(folder)
+    case, folder = begun(job, out)
     with np.errstate(all="ignore"):
         first = first_fit(case, job.seed)
         tell(stair(case, stairs.Step(first)))
         found = judge(case, first)
         content = diagnosis_of(job, case, found, folder)
-    write_text(folder / "job.yaml", with_effects(job, job.effects, folder))
-    write_json(folder / "environment.json", environment(job, list(case.records)))
     write_json(folder / "diagnosis.json", content)
     return folder
 
@@ -59,9 +54,7 @@ def improve(job: Job, out: Path | None = None, tell: Tell = lambda event: None) 
     """
     from pzt_ident.report.staircase import write_staircase
 
-    case = case_of(job)
-    folder = folder_for(job, out)
-    make_empty(folder)
+    case, folder = begun(job, out)
     with np.errstate(all="ignore"):
         steps, last = stairs.improve(case, first_fit(case, job.seed), lambda step: tell(stair(case, step)))
         diagnosis = diagnosis_of(job, case, last, folder)
@@ -81,8 +74,6 @@ def improve(job: Job, out: Path | None = None, tell: Tell = lambda event: None) 
         "next_experiment": diagnosis["next_experiment"],
     }
     write_text(folder / "improved.yaml", with_effects(job, effects, folder))
-    write_text(folder / "job.yaml", with_effects(job, job.effects, folder))
-    write_json(folder / "environment.json", environment(job, list(case.records)))
     write_json(folder / "diagnosis.json", diagnosis)
     write_json(folder / "improvement.json", content)
     write_staircase(folder, content, diagnosis)

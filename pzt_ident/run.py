@@ -45,7 +45,7 @@ def run(
     """
     records = read(job)
     problem_of(job, records)
-    folder = out or Path("results") / job.name / f"{datetime.now():%Y%m%d-%H%M%S}-{job.hash}"
+    folder = folder_for(job, out)
     tasks = tasks_of(job, records, folder)
     make_empty(folder)
     write_text(folder / "job.yaml", job.text)
@@ -80,6 +80,11 @@ def same_as_before(job: Job, records: list[Record], before: dict[str, Any], fold
 
 def read(job: Job) -> list[Record]:
     return read_records(job.records, job.channels.axes, job.channels.time, job.folder)
+
+
+def folder_for(job: Job, out: Path | None) -> Path:
+    """Where the results of a job go."""
+    return out or Path("results") / job.name / f"{datetime.now():%Y%m%d-%H%M%S}-{job.hash}"
 
 
 def make_empty(folder: Path) -> None:

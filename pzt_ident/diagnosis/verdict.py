@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from itertools import combinations
@@ -58,7 +57,7 @@ def earns(case: Case, before: Fit, after: Fit) -> bool:
     return gone > CLEAR * case.floor and gone**2 > SHARE * misfit(case, before) and own > CLEAR / 2 * case.floor
 
 
-def diagnose(case: Case, before: Fit, tell: Callable[[str], None] = lambda said: None) -> Diagnosis:
+def diagnose(case: Case, before: Fit) -> Diagnosis:
     """Score every effect, refit the short list, judge."""
     if not before.converged:
         reason = "Two starts of the fit do not agree: what is left may be the search's fault. Narrow the bounds."
@@ -67,11 +66,9 @@ def diagnose(case: Case, before: Fit, tell: Callable[[str], None] = lambda said:
     with ThreadPoolExecutor(2) as pool:
         scores = list(pool.map(scorer.score, applicable(case, before.effects)))
     candidates = sorted((Candidate(score) for score in scores), key=lambda item: -item.score.explained)
-    tell(f"{len(candidates)} effects scored")
     if before.identify <= AT_NOISE * case.floor and not any(_worth(case, before, item) for item in candidates):
         settle(case, candidates)
-        said = f"The model is adequate: it leaves {before.identify / case.floor:.2f} noise floors."
-        return Diagnosis("adequate", said, before, candidates, [])
+        return nothing(case, before, candidates)
     shortlist = [item for item in candidates if item.score.explained > LEAST][:SHORT]
     refits(case, before, shortlist)
     candidates.sort(key=lambda item: (item.fit.identify if item.fit else np.inf, -item.score.explained))
@@ -114,11 +111,11 @@ def settle(case: Case, candidates: list[Candidate]) -> None:
 
 
 def nothing(case: Case, before: Fit, candidates: list[Candidate]) -> Diagnosis:
+    """No effect earns its place: the model is at the noise, or what is left is unexplained."""
     left = before.identify / case.floor
     if left <= AT_NOISE:
-        return Diagnosis(
-            "adequate", f"The model is adequate: it leaves {left:.2f} noise floors.", before, candidates, []
-        )
+        said = f"The model is adequate: it leaves {left:.2f} noise floors."
+        return Diagnosis("adequate", said, before, candidates, [])
     said = f"No effect of the catalogue explains the misfit of {left:.1f} noise floors."
     return Diagnosis("unexplained", said, before, candidates, [])
 

@@ -1,8 +1,7 @@
 """First-order lag, T y' + y = u, stepped exactly for an input that is linear between samples."""
 
-from math import expm1
-
 from pzt_ident.block import Block
+from pzt_ident.hold import decay
 
 
 class Lag(Block):
@@ -20,11 +19,3 @@ class Lag(Block):
     def step(w, before, u, keep, share):
         w = keep * w - share * (u - before)
         return w, u, u + w
-
-
-def decay(tau, dt):
-    """What a lag of the time constant `tau` keeps over a sample, and its share of the input's change."""
-    if tau == 0:
-        return 0.0, 0.0
-    lost = -expm1(-dt / tau)
-    return 1 - lost, lost * tau / dt

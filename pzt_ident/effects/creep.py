@@ -1,7 +1,7 @@
 """Creep of the ceramic: slow domains follow the prompt ones."""
 
 from pzt_ident.block import Bank, Place
-from pzt_ident.effects._lag import decay
+from pzt_ident.hold import decay
 from pzt_ident.parameter import Parameter
 from pzt_ident.registry import blocks
 
