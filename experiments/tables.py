@@ -10,6 +10,8 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+from pzt_ident.report.words import step_name
+
 Result = Mapping[str, Any]
 NAMES = {
     "rga": "RGA",
@@ -98,10 +100,9 @@ def staircase(improvement: Result) -> str:
     header = ["step", f"identify [{unit}]", f"validate [{unit}]", "in noise floors", "these data cannot tell it from"]
     rows = []
     for step in improvement["steps"]:
-        sign, word = ("+", step["added"]) if step["added"] else ("−", step["removed"])
         errors = step["rmse"]
-        alike = ", ".join(rival for rival in step["class"] if rival != word)
+        alike = ", ".join(rival for rival in step["class"] if rival != step["added"])
         cells = [number(errors["identify"]), number(errors["validate"]), number(errors["identify"] / floor, 3)]
-        rows.append([f"{sign} {word}" if word else "as given", *cells, alike])
+        rows.append([step_name(step), *cells, alike])
     said = f"Noise floor {number(floor, 3)} {unit}. Verdict: {improvement['verdict']}. {improvement['reason']}"
     return f"{table(header, rows)}\n\n{said}"

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from enum import IntEnum
 from functools import cache
 from typing import ClassVar
@@ -75,7 +75,7 @@ class Block:
     separate_by: ClassVar[str] = ""
     remedy: ClassVar[str] = ""
     sizes: ClassVar[tuple[float, ...]] = (0.05,)  # of its range, at which its trace is looked for: one if it is linear
-    trials: ClassVar[int] = 6  # values over the range of a parameter that means nothing at the null
+    trials: ClassVar[Mapping[str, int]] = {}  # values over the range of a parameter that means nothing at the null
 
     def __init_subclass__(cls) -> None:
         for word, function in list(vars(cls).items()):
@@ -135,7 +135,12 @@ class Bank(Block):
 
 
 class Term(Block):
-    """An effect inside the equation of other blocks, which is written there: parameters of theirs name it."""
+    """An effect inside the equation of other blocks, which is written there: parameters of theirs name it.
+
+    `forms`: by a block's word, the block with the effect in its equation, where that takes another step.
+    """
+
+    forms: ClassVar[Mapping[str, type[Block]]] = {}
 
 
 class Shift(Block):

@@ -43,12 +43,17 @@ class Model:
         self.blocks = tuple(sorted(chain, key=lambda block: block.place))
         self.additions = tuple(block for block in blocks if issubclass(block, Addition))
         self._listed = {block.name for block in blocks if issubclass(block, Term)}
+        self._forms = {word: form for block in blocks if issubclass(block, Term) for word, form in block.forms.items()}
         self.axes, self.measured = tuple(axes), tuple(measured)
         self.slots = tuple(slot for block in (*self.blocks, *self.additions) for slot in self._slots(block))
 
     def terms(self, block: type[Block]) -> set[str]:
         """The effects that act inside a block's equation."""
         return self._listed & {parameter.effect for parameter in block.parameters().values() if parameter.effect}
+
+    def form(self, block: type[Block]) -> type[Block]:
+        """The block, with the listed effects in its equation."""
+        return self._forms.get(block.name, block)
 
     @property
     def reads_out(self) -> bool:
@@ -167,12 +172,13 @@ class Plan:
 
         axes = range(len(self.model.axes))
         coupling = issubclass(block, Coupling)
-        made = compile_block(block, variant)  # type: ignore[arg-type]
+        form = self.model.form(block)
+        made = compile_block(form, variant)  # type: ignore[arg-type]
         tile = TILES * axis + (1 if block.place == Place.READOUT and self.model.reads_out else 0)
         self.program.append((made.address, self.rows, 2 * axis, tile, 0))
         places = [(a, b) for a in axes for b in axes if b != a] if coupling else [(axis, axis)]
         branches = range(block.branches) if issubclass(block, Bank) else [0]
-        words = (*block.arguments(), *(asked(block.terms) if variant.terms else ()))  # type: ignore[attr-defined]
+        words = (*form.arguments(), *(asked(block.terms) if variant.terms else ()))  # type: ignore[attr-defined]
         nulls = {p.name: p.null or 0.0 for p in block.parameters().values() if p.effect}
         row = self.rows + made.layout.first_given
         for axis, other in places:

@@ -8,6 +8,7 @@ from typing import Any
 
 import click
 
+from pzt_ident.report.words import step_name
 from pzt_ident.terminal import number, table
 
 Facts = dict[str, Any]
@@ -18,8 +19,7 @@ def told(silent: bool) -> Callable[[Facts], None]:
 
     def tell(step: Facts) -> None:
         if not silent:
-            what = f"+ {step['added']}" if step["added"] else f"- {step['removed']}" if step["removed"] else "as given"
-            click.echo(f"{what}: RMSE {number(step['rmse']['identify'])}", err=True)
+            click.echo(f"{step_name(step)}: RMSE {number(step['rmse']['identify'])}", err=True)
 
     return tell
 
@@ -64,7 +64,7 @@ def show_improvement(found: Facts, folder: Path) -> None:
     unit, floor = found["unit"], found["floor"]
     rows = [
         (
-            f"+ {step['added']}" if step["added"] else f"- {step['removed']}" if step["removed"] else "as given",
+            step_name(step),
             number(step["rmse"]["identify"]),
             number(step["rmse"]["validate"]),
             f"{step['rmse']['identify'] / floor:.2f}",

@@ -16,7 +16,7 @@ from pzt_ident.search import Stop, drive
 
 TRUTH = {"bouc_wen.gain": 0.082, "bouc_wen.alpha": 0.56, "bouc_wen.beta": 0.015, "bouc_wen.gamma": 0.055}
 MECHANICS = {"lumped.mass": 0.16, "lumped.damping": 100.0, "lumped.stiffness": 7e7}
-NONE = {"lumped.load": 0.0, "lumped.extra_damping": 0.0}
+NONE = {"lumped.load": 0.0, "lumped.extra_damping": 0.0, "lumped.cubic": 0.0}
 
 
 def wish(bounds=None, value=None):
@@ -67,11 +67,11 @@ def test_a_term_is_searched_for_where_its_effect_is_listed():
 
 
 def test_bounds_may_be_multiples_of_a_power_of_a_span():
-    model, records = made(["bouc_wen", "cubic_stiffness"], TRUTH | {"cubic_stiffness.cubic": 0.0})
+    model, records = made(["bouc_wen", "lumped", "cubic_stiffness"], TRUTH | MECHANICS)
     problem = Problem(model, records)
     span = np.ptp(records[0].response) * 1e6
-    assert problem.units[-1] == "1/um^2"
-    assert problem.upper[-1] == pytest.approx(0.5 / span**2)
+    assert problem.units[problem.names.index("lumped.cubic")] == "1/um^2"
+    assert problem.upper[problem.names.index("lumped.cubic")] == pytest.approx(0.5 / span**2)
 
 
 def test_relative_bounds_are_multiples_of_the_spans():

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from pzt_ident.diagnosis.refit import Case, Fit, refit
-from pzt_ident.diagnosis.score import applicable, misfit
+from pzt_ident.diagnosis.score import Scorer, applicable, misfit
 from pzt_ident.diagnosis.verdict import TIED, Candidate, Diagnosis, diagnose, drop, earns, pair
 from pzt_ident.registry import blocks
 
@@ -43,7 +43,7 @@ def improve(case: Case, first: Fit, tell: Tell = lambda step: None) -> tuple[lis
         left = ways[-1][0][-1].fit.identify / case.floor
         if ways[-1][1].verdict in ("adequate", "refused") or left > HOPELESS:
             break
-    return min(ways, key=lambda way: (way[1].verdict != "adequate", way[0][-1].fit.identify))
+    return min(ways, key=lambda way: (way[1].verdict != "adequate", way[0][-1].fit.total))
 
 
 def climb(case: Case, first: Fit, found: Diagnosis, pick: Candidate | None, tell: Tell) -> tuple[list[Step], Diagnosis]:
@@ -57,7 +57,11 @@ def climb(case: Case, first: Fit, found: Diagnosis, pick: Candidate | None, tell
             gained = explained(case, now, pick.fit)
             new = [Step(pick.fit, pick.score.effect, None, tied, gained, pick.score.explained)]
         else:
-            new = [] if found.verdict in ("adequate", "refused") else both(case, now, found)
+            new = (
+                []
+                if found.verdict in ("adequate", "refused")
+                else both(case, now, found) or exchanged(case, first, now)
+            )
         if not new:
             break
         new += unneeded(case, first, new[-1].fit)
@@ -78,8 +82,10 @@ def both(case: Case, now: Fit, found: Diagnosis) -> list[Step]:
     fit = pair(case, now, found.candidates)
     if fit is None:
         return []
-    one, two = fit.effects[-2:]
-    half = refit(case, now, (*now.effects, one), {})
+    values = {name: fit.value(name) for name in fit.problem.names if name not in now.problem.names}
+    halves = [refit(case, now, (*now.effects, word), values) for word in fit.effects[-2:]]
+    half = min(halves, key=lambda half: half.total)
+    one, two = half.effects[-1], next(word for word in fit.effects[-2:] if word != half.effects[-1])
     return [
         Step(half, one, None, (one,), explained(case, now, half)),
         Step(fit, two, None, (two,), explained(case, half, fit)),
@@ -96,7 +102,7 @@ def unneeded(case: Case, first: Fit, now: Fit) -> list[Step]:
     """Take back effects, other than the newest and those of the job itself, that no longer earn their place."""
     found: list[Step] = []
     for effect in now.effects[len(first.effects) : -1]:
-        without = refit(case, now, tuple(word for word in now.effects if word != effect), {})
+        without = refit(case, now, others(now, effect), {})
         if not earns(case, without, now):
             found.append(Step(without, None, effect, (), explained(case, now, without)))
             now = without
@@ -108,18 +114,39 @@ def swapped(case: Case, first: Fit, now: Fit) -> list[Step]:
     found: list[Step] = []
     own = now.effects[len(first.effects) :]
     for effect in own if len(own) > 1 else ():
-        rest = tuple(word for word in now.effects if word != effect)
-        possible = applicable(case, rest)
-        tries = [refit(case, now, (*rest, word), {}) for word in blocks[effect].looks_like if word in possible]
-        best = min(tries, key=lambda fit: fit.identify, default=now)
-        if drop(now.identify, best.identify) > TIED * case.floor and drop(now.validate, best.validate) > 0:
-            without = refit(case, now, rest, {})
-            word = best.effects[-1]
-            found += [
-                Step(without, None, effect, (), explained(case, now, without)),
-                Step(best, word, None, (word,), explained(case, without, best)),
-            ]
-            now = best
-            found += unneeded(case, first, now)
+        without = refit(case, now, others(now, effect), {})
+        possible, scorer = applicable(case, without.effects), Scorer(case, without)
+        tries = [
+            refit(case, without, (*without.effects, word), scorer.score(word).guess)
+            for word in blocks[effect].looks_like
+            if word in possible
+        ]
+        best = min(tries, key=lambda fit: fit.total, default=now)
+        if better(case, now, best):
+            found += [exchange(case, now, best, effect), *unneeded(case, first, best)]
             now = found[-1].fit
     return found
+
+
+def exchanged(case: Case, first: Fit, now: Fit) -> list[Step]:
+    """Any effect in the place of one that was added, the best of all, where that leaves less."""
+    best, out = now, ""
+    for effect in now.effects[len(first.effects) :]:
+        without = refit(case, now, others(now, effect), {})
+        rival = diagnose(case, without).best
+        if rival and rival.fit and rival.fit.total < best.total:
+            best, out = rival.fit, effect
+    return [exchange(case, now, best, out)] if better(case, now, best) else []
+
+
+def others(fit: Fit, effect: str) -> tuple[str, ...]:
+    return tuple(word for word in fit.effects if word != effect)
+
+
+def better(case: Case, now: Fit, best: Fit) -> bool:
+    return drop(now.total, best.total) > TIED * case.floor and drop(now.validate, best.validate) > 0
+
+
+def exchange(case: Case, now: Fit, best: Fit, effect: str) -> Step:
+    word = best.effects[-1]
+    return Step(best, word, effect, (word,), explained(case, now, best))

@@ -55,6 +55,11 @@ class Fit:
     validate: float | None
     converged: bool = True
 
+    @property
+    def total(self) -> float:
+        """RMSE of both uses together: what fits are ranked by, so that the fitted records alone never choose."""
+        return float(np.sqrt(np.mean(np.square([use for use in (self.identify, self.validate) if use is not None]))))
+
     def value(self, name: str) -> float:
         return float(self.problem.physical(self.point)[0][self.problem.names.index(name)])
 

@@ -6,7 +6,7 @@ For each effect the change of the response as it leaves its null, less what the 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import product
 
@@ -20,6 +20,9 @@ from pzt_ident.registry import blocks
 
 Array = NDArray[np.float64]
 
+BATCH = 48  # candidates that are simulated together
+TRIALS = 5  # values over the range of a parameter that means nothing at the null
+
 
 @dataclass
 class Score:
@@ -32,6 +35,24 @@ class Score:
     visibility: float = 0.0
     power: float = 0.0
     trace: Array = field(default_factory=lambda: np.zeros(0), repr=False)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """Free parameters in the user's units at an effect's null, and the steps of those that grow from it."""
+
+    size: float
+    start: Array
+    growing: list[int]
+    shapes: list[int]
+    steps: Array
+
+    @property
+    def moved(self) -> Array:
+        """One row for each step: (growing, free)."""
+        rows = np.tile(self.start, (len(self.growing), 1))
+        rows[np.arange(len(self.growing)), self.growing] += self.steps
+        return rows
 
 
 def applicable(case: Case, effects: tuple[str, ...]) -> list[str]:
@@ -69,61 +90,59 @@ class Scorer:
         if issubclass(blocks[effect], Addition):
             return self._addition(effect, problem)
         found = Score(effect)
-        for size, guess, columns in self._trials(effect, problem):
+        for trial, columns in self._trials(effect, problem):
             trace = self.project(columns.T)
-            amounts = np.linalg.lstsq(trace, -self.residual, rcond=1e-8)[0].astype(float)
-            left = self.residual + trace @ amounts
-            explained = (self.residual @ self.residual - left @ left) / self.misfit
             left_over, whole = np.linalg.norm(trace, axis=0).max(), np.linalg.norm(columns, axis=1).max()
             found.visibility = max(found.visibility, float(left_over / max(whole, 1e-300)))
-            if size == max(blocks[effect].sizes):
-                found.power = max(found.power, float(left_over / size / self.case.floor))
-            if explained > found.explained and self._possible(problem, guess, amounts):
-                found.explained, found.trace = float(explained), trace @ amounts
-                found.guess = self._scaled(problem, guess, amounts)
+            if trial.size == max(blocks[effect].sizes):
+                found.power = max(found.power, float(left_over / trial.size / self.case.floor))
+            for amounts in self._amounts(trace):
+                left = self.residual + trace @ amounts
+                explained = (self.residual @ self.residual - left @ left) / self.misfit
+                if explained > found.explained and self._possible(problem, trial, amounts):
+                    found.explained, found.trace = float(explained), trace @ amounts
+                    found.guess = self._scaled(problem, trial, amounts)
         return found
 
-    def _possible(self, problem: Problem, guess: dict[str, tuple[float, float]], amounts: Array) -> bool:
+    def _amounts(self, trace: Array) -> list[Array]:
+        """The trace times what fits best, as if the effect were linear; and the trace as it is."""
+        best = np.linalg.lstsq(trace, -self.residual, rcond=1e-8)[0].astype(float)
+        return [best, np.ones(1)] if len(best) == 1 else [best]
+
+    def _possible(self, problem: Problem, trial: Trial, amounts: Array) -> bool:
         """Whether the amounts go the way that the bounds allow."""
-        lower = dict(zip(problem.names, problem.lower, strict=True))
-        one_sided = [lower[name] >= null for name, (null, step) in guess.items() if step != 0]
+        one_sided = [problem.lower[i] >= trial.start[i] for i in trial.growing]
         return all(amount >= 0 or not bounded for amount, bounded in zip(amounts, one_sided, strict=True))
 
-    def _scaled(self, problem: Problem, guess: dict[str, tuple[float, float]], amounts: Array) -> dict[str, float]:
-        left, found = list(amounts), {}
-        low, high = (dict(zip(problem.names, bound, strict=True)) for bound in (problem.lower, problem.upper))
-        for name, (null, step) in guess.items():
-            value = null + (left.pop(0) * step if step else 0)
-            found[name] = float(np.clip(value, low[name], high[name]))
-        return found
+    def _scaled(self, problem: Problem, trial: Trial, amounts: Array) -> dict[str, float]:
+        values = trial.start.copy()
+        values[trial.growing] += amounts * trial.steps
+        values = np.clip(values, problem.lower, problem.upper)
+        return {problem.names[i]: float(values[i]) for i in (*trial.growing, *trial.shapes)}
 
-    def _trials(self, effect: str, problem: Problem) -> Iterator[tuple[float, dict[str, tuple[float, float]], Array]]:
-        """Each size and shape, {parameter: (null, step)} of those that grow from a null, and (traces, samples)."""
+    def _trials(self, effect: str, problem: Problem) -> Iterator[tuple[Trial, Array]]:
+        """Each size and shape, and the traces (growing, samples) of what grows from its null."""
+        trials = list(self._planned(effect, problem))
+        each = max(1, BATCH // max(1, len(trials[0].growing)))
+        for first in range(0, len(trials), each):
+            some = trials[first : first + each]
+            moved = self._residuals(problem, np.concatenate([trial.moved for trial in some]))
+            for trial, own in zip(some, np.split(moved, len(some)), strict=True):
+                if np.isfinite(own).all():
+                    yield trial, own - self.raw
+
+    def _planned(self, effect: str, problem: Problem) -> Iterator[Trial]:
         new = [i for i, name in enumerate(problem.names) if name not in self.fit.problem.names]
-        slots = {i: problem.model.slots[problem.free[i]] for i in new}
-        growing = [i for i in new if slots[i].parameter.null is not None]
+        nulls = {i: problem.model.slots[problem.free[i]].parameter.null for i in new}
+        growing = [i for i in new if nulls[i] is not None]
         shapes = [i for i in new if i not in growing]
         old = dict(zip(self.fit.problem.names, self.fit.problem.physical(self.fit.point)[0], strict=True))
-        base = np.array(
-            [old.get(name, slots[i].parameter.null if i in growing else 0) for i, name in enumerate(problem.names)],
-            float,
-        )  # type: ignore[arg-type]
+        start = np.array([old.get(name, nulls.get(i) or 0) for i, name in enumerate(problem.names)], float)
+        ends = np.where(problem.upper != start, problem.upper, problem.lower)[growing] - start[growing]
         for values in spread(problem, shapes, blocks[effect].trials):
+            start[shapes] = values
             for size in blocks[effect].sizes:
-                start = base.copy()
-                start[shapes] = values
-                tries, steps = [start], []
-                for i in growing:
-                    step = size * (problem.upper[i] - start[i] or problem.lower[i] - start[i])
-                    steps.append(step)
-                    tries.append(start.copy())
-                    tries[-1][i] += step
-                moved = self._residuals(problem, np.array(tries))
-                if not np.isfinite(moved).all():
-                    continue
-                guess = {problem.names[i]: (start[i], step) for i, step in zip(growing, steps, strict=True)}
-                guess |= {problem.names[i]: (value, 0.0) for i, value in zip(shapes, values, strict=True)}
-                yield size, guess, moved[1:] - moved[0]
+                yield Trial(size, start.copy(), growing, shapes, size * ends)
 
     def _residuals(self, problem: Problem, physical: Array) -> Array:
         return problem.residuals(
@@ -163,11 +182,11 @@ def misfit(case: Case, fit: Fit) -> float:
     return max(fit.identify**2 - case.floor**2, (0.3 * case.floor) ** 2)
 
 
-def spread(problem: Problem, columns: list[int], count: int) -> Iterator[tuple[float, ...]]:
+def spread(problem: Problem, columns: list[int], counts: Mapping[str, int]) -> Iterator[tuple[float, ...]]:
     """Values of parameters over their ranges, in the user's units; on each axis the same share of them."""
-    kinds = [problem.model.slots[problem.free[i]].parameter for i in columns]
-    own = list(dict.fromkeys(kinds))
-    for shares in product((np.arange(count) + 0.5) / count, repeat=len(own)):
+    words = [problem.model.slots[problem.free[i]].word for i in columns]
+    own = list(dict.fromkeys(words))
+    for shares in product(*(((np.arange(n) + 0.5) / n) for n in (counts.get(word, TRIALS) for word in own))):
         point = np.full(problem.dimensions, 0.5)
-        point[columns] = [shares[own.index(kind)] for kind in kinds]
+        point[columns] = [shares[own.index(word)] for word in words]
         yield tuple(problem.physical(point)[0][columns])

@@ -13,10 +13,10 @@ from pzt_ident.diagnosis.score import Score, Scorer, applicable, misfit
 
 SHORT = 5  # effects that are refitted
 LEAST = 0.02  # of the misfit: what scores less is not refitted
-CLEAR = 0.4  # noise floors: an effect removes at least this much, root mean square
+CLEAR = 0.6  # noise floors: an effect removes at least this much, root mean square
 SHARE = 0.15  # and at least this much of the misfit
 TIED = 0.2  # noise floors between two refits: less than that, these data cannot tell
-AT_NOISE = 1.25  # noise floors: a model that leaves no more is adequate
+AT_NOISE = float(np.hypot(1, CLEAR))  # noise floors: a model that leaves no more is adequate
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
 
 
@@ -71,20 +71,20 @@ def diagnose(case: Case, before: Fit) -> Diagnosis:
         return nothing(case, before, candidates)
     shortlist = [item for item in candidates if item.score.explained > LEAST][:SHORT]
     refits(case, before, shortlist)
-    candidates.sort(key=lambda item: (item.fit.identify if item.fit else np.inf, -item.score.explained))
+    candidates.sort(key=lambda item: (item.fit.total if item.fit else np.inf, -item.score.explained))
     settle(case, candidates)
     passing = [item for item in shortlist if item.fit and earns(case, before, item.fit)]
     if not passing:
         return nothing(case, before, candidates)
-    best = min(passing, key=lambda item: item.fit.identify)  # type: ignore[union-attr]
-    tied = [item for item in passing if drop(item.fit.identify, best.fit.identify) < TIED * case.floor]  # type: ignore[union-attr]
-    best = min(tied, key=lambda item: (item.fit.problem.dimensions, item.fit.identify))  # type: ignore[union-attr]
+    best = min(passing, key=lambda item: item.fit.total)  # type: ignore[union-attr]
+    tied = [item for item in passing if drop(item.fit.total, best.fit.total) < TIED * case.floor]  # type: ignore[union-attr]
+    best = min(tied, key=lambda item: (item.fit.problem.dimensions, item.fit.total))  # type: ignore[union-attr]
     for item in tied:
         item.decision = "missing"
-    candidates.sort(key=lambda item: (item is not best, item.fit.identify if item.fit else np.inf))
+    candidates.sort(key=lambda item: (item is not best, item.fit.total if item.fit else np.inf))
     words = [best.score.effect, *(item.score.effect for item in tied if item is not best)]
     verdict = "missing" if len(words) == 1 else "inconclusive"
-    rest = sorted((item for item in passing if item not in tied), key=lambda item: item.fit.identify)  # type: ignore[union-attr]
+    rest = sorted((item for item in passing if item not in tied), key=lambda item: item.fit.total)  # type: ignore[union-attr]
     return Diagnosis(verdict, sentence(case, before, best, words), before, candidates, words, [best, *rest])
 
 
@@ -138,4 +138,4 @@ def pair(case: Case, before: Fit, candidates: list[Candidate]) -> Fit | None:
         for a, b in combinations(words, 2)
     ]
     good = [fit for fit in tries if earns(case, before, fit)]
-    return min(good, key=lambda fit: fit.identify, default=None)
+    return min(good, key=lambda fit: fit.total, default=None)

@@ -10,6 +10,8 @@ class Lag(Block):
     At T = 0 both are exactly zero.
     """
 
+    sizes = tuple(0.004 * 1.5**k for k in range(14))
+
     def prepare(tau, dt):
         return decay(tau, dt)
 

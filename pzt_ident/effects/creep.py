@@ -17,7 +17,6 @@ class Creep(Bank):
     """
 
     place = Place.CREEP
-    trials = 5
     branches = BRANCHES
     ratio = Parameter("1", (-0.1, 0.4), "Final creep over the prompt response.", null=0)
     tau = Parameter("s", (0.01, 1000), "Geometric centre of the time constants.", scale="log")

@@ -15,7 +15,7 @@ class EncoderCyclicError(Block):
     """
 
     place = Place.SENSOR
-    trials = 60
+    trials = {"pitch": 60}
     sine = Parameter("response", (-0.02, 0.02), "Error of the first harmonic, odd about x = 0.", null=0)
     cosine = Parameter("response", (-0.02, 0.02), "Error of the first harmonic, even about x = 0.", null=0)
     pitch = Parameter("response", (0.01, 2), "Period of the grating's signal.", scale="log")

@@ -16,6 +16,7 @@ class Resonance(Beside):
     """
 
     place = Place.MODE
+    trials = {"frequency": 160, "damping": 3}
     share = Parameter("1", (-0.4, 0.4), "Part of the static response that the second mode carries.", null=0)
     frequency = Parameter("Hz", (100, 2e4), "Natural frequency of the second mode.", scale="log")
     damping = Parameter("1", (1e-3, 0.3), "Damping ratio of the second mode.", scale="log")

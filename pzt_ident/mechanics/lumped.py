@@ -22,11 +22,12 @@ class Lumped(Block):
     load = Parameter("kg", (0, 1), "Mass of a payload, added to the moving mass.", null=0, effect="load_mass")
     extra_damping = Parameter("N*s/m", (0, 1e3), "Added to the damping.", null=0, effect="viscous_damping")
 
+    cubic = Parameter(
+        "1/response^2", (-0.1, 0.5), "Cubic over linear stiffness, k3 / k.", null=0, effect="cubic_stiffness"
+    )
+
     def prepare(mass, damping, stiffness, load, extra_damping, dt):
-        mass, damping = mass + load, damping + extra_damping
-        omega = sqrt(stiffness / mass)
-        zeta = damping / (2 * sqrt(stiffness * mass))
-        return oscillator(omega, zeta, dt)
+        return mode(mass + load, damping + extra_damping, stiffness, dt)
 
     def start(u, r11, r12, r21, r22, b1, b2):
         return 0.0, 0.0, u
@@ -34,3 +35,8 @@ class Lumped(Block):
     def step(w, v, f, u, r11, r12, r21, r22, b1, b2):
         w, v = oscillate(w, v, u - f, r11, r12, r21, r22, b1, b2)
         return w, v, u, u + w
+
+
+def mode(mass, damping, stiffness, dt):
+    """The oscillator of natural frequency sqrt(k / m)."""
+    return oscillator(sqrt(stiffness / mass), damping / (2 * sqrt(stiffness * mass)), dt)

@@ -23,6 +23,7 @@ from pzt_ident.report.style import (
     saved,
     style,
 )
+from pzt_ident.report.words import step_name
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -75,8 +76,3 @@ def draw_staircase(figure: Figure, improvement: Facts) -> None:
     axes.set_xlim(-0.4, len(steps) - 0.4)
     axes.set_ylim(0, None)
     axes.set_ylabel(f"RMSE [{unit}]")
-
-
-def step_name(step: Facts) -> str:
-    """`as given`, `+ effect` or `- effect`."""
-    return f"+ {step['added']}" if step["added"] else f"\u2212 {step['removed']}" if step["removed"] else "as given"

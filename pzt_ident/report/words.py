@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Any
 
 from pzt_ident.report.numbers import count, number, quantity
 from pzt_ident.report.results import Results
@@ -75,3 +76,9 @@ def listed(names: Iterable[str]) -> str:
     """a, b and c."""
     *most, last = names
     return f"{', '.join(most)} and {last}" if most else last
+
+
+def step_name(step: dict[str, Any]) -> str:
+    """`as given`, `+ effect`, `- effect`, or both where one takes the place of another."""
+    words = [f"{sign} {step[key]}" for sign, key in (("+", "added"), ("-", "removed")) if step[key]]
+    return " ".join(words) or "as given"

@@ -48,7 +48,7 @@ def test_what_is_missing_is_named_and_its_refit_is_at_the_noise_on_records_that_
 
 def test_candidates_stand_best_first_and_each_once():
     _, found = missing("creep")
-    rmse = [item.fit.identify if item.fit else np.inf for item in found.candidates]
+    rmse = [item.fit.total if item.fit else np.inf for item in found.candidates]
     assert rmse == sorted(rmse)
     words = [item.score.effect for item in found.candidates]
     assert len(set(words)) == len(words)

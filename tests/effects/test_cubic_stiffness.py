@@ -1,28 +1,64 @@
-"""Cubic stiffness: the cubic equation itself."""
+"""Cubic stiffness: the equation at rest, in motion, and the resonance that goes up with the bias."""
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from rig import response
 
-
-def bent(force, cubic):
-    return response(["cubic_stiffness"], {"cubic_stiffness.cubic": cubic}, force)
-
-
-@pytest.mark.parametrize("cubic", [1e-12, 2e-4, 1e-2, 1.0, 1e6])
-def test_hard_spring_is_in_equilibrium(cubic):
-    force = np.linspace(-30, 30, 1001)
-    x = bent(force, cubic)
-    np.testing.assert_allclose(x + cubic * x**3, force, rtol=3e-14, atol=1e-14)
+MASS, DAMPING, STIFFNESS = 0.16, 60.0, 7e7
+STAGE = {"lumped.mass": MASS, "lumped.damping": DAMPING, "lumped.stiffness": STIFFNESS}
 
 
-def test_soft_spring_is_in_equilibrium_short_of_its_limit():
-    limit = np.sqrt(0.125 / 1e-3)
-    force = np.linspace(-limit, limit, 1001)
-    x = bent(force, -1e-3)
-    np.testing.assert_allclose(x - 1e-3 * x**3, force, rtol=1e-14, atol=1e-14)
+def bent(force, cubic, dt=1e-3):
+    return response(["lumped"], STAGE | {"lumped.cubic": cubic}, force, dt=dt)
+
+
+@pytest.mark.parametrize("cubic", [1e-12, 2e-4, 1e-2, 1.0])
+def test_hard_spring_rests_in_equilibrium(cubic):
+    for force in np.linspace(-30, 30, 101):
+        x = bent(np.full(5, force), cubic)
+        np.testing.assert_allclose(x + cubic * x**3, force, rtol=3e-14, atol=1e-14)
+
+
+def test_soft_spring_rests_in_equilibrium_short_of_its_limit():
+    limit = 0.81 * np.sqrt(0.19 / 1e-3)
+    for force in np.linspace(-limit, limit, 101):
+        x = bent(np.full(5, force), -1e-3)
+        np.testing.assert_allclose(x - 1e-3 * x**3, force, rtol=1e-14, atol=1e-14)
 
 
 def test_beyond_its_limit_it_goes_on_in_proportion():
-    np.testing.assert_allclose(bent(np.array([20.0, 40, -1e3]), -1e-3), (np.sqrt(5) - 1) * np.array([20, 40, -1e3]))
+    for force in (20.0, 40.0, -1e3):
+        np.testing.assert_allclose(bent(np.full(5, force), -1e-3), force / (1 - 0.19))
+
+
+@pytest.mark.parametrize("cubic", [-5e-4, 2e-3])
+def test_a_chirp_moves_it_as_the_differential_equation_says(cubic):
+    """Error of second order in the sample time."""
+    errors = []
+    for dt in (2e-5, 1e-5):
+        time = np.arange(0, 0.02, dt)
+        force = 8 + 2 * np.sin(2 * np.pi * (200 + 3e4 * time) * time)
+
+        def motion(t, state, time=time, force=force):
+            x, v = state
+            pull = STIFFNESS * (np.interp(t, time, force) - x - cubic * x**3)
+            return v, (pull - DAMPING * v) / MASS
+
+        rest = bent(force[:2] * 0 + force[0], cubic)[0]
+        truth = solve_ivp(motion, (0, time[-1]), (rest, 0), t_eval=time, rtol=1e-9, atol=1e-9, max_step=dt).y[0]
+        errors.append(np.abs(bent(force, cubic, dt) - truth).max() / np.ptp(truth))
+    assert errors[1] < 2e-3
+    assert errors[0] / errors[1] == pytest.approx(4, rel=0.3)
+
+
+@pytest.mark.parametrize("bias", [0.0, 5.0, 10.0])
+def test_the_resonance_goes_up_with_the_bias(bias):
+    """f = f1 sqrt(1 + 3 c x0^2) of small oscillations about x0."""
+    cubic, dt = 1e-3, 1e-5
+    force = bias + cubic * bias**3 + np.concatenate([[0, 1e-4], np.zeros(40_000)])
+    ringing = bent(force, cubic, dt)[2:] - bias
+    lines = np.abs(np.fft.rfft(ringing * np.hanning(ringing.size), 2**19))
+    found = np.argmax(lines) / (2**19 * dt)
+    assert found == pytest.approx(np.sqrt(STIFFNESS / MASS * (1 + 3 * cubic * bias**2)) / (2 * np.pi), rel=1e-3)

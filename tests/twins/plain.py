@@ -38,7 +38,7 @@ def through(chain, model, record, theta, signals, aside=None):
             continue
         given = [parameters(model, block, record, axis, axis, theta) for axis in range(len(signals))]
         terms = bool(model.terms(block))
-        signals = [act(block, *each, terms) for each in zip(given, signals, aside or signals, strict=True)]
+        signals = [act(model.form(block), *each, terms) for each in zip(given, signals, aside or signals, strict=True)]
     return signals
 
 
