@@ -161,10 +161,13 @@ class Scorer:
             measured = problem.model.measured
             parts = np.split(self.raw, np.cumsum([plan.scored * len(measured) for plan in plans])[:-1])
             times = [plan.record.time[plan.record.settle :] for plan in plans]
+            drives = [plan.record.drive[:, plan.record.settle :] for plan in plans]
             own = [measured.index(problem.model.slots[problem.free[i]].axis) for i in shapes]
             lines = [[part.reshape(len(measured), -1)[axis] for part in parts] for axis in own]
             bounds = [(problem.lower[i], problem.upper[i]) for i in shapes]
-            trials = product(*(guess(times, line, *bound) for line, bound in zip(lines, bounds, strict=True)))
+            axes = [[drive[measured[axis]] for drive in drives] for axis in own]
+            each = zip(axes, lines, bounds, strict=True)
+            trials = product(*(guess(times, axis, line, *bound) for axis, line, bound in each))
         for values in trials:
             start = np.array([old.get(name, 0.0) for name in problem.names])
             start[shapes] = values

@@ -6,6 +6,9 @@ from pzt_ident.block import Addition, Place
 from pzt_ident.parameter import Parameter
 from pzt_ident.registry import blocks
 
+PERIODS = 8
+HARMONICS = 20  # of the drive, that hysteresis leaves in the residual
+
 
 @blocks.register
 class PeriodicDisturbance(Addition):
@@ -26,14 +29,33 @@ class PeriodicDisturbance(Addition):
         phase = 2 * np.pi * frequency * t
         return np.sin(phase), np.cos(phase)
 
-    def guess(times, residuals, low, high):
-        """The strongest lines of the residuals of all records, Hz."""
+    def guess(times, drives, residuals, low, high):
+        """The strongest lines of the residuals of all records, Hz: those of some periods that are not the drive's."""
         grid = np.arange(low, high, 0.1 / max(t[-1] - t[0] for t in times))
         power = np.zeros(grid.size)
-        for t, residual in zip(times, residuals, strict=True):
-            rate = (t.size - 1) / (t[-1] - t[0])
-            size = 2 ** int(np.ceil(np.log2(8 * t.size)))
-            lines = np.abs(np.fft.rfft(residual, size)) ** 2 / t.size
-            power += np.interp(grid, np.arange(lines.size) * rate / size, lines, right=0)
+        for t, drive, residual in zip(times, drives, residuals, strict=True):
+            frequency, lines = spectrum(t, residual)
+            power += np.interp(grid, frequency, lines, right=0) * own(grid, t, drive)
         peaks = np.flatnonzero((power[1:-1] > power[:-2]) & (power[1:-1] >= power[2:])) + 1
         return grid[peaks[np.argsort(-power[peaks])[:3]]]
+
+
+def spectrum(t, signal):
+    """Frequencies in Hz, eight to a line's width, and the power there."""
+    size = 2 ** int(np.ceil(np.log2(8 * t.size)))
+    rate = (t.size - 1) / (t[-1] - t[0])
+    return np.arange(size // 2 + 1) * rate / size, np.abs(np.fft.rfft(signal, size)) ** 2 / t.size
+
+
+def own(grid, t, drive):
+    """Whether a line at a frequency is a record's own: PERIODS of it fit in, and it is no harmonic of a drive that
+    goes to and fro at one frequency, a third of its power or more."""
+    seconds = t[-1] - t[0]
+    frequency, lines = spectrum(t, drive - drive.mean())
+    first = frequency[np.argmax(lines)]
+    near = np.abs(frequency - first) < 1 / seconds
+    found = grid * seconds >= PERIODS
+    if first * seconds >= 3 and lines[near].sum() > lines.sum() / 3:
+        order = np.round(grid / first)
+        found &= (order > HARMONICS) | (np.abs(grid - order * first) > 1 / seconds)
+    return found

@@ -20,3 +20,26 @@ def test_takes_its_own_line_out_of_a_record_and_no_other(frequency, left):
     hum = 0.03 * np.sin(100 * np.pi * 1e-3 * np.arange(1000) + 1)
     plan = Plan(model("periodic_disturbance"), record(drive, response=[drive + hum]))
     assert np.sqrt(plan.squares(np.array([[frequency]]))[0, 0] / 1000) == pytest.approx(left, rel=1e-3, abs=1e-12)
+
+
+def waves(frequency, hum, size=0.2):
+    """A sine drive over 10 s whose residual has its second and third harmonic, and a hum."""
+    t = np.arange(20_000) / 2000
+    phase = 2 * np.pi * frequency * t
+    return t, np.sin(phase), size * np.cos(2 * phase) + size * np.sin(3 * phase) + 0.05 * np.sin(2 * np.pi * hum * t)
+
+
+def test_harmonics_of_the_drive_are_no_disturbance():
+    t, drive, residual = waves(1.3, 50.3)
+    assert PeriodicDisturbance.guess([t], [drive], [residual], 1, 900)[0] == pytest.approx(50.3, abs=0.02)
+
+
+def test_a_record_at_rest_shows_a_line_wherever_it_is():
+    t, _, residual = waves(1.3, 3.9, size=0.0)
+    assert PeriodicDisturbance.guess([t], [np.zeros_like(t)], [residual], 1, 900)[0] == pytest.approx(3.9, abs=0.02)
+
+
+def test_less_than_some_periods_are_drift():
+    t, drive, _ = waves(0.3, 1)
+    slow = np.sin(2 * np.pi * 0.31 * t)
+    assert all(PeriodicDisturbance.guess([t], [0 * drive], [slow], 0.1, 900) >= 0.8)
