@@ -62,12 +62,15 @@ def improve(job: Job, out: Path | None = None, tell: Tell = lambda event: None) 
     if verdict in ("missing", "inconclusive"):
         verdict, reason = "unexplained", f"The next step was tried and taken back, or is one too many. {reason}"
     effects = list(steps[-1].fit.effects)
+    added = [word for word in effects if word not in job.effects]
+    if verdict == "unexplained" and added:
+        reason += f" {', '.join(added)}: taken up on the way, and not proven, since something else is at work."
     content = {
         "name": job.name,
         "steps": [stair(case, step) for step in steps],
         "verdict": verdict,
         "reason": reason,
-        "effects": [word for word in effects if word not in job.effects],
+        "effects": added,
         "noise_floor": floors(case),
         "floor": case.floor / size_of(case),
         "unit": unit_of(list(case.records)),

@@ -51,17 +51,7 @@ def climb(case: Case, first: Fit, found: Diagnosis, pick: Candidate | None, tell
     steps = [Step(first)]
     tell(steps[0])
     while len(steps) <= MOST:
-        now = steps[-1].fit
-        if pick is not None and pick.fit is not None:
-            tied = tuple(found.tied) if pick is found.best else (pick.score.effect,)
-            gained = explained(case, now, pick.fit)
-            new = [Step(pick.fit, pick.score.effect, None, tied, gained, pick.score.explained)]
-        else:
-            new = (
-                []
-                if found.verdict in ("adequate", "refused")
-                else both(case, now, found) or exchanged(case, first, now)
-            )
+        new = onward(case, first, steps, found, pick)
         if not new:
             break
         new += unneeded(case, first, new[-1].fit)
@@ -72,14 +62,26 @@ def climb(case: Case, first: Fit, found: Diagnosis, pick: Candidate | None, tell
         for step in new:
             tell(step)
         steps += new
-        found = diagnose(case, steps[-1].fit)
+        found = diagnose(case, steps[-1].fit, first)
         pick = found.best
     return steps, found
 
 
-def both(case: Case, now: Fit, found: Diagnosis) -> list[Step]:
+def onward(case: Case, first: Fit, steps: list[Step], found: Diagnosis, pick: Candidate | None) -> list[Step]:
+    """The next stair: what was picked, else two effects at once, else, once a way, one in the place of another."""
+    now = steps[-1].fit
+    if pick is not None and pick.fit is not None:
+        tied = tuple(found.tied) if pick is found.best else (pick.score.effect,)
+        return [Step(pick.fit, pick.score.effect, None, tied, explained(case, now, pick.fit), pick.score.explained)]
+    if found.verdict in ("adequate", "refused"):
+        return []
+    before = any(step.added and step.removed for step in steps)
+    return both(case, first, now, found) or ([] if before else exchanged(case, first, now))
+
+
+def both(case: Case, first: Fit, now: Fit, found: Diagnosis) -> list[Step]:
     """Two effects that hide each other, as two stairs."""
-    fit = pair(case, now, found.candidates)
+    fit = pair(case, first, now, found.candidates)
     if fit is None:
         return []
     values = {name: fit.value(name) for name in fit.problem.names if name not in now.problem.names}
@@ -103,7 +105,7 @@ def unneeded(case: Case, first: Fit, now: Fit) -> list[Step]:
     found: list[Step] = []
     for effect in now.effects[len(first.effects) : -1]:
         without = refit(case, now, others(now, effect), {})
-        if not earns(case, without, now):
+        if not earns(case, first, without, now):
             found.append(Step(without, None, effect, (), explained(case, now, without)))
             now = without
     return found
@@ -133,7 +135,7 @@ def exchanged(case: Case, first: Fit, now: Fit) -> list[Step]:
     best, out = now, ""
     for effect in now.effects[len(first.effects) :]:
         without = refit(case, now, others(now, effect), {})
-        rival = diagnose(case, without).best
+        rival = diagnose(case, without, first).best
         if rival and rival.fit and rival.fit.total < best.total:
             best, out = rival.fit, effect
     return [exchange(case, now, best, out)] if better(case, now, best) else []

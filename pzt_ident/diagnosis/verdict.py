@@ -16,7 +16,7 @@ LEAST = 0.02  # of the misfit: what scores less is not refitted
 CLEAR = 0.6  # noise floors: an effect removes at least this much, root mean square
 SHARE = 0.15  # and at least this much of the misfit
 TIED = 0.2  # noise floors between two refits: less than that, these data cannot tell
-AT_NOISE = float(np.hypot(1, CLEAR))  # noise floors: a model that leaves no more is adequate
+FORM = 0.03  # of the misfit at first: less is as likely the form of the effects found as another effect
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
 
 
@@ -50,15 +50,27 @@ def drop(before: float | None, after: float | None) -> float:
     return float(np.sign(before - after) * np.sqrt(abs(before**2 - after**2)))
 
 
-def earns(case: Case, before: Fit, after: Fit) -> bool:
+def least(case: Case, first: Fit) -> float:
+    """What an effect must remove at least, root mean square, SI units; a model that leaves no more above the noise is
+    adequate. `first` is the model before anything was added."""
+    return max(CLEAR * case.floor, FORM * misfit(case, first) ** 0.5)
+
+
+def earns(case: Case, first: Fit, before: Fit, after: Fit) -> bool:
     """Whether an effect removes enough, of the identify records and of those that the fit never saw."""
     gone = drop(before.identify, after.identify)
     own = drop(before.validate, after.validate)
-    return gone > CLEAR * case.floor and gone**2 > SHARE * misfit(case, before) and own > CLEAR / 2 * case.floor
+    enough = least(case, first)
+    return gone > enough and gone**2 > SHARE * misfit(case, before) and own > enough / 2
 
 
-def diagnose(case: Case, before: Fit) -> Diagnosis:
-    """Score every effect, refit the short list, judge."""
+def adequate(case: Case, first: Fit, fit: Fit) -> bool:
+    return fit.identify <= np.hypot(case.floor, least(case, first))
+
+
+def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
+    """Score every effect, refit the short list, judge; `first` as for `least`, by default the model itself."""
+    first = first or before
     if not before.converged:
         reason = "Two starts of the fit do not agree: what is left may be the search's fault. Narrow the bounds."
         return Diagnosis("refused", reason, before, [], [])
@@ -66,16 +78,16 @@ def diagnose(case: Case, before: Fit) -> Diagnosis:
     with ThreadPoolExecutor(2) as pool:
         scores = list(pool.map(scorer.score, applicable(case, before.effects)))
     candidates = sorted((Candidate(score) for score in scores), key=lambda item: -item.score.explained)
-    if before.identify <= AT_NOISE * case.floor and not any(_worth(case, before, item) for item in candidates):
+    if adequate(case, first, before) and not any(_worth(case, first, before, item) for item in candidates):
         settle(case, candidates)
-        return nothing(case, before, candidates)
+        return nothing(case, first, before, candidates)
     shortlist = [item for item in candidates if item.score.explained > LEAST][:SHORT]
     refits(case, before, shortlist)
     candidates.sort(key=lambda item: (item.fit.total if item.fit else np.inf, -item.score.explained))
     settle(case, candidates)
-    passing = [item for item in shortlist if item.fit and earns(case, before, item.fit)]
+    passing = [item for item in shortlist if item.fit and earns(case, first, before, item.fit)]
     if not passing:
-        return nothing(case, before, candidates)
+        return nothing(case, first, before, candidates)
     best = min(passing, key=lambda item: item.fit.total)  # type: ignore[union-attr]
     tied = [item for item in passing if drop(item.fit.total, best.fit.total) < TIED * case.floor]  # type: ignore[union-attr]
     best = min(tied, key=lambda item: (item.fit.problem.dimensions, item.fit.total))  # type: ignore[union-attr]
@@ -88,9 +100,9 @@ def diagnose(case: Case, before: Fit) -> Diagnosis:
     return Diagnosis(verdict, sentence(case, before, best, words), before, candidates, words, [best, *rest])
 
 
-def _worth(case: Case, before: Fit, item: Candidate) -> bool:
+def _worth(case: Case, first: Fit, before: Fit, item: Candidate) -> bool:
     """Whether the score promises more than what counts as an effect."""
-    return item.score.explained * misfit(case, before) > (CLEAR * case.floor) ** 2
+    return item.score.explained * misfit(case, before) > least(case, first) ** 2
 
 
 def refits(case: Case, before: Fit, items: list[Candidate]) -> None:
@@ -110,10 +122,10 @@ def settle(case: Case, candidates: list[Candidate]) -> None:
             item.decision = "not missing" if item.score.explained <= LEAST else "too small"
 
 
-def nothing(case: Case, before: Fit, candidates: list[Candidate]) -> Diagnosis:
+def nothing(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> Diagnosis:
     """No effect earns its place: the model is at the noise, or what is left is unexplained."""
     left = before.identify / case.floor
-    if left <= AT_NOISE:
+    if adequate(case, first, before):
         said = f"The model is adequate: it leaves {left:.2f} noise floors."
         return Diagnosis("adequate", said, before, candidates, [])
     said = f"No effect of the catalogue explains the misfit of {left:.1f} noise floors."
@@ -130,12 +142,12 @@ def sentence(case: Case, before: Fit, best: Candidate, words: list[str]) -> str:
     return f"{' or '.join(words)}: these data cannot tell them apart. {words[0]} is the simplest of them: {said}"
 
 
-def pair(case: Case, before: Fit, candidates: list[Candidate]) -> Fit | None:
+def pair(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> Fit | None:
     """Two effects that hide each other: of the pairs of the short list the one whose refit is best, if it earns."""
     words = [item for item in candidates if item.score.explained > LEAST][:3]
     tries = [
         refit(case, before, (*before.effects, a.score.effect, b.score.effect), a.score.guess | b.score.guess)
         for a, b in combinations(words, 2)
     ]
-    good = [fit for fit in tries if earns(case, before, fit)]
+    good = [fit for fit in tries if earns(case, first, before, fit)]
     return min(good, key=lambda fit: fit.total, default=None)

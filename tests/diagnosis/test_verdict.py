@@ -119,12 +119,12 @@ def test_what_leaves_less_than_the_noise_at_its_strongest_cannot_be_seen():
 def test_an_effect_that_helps_only_the_records_that_were_fitted_earns_nothing():
     made, found = missing("creep")
     before, after = found.before, found.best.fit
-    assert earns(made, before, after)
-    assert not earns(made, after, before)
+    assert earns(made, before, before, after)
+    assert not earns(made, before, after, before)
     worse = refit.Fit(after.effects, after.problem, after.point, after.identify, 1.01 * before.validate)
-    assert not earns(made, before, worse)
+    assert not earns(made, before, before, worse)
     alone = refit.Fit(after.effects, after.problem, after.point, after.identify, None)
-    assert earns(made, before, alone)
+    assert earns(made, before, before, alone)
 
 
 def test_a_drop_is_root_mean_square_and_has_a_sign():
