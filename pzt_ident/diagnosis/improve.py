@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.score import Scorer, applicable, misfit
-from pzt_ident.diagnosis.verdict import TIED, Candidate, Diagnosis, diagnose, drop, earns, pair
+from pzt_ident.diagnosis.verdict import TIED, Candidate, Diagnosis, alike, diagnose, drop, earns, pair
 from pzt_ident.registry import blocks
 
 MOST = 5  # steps
@@ -43,7 +43,9 @@ def improve(case: Case, first: Fit, tell: Tell = lambda step: None) -> tuple[lis
         left = ways[-1][0][-1].fit.identify / case.floor
         if ways[-1][1].verdict in ("adequate", "refused") or left > HOPELESS:
             break
-    return min(ways, key=lambda way: (way[1].verdict != "adequate", way[0][-1].fit.total))
+    best = min(ways, key=lambda way: (way[1].verdict != "adequate", way[0][-1].fit.total))
+    classed(case, first, best[0])
+    return best
 
 
 def climb(case: Case, first: Fit, found: Diagnosis, pick: Candidate | None, tell: Tell) -> tuple[list[Step], Diagnosis]:
@@ -116,18 +118,29 @@ def swapped(case: Case, first: Fit, now: Fit) -> list[Step]:
     found: list[Step] = []
     own = now.effects[len(first.effects) :]
     for effect in own if len(own) > 1 else ():
-        without = refit(case, now, others(now, effect), {})
-        possible, scorer = applicable(case, without.effects), Scorer(case, without)
-        tries = [
-            refit(case, without, (*without.effects, word), scorer.score(word).guess)
-            for word in blocks[effect].looks_like
-            if word in possible
-        ]
-        best = min(tries, key=lambda fit: fit.total, default=now)
+        best = min(look_alikes(case, now, effect), key=lambda fit: fit.total, default=now)
         if better(case, now, best):
             found += [exchange(case, now, best, effect), *unneeded(case, first, best)]
             now = found[-1].fit
     return found
+
+
+def look_alikes(case: Case, now: Fit, effect: str) -> list[Fit]:
+    """The model with each look-alike in the place of an effect."""
+    without = refit(case, now, others(now, effect), {})
+    possible, scorer = applicable(case, without.effects), Scorer(case, without)
+    words = [word for word in blocks[effect].looks_like if word in possible]
+    return [refit(case, without, (*without.effects, word), scorer.score(word).guess) for word in words]
+
+
+def classed(case: Case, first: Fit, steps: list[Step]) -> None:
+    """Tell each stair what these data cannot tell from its effect, now that all the others are known."""
+    now = steps[-1].fit
+    own = now.effects[len(first.effects) :]
+    for effect in own if len(own) > 1 else ():
+        step = next(step for step in reversed(steps) if step.added == effect)
+        close = [fit.effects[-1] for fit in look_alikes(case, now, effect) if alike(case, effect, now, fit)]
+        step.tied = (effect, *close)
 
 
 def exchanged(case: Case, first: Fit, now: Fit) -> list[Step]:

@@ -10,12 +10,13 @@ import numpy as np
 
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.score import Score, Scorer, applicable, misfit
+from pzt_ident.registry import blocks
 
 SHORT = 5  # effects that are refitted
 LEAST = 0.02  # of the misfit: what scores less is not refitted
 CLEAR = 0.6  # noise floors: an effect removes at least this much, root mean square
 SHARE = 0.15  # and at least this much of the misfit
-TIED = 0.2  # noise floors between two refits: less than that, these data cannot tell
+TIED = 0.2  # noise floors between two refits: less than that, these data cannot tell; of look-alikes twice that
 FORM = 0.03  # of the misfit at first: less is as likely the form of the effects found as another effect
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
 
@@ -91,6 +92,7 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     best = min(passing, key=lambda item: item.fit.total)  # type: ignore[union-attr]
     tied = [item for item in passing if drop(item.fit.total, best.fit.total) < TIED * case.floor]  # type: ignore[union-attr]
     best = min(tied, key=lambda item: (item.fit.problem.dimensions, item.fit.total))  # type: ignore[union-attr]
+    tied = [item for item in passing if item in tied or alike(case, best.score.effect, best.fit, item.fit)]  # type: ignore[arg-type]
     for item in tied:
         item.decision = "missing"
     candidates.sort(key=lambda item: (item is not best, item.fit.total if item.fit else np.inf))
@@ -98,6 +100,12 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     verdict = "missing" if len(words) == 1 else "inconclusive"
     rest = sorted((item for item in passing if item not in tied), key=lambda item: item.fit.total)  # type: ignore[union-attr]
     return Diagnosis(verdict, sentence(case, before, best, words), before, candidates, words, [best, *rest])
+
+
+def alike(case: Case, effect: str, fit: Fit, rival: Fit) -> bool:
+    """Whether a fit with a look-alike in the place of an effect leaves hardly more."""
+    close = drop(rival.total, fit.total) < 2 * TIED * case.floor
+    return close and rival.effects[-1] in blocks[effect].looks_like
 
 
 def _worth(case: Case, first: Fit, before: Fit, item: Candidate) -> bool:
