@@ -13,14 +13,14 @@ from pzt_ident.job import Job, load_job
 from pzt_ident.registry import blocks
 
 
-def add(job: Path, effect: str, out: Path) -> Job:
+def add(job: Path, effect: str, out: Path, plugins: bool = False) -> Job:
     """Write the job of a file with one effect more into another; the new job.
 
     Raises InputError where the effect is unknown, there already, or does not fit the model, and where `out` exists.
     """
     from pzt_ident.files import write_text
 
-    before = load_job(job)
+    before = load_job(job, plugins)
     if out.exists():
         raise InputError("exists already", where=str(out), remedy="give another file with -o")
     if effect in before.effects:
@@ -28,7 +28,7 @@ def add(job: Path, effect: str, out: Path) -> Job:
     if effect not in blocks:
         raise InputError(f"unknown effect {effect!r}", remedy=nearest(effect, blocks.effects()))
     text = with_effects(before, (*before.effects, effect), out.parent)
-    made = Job.from_text(text, out.parent, str(out))
+    made = Job.from_text(text, out.parent, str(out), plugins)
     write_text(out, text)
     return made
 
@@ -52,6 +52,8 @@ def with_effects(job: Job, effects: Sequence[str], folder: Path) -> str:
     found.extend(word for word in effects if word not in found)
     if job.folder.resolve() != folder.resolve():
         moved(document, job.folder, folder)
+        for i, file in enumerate(document.get("plugins", ())):
+            document["plugins"][i] = seen_from(file, job.folder, folder)
     yaml.indent(**indents(document))
     written = StringIO()
     yaml.dump(document, written)
@@ -74,7 +76,12 @@ def moved(item: Any, before: Path, after: Path) -> None:
     elif isinstance(item, dict):
         for key, value in item.items():
             if key == "file" and isinstance(value, str):
-                if not (Path(value).is_absolute() or value.startswith(("$", "~"))):
-                    item[key] = os.path.relpath(before.resolve() / value, after.resolve())
+                item[key] = seen_from(value, before, after)
             else:
                 moved(value, before, after)
+
+
+def seen_from(path: str, before: Path, after: Path) -> str:
+    if Path(path).is_absolute() or path.startswith(("$", "~")):
+        return path
+    return os.path.relpath(before.resolve() / path, after.resolve())

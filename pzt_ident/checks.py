@@ -100,6 +100,25 @@ def _model(document: Document, words: tuple[str, ...], earlier: Earlier) -> None
         folders[folder] = word
 
 
+def _plugins(document: Document, files: tuple[str, ...], earlier: Earlier) -> None:
+    for i, file in enumerate(files):
+        if not document.plugins:
+            document.fault(("plugins", i), f"{file} would run as code", "read it, then add --plugins to the command")
+            continue
+        try:
+            blocks.plug(document.folder / file)
+        except InputError as error:
+            document.fault(("plugins", i), error.message, error.remedy)
+
+
+def _rule_out(document: Document, words: tuple[str, ...], earlier: Earlier) -> None:
+    for i, word in enumerate(words):
+        if word not in blocks.effects():
+            document.fault(("rule_out", i), f"unknown effect {word!r}", nearest(word, blocks.effects()))
+        elif word in earlier.get("effects", ()):
+            document.fault(("rule_out", i), f"{word!r} is among the `effects` too", "keep it in one of the two")
+
+
 def _effects(document: Document, words: tuple[str, ...], earlier: Earlier) -> None:
     chosen = [blocks[word] for word in earlier.get("model", ()) if word in blocks]
     terms = {declared.effect for block in chosen for declared in block.parameters().values() if declared.effect}
@@ -243,10 +262,12 @@ def _stop(document: Document, stop: Stopping, earlier: Earlier) -> None:
 
 
 SECTIONS: Mapping[str, Callable[[Document, Any, Earlier], None]] = {
+    "plugins": _plugins,
     "records": _records,
     "channels": _channels,
     "model": _model,
     "effects": _effects,
+    "rule_out": _rule_out,
     "parameters": _parameters,
     "optimizers": _optimizers,
     "stop": _stop,

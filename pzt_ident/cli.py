@@ -16,6 +16,7 @@ import click
 from pzt_ident.errors import InputError, RunError
 
 if TYPE_CHECKING:
+    from pzt_ident.job import Job
     from pzt_ident.terminal import Listener
 
 Command = Callable[..., None]
@@ -79,6 +80,12 @@ def output(command: Command) -> Command:
     return click.option("--json", "as_json", is_flag=True, help="Write the answer to stdout as JSON.")(command)
 
 
+def trusting(command: Command) -> Command:
+    """--plugins."""
+    said = "Load the files that the job lists under `plugins`: they run as code."
+    return click.option("--plugins", is_flag=True, help=said)(command)
+
+
 def searching(command: Command) -> Command:
     """--workers and --no-report."""
     command = click.option("--no-report", is_flag=True, help="Write the results, draw no report.")(command)
@@ -90,15 +97,18 @@ def searching(command: Command) -> Command:
 @click.argument("job", type=EXISTING)
 @click.option("--out", type=EXISTING, help="Folder for the results; results/<name>/<time>-<hash> if not given.")
 @searching
+@trusting
 @output
-def run(job: Path, out: Path | None, workers: int | None, no_report: bool, as_json: bool, quiet: bool) -> None:
+def run(
+    job: Path, out: Path | None, workers: int | None, no_report: bool, plugins: bool, as_json: bool, quiet: bool
+) -> None:
     """Identify the model of a job file JOB."""
 
     def start(listen: Listener) -> Path:
         from pzt_ident.job import load_job
         from pzt_ident.run import run
 
-        return run(load_job(job), out, workers=workers, report=not no_report, listen=listen)
+        return run(load_job(job, plugins), out, workers=workers, report=not no_report, listen=listen)
 
     _identify(start, as_json, quiet)
 
@@ -106,14 +116,15 @@ def run(job: Path, out: Path | None, workers: int | None, no_report: bool, as_js
 @main.command()
 @click.argument("folder", metavar="DIR", type=EXISTING)
 @searching
+@trusting
 @output
-def resume(folder: Path, workers: int | None, no_report: bool, as_json: bool, quiet: bool) -> None:
+def resume(folder: Path, workers: int | None, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
     """Go on with the run in the folder DIR."""
 
     def start(listen: Listener) -> Path:
         from pzt_ident.run import resume
 
-        return resume(folder, workers=workers, report=not no_report, listen=listen)
+        return resume(folder, workers=workers, report=not no_report, listen=listen, plugins=plugins)
 
     _identify(start, as_json, quiet)
 
@@ -130,14 +141,15 @@ def _identify(start: Callable[[Listener], Path], as_json: bool, quiet: bool) -> 
 @main.command()
 @click.argument("source", metavar="JOB-or-DIR", type=EXISTING)
 @click.option("--out", type=EXISTING, help="Folder for the results; DIR, or results/<name>/<time>-<hash>.")
+@trusting
 @output
-def compare(source: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
+def compare(source: Path, out: Path | None, plugins: bool, as_json: bool, quiet: bool) -> None:
     """Say where the model fails: the best run in the folder DIR, or of the job file JOB, which is run first."""
     from pzt_ident import atlas, terminal
     from pzt_ident.compare import compare, draw, finished
 
     with terminal.listening(silent=as_json or quiet) as listen:
-        folder = finished(source, out, listen)
+        folder = finished(source, out, listen, plugins)
     found = compare(folder, out or folder)
     for _ in terminal.tracked(draw(folder, out or folder, found), "figures", as_json or quiet):
         pass
@@ -147,25 +159,28 @@ def compare(source: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
 @main.command()
 @click.argument("job", type=EXISTING)
 @click.option("--out", type=EXISTING, help="Folder for the results; results/<name>/<time>-<hash> if not given.")
+@trusting
 @output
-def diagnose(job: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
+def diagnose(job: Path, out: Path | None, plugins: bool, as_json: bool, quiet: bool) -> None:
     """Say which physical effect the model of a job file JOB misses."""
     from pzt_ident import staircase
     from pzt_ident.improve import diagnose
+    from pzt_ident.job import load_job
 
-    _diagnose(diagnose, "diagnosis", staircase.show_diagnosis, job, out, as_json, quiet)
+    _diagnose(diagnose, "diagnosis", staircase.show_diagnosis, load_job(job, plugins), out, as_json, quiet)
 
 
 @main.command()
 @click.argument("job", type=EXISTING)
 @click.argument("effect")
 @click.option("-o", "--out", type=EXISTING, required=True, help="The new job file.")
+@trusting
 @output
-def add(job: Path, effect: str, out: Path, as_json: bool, quiet: bool) -> None:
+def add(job: Path, effect: str, out: Path, plugins: bool, as_json: bool, quiet: bool) -> None:
     """Write the job file JOB with an EFFECT more, comments kept."""
     from pzt_ident.amend import add
 
-    made = add(job, effect, out)
+    made = add(job, effect, out, plugins)
     said = f"wrote {out}: effects {', '.join(made.effects)}\nnext: pzt-ident run {quote(str(out))}"
     _answer({"job": str(out), "effects": list(made.effects)}, lambda: click.echo(said), as_json, quiet)
 
@@ -173,43 +188,45 @@ def add(job: Path, effect: str, out: Path, as_json: bool, quiet: bool) -> None:
 @main.command()
 @click.argument("job", type=EXISTING)
 @click.option("--out", type=EXISTING, help="Folder for the results; results/<name>/<time>-<hash> if not given.")
+@trusting
 @output
-def improve(job: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
+def improve(job: Path, out: Path | None, plugins: bool, as_json: bool, quiet: bool) -> None:
     """Add what the model of a job file JOB misses, effect by effect, and watch the error fall."""
     from pzt_ident import staircase
     from pzt_ident.improve import improve
+    from pzt_ident.job import load_job
 
-    _diagnose(improve, "improvement", staircase.show_improvement, job, out, as_json, quiet)
+    _diagnose(improve, "improvement", staircase.show_improvement, load_job(job, plugins), out, as_json, quiet)
 
 
 def _diagnose(
     work: Callable[..., Path],
     name: str,
     show: Callable[[dict[str, Any], Path], None],
-    job: Path,
+    job: Job,
     out: Path | None,
     as_json: bool,
     quiet: bool,
 ) -> None:
     from pzt_ident import staircase, terminal
-    from pzt_ident.job import load_job
 
     silent = as_json or quiet
     with terminal.listening(silent):
-        folder = work(load_job(job), out, staircase.told(silent))
+        folder = work(job, out, staircase.told(silent))
     found = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
     _answer({"folder": str(folder), name: found}, lambda: show(found, folder), as_json, quiet)
 
 
 @main.command()
 @click.argument("job", type=EXISTING)
+@trusting
 @output
-def check(job: Path, as_json: bool, quiet: bool) -> None:
+def check(job: Path, plugins: bool, as_json: bool, quiet: bool) -> None:
     """Say what is in a job file JOB and its data. Writes nothing."""
     from pzt_ident import summary
     from pzt_ident.job import load_job
 
-    found = summary.of_job(load_job(job))
+    found = summary.of_job(load_job(job, plugins))
     _answer(found, lambda: summary.show_job(found), as_json, quiet)
 
 

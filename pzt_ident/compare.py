@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-def finished(source: Path, out: Path | None, listen: Listen) -> Path:
+def finished(source: Path, out: Path | None, listen: Listen, plugins: bool = False) -> Path:
     """The folder of results that `source` is, or else of the job that it is, which is run first, into `out`."""
-    return source if source.is_dir() else run(load_job(source), out, report=False, listen=listen)
+    return source if source.is_dir() else run(load_job(source, plugins), out, report=False, listen=listen)
 
 
 def compare(folder: Path, out: Path) -> dict[str, Any]:

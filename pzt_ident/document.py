@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, NoReturn
 
 from pzt_ident.errors import InputError
@@ -43,13 +44,14 @@ def reject(file: str, faults: Sequence[Fault]) -> NoReturn:
 
 
 class Document:
-    """`data` is plain; `faults` are duplicate keys, tags and the like, found on the way.
+    """`data` is plain; `faults` are duplicate keys, tags and the like, found on the way. `folder`: where paths start;
+    `plugins`: whether files of code that the job names may be loaded.
 
     Raises InputError where the text is no YAML at all.
     """
 
-    def __init__(self, text: str, file: str) -> None:
-        self.file = file
+    def __init__(self, text: str, file: str, folder: Path = Path(), plugins: bool = False) -> None:
+        self.file, self.folder, self.plugins = file, folder, plugins
         self.faults: list[Fault] = []
         self._values = 0
         self._open: list[int] = []

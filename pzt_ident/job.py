@@ -29,11 +29,13 @@ class Job(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
+    plugins: tuple[str, ...] = ()
     name: Annotated[str, Field(pattern=r"^\w([\w .+-]*\w)?$")]
     records: tuple[Source, ...]
     channels: Channels
     model: tuple[str, ...]
     effects: tuple[str, ...] = ()
+    rule_out: tuple[str, ...] = ()
     parameters: dict[str, Setting] = {}
     optimizers: tuple[Choice, ...] = (Choice("pso"),)
     repeats: Count = 1
@@ -53,12 +55,13 @@ class Job(BaseModel):
         return section
 
     @classmethod
-    def from_text(cls, text: str, folder: Path = Path(), file: str = "job.yaml") -> Job:
-        """Read a job from its YAML. `file` names it in errors, and gives the job its name where it has none.
+    def from_text(cls, text: str, folder: Path = Path(), file: str = "job.yaml", plugins: bool = False) -> Job:
+        """Read a job from its YAML. `file` names it in errors, and gives the job its name where it has none. With
+        `plugins`, the files of code that it names are loaded.
 
         Raises InputError that lists every fault.
         """
-        document = Document(text, file)
+        document = Document(text, file, folder, plugins)
         if not isinstance(document.data, dict):
             kind = "empty" if document.data is None else "a list" if isinstance(document.data, list) else "one value"
             reject(file, [Fault(1, 1, "", f"the job is {kind}", "write `name: ...`, `records: ...` and so on")])
@@ -103,8 +106,8 @@ def _folder_name(file: str) -> str:
     return re.sub(r"[^\w .+-]+", "-", Path(file).stem).strip(" .+-") or "job"
 
 
-def load_job(path: Path) -> Job:
-    """Read a job file. Raises InputError that lists every fault, also where there is no such file."""
+def load_job(path: Path, plugins: bool = False) -> Job:
+    """Read a job file, see `Job.from_text`. Raises InputError that lists every fault, also where there is no such file."""
     path = Path(path)
     if path.is_dir():
         raise InputError("is a folder", where=str(path), remedy=f"give the job file, such as {path / 'job.yaml'}")
@@ -123,7 +126,7 @@ def load_job(path: Path) -> Job:
         line, column = raw.count(b"\n", 0, error.start) + 1, len(before[2]) + 1
         message = f"byte 0x{raw[error.start]:02x} is not UTF-8"
         reject(str(path), [Fault(line, column, "", message, "save the file as UTF-8")])
-    return Job.from_text(text, path.parent, str(path))
+    return Job.from_text(text, path.parent, str(path), plugins)
 
 
 _EXPECTED = {

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import importlib
+import importlib.util
 import pkgutil
+import sys
 from collections.abc import Iterator
 from functools import cached_property
 from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 from pzt_ident.errors import InputError, nearest
@@ -72,6 +75,34 @@ class Registry(Generic[T]):
 
 
 class Blocks(Registry[Any]):
+    def plug(self, path: Path) -> None:
+        """Run a file of the user's, which registers the block that it is named like.
+
+        Raises InputError where there is no such file, it fails, it registers nothing, or its name is taken.
+        """
+        word, where = path.stem, str(path)
+        module = f"pzt_ident_plugins.{word}"
+        if module in sys.modules and sys.modules[module].__file__ == str(path.resolve()):
+            return
+        if not path.is_file():
+            raise InputError("no such file", where=where, remedy="give the Python file of an effect")
+        if word in self.words() or not word.isidentifier():
+            raise InputError(f"{word!r} cannot name an effect", where=where, remedy="rename the file")
+        self._execute(module, path)
+        if word not in self._items:
+            raise InputError("registers no block", where=where, remedy="decorate its class with `@blocks.register`")
+
+    def _execute(self, module: str, path: Path) -> None:
+        spec = importlib.util.spec_from_file_location(module, path.resolve())
+        if spec is None or spec.loader is None:
+            raise InputError("is no Python file", where=str(path), remedy="name it `<effect>.py`")
+        sys.modules[module] = made = importlib.util.module_from_spec(spec)
+        try:
+            spec.loader.exec_module(made)
+        except Exception as error:
+            del sys.modules[module]
+            raise InputError(f"{type(error).__name__}: {error}", where=str(path), remedy="mend the file") from error
+
     def effects(self) -> list[str]:
         """The words of what may be missing from a model: each says what to do about it on the rig."""
         return [word for word in self.words() if self[word].remedy]

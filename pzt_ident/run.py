@@ -54,7 +54,12 @@ def run(
 
 
 def resume(
-    folder: Path, *, workers: int | None = None, report: bool = True, listen: Listen = lambda event: None
+    folder: Path,
+    *,
+    workers: int | None = None,
+    report: bool = True,
+    listen: Listen = lambda event: None,
+    plugins: bool = False,
 ) -> Path:
     """Go on where a killed run stopped, to the result that it would have had.
 
@@ -62,7 +67,7 @@ def resume(
     """
     before = begun(folder)
     text = (folder / "job.yaml").read_text(encoding="utf-8")
-    job = Job.from_text(text, Path(before["job_folder"]), f"{before['job_name']}.yaml")
+    job = Job.from_text(text, Path(before["job_folder"]), f"{before['job_name']}.yaml", plugins)
     records = read(job)
     same_as_before(job, records, before, folder)
     return go_on(job, records, folder, tasks_of(job, records, folder), workers, report, listen)

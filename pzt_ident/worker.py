@@ -185,7 +185,7 @@ def work(task: Task, job_text: str, folder: Path, records: list[Record], pipe: A
     np.seterr(all="ignore")  # a simulation that overflows is counted, not warned about
     with suppress(ConnectionError):
         try:
-            search(task, Job.from_text(job_text, folder), records, pipe.send)
+            search(task, Job.from_text(job_text, folder, plugins=True), records, pipe.send)
             pipe.send(None)
         except (InputError, RunError) as error:
             pipe.send({"event": "failed", "run": task.run, "reason": str(error)})

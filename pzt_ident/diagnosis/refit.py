@@ -26,10 +26,17 @@ DAMPINGS = 10.0 ** np.arange(-5, 4)
 
 
 class Case:
-    """A model, its records and what is free, to which effects can be added."""
+    """A model, its records and what is free, to which effects can be added that are not ruled out."""
 
-    def __init__(self, words: Sequence[str], effects: Sequence[str], records: Sequence[Record], wishes: Any) -> None:
-        self.words, self.effects = tuple(words), tuple(effects)
+    def __init__(
+        self,
+        words: Sequence[str],
+        effects: Sequence[str],
+        records: Sequence[Record],
+        wishes: Any,
+        ruled_out: Sequence[str] = (),
+    ) -> None:
+        self.words, self.effects, self.ruled_out = tuple(words), tuple(effects), tuple(ruled_out)
         self.records, self.wishes = tuple(records), wishes
 
     def problem(self, effects: Sequence[str]) -> Problem:

@@ -64,7 +64,7 @@ def applicable(case: Case, effects: tuple[str, ...]) -> list[str]:
     for word in blocks.effects():
         block = blocks[word]
         fits = (not issubclass(block, Term) or word in terms) and (not issubclass(block, Coupling) or axes > 1)
-        if fits and word not in effects:
+        if fits and word not in (*effects, *case.ruled_out):
             found.append(word)
     return found
 

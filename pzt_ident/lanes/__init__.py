@@ -70,6 +70,7 @@ def compile_block(block: type[Block], variant: Variant = Variant()) -> Compiled:
     layout = layout_of(block, variant)
     text = (TEMPLATES / f"{template}.jinja").read_text()
     sources = [text, kernel.VERSION, str(layout), str(variant), inspect.getsource(kernel), *authors(block)]
+    sources.append(block.__module__)  # which the cached code looks up
     key = hashlib.sha256("\0".join(sources).encode()).hexdigest()[:16]
     path = cache_folder() / f"{block.__name__.lower()}_{template}_{key}.py"
     if not path.exists():
