@@ -65,6 +65,7 @@ def improve(job: Job, out: Path | None = None, tell: Tell = lambda event: None) 
     added = [word for word in effects if word not in job.effects]
     if verdict == "unexplained" and added:
         reason += f" {', '.join(added)}: taken up on the way, and not proven, since something else is at work."
+    reason += bounded(steps[-1].fit)
     content = {
         "name": job.name,
         "steps": [stair(case, step) for step in steps],
@@ -81,6 +82,16 @@ def improve(job: Job, out: Path | None = None, tell: Tell = lambda event: None) 
     write_json(folder / "improvement.json", content)
     write_staircase(folder, content, diagnosis)
     return folder
+
+
+def bounded(fit: Fit) -> str:
+    """A sentence about each parameter that ended on a bound."""
+    problem, said = fit.problem, ""
+    for name in fit.on_bounds:
+        unit = problem.units[problem.names.index(name)]
+        value = f"{fit.value(name):.3g} {unit}".removesuffix(" 1")
+        said += f" {name} ended on its bound of {value}: its name is doubtful, or its bounds are too narrow."
+    return said
 
 
 def size_of(case: Case) -> float:

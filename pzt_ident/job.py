@@ -107,7 +107,7 @@ def _folder_name(file: str) -> str:
 
 
 def load_job(path: Path, plugins: bool = False) -> Job:
-    """Read a job file, see `Job.from_text`. Raises InputError that lists every fault, also where there is no such file."""
+    """Read a job file, see `Job.from_text`. Raises InputError that lists every fault, or that there is no file."""
     path = Path(path)
     if path.is_dir():
         raise InputError("is a folder", where=str(path), remedy=f"give the job file, such as {path / 'job.yaml'}")

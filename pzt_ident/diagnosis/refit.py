@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 STARTS = 240  # chance points, of which the best few are refined
 REFINED = 4
 AGREE = 0.01  # of the loss, between the two best of them
+EDGE = 1e-4  # of a parameter's range: as near to its end it is on the bound
 DAMPINGS = 10.0 ** np.arange(-5, 4)
 
 
@@ -66,6 +67,15 @@ class Fit:
     def total(self) -> float:
         """RMSE of both uses together: what fits are ranked by, so that the fitted records alone never choose."""
         return float(np.sqrt(np.mean(np.square([use for use in (self.identify, self.validate) if use is not None]))))
+
+    @property
+    def on_bounds(self) -> tuple[str, ...]:
+        """Names of the parameters that ended on a bound which is not their null."""
+        problem, values = self.problem, self.problem.physical(self.point)[0]
+        nulls = [problem.model.slots[column].parameter.null for column in problem.free]
+        ends = (self.point <= EDGE) | (self.point >= 1 - EDGE)
+        found = zip(problem.names, ends, values, nulls, strict=True)
+        return tuple(name for name, end, value, null in found if end and (null is None or not np.isclose(value, null)))
 
     def value(self, name: str) -> float:
         return float(self.problem.physical(self.point)[0][self.problem.names.index(name)])

@@ -1,5 +1,7 @@
 """Fits that are good enough to blame what is left on the model, and the steps that they are made of."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,6 +11,7 @@ import stage
 from pzt_ident.block import Block, Place
 from pzt_ident.diagnosis import refit
 from pzt_ident.diagnosis.refit import descend, first_fit, stepped
+from pzt_ident.improve import bounded
 from pzt_ident.parameter import Parameter
 from pzt_ident.registry import blocks
 
@@ -123,3 +126,16 @@ def test_a_descent_from_where_the_simulation_fails_is_no_success(plain, monkeypa
         inside = descend(problem, np.array([0.5, 0.5, 0.5, 0.5, 0.49]))
     assert np.isfinite(problem.loss(inside)[0])
     assert inside[4] < 0.5
+
+
+def test_a_parameter_on_a_bound_is_told_unless_it_is_its_null(creeping):
+    fit = refit.refit(creeping, first_fit(creeping, 0), ("amplifier_lag",), {})
+    place = {name: i for i, name in enumerate(fit.problem.names)}
+    point = np.full(fit.problem.dimensions, 0.5)
+    point[place["bouc_wen.gamma"]] = 1.0
+    point[place["amplifier_lag.tau"]] = 0.0
+    assert replace(fit, point=point).on_bounds == ("bouc_wen.gamma",)
+    point[place["amplifier_lag.tau"]] = 1.0
+    assert set(replace(fit, point=point).on_bounds) == {"bouc_wen.gamma", "amplifier_lag.tau"}
+    said = bounded(replace(fit, point=point))
+    assert "amplifier_lag.tau ended on its bound of 0.005 s" in said
