@@ -30,9 +30,11 @@ class Table:
 
 
 def make_tables(results: Results) -> dict[str, Table]:
-    """The league of optimizers, every run, the best run's parameters, and the records, by name."""
-    made = (league(results), runs(results), parameters(results), records(results))
-    return {table.name: table for table in made}
+    """Those that these results have, by name: the league of optimizers, every run, the best run's parameters and the
+    records of a run; the candidates of a diagnosis; the steps of an improvement and the parameters before and after."""
+    made = [league, runs, parameters, records] if results.result else []
+    made += [candidates] * bool(results.diagnosis) + [steps, changes] * bool(results.improvement)
+    return {table.name: table for table in (make(results) for make in made)}
 
 
 def write_tables(tables: Mapping[str, Table], folder: Path) -> None:
@@ -143,6 +145,87 @@ def records(results: Results) -> Table:
     }
     units = _units(results, *(f"rmse_{axis}" for axis in axes), s=("settle",), Hz=("sample_rate",))
     return _table("records", rows, cells, {"record", "use", "file", "SHA-256"}, units)
+
+
+def candidates(results: Results) -> Table:
+    """One row an effect that was considered, best first."""
+    rows = [
+        {
+            **{key: item[key] for key in ("effect", "decision", "explained", "visibility", "physics", "remedy")},
+            "expected": ", ".join(
+                f"{name.partition('.')[2]} {number(value, 3)}" for name, value in item["expected"].items()
+            ),
+            "alike": ", ".join(word for word in item["class"] if word != item["effect"]),
+            **(item["rmse"] or dict.fromkeys(("identify", "validate"))),
+        }
+        for item in results.diagnosis["candidates"]
+    ]
+    of = unit(results.unit)
+    cells: dict[str, Cell] = {
+        "effect": lambda row: row["effect"],
+        "decision": lambda row: row["decision"],
+        "explains": lambda row: percent(row["explained"]),
+        "expected": lambda row: row["expected"],
+        "visibility": lambda row: number(row["visibility"], 2),
+        "cannot be told from": lambda row: row["alike"],
+        f"identify [{of}]": lambda row: number(row["identify"]),
+        f"validate [{of}]": lambda row: number(row["validate"]),
+        "what it is": lambda row: row["physics"],
+    }
+    words = {"effect", "decision", "expected", "cannot be told from", "what it is"}
+    return _table("candidates", rows, cells, words, _units(results, "identify", "validate"))
+
+
+def steps(results: Results) -> Table:
+    """One row a stair: what was added or taken back, and what the model leaves after it."""
+    rows = [
+        {
+            "step": step_name(step),
+            **step["rmse"],
+            "floors": step["rmse"]["identify"] / results.improvement["floor"],
+            **{key: step.get(key) for key in ("expected", "explained")},
+            "class": " or ".join(step["class"]),
+        }
+        for step in results.improvement["steps"]
+    ]
+    rows[0]["explained"] = None
+    of = unit(results.unit)
+    cells: dict[str, Cell] = {
+        "step": lambda row: row["step"],
+        f"identify [{of}]": lambda row: number(row["identify"]),
+        f"validate [{of}]": lambda row: number(row["validate"]),
+        "noise floors": lambda row: number(row["floors"], 3),
+        "expected to explain": lambda row: percent(row["expected"]),
+        "explained": lambda row: percent(row["explained"]),
+        "these data say": lambda row: row["class"],
+    }
+    return _table("steps", rows, cells, {"step", "these data say"}, _units(results, "identify", "validate"))
+
+
+def step_name(step: Mapping[str, Any]) -> str:
+    """`as given`, `+ effect` or `- effect`."""
+    return f"+ {step['added']}" if step["added"] else f"− {step['removed']}" if step["removed"] else "as given"
+
+
+def changes(results: Results) -> Table:
+    """One row a parameter of the improved model, before and after."""
+    first, last = (results.improvement["steps"][place]["parameters"] for place in (0, -1))
+    rows = [
+        {
+            "parameter": name,
+            "unit": item["unit"],
+            "as_given": first.get(name, {}).get("value"),
+            "improved": item["value"],
+        }
+        for name, item in last.items()
+    ]
+    cells: dict[str, Cell] = {
+        "parameter": lambda row: row["parameter"],
+        "as given": lambda row: number(row["as_given"], 5),
+        "improved": lambda row: number(row["improved"], 5),
+        "unit": lambda row: unit(row["unit"]),
+    }
+    return _table("changes", rows, cells, {"parameter", "unit"}, {})
 
 
 def latex(table: Table) -> str:

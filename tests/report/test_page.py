@@ -1,3 +1,5 @@
+import base64
+import hashlib
 import json
 import re
 import shutil
@@ -13,7 +15,6 @@ from .conftest import WEIRD, make_run
 
 SECTIONS = [
     "model",
-    "loops",
     "residuals",
     "convergence",
     "league",
@@ -59,14 +60,30 @@ def weird_page(weird):
 
 
 @pytest.mark.parametrize("name", ["plain_page", "weird_page"])
-def test_nothing_is_loaded_and_nothing_runs(name, request):
+def test_nothing_is_loaded(name, request):
     page = request.getfixturevalue(name)
     assert page.loads
     assert all(re.match(r"#|data:image/png;base64,", reference) for reference in page.loads)
-    assert not {"script", "iframe", "link", "object", "embed", "img"} & {tag for tag, _ in page.tags}
+    assert not {"iframe", "link", "object", "embed", "img"} & {tag for tag, _ in page.tags}
     assert not [key for _, attributes in page.tags for key in attributes if key.startswith("on")]
     style = next(words for words in page.words if "color-scheme" in words)
     assert "@import" not in style and "url(" not in style
+
+
+def test_only_the_scripts_of_the_package_may_run(weird):
+    text = (weird / "report.html").read_text(encoding="utf-8")
+    found = re.findall(r"<script(?: type=.module.)?>(.*?)</script>", text, re.S)
+    hashes = [base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in found]
+    policy = re.search(r'Content-Security-Policy" content="([^"]*)"', text)[1]
+    assert policy.startswith("default-src 'none'; ")
+    assert policy.endswith("script-src " + " ".join(f"'sha256-{value}'" for value in hashes))
+    assert "import " not in found[1].partition("\n")[0] and not re.search(r"^(import|export) ", found[1], re.M)
+
+
+def test_a_script_cannot_be_ended_by_a_name(weird):
+    text = (weird / "report.html").read_text(encoding="utf-8")
+    content = re.search(r'<script type="application/json" id="content">(.*?)</script>', text, re.S)[1]
+    assert {record["name"] for record in json.loads(content)["records"]} == {WEIRD}
 
 
 @pytest.mark.parametrize("name", ["plain_page", "weird_page"])
