@@ -98,9 +98,9 @@ def run(job: Path, out: Path | None, workers: int | None, no_report: bool, as_js
         from pzt_ident.job import load_job
         from pzt_ident.run import run
 
-        return run(load_job(job), out, workers=workers, report=not no_report, listen=listen)
+        return run(load_job(job), out, workers=workers, report=False, listen=listen)
 
-    _identify(start, as_json, quiet)
+    _identify(start, no_report, as_json, quiet)
 
 
 @main.command()
@@ -113,16 +113,20 @@ def resume(folder: Path, workers: int | None, no_report: bool, as_json: bool, qu
     def start(listen: Listener) -> Path:
         from pzt_ident.run import resume
 
-        return resume(folder, workers=workers, report=not no_report, listen=listen)
+        return resume(folder, workers=workers, report=False, listen=listen)
 
-    _identify(start, as_json, quiet)
+    _identify(start, no_report, as_json, quiet)
 
 
-def _identify(start: Callable[[Listener], Path], as_json: bool, quiet: bool) -> None:
-    from pzt_ident import terminal
+def _identify(start: Callable[[Listener], Path], no_report: bool, as_json: bool, quiet: bool) -> None:
+    from pzt_ident import compare, terminal
+    from pzt_ident.report import page
 
     with terminal.listening(silent=as_json or quiet) as listen:
         folder = start(listen)
+        if not no_report:
+            compare.compare(folder, folder)
+            page.write_report(folder)
     result = json.loads((folder / "result.json").read_text(encoding="utf-8"))
     _answer({"folder": str(folder), "result": result}, lambda: terminal.show_result(result, folder), as_json, quiet)
 
@@ -253,19 +257,26 @@ def init(folder: Path, as_json: bool, quiet: bool) -> None:
 
 @main.command()
 @click.argument("folders", metavar="DIR...", nargs=-1, required=True, type=EXISTING)
+@click.option("-o", "--out", type=EXISTING, help="Page of several results; side-by-side.html if not given.")
 @output
-def report(folders: tuple[Path, ...], as_json: bool, quiet: bool) -> None:
-    """Draw the report of each finished run's folder again, and every figure as PDF and SVG at 88 and 180 mm."""
+def report(folders: tuple[Path, ...], out: Path | None, as_json: bool, quiet: bool) -> None:
+    """Draw the report of each folder of results again, and every figure as PDF and SVG at 88 and 180 mm.
+
+    Several folders are put side by side, too, on a page of their own.
+    """
     from pzt_ident.report.figures import write_paper_figures
     from pzt_ident.report.page import write_report
-    from pzt_ident.report.results import read_results
+    from pzt_ident.report.results import read_folder
+    from pzt_ident.report.side_by_side import write_side_by_side
     from pzt_ident.terminal import tracked
 
     pages = []
     for folder in folders:
         pages.append(str(write_report(folder)))
-        for _ in tracked(write_paper_figures(read_results(folder), folder / "figures"), "figures", as_json or quiet):
+        for _ in tracked(write_paper_figures(read_folder(folder), folder / "figures"), "figures", as_json or quiet):
             pass
+    if len(folders) > 1:
+        pages.append(str(write_side_by_side(folders, out or Path("side-by-side.html"))))
     _answer({"reports": pages}, lambda: click.echo("\n".join(pages)), as_json, quiet)
 
 

@@ -90,6 +90,13 @@ class Results:
         return self.result["best"]
 
     @property
+    def parameters(self) -> dict[str, Any]:
+        """Of the last model; none where only a diagnosis was written."""
+        if self.improvement:
+            return self.improvement["steps"][-1]["parameters"]
+        return self.best["parameters"] if self.result else {}
+
+    @property
     def models(self) -> dict[str, tuple[Trace, ...]]:
         """The traces of each model to be seen, the last one first."""
         return {"improved": self.traces, "as given": self.before} if self.before else {"model": self.traces}

@@ -62,7 +62,7 @@ def league(results: Results) -> Table:
         "evaluations to 1\u00a0%": lambda row: count(row["evaluations_to_1_percent_median"]),
         "success": lambda row: percent(row["success"]),
     }
-    return _table(
+    return table(
         "league", results.result["league"], cells, {"optimizer"}, _units(results, *rmse, s=("seconds_median",))
     )
 
@@ -95,7 +95,7 @@ def runs(results: Results) -> Table:
         "stopped by": lambda row: row["stopped_by"],
     }
     units = _units(results, *flat, s=("seconds", "cpu_seconds"))
-    return _table("runs", rows, cells, {"run", "stopped by"}, units)
+    return table("runs", rows, cells, {"run", "stopped by"}, units)
 
 
 def parameters(results: Results) -> Table:
@@ -114,7 +114,7 @@ def parameters(results: Results) -> Table:
     }
     if any(row["note"] for row in rows):
         cells["note"] = lambda row: row["note"] or ""
-    return _table("parameters", rows, cells, {"parameter", "unit", "verdict", "note"}, {})
+    return table("parameters", rows, cells, {"parameter", "unit", "verdict", "note"}, {})
 
 
 def records(results: Results) -> Table:
@@ -144,7 +144,7 @@ def records(results: Results) -> Table:
         "SHA-256": lambda row: row["sha256"][:16],
     }
     units = _units(results, *(f"rmse_{axis}" for axis in axes), s=("settle",), Hz=("sample_rate",))
-    return _table("records", rows, cells, {"record", "use", "file", "SHA-256"}, units)
+    return table("records", rows, cells, {"record", "use", "file", "SHA-256"}, units)
 
 
 def candidates(results: Results) -> Table:
@@ -173,7 +173,7 @@ def candidates(results: Results) -> Table:
         "what it is": lambda row: row["physics"],
     }
     words = {"effect", "decision", "expected", "cannot be told from", "what it is"}
-    return _table("candidates", rows, cells, words, _units(results, "identify", "validate"))
+    return table("candidates", rows, cells, words, _units(results, "identify", "validate"))
 
 
 def steps(results: Results) -> Table:
@@ -199,7 +199,7 @@ def steps(results: Results) -> Table:
         "explained": lambda row: percent(row["explained"]),
         "these data say": lambda row: row["class"],
     }
-    return _table("steps", rows, cells, {"step", "these data say"}, _units(results, "identify", "validate"))
+    return table("steps", rows, cells, {"step", "these data say"}, _units(results, "identify", "validate"))
 
 
 def step_name(step: Mapping[str, Any]) -> str:
@@ -225,7 +225,7 @@ def changes(results: Results) -> Table:
         "improved": lambda row: number(row["improved"], 5),
         "unit": lambda row: unit(row["unit"]),
     }
-    return _table("changes", rows, cells, {"parameter", "unit"}, {})
+    return table("changes", rows, cells, {"parameter", "unit"}, {})
 
 
 def latex(table: Table) -> str:
@@ -270,7 +270,7 @@ def _latex_row(cells: Any) -> str:
     return " & ".join(latex_escape(str(cell)) for cell in cells) + r" \\"
 
 
-def _table(
+def table(
     name: str, rows: list[dict[str, Any]], cells: dict[str, Cell], words: set[str], units: dict[str, str]
 ) -> Table:
     import pandas as pd

@@ -21,16 +21,18 @@ POINTS = 9000  # of all records of a page together
 def packed(models: Mapping[str, Sequence[Trace]], points: int | None = POINTS) -> list[dict[str, Any]]:
     """Every record and axis once, with the residual of each model (name: its traces) that has these samples.
 
-    The first model says which records there are. `points` are shared out by length, None keeps every sample.
+    `points` are shared out by length, None keeps every sample.
     """
-    first, *others = models.items()
-    total = sum(trace.time.size for trace in first[1]) or 1
-    found = []
-    for trace in first[1]:
-        rivals = [(name, other) for name, traces in others for other in traces if _same(trace, other)]
-        share = None if points is None else max(points * trace.time.size // total, 400)
-        found.append(_record(trace, [(first[0], trace), *rivals], share))
-    return found
+    groups: list[list[tuple[str, Trace]]] = []
+    for name, trace in ((name, trace) for name, traces in models.items() for trace in traces):
+        mates = next((group for group in groups if _same(group[0][1], trace)), None)
+        if mates is None:
+            groups.append([(name, trace)])
+        else:
+            mates.append((name, trace))
+    total = sum(group[0][1].time.size for group in groups)
+    shares = [points and max(points * group[0][1].time.size // total, 400) for group in groups]
+    return [_record(group[0][1], group, share) for group, share in zip(groups, shares, strict=True)]
 
 
 def _same(one: Trace, other: Trace) -> bool:
