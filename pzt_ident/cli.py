@@ -256,6 +256,35 @@ def init(folder: Path, as_json: bool, quiet: bool) -> None:
 
 
 @main.command()
+@click.option("--out", type=EXISTING, default=Path("pzt-ident-demo"), show_default=True, help="Folder to write into.")
+@click.option("--no-browser", is_flag=True, help="Do not open the report.")
+@output
+def demo(out: Path, no_browser: bool, as_json: bool, quiet: bool) -> None:
+    """Find and add what a model misses, on a measurement that ships, and open the report."""
+    from pzt_ident import staircase, terminal
+    from pzt_ident.demo import hidden, show_in_browser, write_demo
+    from pzt_ident.improve import improve
+    from pzt_ident.job import load_job
+
+    silent = as_json or quiet
+    job = write_demo(out)
+    if not silent:
+        click.echo(f"wrote {job}, which knows of no effect, and a measurement with effects hidden in it", err=True)
+    with terminal.listening(silent):
+        folder = improve(load_job(job), out / "improved", staircase.told(silent))
+    found = json.loads((folder / "improvement.json").read_text(encoding="utf-8"))
+
+    def say() -> None:
+        staircase.show_improvement(found, folder)
+        click.echo(f"hidden was: {', '.join(item['effect'] for item in hidden())}")
+        click.echo(f"next, with the mouse: pzt-ident workbench {quote(str(job))}")
+
+    _answer({"folder": str(folder), "improvement": found, "hidden": hidden()}, say, as_json, quiet)
+    if not no_browser:
+        show_in_browser(folder / "report.html")
+
+
+@main.command()
 @click.argument("folders", metavar="DIR...", nargs=-1, required=True, type=EXISTING)
 @click.option("-o", "--out", type=EXISTING, help="Page of several results; side-by-side.html if not given.")
 @output

@@ -62,6 +62,11 @@ def league(results: Results) -> Table:
         "evaluations to 1\u00a0%": lambda row: count(row["evaluations_to_1_percent_median"]),
         "success": lambda row: percent(row["success"]),
     }
+    if len(results.result["league"]) > 1:
+        cells["behind the first in"] = lambda row: (
+            f"{row['leader_ahead']} of {row['pairs']}" if row.get("pairs") else "–"
+        )
+        cells["sign test p"] = lambda row: number(row["sign_test"], 2) if row.get("pairs") else "–"
     return table(
         "league", results.result["league"], cells, {"optimizer"}, _units(results, *rmse, s=("seconds_median",))
     )
