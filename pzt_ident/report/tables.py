@@ -157,9 +157,7 @@ def candidates(results: Results) -> Table:
     rows = [
         {
             **{key: item[key] for key in ("effect", "decision", "explained", "visibility", "physics", "remedy")},
-            "expected": ", ".join(
-                f"{name.partition('.')[2]} {number(value, 3)}" for name, value in item["expected"].items()
-            ),
+            "expected": expected(item["expected"]),
             "alike": ", ".join(word for word in item["class"] if word != item["effect"]),
             **(item["rmse"] or dict.fromkeys(("identify", "validate"))),
         }
@@ -179,6 +177,12 @@ def candidates(results: Results) -> Table:
     }
     words = {"effect", "decision", "expected", "cannot be told from", "what it is"}
     return table("candidates", rows, cells, words, _units(results, "identify", "validate"))
+
+
+def expected(values: Mapping[str, float], most: int = 3) -> str:
+    """The first parameters of an effect and the values that they would take."""
+    said = [f"{name.partition('.')[2]} {number(value, 3)}" for name, value in values.items()]
+    return ", ".join([*said[:most], "…"] if len(said) > most else said)
 
 
 def steps(results: Results) -> Table:
