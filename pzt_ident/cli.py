@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import errno
 import io
 import json
 import sys
@@ -13,52 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pzt_ident.errors import InputError, RunError
+from pzt_ident.shell import EXISTING, Commands, answer, output, reporting, searching
 
 if TYPE_CHECKING:
     from pzt_ident.terminal import Listener
-
-Command = Callable[..., None]
-
-EXISTING = click.Path(path_type=Path)
-
-
-class Failure(click.ClickException):
-    """One line on stderr; ends with exit code 1."""
-
-
-class BadInput(click.ClickException):
-    exit_code = 2
-
-
-class Interrupted(click.ClickException):
-    exit_code = 130
-
-
-class Commands(click.Group):
-    """Turns errors into one clear line: exit code 2 for bad input, 1 for a failure, 130 for an interrupt."""
-
-    def invoke(self, ctx: click.Context) -> Any:
-        try:
-            return super().invoke(ctx)
-        except (click.ClickException, click.exceptions.Exit, click.Abort):
-            raise
-        except InputError as error:
-            raise BadInput(str(error)) from None
-        except RunError as error:
-            raise Failure(str(error)) from None
-        except KeyboardInterrupt:
-            raise Interrupted("interrupted") from None
-        except Exception as error:
-            if ctx.params["debug"] or (isinstance(error, OSError) and error.errno == errno.EPIPE):
-                raise
-            raise Failure(_in_a_line(error)) from None
-
-
-def _in_a_line(error: Exception) -> str:
-    if isinstance(error, OSError) and error.strerror:
-        return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
-    return f"{type(error).__name__}: {error} (`pzt-ident --debug ...` shows where)"
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -71,19 +28,6 @@ def main(debug: bool) -> None:
     """
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # a terminal may lack a letter of a name
-
-
-def output(command: Command) -> Command:
-    """--json and --quiet."""
-    command = click.option("--quiet", is_flag=True, help="Say nothing but errors.")(command)
-    return click.option("--json", "as_json", is_flag=True, help="Write the answer to stdout as JSON.")(command)
-
-
-def searching(command: Command) -> Command:
-    """--workers and --no-report."""
-    command = click.option("--no-report", is_flag=True, help="Write the results, draw no report.")(command)
-    workers = click.IntRange(min=1)
-    return click.option("--workers", type=workers, help="Processes side by side; all cores if not given.")(command)
 
 
 @main.command()
@@ -128,14 +72,15 @@ def _identify(start: Callable[[Listener], Path], no_report: bool, as_json: bool,
             compare.compare(folder, folder)
             page.write_report(folder)
     result = json.loads((folder / "result.json").read_text(encoding="utf-8"))
-    _answer({"folder": str(folder), "result": result}, lambda: terminal.show_result(result, folder), as_json, quiet)
+    answer({"folder": str(folder), "result": result}, lambda: terminal.show_result(result, folder), as_json, quiet)
 
 
 @main.command()
 @click.argument("source", metavar="JOB-or-DIR", type=EXISTING)
 @click.option("--out", type=EXISTING, help="Folder for the results; DIR, or results/<name>/<time>-<hash>.")
+@reporting
 @output
-def compare(source: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
+def compare(source: Path, out: Path | None, no_report: bool, as_json: bool, quiet: bool) -> None:
     """Say where the model fails: the best run in the folder DIR, or of the job file JOB, which is run first."""
     from pzt_ident import atlas, terminal
     from pzt_ident.compare import compare, draw, finished
@@ -143,21 +88,22 @@ def compare(source: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
     with terminal.listening(silent=as_json or quiet) as listen:
         folder = finished(source, out, listen)
     found = compare(folder, out or folder)
-    for _ in terminal.tracked(draw(folder, out or folder, found), "figures", as_json or quiet):
+    for _ in () if no_report else terminal.tracked(draw(folder, out or folder, found), "figures", as_json or quiet):
         pass
-    _answer({"folder": str(out or folder), "residuals": found}, lambda: atlas.show_misfits(found), as_json, quiet)
+    answer({"folder": str(out or folder), "residuals": found}, lambda: atlas.show_misfits(found), as_json, quiet)
 
 
 @main.command()
 @click.argument("job", type=EXISTING)
 @click.option("--out", type=EXISTING, help="Folder for the results; results/<name>/<time>-<hash> if not given.")
+@reporting
 @output
-def diagnose(job: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
+def diagnose(job: Path, out: Path | None, no_report: bool, as_json: bool, quiet: bool) -> None:
     """Say which physical effect the model of a job file JOB misses."""
     from pzt_ident import staircase
     from pzt_ident.improve import diagnose
 
-    _diagnose(diagnose, "diagnosis", staircase.show_diagnosis, job, out, as_json, quiet)
+    _diagnose(diagnose, "diagnosis", staircase.show_diagnosis, job, out, no_report, as_json, quiet)
 
 
 @main.command()
@@ -171,19 +117,20 @@ def add(job: Path, effect: str, out: Path, as_json: bool, quiet: bool) -> None:
 
     made = add(job, effect, out)
     said = f"wrote {out}: effects {', '.join(made.effects)}\nnext: pzt-ident run {quote(str(out))}"
-    _answer({"job": str(out), "effects": list(made.effects)}, lambda: click.echo(said), as_json, quiet)
+    answer({"job": str(out), "effects": list(made.effects)}, lambda: click.echo(said), as_json, quiet)
 
 
 @main.command()
 @click.argument("job", type=EXISTING)
 @click.option("--out", type=EXISTING, help="Folder for the results; results/<name>/<time>-<hash> if not given.")
+@reporting
 @output
-def improve(job: Path, out: Path | None, as_json: bool, quiet: bool) -> None:
+def improve(job: Path, out: Path | None, no_report: bool, as_json: bool, quiet: bool) -> None:
     """Add what the model of a job file JOB misses, effect by effect, and watch the error fall."""
     from pzt_ident import staircase
     from pzt_ident.improve import improve
 
-    _diagnose(improve, "improvement", staircase.show_improvement, job, out, as_json, quiet)
+    _diagnose(improve, "improvement", staircase.show_improvement, job, out, no_report, as_json, quiet)
 
 
 def _diagnose(
@@ -192,17 +139,21 @@ def _diagnose(
     show: Callable[[dict[str, Any], Path], None],
     job: Path,
     out: Path | None,
+    no_report: bool,
     as_json: bool,
     quiet: bool,
 ) -> None:
     from pzt_ident import staircase, terminal
     from pzt_ident.job import load_job
+    from pzt_ident.report.page import write_report
 
     silent = as_json or quiet
     with terminal.listening(silent):
         folder = work(load_job(job), out, staircase.told(silent))
+        if not no_report:
+            write_report(folder)
     found = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
-    _answer({"folder": str(folder), name: found}, lambda: show(found, folder), as_json, quiet)
+    answer({"folder": str(folder), name: found}, lambda: show(found, folder), as_json, quiet)
 
 
 @main.command()
@@ -214,7 +165,7 @@ def check(job: Path, as_json: bool, quiet: bool) -> None:
     from pzt_ident.job import load_job
 
     found = summary.of_job(load_job(job))
-    _answer(found, lambda: summary.show_job(found), as_json, quiet)
+    answer(found, lambda: summary.show_job(found), as_json, quiet)
 
 
 @main.command("list")
@@ -225,7 +176,7 @@ def list_(kind: str, as_json: bool, quiet: bool) -> None:
     from pzt_ident import summary, terminal
 
     found = summary.words(kind)
-    _answer(found, lambda: terminal.table(("word", "what it is"), list(found.items())), as_json, quiet)
+    answer(found, lambda: terminal.table(("word", "what it is"), list(found.items())), as_json, quiet)
 
 
 @main.command()
@@ -236,7 +187,7 @@ def show(name: str, as_json: bool, quiet: bool) -> None:
     from pzt_ident import summary
 
     found = summary.of_word(name)
-    _answer(found, lambda: summary.show_word(found), as_json, quiet)
+    answer(found, lambda: summary.show_word(found), as_json, quiet)
 
 
 @main.command()
@@ -252,7 +203,7 @@ def init(folder: Path, as_json: bool, quiet: bool) -> None:
     def say() -> None:
         click.echo("".join(f"wrote {path}\n" for path in written) + f"next: pzt-ident run {quote(str(job))}")
 
-    _answer({"written": [str(path) for path in written], "job": str(job)}, say, as_json, quiet)
+    answer({"written": [str(path) for path in written], "job": str(job)}, say, as_json, quiet)
 
 
 @main.command()
@@ -265,6 +216,7 @@ def demo(out: Path, no_browser: bool, as_json: bool, quiet: bool) -> None:
     from pzt_ident.demo import hidden, show_in_browser, write_demo
     from pzt_ident.improve import improve
     from pzt_ident.job import load_job
+    from pzt_ident.report.page import write_report
 
     silent = as_json or quiet
     job = write_demo(out)
@@ -272,6 +224,7 @@ def demo(out: Path, no_browser: bool, as_json: bool, quiet: bool) -> None:
         click.echo(f"wrote {job}, which knows of no effect, and a measurement with effects hidden in it", err=True)
     with terminal.listening(silent):
         folder = improve(load_job(job), out / "improved", staircase.told(silent))
+        write_report(folder)
     found = json.loads((folder / "improvement.json").read_text(encoding="utf-8"))
 
     def say() -> None:
@@ -279,7 +232,7 @@ def demo(out: Path, no_browser: bool, as_json: bool, quiet: bool) -> None:
         click.echo(f"hidden was: {', '.join(item['effect'] for item in hidden())}")
         click.echo(f"next, with the mouse: pzt-ident workbench {quote(str(job))}")
 
-    _answer({"folder": str(folder), "improvement": found, "hidden": hidden()}, say, as_json, quiet)
+    answer({"folder": str(folder), "improvement": found, "hidden": hidden()}, say, as_json, quiet)
     if not no_browser:
         show_in_browser(folder / "report.html")
 
@@ -329,11 +282,4 @@ def report(folders: tuple[Path, ...], out: Path | None, as_json: bool, quiet: bo
             pass
     if len(folders) > 1:
         pages.append(str(write_side_by_side(folders, out or Path("side-by-side.html"))))
-    _answer({"reports": pages}, lambda: click.echo("\n".join(pages)), as_json, quiet)
-
-
-def _answer(found: dict[str, Any], say: Callable[[], None], as_json: bool, quiet: bool) -> None:
-    if as_json:
-        click.echo(json.dumps(found, indent=2))
-    elif not quiet:
-        say()
+    answer({"reports": pages}, lambda: click.echo("\n".join(pages)), as_json, quiet)

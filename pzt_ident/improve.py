@@ -37,10 +37,7 @@ def begun(job: Job, out: Path | None) -> tuple[Case, Path]:
 
 
 def diagnose(job: Job, out: Path | None = None, tell: Tell = lambda event: None) -> Path:
-    """Fit the job's model, say what it misses; writes `diagnosis.json`, `signals.nc` and the page into the folder that
-    is returned."""
-    from pzt_ident.report.page import write_report
-
+    """Fit the job's model, say what it misses; writes `diagnosis.json` and `signals.nc` into the folder returned."""
     case, folder = begun(job, out)
     with np.errstate(all="ignore"):
         first = first_fit(case, job.seed)
@@ -49,18 +46,15 @@ def diagnose(job: Job, out: Path | None = None, tell: Tell = lambda event: None)
         content = diagnosis_of(job, case, found, folder)
         write_signals(folder / "signals.nc", first.problem, first.point)
     write_json(folder / "diagnosis.json", content)
-    write_report(folder)
     return folder
 
 
 def improve(job: Job, out: Path | None = None, tell: Tell = lambda event: None) -> Path:
     """Diagnose, add what is missing and diagnose again, until nothing is missing or nothing more is known.
 
-    Writes `improved.yaml`, `diagnosis.json` of the last model, `improvement.json`, the signals of the model as given
-    and of the last one, and the page with the staircase.
+    Writes `improved.yaml`, `diagnosis.json` of the last model, `improvement.json`, and the signals of the model as
+    given and of the last one.
     """
-    from pzt_ident.report.page import write_report
-
     case, folder = begun(job, out)
     with np.errstate(all="ignore"):
         steps, last = stairs.improve(case, first_fit(case, job.seed), lambda step: tell(stair(case, step)))
@@ -85,7 +79,6 @@ def improve(job: Job, out: Path | None = None, tell: Tell = lambda event: None) 
     write_text(folder / "improved.yaml", with_effects(job, effects, folder))
     write_json(folder / "diagnosis.json", diagnosis)
     write_json(folder / "improvement.json", content)
-    write_report(folder)
     return folder
 
 

@@ -165,15 +165,15 @@ function candidates() {
   at("candidates").hidden = !diagnosis?.candidates.length;
   at("effects").replaceChildren();
   if (!diagnosis) return;
-  row(at("effects"), "th", ["effect", "decision", "explains", "would be", "visible", `RMSE after it [${diagnosis.unit}]`, "cannot be told from", "what it is", ""]);
+  row(at("effects"), "th", ["effect", "", "decision", "explains", "would be", "visible", `RMSE after it [${diagnosis.unit}]`, "what it is", "cannot be told from"]);
   for (const item of diagnosis.candidates) {
     const values = Object.entries(item.expected).slice(0, 3).map(([name, value]) => `${name.split(".").at(-1)} ${number(value)}`).join(", ");
     const rmse = item.rmse ? `${number(item.rmse.identify)} / ${number(item.rmse.validate)}` : "";
     const alike = item.class.filter((word) => word !== item.effect).join(", ");
-    const cells = row(at("effects"), "td", [item.effect, item.decision, `${number(100 * item.explained, 2)} %`, values, number(item.visibility, 2), rmse, alike, item.physics, ""]);
+    const cells = row(at("effects"), "td", [item.effect, "", item.decision, `${number(100 * item.explained, 2)} %`, values, number(item.visibility, 2), rmse, item.physics, alike]);
     cells[7].classList.add("note");
     if (item.decision === "missing") cells[0].parentElement.classList.add("missing");
-    addButton(cells[8], item.effect);
+    addButton(cells[1], item.effect);
   }
 }
 

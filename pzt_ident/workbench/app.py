@@ -67,7 +67,12 @@ def make_app(bench: Bench, hosts: set[str], token: str) -> Guard:
     posts = {"upload": upload, "look": look, "job": begin, "run": run, "stop": stop, "model": choose, "report": ticket}
     posts |= {"add": change, "remove": change, "undo": undo}
     gets = {"state": state, "signals": signals, "events": events, "job": job_file, "drive": drive_file}
-    routes = [route("/", page), route("/favicon.ico", nothing), route("/web/{name:path}", web), route("/report/{key}", report)]
+    routes = [
+        route("/", page),
+        route("/favicon.ico", nothing),
+        route("/web/{name:path}", web),
+        route("/report/{key}", report),
+    ]
     routes += [route(f"/api/{name}", handler) for name, handler in gets.items()]
     routes += [route(f"/api/{name}", handler, "POST") for name, handler in posts.items()]
     return Guard(Starlette(routes=routes, lifespan=life), hosts, token)

@@ -90,14 +90,21 @@ class Bench:
         self._change(tuple(word for word in job.effects if word != effect), f"− {effect}")
 
     def _change(self, effects: tuple[str, ...], change: str) -> None:
-        folder = self.folder / "steps" / str(self._next)
+        before, folder = self.step(), self.folder / "steps" / str(self._next)
         self._add(with_effects(self.job(), effects, folder), self.at, change)
+        sign, effect = change.split()
+        paths = [self.relative(place / "job.yaml") for place in (before, folder)]
+        add = ["pzt-ident", "add", paths[0], effect, "-o", paths[1]]
+        self.log(join(add) if sign == "+" else f"# {paths[1]} is {paths[0]} less {effect}")
 
     def choose(self, words: list[str]) -> None:
         """Another chain of blocks."""
         folder = self.folder / "steps" / str(self._next)
         text = with_effects(self.job(), self.job().effects, folder)
+        before = self.step()
         self._add(with_model(text, words), self.at, " → ".join(words))
+        paths = [self.relative(place / "job.yaml") for place in (folder, before)]
+        self.log(f"# {paths[0]} is {paths[1]} with the model {', '.join(words)}")
 
     def undo(self) -> None:
         """Back to the step before; what was made stays in its folder."""
@@ -136,9 +143,14 @@ class Bench:
         search = ["resume", run, "--no-report"] if begun else ["run", job, "--out", run, "--no-report"]
         return [
             ("run", step / "run" / "result.json", search),
-            ("compare", step / "run" / "residuals.json", ["compare", run]),
-            ("diagnose", step / "diagnosis" / "diagnosis.json", ["diagnose", job, "--out", diagnosis]),
+            ("compare", step / "run" / "residuals.json", ["compare", run, "--no-report"]),
+            ("diagnose", step / "diagnosis" / "diagnosis.json", ["diagnose", job, "--out", diagnosis, "--no-report"]),
         ]
+
+    def log(self, line: str) -> None:
+        """Keep a line of what it takes to repeat the session in a terminal."""
+        with (self.folder / "commands.txt").open("a", encoding="utf-8") as log:
+            log.write(line + "\n")
 
     def start(self) -> None:
         """Fill the step that is shown. Raises InputError while another is being filled."""
@@ -164,8 +176,7 @@ class Bench:
         """Run a command to its end. Raises RunError with what it said where it failed."""
         self.stage, self.since = name, time.time()
         self.version += 1
-        with (self.folder / "commands.txt").open("a", encoding="utf-8") as log:
-            log.write(join(["pzt-ident", *arguments]) + "\n")
+        self.log(join(["pzt-ident", *arguments]))
         self.process = await asyncio.create_subprocess_exec(
             *(sys.executable, "-m", "pzt_ident", *arguments, "--quiet"),
             cwd=self.root,
