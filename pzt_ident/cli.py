@@ -6,6 +6,7 @@ import io
 import json
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Any
@@ -257,7 +258,8 @@ def workbench(source: Path | None, out: Path, port: int, host: str, allow_networ
         if not no_browser:
             show_in_browser(address)
 
-    serve(source, out, host, port, allow_network, ready)
+    with suppress(KeyboardInterrupt):
+        serve(source, out, host, port, allow_network, ready)
 
 
 @main.command()

@@ -36,7 +36,7 @@ export class Explorer {
     this.to = element(element(bar, "label", {}, "to "), "input", { type: "number", step: "any" });
     bar.append("s");
     for (const field of [this.from, this.to])
-      field.addEventListener("change", () => this.mark(marksInTime(this.record, Number(this.from.value), Number(this.to.value))));
+      field.addEventListener("change", () => this.markFields());
     for (const [name, act] of [["Show the mark", () => this.zoomToMark()], ["Show all", () => this.zoom()], ["Clear", () => this.mark([])]])
       element(bar, "button", { type: "button" }, name).addEventListener("click", act);
     this.fillPicker();
@@ -69,14 +69,21 @@ export class Explorer {
     this.draw();
   }
 
-  mark(marks) {
+  mark(marks, written = true) {
     this.marks = marks;
     const { time } = this.record;
     const ends = marks.length ? [time[marks[0][0]], time[marks.at(-1)[1] - 1]] : ["", ""];
-    [this.from.value, this.to.value] = ends.map((value) => (value === "" ? "" : Number(value.toPrecision(7))));
+    if (written) [this.from.value, this.to.value] = ends.map((value) => (value === "" ? "" : Number(value.toPrecision(7))));
     this.say();
     for (const plot of this.plots) plot.redraw(false);
     for (const plane of [this.loop, this.map]) { plane.scene.marks = marks; plane.overlay(); }
+  }
+
+  /** The stretch that is written in the fields, an empty one being the end of the record. */
+  markFields() {
+    const { time } = this.record;
+    const [from, to] = [this.from, this.to].map((field, end) => (field.value === "" ? time.at(-end || 0) : Number(field.value)));
+    this.mark(this.from.value + this.to.value === "" ? [] : marksInTime(this.record, from, to), false);
   }
 
   markBox(ys, xRange, yRange) {

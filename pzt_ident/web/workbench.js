@@ -73,6 +73,7 @@ function words(begun) {
   else if (diagnosis) at("verdict").textContent = diagnosis.reason;
   else if (result) at("verdict").textContent = `The model leaves ${number(result.best.rmse.validate ?? result.best.rmse.identify)} ${result.unit} RMS${result.best.rmse.validate === null ? "" : " on records the fit never saw"}.`;
   else at("verdict").textContent = state.stage ? "Identifying the model." : "Ready to run.";
+  for (const { run, reason } of result?.failed_runs ?? []) element(at("advice"), "span", { class: "warn" }, `${run} failed: ${reason}. `);
   if (!diagnosis) return;
   const missing = diagnosis.candidates.filter((item) => item.decision === "missing");
   for (const item of missing) addButton(at("advice"), item.effect, "strong");

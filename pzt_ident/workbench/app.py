@@ -223,7 +223,7 @@ async def events(bench: Bench, request: Request) -> Response:
 
 async def following(bench: Bench, request: Request) -> AsyncIterator[str]:
     shown, version, told = -1, -1, 0
-    while not await request.is_disconnected():
+    while not bench.closing() and not await request.is_disconnected():
         if bench.at != shown:
             shown, told = bench.at, 0
             yield event({"event": "step", "step": shown})

@@ -14,6 +14,7 @@ import shutil
 import signal
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from shlex import join
 from typing import Any
@@ -33,6 +34,7 @@ class Bench:
     def __init__(self, root: Path, folder: Path) -> None:
         self.root, self.folder, self.version = root.resolve(), folder.resolve(), 0
         self.stage, self.since, self.failure = "", 0.0, ""
+        self.closing: Callable[[], bool] = lambda: False
         self.task: asyncio.Task[None] | None = None
         self.process: asyncio.subprocess.Process | None = None
         stored = folder / "state.json"

@@ -36,8 +36,10 @@ def serve(source: Path | None, folder: Path, host: str, port: int, exposed: bool
     config = uvicorn.Config(
         make_app(bench, hosts, token), log_level="error", server_header=False, timeout_graceful_shutdown=2
     )
+    server = uvicorn.Server(config)
+    bench.closing = lambda: server.should_exit
     ready(f"http://{shown}:{number}/#{token}{given}")
-    uvicorn.Server(config).run(sockets=[bound])
+    server.run(sockets=[bound])
 
 
 def opened(bench: Bench, source: Path, root: Path) -> str:
@@ -58,4 +60,5 @@ def bind(host: str, port: int) -> socket.socket:
         bound.bind((host, port))
     except OSError as error:
         raise InputError(error.strerror or str(error), where=f"{host}:{port}", remedy="give another --port") from None
+    bound.listen()
     return bound

@@ -28,7 +28,8 @@ def test_nothing_changes_without_the_token(stranger, bench, name):
 @pytest.mark.parametrize("name", GETS)
 def test_nothing_is_read_without_the_token(stranger, name):
     assert stranger.get(f"/api/{name}").status_code == 403
-    assert stranger.get(f"/api/{name}?token={TOKEN}", cookies={"x-pzt-token": TOKEN}).status_code == 403
+    stranger.cookies.set("x-pzt-token", TOKEN)
+    assert stranger.get(f"/api/{name}?token={TOKEN}").status_code == 403
 
 
 @pytest.mark.parametrize(
