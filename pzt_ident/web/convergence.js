@@ -45,7 +45,8 @@ export class Convergence {
   }
 
   options(names) {
-    const axis = (label, more) => ({ label, labelSize: 18, stroke: () => colour("--quiet"), grid: { stroke: () => colour("--rule"), width: 1 }, ticks: { show: false }, ...more });
+    const font = `${Math.round(0.78 * parseFloat(getComputedStyle(this.root).fontSize))}px system-ui, sans-serif`;
+    const axis = (label, more) => ({ label, labelSize: 18, font, labelFont: font, stroke: () => colour("--quiet"), grid: { stroke: () => colour("--rule"), width: 1 }, ticks: { show: false }, ...more });
     return {
       ...this.size(),
       legend: { live: false },
