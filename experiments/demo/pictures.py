@@ -1,6 +1,6 @@
 """Take the pictures of README: the report of the demo, and the workbench while and after it finds what is missing.
 
-    python -m experiments.demo.pictures
+python -m experiments.demo.pictures
 """
 
 from __future__ import annotations

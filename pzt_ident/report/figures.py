@@ -188,7 +188,7 @@ def _search_plates(results: Results) -> Iterator[Plate]:
     yield Plate(
         "convergence",
         "convergence",
-        "Best RMSE on the identify records so far, before the polish: median and range over the repeats of each "
+        "Best RMSE on the identify records so far, before the polish: median and quartiles over the repeats of each "
         "optimizer.",
         search.convergence_height,
         partial(search.draw_convergence, results=results),

@@ -8,7 +8,7 @@ from typing import Any
 
 from pzt_ident.files import write_text
 from pzt_ident.report.numbers import number, quantity, unit
-from pzt_ident.report.page import rendered, stairs
+from pzt_ident.report.page import POINTS, rendered, stairs
 from pzt_ident.report.results import Results, read_folder
 from pzt_ident.report.tables import Cell, Table, table, write_tables
 from pzt_ident.report.traces import packed
@@ -27,7 +27,7 @@ def write_side_by_side(folders: Sequence[Path], page: Path) -> Path:
     drawn = [stairs(own, f"stairs-{place}") | {"title": name} for place, (name, own) in enumerate(improved.items())]
     models = {name: own.traces for name, own in results.items()}
     floors = next(iter(results.values())).floors
-    content = {"records": packed(models), "floors": floors, "stairs": drawn}
+    content = {"records": packed(models, POINTS[0]), "floors": floors, "stairs": drawn}
     verdicts = {name: verdict(own) for name, own in results.items()}
     words: dict[str, Any] = {"results": results, "tables": tables, "stairs": drawn, "verdicts": verdicts}
     write_text(page, rendered("side_by_side.html", "Side by side", content, lead=lead(results), **words))

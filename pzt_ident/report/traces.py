@@ -15,10 +15,9 @@ from pzt_ident.report.results import Floats, Trace
 from pzt_ident.report.style import decimate
 
 LEVELS = 65535
-POINTS = 9000  # of all records of a page together
 
 
-def packed(models: Mapping[str, Sequence[Trace]], points: int | None = POINTS) -> list[dict[str, Any]]:
+def packed(models: Mapping[str, Sequence[Trace]], points: int | None) -> list[dict[str, Any]]:
     """Every record and axis once, with the residual of each model (name: its traces) that has these samples.
 
     `points` are shared out by length, None keeps every sample.

@@ -63,7 +63,8 @@ export class Explorer {
   choose(place, marks = []) {
     this.picker.value = place;
     this.record = this.records[place];
-    this.open = opened(this.record.drive, this.record.response);
+    this.scored = lowerBound(this.record.index, this.record.settle);
+    this.open = opened(this.record.drive, this.record.response, this.scored);
     this.span = [0, this.record.index.length];
     this.marks = marks;
     this.draw();
@@ -136,14 +137,15 @@ export class Explorer {
         })).reverse(),
       ],
     }));
-    const cells = gridded(record.drive, this.open, record.models[0].residual, (i) => record.index[i] >= record.settle);
+    const cells = gridded(record.drive, this.open, record.models[0].residual, this.scored);
     this.map.caption.textContent = `Residual map: mean residual along the loop, its slope taken out. Violet: the model is ${number(cells.largest, 2)} ${record.unit} or more below the measurement; orange: above.`;
     this.map.show(this.scene(this.open, `response less a straight line [${record.unit}]`, { cells }));
     this.mark(this.marks);
   }
 
   scene(ys, yLabel, drawn) {
-    return { xs: this.record.drive, ys, xLabel: `drive [${this.record.driveUnit}]`, yLabel, marks: this.marks, ...drawn };
+    const ranges = [this.record.drive, ys].map((values) => extent(values.subarray(this.scored)));
+    return { xs: this.record.drive, ys, ranges, xLabel: `drive [${this.record.driveUnit}]`, yLabel, marks: this.marks, ...drawn };
   }
 
   plot(label, share, floor, arrays, series) {
@@ -155,7 +157,7 @@ export class Explorer {
       width, height: Math.round(Math.min(Math.max(width * share, 130), 420)),
       legend: { live: false },
       cursor: { sync: { key: this.record.name }, drag: { x: true, y: false, setScale: false }, points: { show: false } },
-      scales: { x: { time: false } },
+      scales: { x: { time: false }, y: { range: () => this.range(arrays, floor) } },
       axes: [axis({ label: "time [s]", labelSize: 18, size: 32 }), axis({ label, labelSize: 20, size: 58, values: (_, values) => values.map(tick) })],
       series: [{ label: "time" }, ...series],
       hooks: {
@@ -172,6 +174,14 @@ export class Explorer {
     plot.over.addEventListener("dblclick", () => this.mark([]));
     plot.fill();
     return plot;
+  }
+
+  /** What the scored samples shown span, with the noise floor where there is one, and some room. */
+  range(arrays, floor) {
+    const first = Math.min(Math.max(this.span[0], this.scored), this.span[1] - 1);
+    const ends = arrays.map((values) => extent(values.subarray(first, this.span[1])));
+    const [low, high] = [Math.min(-floor || Infinity, ...ends.map(([low]) => low)), Math.max(floor || -Infinity, ...ends.map(([, high]) => high))];
+    return [low - 0.06 * (high - low), high + 0.06 * (high - low)];
   }
 
   dragged(plot) {

@@ -23,10 +23,10 @@ export class Plane {
     this.listen();
   }
 
-  /** What is drawn: `curves` of {xs, ys, colour, width, dash} or `cells`, and `marked`, indices by stretch. */
+  /** What is drawn within `ranges`: `curves` of {xs, ys, colour, width, dash} or `cells`, and `marks` on xs, ys. */
   show(scene) {
     this.scene = scene;
-    const [x, y] = [extent(scene.xs), extent(scene.ys)];
+    const [x, y] = scene.ranges;
     const room = (range) => [range[0] - 0.04 * (range[1] - range[0]), range[1] + 0.04 * (range[1] - range[0])];
     [this.x, this.y] = [room(x), room(y)];
     this.draw();
@@ -163,12 +163,11 @@ export class Plane {
   }
 }
 
-/** Mean of `values` over a grid of cells of the plane, NaN where no point is. */
-export function gridded(xs, ys, values, scored, columns = 110, rows = 72) {
-  const [x, y] = [extent(xs), extent(ys)];
+/** Mean of `values` from the first scored point on over a grid of cells of the plane, NaN where no point is. */
+export function gridded(xs, ys, values, first, columns = 110, rows = 72) {
+  const [x, y] = [extent(xs.subarray(first)), extent(ys.subarray(first))];
   const total = new Float64Array(columns * rows), count = new Float64Array(columns * rows);
-  for (let i = 0; i < xs.length; i++) {
-    if (!scored(i)) continue;
+  for (let i = first; i < xs.length; i++) {
     const column = Math.min(columns - 1, Math.floor(((xs[i] - x[0]) / (x[1] - x[0])) * columns));
     const row = Math.min(rows - 1, Math.floor(((ys[i] - y[0]) / (y[1] - y[0])) * rows));
     total[row * columns + column] += values[i];

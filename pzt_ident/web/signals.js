@@ -99,12 +99,12 @@ export function lowerBound(values, value) {
   return low;
 }
 
-/** Residual of the straight line through the points: a loop opened. */
-export function opened(xs, ys) {
-  const n = xs.length;
+/** Distance from the straight line through the points from the first scored one on: a loop opened. */
+export function opened(xs, ys, first) {
+  const n = xs.length - first;
   let x = 0, y = 0, xx = 0, xy = 0;
-  for (let i = 0; i < n; i++) { x += xs[i] / n; y += ys[i] / n; }
-  for (let i = 0; i < n; i++) { xx += (xs[i] - x) ** 2; xy += (xs[i] - x) * (ys[i] - y); }
+  for (let i = first; i < xs.length; i++) { x += xs[i] / n; y += ys[i] / n; }
+  for (let i = first; i < xs.length; i++) { xx += (xs[i] - x) ** 2; xy += (xs[i] - x) * (ys[i] - y); }
   const slope = xx ? xy / xx : 0;
   return ys.map((value, i) => value - y - slope * (xs[i] - x));
 }

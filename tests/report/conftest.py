@@ -215,5 +215,6 @@ def weird(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="session")
 def long(tmp_path_factory) -> Path:
-    """Two records of 20,000 samples."""
-    return make_run(tmp_path_factory.mktemp("long"), samples=20_000, repeats=5)
+    """Two records of 20,000 samples, six optimizers."""
+    optimizers = ("pso", "rga", "csa", "cma_es", "differential_evolution", "least_squares")
+    return make_run(tmp_path_factory.mktemp("long"), samples=20_000, repeats=5, optimizers=optimizers)

@@ -71,9 +71,9 @@ def test_descent_of_two_repeats_one_of_which_stops_early():
     )
     spent, low, middle, high = descent(history, "evaluations")
     np.testing.assert_allclose(spent, [10, 20, 30])
-    np.testing.assert_allclose(low, [4, 2, 1])
+    np.testing.assert_allclose(low, [5, 3, 2.25])
     np.testing.assert_allclose(middle, [6, 4, 3.5])
-    np.testing.assert_allclose(high, [8, 6, 6])
+    np.testing.assert_allclose(high, [7, 5, 4.75])
 
 
 def test_descent_leaves_out_what_no_repeat_could_simulate():

@@ -7,6 +7,7 @@ from html.parser import HTMLParser
 
 import pytest
 
+from pzt_ident.compare import compare
 from pzt_ident.report.page import write_report
 from pzt_ident.report.results import read_results
 from pzt_ident.report.words import findings, listed, verdict
@@ -153,7 +154,10 @@ def test_names_are_listed(names, text):
 
 
 def test_a_job_of_20_000_samples_stays_small(long):
-    assert write_report(long).stat().st_size < 300 * 1024
+    compare(long, long)
+    page = write_report(long)
+    assert page.stat().st_size < 300_000
+    assert 'id="misfit-shares-x-caption"' in page.read_text(encoding="utf-8")
 
 
 def test_a_perfect_fit_of_fixed_parameters_is_drawn(plain, tmp_path):

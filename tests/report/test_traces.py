@@ -35,7 +35,7 @@ def kept(item):
 
 def test_a_short_record_is_kept_whole_to_16_bits():
     trace = made(900)
-    (item,) = packed({"model": [trace]})
+    (item,) = packed({"model": [trace]}, 7000)
     assert item["kept"] is None
     for name in ("drive", "response"):
         own = getattr(trace, name)
@@ -61,12 +61,12 @@ def test_a_thinned_record_keeps_extremes_and_the_squared_error(samples, seed, se
 
 def test_models_of_the_same_samples_share_them():
     first, second, other = made(3000), made(3000, size=3.0), made(3000, seed=9)
-    items = packed({"improved": [first], "as given": [second], "else": [other]})
+    items = packed({"improved": [first], "as given": [second], "else": [other]}, 7000)
     assert [[model["name"] for model in item["models"]] for item in items] == [["improved", "as given"], ["else"]]
 
 
 def test_a_model_that_is_not_finite_does_not_break_the_page():
     trace = made(900)
     trace.residual[5:9] = np.nan, np.inf, -np.inf, 3.0
-    (item,) = packed({"model": [trace]})
+    (item,) = packed({"model": [trace]}, 7000)
     assert np.isfinite(values(item["models"][0]["residual"])).all()
