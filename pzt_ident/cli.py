@@ -2,64 +2,22 @@
 
 from __future__ import annotations
 
-import errno
 import io
 import json
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from shlex import quote
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from pzt_ident.errors import InputError, RunError
+from pzt_ident.shell import EXISTING, Commands, answer, output, reporting, searching, trusting
 
 if TYPE_CHECKING:
     from pzt_ident.job import Job
     from pzt_ident.terminal import Listener
-
-Command = Callable[..., None]
-
-EXISTING = click.Path(path_type=Path)
-
-
-class Failure(click.ClickException):
-    """One line on stderr; ends with exit code 1."""
-
-
-class BadInput(click.ClickException):
-    exit_code = 2
-
-
-class Interrupted(click.ClickException):
-    exit_code = 130
-
-
-class Commands(click.Group):
-    """Turns errors into one clear line: exit code 2 for bad input, 1 for a failure, 130 for an interrupt."""
-
-    def invoke(self, ctx: click.Context) -> Any:
-        try:
-            return super().invoke(ctx)
-        except (click.ClickException, click.exceptions.Exit, click.Abort):
-            raise
-        except InputError as error:
-            raise BadInput(str(error)) from None
-        except RunError as error:
-            raise Failure(str(error)) from None
-        except KeyboardInterrupt:
-            raise Interrupted("interrupted") from None
-        except Exception as error:
-            if ctx.params["debug"] or (isinstance(error, OSError) and error.errno == errno.EPIPE):
-                raise
-            raise Failure(_in_a_line(error)) from None
-
-
-def _in_a_line(error: Exception) -> str:
-    if isinstance(error, OSError) and error.strerror:
-        return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
-    return f"{type(error).__name__}: {error} (`pzt-ident --debug ...` shows where)"
 
 
 @click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -72,25 +30,6 @@ def main(debug: bool) -> None:
     """
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # a terminal may lack a letter of a name
-
-
-def output(command: Command) -> Command:
-    """--json and --quiet."""
-    command = click.option("--quiet", is_flag=True, help="Say nothing but errors.")(command)
-    return click.option("--json", "as_json", is_flag=True, help="Write the answer to stdout as JSON.")(command)
-
-
-def trusting(command: Command) -> Command:
-    """--plugins."""
-    said = "Load the files that the job lists under `plugins`: they run as code."
-    return click.option("--plugins", is_flag=True, help=said)(command)
-
-
-def searching(command: Command) -> Command:
-    """--workers and --no-report."""
-    command = click.option("--no-report", is_flag=True, help="Write the results, draw no report.")(command)
-    workers = click.IntRange(min=1)
-    return click.option("--workers", type=workers, help="Processes side by side; all cores if not given.")(command)
 
 
 @main.command()
@@ -108,9 +47,9 @@ def run(
         from pzt_ident.job import load_job
         from pzt_ident.run import run
 
-        return run(load_job(job, plugins), out, workers=workers, report=not no_report, listen=listen)
+        return run(load_job(job, plugins), out, workers=workers, report=False, listen=listen)
 
-    _identify(start, as_json, quiet)
+    _identify(start, no_report, as_json, quiet)
 
 
 @main.command()
@@ -124,26 +63,31 @@ def resume(folder: Path, workers: int | None, no_report: bool, plugins: bool, as
     def start(listen: Listener) -> Path:
         from pzt_ident.run import resume
 
-        return resume(folder, workers=workers, report=not no_report, listen=listen, plugins=plugins)
+        return resume(folder, workers=workers, report=False, listen=listen, plugins=plugins)
 
-    _identify(start, as_json, quiet)
+    _identify(start, no_report, as_json, quiet)
 
 
-def _identify(start: Callable[[Listener], Path], as_json: bool, quiet: bool) -> None:
-    from pzt_ident import terminal
+def _identify(start: Callable[[Listener], Path], no_report: bool, as_json: bool, quiet: bool) -> None:
+    from pzt_ident import compare, terminal
+    from pzt_ident.report import page
 
     with terminal.listening(silent=as_json or quiet) as listen:
         folder = start(listen)
+        if not no_report:
+            compare.compare(folder, folder)
+            page.write_report(folder)
     result = json.loads((folder / "result.json").read_text(encoding="utf-8"))
-    _answer({"folder": str(folder), "result": result}, lambda: terminal.show_result(result, folder), as_json, quiet)
+    answer({"folder": str(folder), "result": result}, lambda: terminal.show_result(result, folder), as_json, quiet)
 
 
 @main.command()
 @click.argument("source", metavar="JOB-or-DIR", type=EXISTING)
 @click.option("--out", type=EXISTING, help="Folder for the results; DIR, or results/<name>/<time>-<hash>.")
+@reporting
 @trusting
 @output
-def compare(source: Path, out: Path | None, plugins: bool, as_json: bool, quiet: bool) -> None:
+def compare(source: Path, out: Path | None, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
     """Say where the model fails: the best run in the folder DIR, or of the job file JOB, which is run first."""
     from pzt_ident import atlas, terminal
     from pzt_ident.compare import compare, draw, finished
@@ -151,23 +95,25 @@ def compare(source: Path, out: Path | None, plugins: bool, as_json: bool, quiet:
     with terminal.listening(silent=as_json or quiet) as listen:
         folder = finished(source, out, listen, plugins)
     found = compare(folder, out or folder)
-    for _ in terminal.tracked(draw(folder, out or folder, found), "figures", as_json or quiet):
+    for _ in () if no_report else terminal.tracked(draw(folder, out or folder, found), "figures", as_json or quiet):
         pass
-    _answer({"folder": str(out or folder), "residuals": found}, lambda: atlas.show_misfits(found), as_json, quiet)
+    answer({"folder": str(out or folder), "residuals": found}, lambda: atlas.show_misfits(found), as_json, quiet)
 
 
 @main.command()
 @click.argument("job", type=EXISTING)
 @click.option("--out", type=EXISTING, help="Folder for the results; results/<name>/<time>-<hash> if not given.")
+@reporting
 @trusting
 @output
-def diagnose(job: Path, out: Path | None, plugins: bool, as_json: bool, quiet: bool) -> None:
+def diagnose(job: Path, out: Path | None, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
     """Say which physical effect the model of a job file JOB misses."""
     from pzt_ident import staircase
     from pzt_ident.improve import diagnose
     from pzt_ident.job import load_job
 
-    _diagnose(diagnose, "diagnosis", staircase.show_diagnosis, load_job(job, plugins), out, as_json, quiet)
+    made = load_job(job, plugins)
+    _diagnose(diagnose, "diagnosis", staircase.show_diagnosis, made, out, no_report, as_json, quiet)
 
 
 @main.command()
@@ -182,21 +128,24 @@ def add(job: Path, effect: str, out: Path, plugins: bool, as_json: bool, quiet: 
 
     made = add(job, effect, out, plugins)
     said = f"wrote {out}: effects {', '.join(made.effects)}\nnext: pzt-ident run {quote(str(out))}"
-    _answer({"job": str(out), "effects": list(made.effects)}, lambda: click.echo(said), as_json, quiet)
+    answer({"job": str(out), "effects": list(made.effects)}, lambda: click.echo(said), as_json, quiet)
 
 
 @main.command()
 @click.argument("job", type=EXISTING)
 @click.option("--out", type=EXISTING, help="Folder for the results; results/<name>/<time>-<hash> if not given.")
+@reporting
 @trusting
 @output
-def improve(job: Path, out: Path | None, plugins: bool, as_json: bool, quiet: bool) -> None:
+def improve(job: Path, out: Path | None, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
     """Add what the model of a job file JOB misses, effect by effect, and watch the error fall."""
     from pzt_ident import staircase
     from pzt_ident.improve import improve
     from pzt_ident.job import load_job
 
-    _diagnose(improve, "improvement", staircase.show_improvement, load_job(job, plugins), out, as_json, quiet)
+    _diagnose(
+        improve, "improvement", staircase.show_improvement, load_job(job, plugins), out, no_report, as_json, quiet
+    )
 
 
 def _diagnose(
@@ -205,16 +154,20 @@ def _diagnose(
     show: Callable[[dict[str, Any], Path], None],
     job: Job,
     out: Path | None,
+    no_report: bool,
     as_json: bool,
     quiet: bool,
 ) -> None:
     from pzt_ident import staircase, terminal
+    from pzt_ident.report.page import write_report
 
     silent = as_json or quiet
     with terminal.listening(silent):
         folder = work(job, out, staircase.told(silent))
+        if not no_report:
+            write_report(folder)
     found = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
-    _answer({"folder": str(folder), name: found}, lambda: show(found, folder), as_json, quiet)
+    answer({"folder": str(folder), name: found}, lambda: show(found, folder), as_json, quiet)
 
 
 @main.command()
@@ -227,7 +180,7 @@ def check(job: Path, plugins: bool, as_json: bool, quiet: bool) -> None:
     from pzt_ident.job import load_job
 
     found = summary.of_job(load_job(job, plugins))
-    _answer(found, lambda: summary.show_job(found), as_json, quiet)
+    answer(found, lambda: summary.show_job(found), as_json, quiet)
 
 
 @main.command("list")
@@ -238,7 +191,7 @@ def list_(kind: str, as_json: bool, quiet: bool) -> None:
     from pzt_ident import summary, terminal
 
     found = summary.words(kind)
-    _answer(found, lambda: terminal.table(("word", "what it is"), list(found.items())), as_json, quiet)
+    answer(found, lambda: terminal.table(("word", "what it is"), list(found.items())), as_json, quiet)
 
 
 @main.command()
@@ -249,7 +202,7 @@ def show(name: str, as_json: bool, quiet: bool) -> None:
     from pzt_ident import summary
 
     found = summary.of_word(name)
-    _answer(found, lambda: summary.show_word(found), as_json, quiet)
+    answer(found, lambda: summary.show_word(found), as_json, quiet)
 
 
 @main.command()
@@ -265,29 +218,84 @@ def init(folder: Path, as_json: bool, quiet: bool) -> None:
     def say() -> None:
         click.echo("".join(f"wrote {path}\n" for path in written) + f"next: pzt-ident run {quote(str(job))}")
 
-    _answer({"written": [str(path) for path in written], "job": str(job)}, say, as_json, quiet)
+    answer({"written": [str(path) for path in written], "job": str(job)}, say, as_json, quiet)
+
+
+@main.command()
+@click.option("--out", type=EXISTING, default=Path("pzt-ident-demo"), show_default=True, help="Folder to write into.")
+@click.option("--no-browser", is_flag=True, help="Do not open the report.")
+@output
+def demo(out: Path, no_browser: bool, as_json: bool, quiet: bool) -> None:
+    """Find and add what a model misses, on a measurement that ships, and open the report."""
+    from pzt_ident import staircase, terminal
+    from pzt_ident.demo import hidden, show_in_browser, write_demo
+    from pzt_ident.improve import improve
+    from pzt_ident.job import load_job
+    from pzt_ident.report.page import write_report
+
+    silent = as_json or quiet
+    job = write_demo(out)
+    if not silent:
+        click.echo(f"wrote {job}, which knows of no effect, and a measurement with effects hidden in it", err=True)
+    with terminal.listening(silent):
+        folder = improve(load_job(job), out / "improved", staircase.told(silent))
+        write_report(folder)
+    found = json.loads((folder / "improvement.json").read_text(encoding="utf-8"))
+
+    def say() -> None:
+        staircase.show_improvement(found, folder)
+        click.echo(f"hidden was: {', '.join(item['effect'] for item in hidden())}")
+        click.echo(f"next, with the mouse: pzt-ident workbench {quote(str(job))}")
+
+    answer({"folder": str(folder), "improvement": found, "hidden": hidden()}, say, as_json, quiet)
+    if not no_browser:
+        show_in_browser(folder / "report.html")
+
+
+@main.command()
+@click.argument("source", metavar="[JOB or DATA]", required=False, type=EXISTING)
+@click.option("--out", type=EXISTING, default=Path("workbench"), show_default=True, help="Folder of the session.")
+@click.option("--port", type=click.IntRange(0, 65535), default=0, help="A free one if not given.")
+@click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen at.")
+@click.option("--allow-network", is_flag=True, help="Let --host be one that other machines can reach.")
+@click.option("--no-browser", is_flag=True, help="Do not open the browser.")
+def workbench(source: Path | None, out: Path, port: int, host: str, allow_network: bool, no_browser: bool) -> None:
+    """See and do all of it in the browser, on a job, a measurement, or one that you drop onto the page.
+
+    Serves files of the folder it is started in, to this machine only.
+    """
+    from pzt_ident.demo import show_in_browser
+    from pzt_ident.workbench.serve import serve
+
+    def ready(address: str) -> None:
+        click.echo(f"workbench: {address}\nCtrl-C ends it; what was done stays in {out}")
+        if not no_browser:
+            show_in_browser(address)
+
+    with suppress(KeyboardInterrupt):
+        serve(source, out, host, port, allow_network, ready)
 
 
 @main.command()
 @click.argument("folders", metavar="DIR...", nargs=-1, required=True, type=EXISTING)
+@click.option("-o", "--out", type=EXISTING, help="Page of several results; side-by-side.html if not given.")
 @output
-def report(folders: tuple[Path, ...], as_json: bool, quiet: bool) -> None:
-    """Draw the report of each finished run's folder again, and every figure as PDF and SVG at 88 and 180 mm."""
+def report(folders: tuple[Path, ...], out: Path | None, as_json: bool, quiet: bool) -> None:
+    """Draw the report of each folder of results again, and every figure as PDF and SVG at 88 and 180 mm.
+
+    Several folders are put side by side, too, on a page of their own.
+    """
     from pzt_ident.report.figures import write_paper_figures
     from pzt_ident.report.page import write_report
-    from pzt_ident.report.results import read_results
+    from pzt_ident.report.results import read_folder
+    from pzt_ident.report.side_by_side import write_side_by_side
     from pzt_ident.terminal import tracked
 
     pages = []
     for folder in folders:
         pages.append(str(write_report(folder)))
-        for _ in tracked(write_paper_figures(read_results(folder), folder / "figures"), "figures", as_json or quiet):
+        for _ in tracked(write_paper_figures(read_folder(folder), folder / "figures"), "figures", as_json or quiet):
             pass
-    _answer({"reports": pages}, lambda: click.echo("\n".join(pages)), as_json, quiet)
-
-
-def _answer(found: dict[str, Any], say: Callable[[], None], as_json: bool, quiet: bool) -> None:
-    if as_json:
-        click.echo(json.dumps(found, indent=2))
-    elif not quiet:
-        say()
+    if len(folders) > 1:
+        pages.append(str(write_side_by_side(folders, out or Path("side-by-side.html"))))
+    answer({"reports": pages}, lambda: click.echo("\n".join(pages)), as_json, quiet)

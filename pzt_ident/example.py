@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 
@@ -13,11 +14,15 @@ def write_example(folder: Path) -> list[Path]:
 
     Raises InputError, and writes nothing, where one of the files is there already.
     """
+    return write_shipped("template", folder)
+
+
+def write_shipped(name: str, folder: Path, without: Sequence[str] = ()) -> list[Path]:
+    """Write the files of a folder of the package, a job among them, `without` some; returns them, the job first."""
     if folder.exists() and not folder.is_dir():
         raise InputError("is not a folder", where=str(folder), remedy="give a folder, new or empty")
-    items = sorted(
-        files("pzt_ident").joinpath("template").iterdir(), key=lambda item: (item.name != "job.yaml", item.name)
-    )
+    shipped = [item for item in files("pzt_ident").joinpath(name).iterdir() if item.name not in without]
+    items = sorted(shipped, key=lambda item: (item.name != "job.yaml", item.name))
     paths = [folder / item.name for item in items]
     for path in paths:
         if path.exists():

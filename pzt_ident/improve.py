@@ -19,6 +19,7 @@ from pzt_ident.files import write_json, write_text
 from pzt_ident.job import Job
 from pzt_ident.registry import blocks
 from pzt_ident.run import environment, folder_for, make_empty, problem_of, read, unit_of
+from pzt_ident.signals import write_signals
 from pzt_ident.units import factor
 
 Tell = Callable[[dict[str, Any]], None]
@@ -36,13 +37,14 @@ def begun(job: Job, out: Path | None) -> tuple[Case, Path]:
 
 
 def diagnose(job: Job, out: Path | None = None, tell: Tell = lambda event: None) -> Path:
-    """Fit the job's model, say what it misses; writes `diagnosis.json` into the folder that is returned."""
+    """Fit the job's model, say what it misses; writes `diagnosis.json` and `signals.nc` into the folder returned."""
     case, folder = begun(job, out)
     with np.errstate(all="ignore"):
         first = first_fit(case, job.seed)
         tell(stair(case, stairs.Step(first)))
         found = judge(case, first)
         content = diagnosis_of(job, case, found, folder)
+        write_signals(folder / "signals.nc", first.problem, first.point)
     write_json(folder / "diagnosis.json", content)
     return folder
 
@@ -50,14 +52,15 @@ def diagnose(job: Job, out: Path | None = None, tell: Tell = lambda event: None)
 def improve(job: Job, out: Path | None = None, tell: Tell = lambda event: None) -> Path:
     """Diagnose, add what is missing and diagnose again, until nothing is missing or nothing more is known.
 
-    Writes `improved.yaml`, `diagnosis.json` of the last model, the page with the staircase, and `improvement.json`.
+    Writes `improved.yaml`, `diagnosis.json` of the last model, `improvement.json`, and the signals of the model as
+    given and of the last one.
     """
-    from pzt_ident.report.staircase import write_staircase
-
     case, folder = begun(job, out)
     with np.errstate(all="ignore"):
         steps, last = stairs.improve(case, first_fit(case, job.seed), lambda step: tell(stair(case, step)))
         diagnosis = diagnosis_of(job, case, last, folder)
+        for name, step in (("signals_as_given.nc", steps[0]), ("signals.nc", steps[-1])):
+            write_signals(folder / name, step.fit.problem, step.fit.point)
     verdict, reason = last.verdict, last.reason
     if verdict in ("missing", "inconclusive"):
         verdict, reason = "unexplained", f"The next step was tried and taken back, or is one too many. {reason}"
@@ -80,7 +83,6 @@ def improve(job: Job, out: Path | None = None, tell: Tell = lambda event: None) 
     write_text(folder / "improved.yaml", with_effects(job, effects, folder))
     write_json(folder / "diagnosis.json", diagnosis)
     write_json(folder / "improvement.json", content)
-    write_staircase(folder, content, diagnosis)
     return folder
 
 

@@ -113,7 +113,7 @@ def searched(task: Task, problem: Problem, size: float, tell: Tell) -> tuple[Out
             file.flush()
             if seconds - shown > 0.1 or shown == 0:
                 shown = seconds
-                tell(generation_event(task, state.evaluations, state.loss / size, seconds))
+                tell(generation_event(task, state.evaluations, rmse(problem, state.point, size), seconds))
 
         outcome = drive(
             optimizer,
@@ -126,7 +126,7 @@ def searched(task: Task, problem: Problem, size: float, tell: Tell) -> tuple[Out
             told=[losses for _, losses in generations],
         )
     seconds, spent = before + time.perf_counter() - begun, time.process_time() - cpu
-    tell(generation_event(task, outcome.evaluations, outcome.loss / size, seconds))
+    tell(generation_event(task, outcome.evaluations, rmse(problem, outcome.point, size), seconds))
     return outcome, seconds, spent
 
 
@@ -151,14 +151,15 @@ def fixed(problem: Problem) -> dict[str, Any]:
     }
 
 
-def generation_event(task: Task, evaluations: int, best: float, seconds: float) -> dict[str, Any]:
+def generation_event(task: Task, evaluations: int, best: dict[str, float], seconds: float) -> dict[str, Any]:
     return {
         "event": "generation",
         "run": task.run,
         "optimizer": task.optimizer,
         "repeat": task.repeat,
         "evaluations": evaluations,
-        "best": best,
+        "best": best["identify"],
+        "validate": best["validate"],
         "seconds": seconds,
     }
 

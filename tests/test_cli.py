@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
+import pzt_ident.compare
+import pzt_ident.report.page
 import pzt_ident.run
 from pzt_ident.cli import main
 from pzt_ident.errors import InputError, RunError
@@ -84,11 +86,12 @@ def quick(monkeypatch):
         listen({"event": "start", "runs": ["pso-0", "pso-1"], "budget": 1600, "unit": "um", "folder": "out"})
         listen({"event": "failed", "run": "pso-0", "reason": "its process was killed by signal 9"})
         (out / "result.json").write_text(json.dumps(RESULT))
-        (out / "report.html").touch()
         return out
 
     monkeypatch.setattr(pzt_ident.run, "run", start)
     monkeypatch.setattr(pzt_ident.run, "resume", start)
+    monkeypatch.setattr(pzt_ident.compare, "compare", lambda folder, out: (out / "residuals.json").touch())
+    monkeypatch.setattr(pzt_ident.report.page, "write_report", lambda folder: (folder / "report.html").touch())
     return calls
 
 
@@ -118,6 +121,7 @@ class TestRun:
         call("run", "job.yaml", "--out", "there", "--workers", "3", "--no-report")
         ((job, out, options),) = quick
         assert (job.name, out, options) == ("small", Path("there"), {"workers": 3, "report": False})
+        assert not (Path("out") / "report.html").exists()
 
     def test_json_is_all_there_is(self, folder, quick):
         result = call("run", "job.yaml", "--json")
@@ -131,7 +135,8 @@ class TestRun:
     def test_resume(self, folder, quick):
         result = call("resume", "out", "--workers", "1")
         assert result.exit_code == 0
-        assert quick == [(Path("out"), {"workers": 1, "report": True})]
+        assert quick == [(Path("out"), {"workers": 1, "report": False, "plugins": False})]
+        assert (Path("out") / "residuals.json").exists() and (Path("out") / "report.html").exists()
 
     def test_resume_without_a_run(self, folder):
         result = call("resume", str(folder))

@@ -76,7 +76,7 @@ def test_the_report_shows_it(folder):
     assert call("compare", folder, "--quiet").output == ""
     page = (folder / "report.html").read_text()
     assert '<section id="misfit">' in page
-    assert 'id="misfit-worst-x-caption"' in page
+    assert 'id="misfit-shares-x-caption"' in page and 'class="reveal"' in page
     for sentence in json.loads((folder / "residuals.json").read_text())["axes"]["x"]["sentences"]:
         assert sentence in page
 

@@ -1,6 +1,8 @@
 """diagnose and improve from the command line: what they write, say and refuse."""
 
 import json
+import re
+from html import unescape
 from pathlib import Path
 
 import numpy as np
@@ -93,6 +95,13 @@ class TestDiagnose:
         assert drive.min() >= 0 and drive.max() <= 120
         assert np.abs(np.diff(drive)).max() / time[1] <= 300 * 1.001
 
+    def test_the_page_has_every_candidate_with_its_physics(self, diagnosed):
+        page = unescape((diagnosed[1] / "report.html").read_text(encoding="utf-8"))
+        found = read(diagnosed[1] / "diagnosis.json")
+        assert f'<p class="lead">{found["reason"]}</p>' in page
+        assert all(item["physics"] in page for item in found["candidates"])
+        assert f"run the drive in {found['next_experiment']['file']}" in page
+
     def test_says_what_to_do_on_the_rig(self, diagnosed):
         assert "on the rig: " in diagnosed[0].stdout
         assert f"diagnosis: {diagnosed[1] / 'diagnosis.json'}" in diagnosed[0].stdout
@@ -156,11 +165,15 @@ class TestImprove:
 
     def test_the_page_shows_it_too(self, improved):
         page = (improved[1] / "report.html").read_text(encoding="utf-8")
-        assert "+ quadratic_gain" in page and "as given" in page
-        assert "<svg" in page
-        assert "http-equiv" not in page and "<script src" not in page
-        drawn = {path.name for path in (improved[1] / "figures").iterdir()}
-        assert drawn == {f"staircase-{width}.{form}" for width in (88, 180) for form in ("pdf", "svg")}
+        assert '<p class="lead">Added: quadratic_gain.' in page
+        content = json.loads(re.search(r'id="content">(.*?)</script>', page, re.S)[1])
+        (stairs,) = content["stairs"]
+        assert [step["name"] for step in stairs["steps"]] == ["as given", "+ quadratic_gain"]
+        assert {model["name"] for record in content["records"] for model in record["models"]} == {
+            "improved",
+            "as given",
+        }
+        assert {path.stem for path in (improved[1] / "tables").glob("*.tex")} == {"candidates", "steps", "changes"}
 
     def test_quiet_says_nothing_and_the_folder_has_a_name(self, bent, tmp_path, monkeypatch):
         monkeypatch.chdir(tmp_path)

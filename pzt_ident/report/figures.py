@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -14,6 +14,7 @@ from pzt_ident.report import misfit_figures as misfit
 from pzt_ident.report import residual_figures as residual
 from pzt_ident.report import search_figures as search
 from pzt_ident.report import signal_figures as signal
+from pzt_ident.report import staircase
 from pzt_ident.report.results import Results, Trace
 from pzt_ident.report.style import COLUMN, PAGE, saved, style
 
@@ -23,10 +24,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Plate:
-    """One figure to be drawn at any width: `section` is where it stands in the report, `caption` what is below it."""
+    """One figure to be drawn at any width: `section` is where it stands in the report, none where that shows the same
+    to be looked into; `caption` is what is below it."""
 
     name: str
-    section: str
+    section: str | None
     caption: str
     height: Callable[[float], float]
     draw: Callable[[Figure], None]
@@ -35,10 +37,11 @@ class Plate:
 def plates(results: Results) -> list[Plate]:
     """Every figure that these results have, in the order of the report."""
     return [
+        *_staircase_plates(results),
         *_signal_plates(results),
         *_residual_plates(results),
         *misfit_plates(results),
-        *_search_plates(results),
+        *(_search_plates(results) if results.result else ()),
     ]
 
 
@@ -53,21 +56,22 @@ def render(plate: Plate, width: float, forms: Sequence[str]) -> dict[str, bytes]
 
 
 def write_page_figures(results: Results, folder: Path) -> list[tuple[Plate, bytes]]:
-    """Write every figure as the SVG that the page shows, `<name>-180mm.svg`; returns them."""
-    return [(plate, _write(plate, PAGE, ("svg",), folder)["svg"]) for plate in plates(results)]
+    """Write every figure that the page shows as SVG, `<name>-180mm.svg`; returns them."""
+    return [(plate, _write(plate, PAGE, ("svg",), folder)["svg"]) for plate in plates(results) if plate.section]
 
 
 def write_paper_figures(results: Results, folder: Path) -> Iterator[Plate]:
-    """Write the files that a paper needs beside those: PDF at 88 and 180 mm, SVG at 88 mm. Yields what is done."""
-    for plate in plates(results):
-        _write(plate, COLUMN, ("svg", "pdf"), folder)
-        _write(plate, PAGE, ("pdf",), folder)
-        yield plate
+    """Write every figure as a paper needs it, SVG and PDF at 88 and 180 mm. Yields what is done."""
+    return _written(plates(results), folder)
 
 
 def write_misfit_figures(results: Results, folder: Path) -> Iterator[Plate]:
     """Write the figures of the misfit, SVG and PDF at 88 and 180 mm. Yields what is done."""
-    for plate in misfit_plates(results):
+    return _written(misfit_plates(results), folder)
+
+
+def _written(chosen: Iterable[Plate], folder: Path) -> Iterator[Plate]:
+    for plate in chosen:
         for width in (COLUMN, PAGE):
             _write(plate, width, ("svg", "pdf"), folder)
         yield plate
@@ -86,13 +90,25 @@ def slug(text: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")[:40]
 
 
+def _staircase_plates(results: Results) -> Iterator[Plate]:
+    if results.improvement:
+        yield Plate(
+            "staircase",
+            None,
+            "RMSE after each step on the records that were fitted and on those that the fit never saw, and the noise "
+            "floor.",
+            staircase.height,
+            partial(staircase.draw, improvement=results.improvement),
+        )
+
+
 def _signal_plates(results: Results) -> Iterator[Plate]:
-    floor = results.result["noise_floor"]
+    floor = results.floors
     bins = max(150, min(600, 2400 // max(len(results.traces), 1)))
     for place, trace in enumerate(results.traces, start=1):
         yield Plate(
             "-".join(filter(None, (f"time-{place}", slug(trace.record), slug(trace.axis)))),
-            "model",
+            None,
             f"Response of axis {trace.axis}, measured and modelled, and the residual: {trace.record} ({trace.use}).",
             signal.time_height,
             partial(signal.draw_time, trace=trace, noise=floor.get(trace.axis), bins=bins),
@@ -100,7 +116,7 @@ def _signal_plates(results: Results) -> Iterator[Plate]:
     for axis, traces in _by_axis(results):
         yield Plate(
             f"loops-{slug(axis)}",
-            "loops",
+            None,
             f"Response against drive of axis {axis}, measured and modelled.",
             partial(signal.records_height, records=len(traces)),
             partial(signal.draw_loops, traces=traces, points=3 * bins),
@@ -108,7 +124,7 @@ def _signal_plates(results: Results) -> Iterator[Plate]:
 
 
 def _residual_plates(results: Results) -> Iterator[Plate]:
-    floor = results.result["noise_floor"]
+    floor = results.floors
     for axis, traces in _by_axis(results):
         height = partial(signal.records_height, records=len(traces))
         yield Plate(
@@ -121,7 +137,7 @@ def _residual_plates(results: Results) -> Iterator[Plate]:
         )
         yield Plate(
             f"residual-loop-{slug(axis)}",
-            "residuals",
+            None,
             f"Mean residual of axis {axis} along the measured loop.",
             height,
             partial(residual.draw_map, traces=traces),
@@ -161,7 +177,7 @@ def misfit_plates(results: Results) -> Iterator[Plate]:
         if failing := misfit.failing(found, traces):
             yield Plate(
                 f"misfit-worst-{slug(axis)}",
-                "misfit",
+                None,
                 f"The stretches with most of the misfit of axis {axis}: in time, and on the measured loop.",
                 partial(misfit.worst_height, records=len(failing)),
                 partial(misfit.draw_worst, misfit=found, traces=failing),
@@ -172,7 +188,7 @@ def _search_plates(results: Results) -> Iterator[Plate]:
     yield Plate(
         "convergence",
         "convergence",
-        "Best RMSE on the identify records so far, before the polish: median and range over the repeats of each "
+        "Best RMSE on the identify records so far, before the polish: median and quartiles over the repeats of each "
         "optimizer.",
         search.convergence_height,
         partial(search.draw_convergence, results=results),

@@ -1,59 +1,116 @@
-"""The page: one HTML file that needs nothing else, no network and no script."""
+"""The page: one HTML file that needs nothing else and loads nothing."""
 
 from __future__ import annotations
 
+import base64
+import hashlib
+import json
+import re
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from pzt_ident.files import write_text
+from pzt_ident.files import plain, write_text
 from pzt_ident.report import numbers
 from pzt_ident.report.figures import Plate, write_page_figures
 from pzt_ident.report.inline import inline
-from pzt_ident.report.results import read_results
+from pzt_ident.report.results import Results, read_folder
 from pzt_ident.report.tables import make_tables, write_tables
-from pzt_ident.report.words import findings, listed, verdict
+from pzt_ident.report.traces import packed
+from pzt_ident.report.words import findings, listed, step_name, verdict
 
 if TYPE_CHECKING:
-    from jinja2 import Template
+    from jinja2 import Environment
     from markupsafe import Markup
+
+LARGEST = 295_000  # bytes; where the page would be larger, its signals are thinned
+POINTS = (7000, 4000, 2000)  # of all records together
+MODULES = ("signals.js", "plane.js", "explorer.js", "staircase.js", "report.js")
 
 
 def write_report(folder: Path) -> Path:
-    """Write `report.html`, `tables/` and the SVG of each figure in `figures/` of a finished run's folder.
+    """Write `report.html`, `tables/` and the SVG of each figure in `figures/` of a finished run, diagnosis or
+    improvement.
 
-    Returns the path of the page, which is written last. Raises InputError where the folder holds no finished run.
+    Returns the path of the page, which is written last. Raises InputError where the folder holds no result.
     """
-    results = read_results(folder)
+    results = read_folder(folder)
     tables = make_tables(results)
     write_tables(tables, results.folder / "tables")
     drawn = write_page_figures(results, results.folder / "figures")
-    sections: dict[str, list[tuple[Plate, Markup]]] = {}
+    sections: dict[str | None, list[tuple[Plate, Markup]]] = {}
     for plate, svg in drawn:
         sections.setdefault(plate.section, []).append((plate, inline(svg, plate.name)))
-    page = template("template.html").render(
-        results=results,
-        result=results.result,
-        tables=tables,
-        figures=sections,
-        verdict=verdict(results),
-        misfits=list(results.misfit.get("axes", {}).values()),
-        findings=findings(results),
-        failed_simulations=sum(run["failed_simulations"] for run in results.result["runs"]),
-        optimizers=listed(row["optimizer"] for row in results.result["league"]),
-    )
+    words = {
+        "results": results,
+        "result": results.result,
+        "tables": tables,
+        "figures": sections,
+        "verdict": verdict(results),
+        "misfits": list(results.misfit.get("axes", {}).values()),
+        "findings": findings(results),
+        "failed_simulations": sum(run["failed_simulations"] for run in results.result.get("runs", ())),
+        "optimizers": listed(row["optimizer"] for row in results.result["league"]) if results.result else "",
+    }
+    content = {"floors": results.floors, "stairs": [stairs(results, "stairs")] if results.improvement else []}
+    page = ""
+    for points in POINTS:
+        content["records"] = packed(results.models, points)
+        page = rendered("report.html", results.name, content, **words)
+        if len(page.encode()) < LARGEST:
+            break
     write_text(results.folder / "report.html", page)
     return results.folder / "report.html"
 
 
-def template(name: str) -> Template:
-    """A page of this folder, with the look that all of them share."""
-    from jinja2 import Environment, StrictUndefined
+def stairs(results: Results, place: str) -> dict[str, Any]:
+    """The steps of an improvement as the page draws them, into the element with the id `place`."""
+    found = results.improvement
+    steps = [{"name": step_name(step), **step["rmse"]} for step in found["steps"]]
+    return {"place": place, "steps": steps, "floor": found["floor"], "unit": numbers.unit(found["unit"])}
+
+
+def rendered(name: str, title: str, content: dict[str, Any], **words: Any) -> str:
+    """A page of this folder with the look and the scripts that all of them share; `content` is what these draw."""
     from markupsafe import Markup
 
-    folder = files("pzt_ident.report")
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    css = Markup(folder.joinpath("page.css").read_text(encoding="utf-8"))
-    environment.globals.update(zip=zip, css=css)
-    environment.filters.update(quantity=numbers.quantity, count=numbers.count, number=numbers.number)
-    return environment.from_string(folder.joinpath(name).read_text(encoding="utf-8"))
+    data = json.dumps(plain(content), separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
+    scripts = [web("uplot/uPlot.iife.min.js"), module()]
+    allowed = " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(s.encode()).digest()).decode()}'" for s in scripts)
+    css = "\n".join(web(sheet) for sheet in ("page.css", "plots.css", "uplot/uPlot.min.css"))
+    return (
+        environment()
+        .get_template(name)
+        .render(
+            title=title,
+            content=Markup(data),
+            scripts=[Markup(script) for script in scripts],
+            allowed=Markup(allowed),
+            css=Markup(css),
+            **words,
+        )
+    )
+
+
+def web(name: str) -> str:
+    return files("pzt_ident.web").joinpath(name).read_text(encoding="utf-8")
+
+
+def module() -> str:
+    """The page's modules as one: without what they import from each other and export, comments and indents."""
+    whole = "\n".join(web(name) for name in MODULES)
+    return re.sub(
+        r"^import .*;\n|^export (?=async|function|class|const)|^ *(//|/\*\*).*\n|^ +", "", whole, flags=re.MULTILINE
+    )
+
+
+@cache
+def environment() -> Environment:
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    loader = PackageLoader("pzt_ident", "report")
+    made = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    made.globals.update(zip=zip)
+    made.filters.update(quantity=numbers.quantity, count=numbers.count, number=numbers.number, percent=numbers.percent)
+    return made

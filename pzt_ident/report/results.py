@@ -46,8 +46,9 @@ class Trace:
 
 @dataclass(frozen=True, eq=False)
 class Results:
-    """What a run wrote: `result` is result.json, `history` has one row a generation, `job` is the job's text, `misfit`
-    is residuals.json, empty where the run was not compared."""
+    """What a run, a diagnosis or an improvement wrote, empty where it did not: `result`, `diagnosis` and `improvement`
+    are the JSON files of these names, `misfit` is residuals.json. `history` has one row a generation, `job` is the
+    job's text, `before` are the traces of the model as given where that was improved."""
 
     folder: Path
     result: dict[str, Any]
@@ -56,14 +57,49 @@ class Results:
     environment: dict[str, Any]
     job: str
     misfit: dict[str, Any] = field(default_factory=dict)
+    diagnosis: dict[str, Any] = field(default_factory=dict)
+    improvement: dict[str, Any] = field(default_factory=dict)
+    before: tuple[Trace, ...] = ()
+
+    @property
+    def name(self) -> str:
+        return self.result.get("name") or self.environment.get("job_name") or self.folder.name
+
+    @property
+    def command(self) -> str:
+        return self.result.get("command") or self.environment["command"]
 
     @property
     def unit(self) -> str:
-        return self.result["unit"]
+        return (self.result or self.diagnosis)["unit"]
+
+    @property
+    def floors(self) -> dict[str, float | None]:
+        """The noise floor of each axis, in the axis' own unit."""
+        return (self.result or self.diagnosis)["noise_floor"]
+
+    @property
+    def rmse(self) -> dict[str, float | None]:
+        """Of the last model, on the records of each use."""
+        if self.improvement:
+            return self.improvement["steps"][-1]["rmse"]
+        return (self.best if self.result else self.diagnosis)["rmse"]
 
     @property
     def best(self) -> dict[str, Any]:
         return self.result["best"]
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """Of the last model; none where only a diagnosis was written."""
+        if self.improvement:
+            return self.improvement["steps"][-1]["parameters"]
+        return self.best["parameters"] if self.result else {}
+
+    @property
+    def models(self) -> dict[str, tuple[Trace, ...]]:
+        """The traces of each model to be seen, the last one first."""
+        return {"improved": self.traces, "as given": self.before} if self.before else {"model": self.traces}
 
     @property
     def axes(self) -> tuple[str, ...]:
@@ -71,25 +107,43 @@ class Results:
 
 
 def read_results(folder: Path) -> Results:
-    """Read a finished run's folder.
+    """Read a finished run's folder. Raises InputError where it holds none, or a file is missing or cannot be read."""
+    results = read_folder(folder)
+    _there(results.folder / "result.json")
+    return results
+
+
+def read_folder(folder: Path) -> Results:
+    """Read the folder of a finished run, diagnosis or improvement.
 
     Raises InputError where a file is missing, cannot be read, or holds no finished run.
     """
     import pandas as pd
 
     folder = Path(folder)
-    result = _json(folder / "result.json")
-    if not result.get("best"):
+    diagnosis = _json_if_there(folder / "diagnosis.json")
+    result = _json_if_there(folder / "result.json") if diagnosis else _json(folder / "result.json")
+    if result and not result.get("best"):
         raise InputError("no run finished", where=str(folder / "result.json"), remedy="see `failed_runs` in it")
+    environment = _json(folder / "environment.json")
+    order = [record["name"] for record in result["records"]] if result else list(environment["data"])
+    before = folder / "signals_as_given.nc"
     return Results(
         folder,
         result,
-        pd.read_csv(_there(folder / "history.csv")),
-        _traces(_there(folder / "signals.nc"), [record["name"] for record in result["records"]]),
-        _json(folder / "environment.json"),
+        pd.read_csv(_there(folder / "history.csv")) if result else pd.DataFrame(),
+        _traces(_there(folder / "signals.nc"), order),
+        environment,
         _there(folder / "job.yaml").read_text(encoding="utf-8"),
-        _json(folder / "residuals.json") if (folder / "residuals.json").exists() else {},
+        _json_if_there(folder / "residuals.json"),
+        diagnosis,
+        _json_if_there(folder / "improvement.json"),
+        _traces(before, order) if before.exists() else (),
     )
+
+
+def _json_if_there(path: Path) -> dict[str, Any]:
+    return _json(path) if path.exists() else {}
 
 
 def _there(path: Path) -> Path:

@@ -47,11 +47,11 @@ def convergence_height(width: float) -> float:
 
 
 def draw_convergence(figure: Figure, results: Results) -> None:
-    """Best RMSE so far of each optimizer, median and range over its repeats, against evaluations and seconds."""
+    """Best RMSE so far of each optimizer, median and quartiles over its repeats, against evaluations and seconds."""
     looks = {name: _look(place) for place, name in enumerate(optimizers(results))}
     levels = _levels(results)
     keys = [key(name, **look) for name, look in looks.items()] + [key(name, **look) for name, _, look in levels]
-    top = heading(figure, "Convergence: median and range of the repeats", keys)
+    top = heading(figure, "Convergence: median and quartiles of the repeats", keys)
     shape = (2, 1) if width_of(figure) == COLUMN else (1, 2)
     for place, (axes, cost) in enumerate(zip(panels(figure, *shape, Frame(top + 4)).ravel(), _COSTS, strict=True)):
         for name, look in looks.items():
@@ -67,9 +67,9 @@ def draw_convergence(figure: Figure, results: Results) -> None:
         name_panel(axes, f"against {cost[1]}", place=place)
 
 
-def descent(history: pd.DataFrame, cost: str, points: int = 240) -> tuple[Floats, Floats, Floats, Floats]:
-    """Cost, and lowest, median and highest best RMSE over the repeats at it; a repeat that has stopped keeps its
-    last. Costs before the first generation of the slowest repeat are left out."""
+def descent(history: pd.DataFrame, cost: str, points: int = 60) -> tuple[Floats, Floats, Floats, Floats]:
+    """Cost, and lower quartile, median and upper quartile of the best RMSE over the repeats at it; a repeat that has
+    stopped keeps its last. Costs before the first generation of the slowest repeat are left out."""
     repeats = [own.sort_values(cost) for _, own in history.groupby("repeat")]
     if not repeats:
         return np.empty(0), np.empty(0), np.empty(0), np.empty(0)
@@ -81,7 +81,8 @@ def descent(history: pd.DataFrame, cost: str, points: int = 240) -> tuple[Floats
     reached[~np.isfinite(reached)] = np.nan
     seen = ~np.isnan(reached).all(axis=0)
     reached = reached[:, seen]
-    return grid[seen], np.nanmin(reached, axis=0), np.nanmedian(reached, axis=0), np.nanmax(reached, axis=0)
+    lower, median, upper = np.nanquantile(reached, (0.25, 0.5, 0.75), axis=0)
+    return grid[seen], lower, median, upper
 
 
 def free_parameters(results: Results) -> list[str]:

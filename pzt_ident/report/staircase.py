@@ -2,59 +2,22 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pzt_ident.files import replaced, write_text
-from pzt_ident.report.inline import inline
-from pzt_ident.report.page import template
-from pzt_ident.report.style import (
-    COLUMN,
-    INK,
-    MARKERS,
-    NOISE,
-    PAGE,
-    PALETTE,
-    Frame,
-    heading,
-    key,
-    panels,
-    patch,
-    saved,
-    style,
-)
+from pzt_ident.report.style import INK, MARKERS, NOISE, PALETTE, Frame, heading, key, label, panels, patch
 from pzt_ident.report.words import step_name
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Facts = dict[str, Any]
+
+def height(width: float) -> float:
+    return 62
 
 
-def write_staircase(folder: Path, improvement: Facts, diagnosis: Facts) -> Path:
-    """Write `report.html` and `figures/staircase-*` of an improvement into its folder; the path of the page."""
-    from matplotlib.figure import Figure
-
-    (folder / "figures").mkdir(exist_ok=True)
-    drawn = b""
-    with style():
-        for width in (COLUMN, PAGE):
-            figure = Figure(figsize=(width / 25.4, 62 / 25.4))
-            draw_staircase(figure, improvement)
-            for form in ("pdf", "svg"):
-                drawn = saved(figure, form)
-                with replaced(folder / "figures" / f"staircase-{width}.{form}") as path:
-                    path.write_bytes(drawn)
-    page = template("staircase.html").render(
-        found=improvement, diagnosis=diagnosis, figure=inline(drawn, "staircase"), step_name=step_name
-    )
-    write_text(folder / "report.html", page)
-    return folder / "report.html"
-
-
-def draw_staircase(figure: Figure, improvement: Facts) -> None:
+def draw(figure: Figure, improvement: dict[str, Any]) -> None:
     """RMSE after each step on the records of both uses, and the noise floor."""
-    steps, floor, unit = improvement["steps"], improvement["floor"], improvement["unit"]
+    steps, floor = improvement["steps"], improvement["floor"]
     places = range(len(steps))
     handles = [patch("noise floor", **NOISE)]
     uses = [use for use in ("identify", "validate") if steps[0]["rmse"][use] is not None]
@@ -75,4 +38,4 @@ def draw_staircase(figure: Figure, improvement: Facts) -> None:
     axes.set_xticks(list(places), [step_name(step) for step in steps], rotation=12 if len(steps) > 3 else 0)
     axes.set_xlim(-0.4, len(steps) - 0.4)
     axes.set_ylim(0, None)
-    axes.set_ylabel(f"RMSE [{unit}]")
+    label(axes.yaxis, "RMSE", improvement["unit"], axes.get_ylim())

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from pzt_ident.files import write_text
 from pzt_ident.report.numbers import bounds, count, number, percent, short, unit, with_error
 from pzt_ident.report.results import Results
+from pzt_ident.report.words import step_name
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,9 +31,11 @@ class Table:
 
 
 def make_tables(results: Results) -> dict[str, Table]:
-    """The league of optimizers, every run, the best run's parameters, and the records, by name."""
-    made = (league(results), runs(results), parameters(results), records(results))
-    return {table.name: table for table in made}
+    """Those that these results have, by name: the league of optimizers, every run, the best run's parameters and the
+    records of a run; the candidates of a diagnosis; the steps of an improvement and the parameters before and after."""
+    made = [league, runs, parameters, records] if results.result else []
+    made += [candidates] * bool(results.diagnosis) + [steps, changes] * bool(results.improvement)
+    return {table.name: table for table in (make(results) for make in made)}
 
 
 def write_tables(tables: Mapping[str, Table], folder: Path) -> None:
@@ -60,7 +63,12 @@ def league(results: Results) -> Table:
         "evaluations to 1\u00a0%": lambda row: count(row["evaluations_to_1_percent_median"]),
         "success": lambda row: percent(row["success"]),
     }
-    return _table(
+    if len(results.result["league"]) > 1:
+        cells["behind the first in"] = lambda row: (
+            f"{row['leader_ahead']} of {row['pairs']}" if row.get("pairs") else "–"
+        )
+        cells["sign test p"] = lambda row: number(row["sign_test"], 2) if row.get("pairs") else "–"
+    return table(
         "league", results.result["league"], cells, {"optimizer"}, _units(results, *rmse, s=("seconds_median",))
     )
 
@@ -93,7 +101,7 @@ def runs(results: Results) -> Table:
         "stopped by": lambda row: row["stopped_by"],
     }
     units = _units(results, *flat, s=("seconds", "cpu_seconds"))
-    return _table("runs", rows, cells, {"run", "stopped by"}, units)
+    return table("runs", rows, cells, {"run", "stopped by"}, units)
 
 
 def parameters(results: Results) -> Table:
@@ -112,7 +120,7 @@ def parameters(results: Results) -> Table:
     }
     if any(row["note"] for row in rows):
         cells["note"] = lambda row: row["note"] or ""
-    return _table("parameters", rows, cells, {"parameter", "unit", "verdict", "note"}, {})
+    return table("parameters", rows, cells, {"parameter", "unit", "verdict", "note"}, {})
 
 
 def records(results: Results) -> Table:
@@ -142,7 +150,87 @@ def records(results: Results) -> Table:
         "SHA-256": lambda row: row["sha256"][:16],
     }
     units = _units(results, *(f"rmse_{axis}" for axis in axes), s=("settle",), Hz=("sample_rate",))
-    return _table("records", rows, cells, {"record", "use", "file", "SHA-256"}, units)
+    return table("records", rows, cells, {"record", "use", "file", "SHA-256"}, units)
+
+
+def candidates(results: Results) -> Table:
+    """One row an effect that was considered, best first."""
+    rows = [
+        {
+            **{key: item[key] for key in ("effect", "decision", "explained", "visibility", "physics", "remedy")},
+            "expected": expected(item["expected"]),
+            "alike": ", ".join(word for word in item["class"] if word != item["effect"]),
+            **(item["rmse"] or dict.fromkeys(("identify", "validate"))),
+        }
+        for item in results.diagnosis["candidates"]
+    ]
+    of = unit(results.unit)
+    cells: dict[str, Cell] = {
+        "effect": lambda row: row["effect"],
+        "decision": lambda row: row["decision"],
+        "explains": lambda row: percent(row["explained"]),
+        "expected": lambda row: row["expected"],
+        "visibility": lambda row: number(row["visibility"], 2),
+        "cannot be told from": lambda row: row["alike"],
+        f"identify [{of}]": lambda row: number(row["identify"]),
+        f"validate [{of}]": lambda row: number(row["validate"]),
+        "what it is": lambda row: row["physics"],
+    }
+    words = {"effect", "decision", "expected", "cannot be told from", "what it is"}
+    return table("candidates", rows, cells, words, _units(results, "identify", "validate"))
+
+
+def expected(values: Mapping[str, float], most: int = 3) -> str:
+    """The first parameters of an effect and the values that they would take."""
+    said = [f"{name.partition('.')[2]} {number(value, 3)}" for name, value in values.items()]
+    return ", ".join([*said[:most], "…"] if len(said) > most else said)
+
+
+def steps(results: Results) -> Table:
+    """One row a stair: what was added or taken back, and what the model leaves after it."""
+    rows = [
+        {
+            "step": step_name(step),
+            **step["rmse"],
+            "floors": step["rmse"]["identify"] / results.improvement["floor"],
+            **{key: step.get(key) for key in ("expected", "explained")},
+            "class": " or ".join(step["class"]),
+        }
+        for step in results.improvement["steps"]
+    ]
+    rows[0]["explained"] = None
+    of = unit(results.unit)
+    cells: dict[str, Cell] = {
+        "step": lambda row: row["step"],
+        f"identify [{of}]": lambda row: number(row["identify"]),
+        f"validate [{of}]": lambda row: number(row["validate"]),
+        "noise floors": lambda row: number(row["floors"], 3),
+        "expected to explain": lambda row: percent(row["expected"]),
+        "explained": lambda row: percent(row["explained"]),
+        "these data say": lambda row: row["class"],
+    }
+    return table("steps", rows, cells, {"step", "these data say"}, _units(results, "identify", "validate"))
+
+
+def changes(results: Results) -> Table:
+    """One row a parameter of the improved model, before and after."""
+    first, last = (results.improvement["steps"][place]["parameters"] for place in (0, -1))
+    rows = [
+        {
+            "parameter": name,
+            "unit": item["unit"],
+            "as_given": first.get(name, {}).get("value"),
+            "improved": item["value"],
+        }
+        for name, item in last.items()
+    ]
+    cells: dict[str, Cell] = {
+        "parameter": lambda row: row["parameter"],
+        "as given": lambda row: number(row["as_given"], 5),
+        "improved": lambda row: number(row["improved"], 5),
+        "unit": lambda row: unit(row["unit"]),
+    }
+    return table("changes", rows, cells, {"parameter", "unit"}, {})
 
 
 def latex(table: Table) -> str:
@@ -187,7 +275,7 @@ def _latex_row(cells: Any) -> str:
     return " & ".join(latex_escape(str(cell)) for cell in cells) + r" \\"
 
 
-def _table(
+def table(
     name: str, rows: list[dict[str, Any]], cells: dict[str, Cell], words: set[str], units: dict[str, str]
 ) -> Table:
     import pandas as pd

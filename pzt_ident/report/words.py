@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from pzt_ident.report.numbers import count, number, quantity
@@ -10,8 +10,18 @@ from pzt_ident.report.results import Results
 
 
 def verdict(results: Results) -> str:
-    """One sentence: what the model leaves, on which records, and how that compares with the noise."""
-    rmse = results.best["rmse"]
+    """What is missing or was added, or else what the model leaves, on which records, beside the noise."""
+    if found := results.improvement:
+        added = f"Added: {listed(found['effects'])}. " if found["effects"] else ""
+        return f"{added}{found['reason']}"
+    if results.diagnosis:
+        return str(results.diagnosis["reason"])
+    return left(results)
+
+
+def left(results: Results) -> str:
+    """What the last model leaves, on which records, and how that compares with the noise."""
+    rmse = results.rmse
     use = "identify" if rmse["validate"] is None else "validate"
     where = {
         "validate": "on records the fit never saw",
@@ -23,18 +33,36 @@ def verdict(results: Results) -> str:
 def findings(results: Results) -> list[str]:
     """Sentences on what a reader must know beside the verdict: parameters not found, what is special about a record,
     simulations and runs failed."""
-    return [*_parameters(results), *_notes(results), *_failures(results)]
+    diagnosed = [*_advice(results)] if results.diagnosis else []
+    run = [*_parameters(results), *_notes(results), *_failures(results)] if results.result else []
+    return diagnosed + run
+
+
+def _advice(results: Results) -> Iterator[str]:
+    """What is left, and what to do on the rig about what is missing or to tell what could be."""
+    yield left(results)
+    best = next((item for item in results.diagnosis["candidates"] if item["decision"] == "missing"), None)
+    if best:
+        yield f"{best['effect']}: {best['physics']} On the rig: {best['remedy']}"
+    if proposal := results.diagnosis["next_experiment"]:
+        yield f"To tell {' from '.join(proposal['splits'])}, run the drive in {proposal['file']}: {proposal['why']}."
+    elif best and results.diagnosis["verdict"] == "inconclusive":
+        yield f"No drive within the limits tells them apart. On the rig: {best['separate_by']}"
 
 
 def _over_noise(results: Results, use: str) -> str:
-    known = results.result["noise_floor"]
+    known = results.floors
     floor = {axis: value for axis, value in known.items() if value}
     if not floor:
         return "" if 0 in known.values() else "; the noise floor is not known"
     if len(floor) == 1:
         (value,) = floor.values()
-        ratio = number(results.best["rmse"][use] / value, 2)
+        ratio = number(results.rmse[use] / value, 2)  # type: ignore[operator]
         return f", {ratio}\u00a0times the noise floor of {quantity(value, results.unit, 2)}"
+    if not results.result:
+        return "; the noise floors are " + listed(
+            f"{quantity(value, results.unit, 2)} ({axis})" for axis, value in floor.items()
+        )
     records = [record["rmse"] for record in results.result["records"] if record["use"] == use]
     ratios = sorted(rmse[axis] / floor[axis] for rmse in records for axis in floor if rmse.get(axis) is not None)
     return (
@@ -78,7 +106,7 @@ def listed(names: Iterable[str]) -> str:
     return f"{', '.join(most)} and {last}" if most else last
 
 
-def step_name(step: dict[str, Any]) -> str:
+def step_name(step: Mapping[str, Any]) -> str:
     """`as given`, `+ effect`, `- effect`, or both where one takes the place of another."""
     words = [f"{sign} {step[key]}" for sign, key in (("+", "added"), ("-", "removed")) if step[key]]
     return " ".join(words) or "as given"

@@ -114,6 +114,9 @@ def league_of(optimizers: tuple[str, ...], repeats: int) -> list[dict[str, Any]]
             "evaluations": 4200,
             "evaluations_to_1_percent_median": None if rank else 2310,
             "success": 1.0 - 0.2 * rank,
+            "leader_ahead": repeats * (rank > 0),
+            "pairs": repeats * (rank > 0),
+            "sign_test": 2.0**-repeats if rank else 1.0,
             "polished_rmse_median": 0.3021,
         }
         for rank, optimizer in enumerate(optimizers)
@@ -212,5 +215,6 @@ def weird(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="session")
 def long(tmp_path_factory) -> Path:
-    """Two records of 20,000 samples."""
-    return make_run(tmp_path_factory.mktemp("long"), samples=20_000, repeats=5)
+    """Two records of 20,000 samples, six optimizers."""
+    optimizers = ("pso", "rga", "csa", "cma_es", "differential_evolution", "least_squares")
+    return make_run(tmp_path_factory.mktemp("long"), samples=20_000, repeats=5, optimizers=optimizers)

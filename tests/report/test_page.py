@@ -1,3 +1,5 @@
+import base64
+import hashlib
 import json
 import re
 import shutil
@@ -5,6 +7,7 @@ from html.parser import HTMLParser
 
 import pytest
 
+from pzt_ident.compare import compare
 from pzt_ident.report.page import write_report
 from pzt_ident.report.results import read_results
 from pzt_ident.report.words import findings, listed, verdict
@@ -13,7 +16,6 @@ from .conftest import WEIRD, make_run
 
 SECTIONS = [
     "model",
-    "loops",
     "residuals",
     "convergence",
     "league",
@@ -59,14 +61,30 @@ def weird_page(weird):
 
 
 @pytest.mark.parametrize("name", ["plain_page", "weird_page"])
-def test_nothing_is_loaded_and_nothing_runs(name, request):
+def test_nothing_is_loaded(name, request):
     page = request.getfixturevalue(name)
     assert page.loads
     assert all(re.match(r"#|data:image/png;base64,", reference) for reference in page.loads)
-    assert not {"script", "iframe", "link", "object", "embed", "img"} & {tag for tag, _ in page.tags}
+    assert not {"iframe", "link", "object", "embed", "img"} & {tag for tag, _ in page.tags}
     assert not [key for _, attributes in page.tags for key in attributes if key.startswith("on")]
     style = next(words for words in page.words if "color-scheme" in words)
     assert "@import" not in style and "url(" not in style
+
+
+def test_only_the_scripts_of_the_package_may_run(weird):
+    text = (weird / "report.html").read_text(encoding="utf-8")
+    found = re.findall(r"<script(?: type=.module.)?>(.*?)</script>", text, re.S)
+    hashes = [base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in found]
+    policy = re.search(r'Content-Security-Policy" content="([^"]*)"', text)[1]
+    assert policy.startswith("default-src 'none'; ")
+    assert policy.endswith("script-src " + " ".join(f"'sha256-{value}'" for value in hashes))
+    assert "import " not in found[1].partition("\n")[0] and not re.search(r"^(import|export) ", found[1], re.M)
+
+
+def test_a_script_cannot_be_ended_by_a_name(weird):
+    text = (weird / "report.html").read_text(encoding="utf-8")
+    content = re.search(r'<script type="application/json" id="content">(.*?)</script>', text, re.S)[1]
+    assert {record["name"] for record in json.loads(content)["records"]} == {WEIRD}
 
 
 @pytest.mark.parametrize("name", ["plain_page", "weird_page"])
@@ -136,7 +154,10 @@ def test_names_are_listed(names, text):
 
 
 def test_a_job_of_20_000_samples_stays_small(long):
-    assert write_report(long).stat().st_size < 300 * 1024
+    compare(long, long)
+    page = write_report(long)
+    assert page.stat().st_size < 300_000
+    assert 'id="misfit-shares-x-caption"' in page.read_text(encoding="utf-8")
 
 
 def test_a_perfect_fit_of_fixed_parameters_is_drawn(plain, tmp_path):

@@ -1,0 +1,276 @@
+import { colour, gridded, Plane, tick } from "./plane.js";
+import { errorOf, extent, lowerBound, marksInBox, marksInTime, number, opened, thinned } from "./signals.js";
+
+const MODELS = ["--model", "--before", "--third", "--fourth"];
+const DASHES = [[], [6, 3], [2, 2], [8, 2, 2, 2]];
+
+/** Model beside measurement: in time, as a loop and as a map of the residual. What is marked in one is seen in all. */
+export class Explorer {
+  constructor(root, records, options = {}) {
+    Object.assign(this, { root, records, floors: options.floors ?? {}, marks: [] });
+    root.classList.add("explorer");
+    root.replaceChildren();
+    this.bar();
+    this.readout = element(root, "p", { class: "readout", role: "status", "aria-live": "polite" });
+    this.curves = element(root, "div", {
+      class: "curves", tabindex: 0, role: "group",
+      "aria-label": "In time. Arrow keys move the mark, with Shift its end; Enter shows it alone, Home all; Escape clears it.",
+    });
+    const planes = element(root, "div", { class: "planes" });
+    this.loop = new Plane(planes, "Loop: response against drive", (xs, ys) => this.markBox(this.record.response, xs, ys));
+    this.map = new Plane(planes, "Residual map", (xs, ys) => this.markBox(this.open, xs, ys));
+    this.curves.addEventListener("keydown", (event) => this.key(event));
+    const redraw = () => this.record && this.draw();
+    new ResizeObserver(() => this.root.clientWidth !== this.drawnAt && redraw()).observe(root);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+    addEventListener("beforeprint", () => { document.documentElement.dataset.theme = "light"; redraw(); });
+    addEventListener("afterprint", () => { delete document.documentElement.dataset.theme; redraw(); });
+    this.choose(0);
+  }
+
+  bar() {
+    const bar = element(this.root, "div", { class: "bar" });
+    this.picker = element(element(bar, "label", {}, "Record "), "select");
+    this.picker.addEventListener("change", () => this.choose(Number(this.picker.value)));
+    this.from = element(element(bar, "label", {}, "Mark from "), "input", { type: "number", step: "any" });
+    this.to = element(element(bar, "label", {}, "to "), "input", { type: "number", step: "any" });
+    bar.append("s");
+    for (const field of [this.from, this.to])
+      field.addEventListener("change", () => this.markFields());
+    for (const [name, act] of [["Show the mark", () => this.zoomToMark()], ["Show all", () => this.zoom()], ["Clear", () => this.mark([])]])
+      element(bar, "button", { type: "button" }, name).addEventListener("click", act);
+    this.fillPicker();
+  }
+
+  fillPicker() {
+    this.picker.replaceChildren();
+    this.records.forEach((record, place) => {
+      const several = this.records.some((other) => other.axis !== record.axis);
+      element(this.picker, "option", { value: place }, `${record.name}${several ? `, ${record.axis}` : ""} (${record.use})`);
+    });
+  }
+
+  /** Other models of the same records, or other records: the record shown and what is marked stay where they can. */
+  update(records) {
+    const same = records.findIndex((item) => item.name === this.record.name && item.axis === this.record.axis);
+    const stays = same >= 0 && records[same].index.length === this.record.index.length;
+    const marks = stays ? this.marks : [];
+    this.records = records;
+    this.fillPicker();
+    this.choose(Math.max(same, 0), marks);
+  }
+
+  choose(place, marks = []) {
+    this.picker.value = place;
+    this.record = this.records[place];
+    this.scored = lowerBound(this.record.index, this.record.settle);
+    this.open = opened(this.record.drive, this.record.response, this.scored);
+    this.span = [0, this.record.index.length];
+    this.marks = marks;
+    this.draw();
+  }
+
+  mark(marks, written = true) {
+    this.marks = marks;
+    const { time } = this.record;
+    const ends = marks.length ? [time[marks[0][0]], time[marks.at(-1)[1] - 1]] : ["", ""];
+    if (written) [this.from.value, this.to.value] = ends.map((value) => (value === "" ? "" : Number(value.toPrecision(7))));
+    this.say();
+    for (const plot of this.plots) plot.redraw(false);
+    for (const plane of [this.loop, this.map]) { plane.scene.marks = marks; plane.overlay(); }
+  }
+
+  /** The stretch that is written in the fields, an empty one being the end of the record. */
+  markFields() {
+    const { time } = this.record;
+    const [from, to] = [this.from, this.to].map((field, end) => (field.value === "" ? time.at(-end || 0) : Number(field.value)));
+    this.mark(this.from.value + this.to.value === "" ? [] : marksInTime(this.record, from, to), false);
+  }
+
+  markBox(ys, xRange, yRange) {
+    this.mark(xRange ? marksInBox(this.record.drive, ys, xRange, yRange) : []);
+  }
+
+  /** What the marked stretch, or the whole record, leaves. */
+  say() {
+    const { record, marks } = this;
+    const whole = [[0, record.index.length]];
+    const said = record.models.map((model) => {
+      const { rmse, share } = errorOf(record, model, marks.length ? marks : whole);
+      const part = marks.length ? `, ${number(100 * share, 2)} % of the record's squared error` : "";
+      return `${record.models.length > 1 ? `${model.name}: ` : ""}RMSE ${number(rmse)} ${record.unit}${part}`;
+    });
+    this.readout.textContent = `${this.place()}: ${said.join("; ")}${this.overFloor()}.`;
+  }
+
+  place() {
+    const { time } = this.record;
+    if (!this.marks.length) return `Whole record, ${number(time.at(-1) - time[0])} s`;
+    const [from, to] = [time[this.marks[0][0]], time[this.marks.at(-1)[1] - 1]];
+    const parts = this.marks.length > 1 ? `${this.marks.length} stretches ` : "";
+    return `Marked ${parts}from ${tick(from)} s to ${tick(to)} s`;
+  }
+
+  overFloor() {
+    const floor = this.floors[this.record.axis];
+    return floor ? `; noise floor ${number(floor, 2)} ${this.record.unit}` : "";
+  }
+
+  draw() {
+    this.drawnAt = this.root.clientWidth;
+    this.curves.replaceChildren();
+    const { record } = this;
+    const named = record.models.length > 1;
+    this.plots = [
+      this.plot(`response [${record.unit}]`, 0.26, 0, [record.response, ...record.models.map((model) => sum(record.response, model.residual))], [
+        { label: "measured", stroke: () => colour("--measured"), width: 3 },
+        ...record.models.map((model, place) => line(named ? model.name : "model", place)),
+      ]),
+      this.plot(`residual [${record.unit}]`, 0.18, this.floors[record.axis] ?? 0, record.models.map((model) => model.residual),
+        record.models.map((model, place) => line(named ? `residual, ${model.name}` : "residual: model less measured", place))),
+    ];
+    this.loop.show(this.scene(record.response, `response [${record.unit}]`, {
+      curves: [
+        { xs: record.drive, ys: record.response, colour: "--measured", width: 3 },
+        ...record.models.map((model, place) => ({
+          xs: record.drive, ys: sum(record.response, model.residual), colour: MODELS[place % 4], width: 1.1, dash: DASHES[place % 4],
+        })).reverse(),
+      ],
+    }));
+    const cells = gridded(record.drive, this.open, record.models[0].residual, this.scored);
+    this.map.caption.textContent = `Residual map: mean residual along the loop, its slope taken out. Violet: the model is ${number(cells.largest, 2)} ${record.unit} or more below the measurement; orange: above.`;
+    this.map.show(this.scene(this.open, `response less a straight line [${record.unit}]`, { cells }));
+    this.mark(this.marks);
+  }
+
+  scene(ys, yLabel, drawn) {
+    const ranges = [this.record.drive, ys].map((values) => extent(values.subarray(this.scored)));
+    return { xs: this.record.drive, ys, ranges, xLabel: `drive [${this.record.driveUnit}]`, yLabel, marks: this.marks, ...drawn };
+  }
+
+  plot(label, share, floor, arrays, series) {
+    const { record } = this;
+    const width = Math.max(280, this.curves.clientWidth - 4);
+    const font = `${Math.round(0.78 * parseFloat(getComputedStyle(this.curves).fontSize))}px system-ui, sans-serif`;
+    const axis = (more) => ({ font, labelFont: font, stroke: () => colour("--quiet"), grid: { stroke: () => colour("--rule"), width: 1 }, ticks: { show: false }, ...more });
+    const plot = new uPlot({
+      width, height: Math.round(Math.min(Math.max(width * share, 130), 420)),
+      legend: { live: false },
+      cursor: { sync: { key: this.record.name }, drag: { x: true, y: false, setScale: false }, points: { show: false } },
+      scales: { x: { time: false }, y: { range: () => this.range(arrays, floor) } },
+      axes: [axis({ label: "time [s]", labelSize: 18, size: 32 }), axis({ label, labelSize: 20, size: 58, values: (_, values) => values.map(tick) })],
+      series: [{ label: "time" }, ...series],
+      hooks: {
+        setSelect: [(self) => this.dragged(self)],
+        setCursor: [(self) => this.hover(self)],
+        drawAxes: [(self) => this.shade(self, floor)],
+      },
+    }, null, this.curves);
+    plot.fill = () => {
+      const shown = thinned(arrays, ...this.span, Math.max(200, Math.round(width)));
+      plot.setData([shown.map((i) => record.time[i]), ...arrays.map((values) => shown.map((i) => values[i]))]);
+      plot.shown = shown;
+    };
+    plot.over.addEventListener("dblclick", () => this.mark([]));
+    plot.fill();
+    return plot;
+  }
+
+  /** What the scored samples shown span, with the noise floor where there is one, and some room. */
+  range(arrays, floor) {
+    const first = Math.min(Math.max(this.span[0], this.scored), this.span[1] - 1);
+    const ends = arrays.map((values) => extent(values.subarray(first, this.span[1])));
+    const [low, high] = [Math.min(-floor || Infinity, ...ends.map(([low]) => low)), Math.max(floor || -Infinity, ...ends.map(([, high]) => high))];
+    return [low - 0.06 * (high - low), high + 0.06 * (high - low)];
+  }
+
+  dragged(plot) {
+    if (plot.select.width < 3) return;
+    const [from, to] = [plot.select.left, plot.select.left + plot.select.width].map((px) => plot.posToVal(px, "x"));
+    plot.setSelect({ left: 0, width: 0, top: 0, height: 0 }, false);
+    this.mark(marksInTime(this.record, from, to));
+  }
+
+  hover(plot) {
+    const point = plot.cursor.idx === null || plot.cursor.idx === undefined ? null : plot.shown?.[plot.cursor.idx] ?? null;
+    if (point === this.pointed || !this.map.scene) return;
+    this.pointed = point;
+    this.loop.overlay(point);
+    this.map.overlay(point);
+  }
+
+  /** The marked stretches, what is not scored, and in the residual the noise floor, behind the curves. */
+  shade(plot, floor) {
+    const { time, settle, start, dt } = this.record;
+    const { left, top, width, height } = plot.bbox;
+    const band = (from, to, fill) => {
+      const [x0, x1] = [from, to].map((value) => Math.min(Math.max(plot.valToPos(value, "x", true), left), left + width));
+      plot.ctx.fillStyle = fill;
+      plot.ctx.fillRect(x0, top, Math.max(x1 - x0, x1 > left && x0 < left + width ? 1 : 0), height);
+    };
+    plot.ctx.save();
+    if (settle) band(start, start + settle * dt, colour("--soft"));
+    for (const [first, end] of this.marks) band(time[first], time[end - 1], colour("--marked"));
+    if (floor) {
+      const [y0, y1] = [floor, -floor].map((value) => Math.min(Math.max(plot.valToPos(value, "y", true), top), top + height));
+      plot.ctx.fillStyle = colour("--noise");
+      plot.ctx.fillRect(left, y0, width, y1 - y0);
+    }
+    plot.ctx.restore();
+  }
+
+  zoom(first = 0, end = this.record.index.length) {
+    this.span = [first, end];
+    for (const plot of this.plots) plot.fill();
+  }
+
+  zoomToMark() {
+    if (!this.marks.length) return;
+    const [first, end] = [this.marks[0][0], this.marks.at(-1)[1]];
+    const room = Math.max(2, Math.round(0.05 * (end - first)));
+    this.zoom(Math.max(0, first - room), Math.min(this.record.index.length, end + room));
+  }
+
+  key(event) {
+    const { time } = this.record;
+    const [first, end] = this.span;
+    const step = (time[end - 1] - time[first]) / 50;
+    const [from, to] = this.marks.length ? [time[this.marks[0][0]], time[this.marks.at(-1)[1] - 1]] : [time[first], time[first] + 5 * step];
+    const move = { ArrowLeft: -step, ArrowRight: step }[event.key];
+    if (move) {
+      const shift = this.marks.length ? move : 0;
+      const span = event.shiftKey ? [from, Math.max(from + step, to + shift)] : [from + shift, to + shift];
+      this.mark(marksInTime(this.record, ...span));
+    } else if (event.key === "Enter") this.zoomToMark();
+    else if (event.key === "Home") this.zoom();
+    else if (event.key === "Escape") this.mark([]);
+    else return;
+    event.preventDefault();
+  }
+
+  /** Show a stretch of a record by its name: what a link elsewhere on the page asks for. */
+  reveal(name, axis, from, to) {
+    const place = this.records.findIndex((record) => record.name === name && record.axis === axis);
+    if (place < 0) return;
+    if (this.record !== this.records[place]) this.choose(place);
+    this.mark(marksInTime(this.record, from, to));
+    this.root.scrollIntoView({ block: "start" });
+  }
+}
+
+function line(label, place) {
+  return { label, stroke: () => colour(MODELS[place % 4]), width: 1.2, dash: DASHES[place % 4] };
+}
+
+function sum(a, b) {
+  return a.map((value, i) => value + b[i]);
+}
+
+/** A new element inside another. */
+export function element(parent, tag, attributes = {}, text = "") {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  made.textContent = text;
+  parent.append(made);
+  return made;
+}

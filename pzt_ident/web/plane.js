@@ -1,0 +1,188 @@
+import { extent, number, thinned, ticks } from "./signals.js";
+
+const EDGE = { left: 62, right: 14, top: 10, bottom: 42 };
+const DRAWN = 4000; // bins of a curve: more cannot be told apart on a screen
+
+/** A colour of the page's style sheet, such as "--model". */
+export function colour(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+}
+
+/** A curve in a plane, response over drive, on a canvas. A box drawn with the mouse calls `onBox(xs, ys)`. */
+export class Plane {
+  constructor(holder, title, onBox) {
+    this.figure = holder.appendChild(document.createElement("figure"));
+    this.figure.className = "plane";
+    this.caption = this.figure.appendChild(document.createElement("figcaption"));
+    this.caption.textContent = title;
+    this.canvas = this.figure.appendChild(document.createElement("canvas"));
+    this.canvas.setAttribute("role", "img");
+    this.canvas.setAttribute("aria-label", title);
+    this.layer = document.createElement("canvas");
+    this.onBox = onBox;
+    this.listen();
+  }
+
+  /** What is drawn within `ranges`: `curves` of {xs, ys, colour, width, dash} or `cells`, and `marks` on xs, ys. */
+  show(scene) {
+    this.scene = scene;
+    const [x, y] = scene.ranges;
+    const room = (range) => [range[0] - 0.04 * (range[1] - range[0]), range[1] + 0.04 * (range[1] - range[0])];
+    [this.x, this.y] = [room(x), room(y)];
+    this.draw();
+  }
+
+  size() {
+    const width = Math.max(240, this.figure.clientWidth);
+    return [width, Math.round(Math.min(width * 0.68, 620))];
+  }
+
+  toX(value) { return EDGE.left + ((value - this.x[0]) / (this.x[1] - this.x[0])) * (this.width - EDGE.left - EDGE.right); }
+  toY(value) { return this.height - EDGE.bottom - ((value - this.y[0]) / (this.y[1] - this.y[0])) * (this.height - EDGE.top - EDGE.bottom); }
+  fromX(px) { return this.x[0] + ((px - EDGE.left) / (this.width - EDGE.left - EDGE.right)) * (this.x[1] - this.x[0]); }
+  fromY(px) { return this.y[0] + ((this.height - EDGE.bottom - px) / (this.height - EDGE.top - EDGE.bottom)) * (this.y[1] - this.y[0]); }
+
+  draw() {
+    [this.width, this.height] = this.size();
+    const scale = Math.max(window.devicePixelRatio || 1, 2); // fine enough for print
+    for (const canvas of [this.canvas, this.layer]) {
+      canvas.width = this.width * scale;
+      canvas.height = this.height * scale;
+    }
+    this.canvas.style.height = `${this.height}px`;
+    const pen = this.layer.getContext("2d");
+    pen.setTransform(scale, 0, 0, scale, 0, 0);
+    this.axes(pen);
+    pen.save();
+    pen.beginPath();
+    pen.rect(EDGE.left, EDGE.top, this.width - EDGE.left - EDGE.right, this.height - EDGE.top - EDGE.bottom);
+    pen.clip();
+    if (this.scene.cells) this.cells(pen);
+    for (const curve of this.scene.curves ?? []) this.curve(pen, curve, [[0, curve.xs.length]]);
+    pen.restore();
+    this.overlay();
+  }
+
+  axes(pen) {
+    pen.font = `${Math.max(11, parseFloat(getComputedStyle(this.figure).fontSize) * 0.78)}px system-ui, sans-serif`;
+    [pen.fillStyle, pen.strokeStyle, pen.lineWidth] = [colour("--quiet"), colour("--rule"), 1];
+    pen.textAlign = "center";
+    for (const value of ticks(this.x, this.width / 90)) {
+      this.rule(pen, this.toX(value), EDGE.top, this.toX(value), this.height - EDGE.bottom);
+      pen.fillText(tick(value), this.toX(value), this.height - EDGE.bottom + 15);
+    }
+    pen.fillText(this.scene.xLabel, (EDGE.left + this.width - EDGE.right) / 2, this.height - 7);
+    pen.textAlign = "right";
+    for (const value of ticks(this.y, this.height / 55)) {
+      this.rule(pen, EDGE.left, this.toY(value), this.width - EDGE.right, this.toY(value));
+      pen.fillText(tick(value), EDGE.left - 6, this.toY(value) + 4);
+    }
+    pen.save();
+    pen.translate(13, (EDGE.top + this.height - EDGE.bottom) / 2);
+    pen.rotate(-Math.PI / 2);
+    pen.textAlign = "center";
+    pen.fillText(this.scene.yLabel, 0, 0);
+    pen.restore();
+  }
+
+  rule(pen, x0, y0, x1, y1) {
+    pen.beginPath();
+    pen.moveTo(x0, y0);
+    pen.lineTo(x1, y1);
+    pen.stroke();
+  }
+
+  curve(pen, { xs, ys, colour: name, width, dash }, stretches) {
+    [pen.strokeStyle, pen.lineWidth, pen.lineJoin] = [colour(name), width, "round"];
+    pen.setLineDash(dash ?? []);
+    pen.beginPath();
+    for (const [first, end] of stretches) {
+      const shown = thinned([xs, ys], first, end, DRAWN);
+      pen.moveTo(this.toX(xs[shown[0]]), this.toY(ys[shown[0]]));
+      for (const i of shown.length > 1 ? shown : [first, first]) pen.lineTo(this.toX(xs[i]) + 0.01, this.toY(ys[i]));
+    }
+    pen.stroke();
+    pen.setLineDash([]);
+  }
+
+  /** Mean of the values of the points in each cell, as a colour between two sides. */
+  cells(pen) {
+    const { columns, rows, largest, means } = this.scene.cells;
+    const wide = (this.toX(this.scene.cells.x[1]) - this.toX(this.scene.cells.x[0])) / columns;
+    const tall = (this.toY(this.scene.cells.y[0]) - this.toY(this.scene.cells.y[1])) / rows;
+    const [middle, below, above] = ["--zero", "--below", "--above"].map((name) => rgb(colour(name)));
+    means.forEach((mean, cell) => {
+      if (Number.isNaN(mean)) return;
+      const share = Math.min(1, Math.abs(mean) / largest);
+      const side = mean < 0 ? below : above;
+      pen.fillStyle = `rgb(${middle.map((part, i) => Math.round(part + share * (side[i] - part))).join(" ")})`;
+      const [column, row] = [cell % columns, Math.floor(cell / columns)];
+      const left = this.toX(this.scene.cells.x[0]) + column * wide;
+      pen.fillRect(left, this.toY(this.scene.cells.y[0]) - (row + 1) * tall, wide + 0.6, tall + 0.6);
+    });
+  }
+
+  /** The drawing, and on it what is marked and where the cursor is. */
+  overlay(point = null, box = null) {
+    const pen = this.canvas.getContext("2d");
+    const scale = this.canvas.width / this.width;
+    pen.setTransform(1, 0, 0, 1, 0, 0);
+    pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
+    pen.drawImage(this.layer, 0, 0);
+    pen.setTransform(scale, 0, 0, scale, 0, 0);
+    const { xs, ys, marks } = this.scene;
+    if (marks?.length) this.curve(pen, { xs, ys, colour: "--mark", width: this.scene.cells ? 1 : 2.5 }, marks);
+    pen.strokeStyle = colour("--ink");
+    if (point !== null) {
+      pen.beginPath();
+      pen.arc(this.toX(xs[point]), this.toY(ys[point]), 5, 0, 2 * Math.PI);
+      pen.stroke();
+    }
+    if (box) pen.strokeRect(box[0], box[1], box[2] - box[0], box[3] - box[1]);
+  }
+
+  listen() {
+    let start = null;
+    this.canvas.addEventListener("pointerdown", (event) => {
+      start = [event.offsetX, event.offsetY];
+      this.canvas.setPointerCapture(event.pointerId);
+    });
+    this.canvas.addEventListener("pointermove", (event) => {
+      if (start) this.overlay(null, [...start, event.offsetX, event.offsetY]);
+    });
+    this.canvas.addEventListener("pointerup", (event) => {
+      if (!start) return;
+      const sorted = (a, b) => (a < b ? [a, b] : [b, a]);
+      const far = Math.hypot(event.offsetX - start[0], event.offsetY - start[1]) > 4;
+      const xs = sorted(this.fromX(start[0]), this.fromX(event.offsetX));
+      const ys = sorted(this.fromY(start[1]), this.fromY(event.offsetY));
+      start = null;
+      this.onBox(...(far ? [xs, ys] : [null, null]));
+    });
+    this.canvas.addEventListener("pointercancel", () => { start = null; this.overlay(); });
+  }
+}
+
+/** Mean of `values` from the first scored point on over a grid of cells of the plane, NaN where no point is. */
+export function gridded(xs, ys, values, first, columns = 110, rows = 72) {
+  const [x, y] = [extent(xs.subarray(first)), extent(ys.subarray(first))];
+  const total = new Float64Array(columns * rows), count = new Float64Array(columns * rows);
+  for (let i = first; i < xs.length; i++) {
+    const column = Math.min(columns - 1, Math.floor(((xs[i] - x[0]) / (x[1] - x[0])) * columns));
+    const row = Math.min(rows - 1, Math.floor(((ys[i] - y[0]) / (y[1] - y[0])) * rows));
+    total[row * columns + column] += values[i];
+    count[row * columns + column] += 1;
+  }
+  const means = Array.from(total, (sum, cell) => (count[cell] ? sum / count[cell] : NaN));
+  const sizes = means.filter((mean) => !Number.isNaN(mean)).map(Math.abs).sort((a, b) => a - b);
+  return { x, y, columns, rows, means, largest: sizes[Math.floor(0.98 * (sizes.length - 1))] || 1 };
+}
+
+export function tick(value) {
+  const text = number(value, 6);
+  return text.includes(".") && !text.includes("×") ? text.replace(/\.?0+$/, "") : text;
+}
+
+function rgb(hex) {
+  return [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
+}

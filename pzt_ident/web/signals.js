@@ -1,0 +1,143 @@
+// The arrays of a record, what is marked in them, and how few points show it. Nothing here draws.
+
+/** A record from the payload of `report/traces.py`: typed arrays over the points kept of its samples. */
+export async function decode(packed) {
+  const steps = packed.kept && new Uint16Array(await inflated(packed.kept));
+  const points = steps ? steps.length : packed.samples;
+  const index = new Float64Array(points);
+  for (let i = 0, at = 0; i < points; i++) index[i] = steps ? (at += steps[i]) : i;
+  const models = [];
+  for (const model of packed.models) {
+    const residual = await channel(model.residual);
+    const sizes = model.sizes ? await channel(model.sizes) : residual;
+    models.push({ name: model.name, residual, squares: sums(points, (i) => (index[i] < packed.settle ? 0 : sizes[i] ** 2)) });
+  }
+  const first = packed.settle - 1;
+  const counts = sums(points, (i) => Math.max(0, index[i] - Math.max(i ? index[i - 1] : -1, first)));
+  return {
+    ...packed, index, models, counts,
+    time: index.map((value) => packed.start + packed.dt * value),
+    drive: await channel(packed.drive),
+    response: await channel(packed.response),
+  };
+}
+
+async function channel({ data, low, step }) {
+  return Float64Array.from(new Uint16Array(await inflated(data)), (value) => low + step * value);
+}
+
+async function inflated(text) {
+  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  const plain = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Response(plain).arrayBuffer();
+}
+
+/** Sums of `value(i)` over the first 0, 1, 2, ... points. */
+function sums(points, value) {
+  const total = new Float64Array(points + 1);
+  for (let i = 0; i < points; i++) total[i + 1] = total[i] + value(i);
+  return total;
+}
+
+/** The points of a stretch of time as marks: a list of [first, last + 1]. */
+export function marksInTime(record, from, to) {
+  const first = lowerBound(record.time, Math.min(from, to));
+  const end = lowerBound(record.time, Math.max(from, to) + record.dt * 1e-6);
+  return end > first ? [[first, end]] : [];
+}
+
+/** The points inside a box of a plane as marks; a step across a single point outside does not part two stretches. */
+export function marksInBox(xs, ys, [left, right], [low, high]) {
+  const marks = [];
+  for (let i = 0; i < xs.length; i++) {
+    if (xs[i] < left || xs[i] > right || ys[i] < low || ys[i] > high) continue;
+    const last = marks.at(-1);
+    if (last && i - last[1] < 2) last[1] = i + 1;
+    else marks.push([i, i + 1]);
+  }
+  return marks;
+}
+
+/** RMSE of a model over marks, their scored samples, and their share of the record's squared error. */
+export function errorOf(record, model, marks) {
+  let squares = 0, samples = 0;
+  for (const [first, end] of marks) {
+    squares += model.squares[end] - model.squares[first];
+    samples += record.counts[end] - record.counts[first];
+  }
+  const whole = model.squares.at(-1);
+  return { rmse: samples ? Math.sqrt(squares / samples) : NaN, samples, share: whole ? squares / whole : 0 };
+}
+
+/** Indices of the points that show a stretch: of each bin the lowest and the highest of every array, and both ends. */
+export function thinned(arrays, first, end, bins) {
+  if (end - first <= 2 * bins) return Array.from({ length: end - first }, (_, i) => first + i);
+  const kept = new Set([first, end - 1]);
+  for (let bin = 0; bin < bins; bin++) {
+    const from = first + Math.floor((bin * (end - first)) / bins);
+    const to = first + Math.floor(((bin + 1) * (end - first)) / bins);
+    for (const values of arrays) {
+      let low = from, high = from;
+      for (let i = from + 1; i < to; i++) {
+        if (values[i] < values[low]) low = i;
+        if (values[i] > values[high]) high = i;
+      }
+      kept.add(low).add(high);
+    }
+  }
+  return [...kept].sort((a, b) => a - b);
+}
+
+/** The first place of an ascending array whose value is not below. */
+export function lowerBound(values, value) {
+  let low = 0, high = values.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (values[middle] < value) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+/** Distance from the straight line through the points from the first scored one on: a loop opened. */
+export function opened(xs, ys, first) {
+  const n = xs.length - first;
+  let x = 0, y = 0, xx = 0, xy = 0;
+  for (let i = first; i < xs.length; i++) { x += xs[i] / n; y += ys[i] / n; }
+  for (let i = first; i < xs.length; i++) { xx += (xs[i] - x) ** 2; xy += (xs[i] - x) * (ys[i] - y); }
+  const slope = xx ? xy / xx : 0;
+  return ys.map((value, i) => value - y - slope * (xs[i] - x));
+}
+
+export function extent(values) {
+  let low = Infinity, high = -Infinity;
+  for (const value of values) {
+    if (value < low) low = value;
+    if (value > high) high = value;
+  }
+  return low < high ? [low, high] : [low - 0.5, low + 0.5];
+}
+
+/** Round values that part a range into about so many steps. */
+export function ticks([low, high], wanted) {
+  const raw = (high - low) / wanted;
+  const power = 10 ** Math.floor(Math.log10(raw));
+  const step = [1, 2, 5, 10].map((round) => round * power).find((round) => round >= raw);
+  const found = [];
+  for (let count = Math.ceil(low / step); count * step <= high + step * 1e-9; count++) found.push(Number((count * step).toPrecision(12)));
+  return found;
+}
+
+/** A number as it is read: so many significant digits, no trailing zeros of a power. */
+export function number(value, digits = 3) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size >= 1e5 || size < 1e-4) {
+    const [mantissa, power] = value.toExponential(digits - 1).split("e");
+    const raised = [...String(Number(power))].map((sign) => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(sign)]).join("");
+    return `${mantissa} × 10${raised}`.replace("-", "−");
+  }
+  const places = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+  return value.toFixed(places).replace("-", "−");
+}

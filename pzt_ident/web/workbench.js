@@ -1,0 +1,232 @@
+import { Columns, row, select } from "./columns.js";
+import { Convergence } from "./convergence.js";
+import { element, Explorer } from "./explorer.js";
+import { ask, call, follow, opening, save } from "./session.js";
+import { decode, number } from "./signals.js";
+import { Staircase } from "./staircase.js";
+
+const STAGES = { run: "Identifying", compare: "Looking where it fails", diagnose: "Asking what is missing" };
+const at = (id) => document.getElementById(id);
+const convergence = new Convergence(at("convergence"));
+const columns = new Columns(at("columns"), (form) => act("job", form, "run"));
+let state = null, stairs = null, explorer = null, shown = "";
+
+/** Do something on the server and show what became of it; an error is said, and nothing is lost. */
+async function act(name, body = {}, then = null) {
+  at("error").hidden = true;
+  try {
+    show(await ask(name, body));
+    if (then) show(await ask(then, {}));
+  } catch (error) {
+    fail(error);
+  }
+}
+
+function fail(error) {
+  at("error").textContent = error.message;
+  at("error").hidden = false;
+}
+
+function show(found) {
+  state = found;
+  const begun = state.steps.length > 0;
+  at("name").textContent = begun ? state.job.name : "pzt-ident workbench";
+  at("where").textContent = begun ? state.job.folder : state.folder;
+  at("measurement").hidden = begun;
+  for (const id of ["chain", "fall"]) at(id).hidden = !begun;
+  at("terminal").hidden = !state.commands.length;
+  at("commands").textContent = state.commands.join("\n");
+  if (state.failure) fail({ message: state.failure });
+  else at("error").hidden = true;
+  buttons(begun);
+  words(begun);
+  if (!begun) return files();
+  chain();
+  fall();
+  misfit();
+  candidates();
+  signals().catch(fail);
+}
+
+function buttons(begun) {
+  const busy = Boolean(state.stage);
+  at("run").hidden = !begun || busy || Boolean(state.diagnosis);
+  at("run").textContent = state.failure ? "Run on" : "Run";
+  at("stop").hidden = !busy;
+  at("undo").hidden = state.steps.length < 2;
+  at("save").hidden = !begun;
+  at("drive").hidden = !state.diagnosis?.next_experiment;
+  at("report").hidden = !state.result;
+  status();
+}
+
+function status() {
+  const seconds = state?.stage ? Math.max(0, Math.round(Date.now() / 1000 - state.since)) : 0;
+  const share = state?.stage === "run" && convergence.budget ? `, ${Math.round((100 * convergence.done) / convergence.budget)} %, best RMSE ${number(convergence.best)}` : "";
+  at("status").textContent = state?.stage ? `${STAGES[state.stage]}: ${seconds} s${share}` : "";
+}
+
+function words(begun) {
+  const { diagnosis, result } = state;
+  at("advice").replaceChildren();
+  if (!begun) at("verdict").textContent = "Drop a measurement: voltage in, displacement out.";
+  else if (diagnosis) at("verdict").textContent = diagnosis.reason;
+  else if (result) at("verdict").textContent = `The model leaves ${number(result.best.rmse.validate ?? result.best.rmse.identify)} ${result.unit} RMS${result.best.rmse.validate === null ? "" : " on records the fit never saw"}.`;
+  else at("verdict").textContent = state.stage ? "Identifying the model." : "Ready to run.";
+  for (const { run, reason } of result?.failed_runs ?? []) element(at("advice"), "span", { class: "warn" }, `${run} failed: ${reason}. `);
+  if (!diagnosis) return;
+  const missing = diagnosis.candidates.filter((item) => item.decision === "missing");
+  for (const item of missing) addButton(at("advice"), item.effect, "strong");
+  if (missing.length) at("advice").append(` ${missing[0].physics} On the rig: ${missing[0].remedy}`);
+  if (diagnosis.next_experiment) at("advice").append(` To tell them apart: ${diagnosis.next_experiment.why}.`);
+}
+
+function addButton(parent, effect, kind = "") {
+  const made = element(parent, "button", { type: "button", class: kind, "data-effect": effect }, `Add ${effect}`);
+  made.addEventListener("click", () => act("add", { effect }));
+  parent.append(" ");
+}
+
+function files() {
+  at("here").replaceChildren();
+  if (!state.files.length) return;
+  at("here").append("Or take one of this folder: ");
+  for (const name of state.files)
+    element(at("here"), "button", { type: "button" }, name).addEventListener("click", () => look(name));
+}
+
+async function look(name) {
+  try { columns.add(await ask("look", { file: name })); } catch (error) { fail(error); }
+}
+
+async function upload(list) {
+  at("error").hidden = true;
+  for (const file of list)
+    try {
+      columns.add(await (await call(`upload?name=${encodeURIComponent(file.name)}`, file, true)).json());
+    } catch (error) { fail(error); }
+}
+
+function chain() {
+  const { model, effects } = state.job;
+  const docs = Object.fromEntries([...state.blocks, ...state.effects].map((block) => [block.name, block.doc]));
+  at("blocks").replaceChildren();
+  element(at("blocks"), "li", { class: "end" }, "drive");
+  for (const word of model) {
+    const item = element(at("blocks"), "li", { title: docs[word] ?? "" }, word);
+    if (model.length > 1) takeOff(item, word, () => act("model", { model: model.filter((other) => other !== word) }));
+  }
+  for (const word of effects) takeOff(element(at("blocks"), "li", { class: "effect", title: docs[word] ?? "" }, word), word, () => act("remove", { effect: word }));
+  element(at("blocks"), "li", { class: "end" }, "response");
+  at("more").replaceChildren();
+  more("Add a block", state.blocks.filter((block) => !model.includes(block.name)), (word) => act("model", { model: [...model, word] }));
+  more("Add an effect", state.effects.filter((block) => !effects.includes(block.name)), (word) => act("add", { effect: word }));
+}
+
+function takeOff(item, word, act) {
+  element(item, "button", { type: "button", "aria-label": `Take off ${word}`, title: `Take off ${word}` }, "×").addEventListener("click", act);
+}
+
+function more(name, choices, act) {
+  const list = select(at("more"), [["", `${name} …`], ...choices.map(({ name: word, doc }) => [word, `${word}: ${doc}`.slice(0, 110)])], "", name);
+  list.addEventListener("change", () => list.value && act(list.value));
+}
+
+/** The staircase, its last stair live while the search runs. */
+function fall() {
+  const floors = Object.values(state.result?.noise_floor ?? state.diagnosis?.noise_floor ?? {});
+  if (floors.length) fall.floor = Math.max(...floors);
+  const steps = state.steps.map(({ change, identify, validate }) => ({ name: change, identify, validate }));
+  const last = steps.at(-1);
+  if (state.stage === "run" && last.identify === null && Number.isFinite(convergence.best))
+    Object.assign(last, { identify: convergence.best, validate: convergence.validate, live: true });
+  fall.unit = state.result?.unit ?? (convergence.unit.replace(/^u/, "µ") || fall.unit);
+  const content = { steps, floor: fall.floor, unit: fall.unit ?? "" };
+  if (stairs) stairs.show(content);
+  else stairs = new Staircase(at("stairs"), content);
+  at("converging").hidden = !convergence.runs.size;
+}
+
+function misfit() {
+  const axes = Object.values(state.misfit?.axes ?? {});
+  at("where-it-fails").hidden = !axes.length;
+  at("misfit").replaceChildren();
+  for (const axis of axes) {
+    for (const sentence of axis.sentences) element(at("misfit"), "li", {}, sentence);
+    for (const one of axis.worst) {
+      const item = element(at("misfit"), "li");
+      element(item, "button", { type: "button" }, `${one.record}, ${number(one.start, 4)} to ${number(one.end, 4)} s: ${number(100 * one.share, 2)} % of the misfit`)
+        .addEventListener("click", () => explorer?.reveal(one.record, axis.axis, one.start, one.end));
+    }
+  }
+}
+
+function candidates() {
+  const { diagnosis } = state;
+  at("candidates").hidden = !diagnosis?.candidates.length;
+  at("effects").replaceChildren();
+  if (!diagnosis) return;
+  row(at("effects"), "th", ["effect", "", "decision", "explains", "would be", "visible", `RMSE after it [${diagnosis.unit}]`, "what it is", "cannot be told from"]);
+  for (const item of diagnosis.candidates) {
+    const values = Object.entries(item.expected).slice(0, 3).map(([name, value]) => `${name.split(".").at(-1)} ${number(value)}`).join(", ");
+    const rmse = item.rmse ? `${number(item.rmse.identify)} / ${number(item.rmse.validate)}` : "";
+    const alike = item.class.filter((word) => word !== item.effect).join(", ");
+    const cells = row(at("effects"), "td", [item.effect, "", item.decision, `${number(100 * item.explained, 2)} %`, values, number(item.visibility, 2), rmse, item.physics, alike]);
+    cells[7].classList.add("note");
+    if (item.decision === "missing") cells[0].parentElement.classList.add("missing");
+    addButton(cells[1], item.effect);
+  }
+}
+
+/** Fetch and draw the signals where a step has new ones. */
+async function signals() {
+  const key = state.steps.map((step) => `${step.number}:${step.identify}`).join(" ");
+  at("fit").hidden = !state.steps.some((step) => step.identify !== null);
+  if (at("fit").hidden || key === shown || !state.result) return;
+  shown = key;
+  const found = await ask("signals");
+  const records = await Promise.all(found.records.map(decode));
+  if (!records.length) return;
+  if (explorer) Object.assign(explorer, { floors: found.floors }).update(records);
+  else explorer = new Explorer(at("explorer"), records, { floors: found.floors });
+}
+
+async function refresh() {
+  try { show(await ask("state")); } catch (error) { fail(error); }
+}
+
+async function report() {
+  try {
+    const page = window.open("", "_blank");
+    const { url } = await ask("report", {});
+    page ? (page.location = url) : (location.href = url);
+  } catch (error) { fail(error); }
+}
+
+at("run").addEventListener("click", () => act("run"));
+at("stop").addEventListener("click", () => act("stop"));
+at("undo").addEventListener("click", () => act("undo"));
+at("save").addEventListener("click", () => save("job", `${state.job.name}.yaml`).catch(fail));
+at("drive").addEventListener("click", () => save("drive", "next_experiment.csv").catch(fail));
+at("report").addEventListener("click", report);
+at("choose").addEventListener("change", (event) => upload(event.target.files));
+for (const name of ["dragover", "dragleave", "drop"])
+  at("drop").addEventListener(name, (event) => {
+    event.preventDefault();
+    at("drop").classList.toggle("over", name === "dragover");
+    if (name === "drop") upload(event.dataTransfer.files);
+  });
+addEventListener("dragover", (event) => event.preventDefault());
+addEventListener("drop", (event) => event.preventDefault());
+setInterval(status, 500);
+
+await refresh();
+if (opening && !state?.steps.length) await look(opening);
+follow((event) => {
+  if (event.event === "step") convergence.clear();
+  else if (event.event === "changed") { if (event.version !== state?.version || state?.stage) refresh(); }
+  else {
+    convergence.take(event);
+    if (state?.stage === "run" && event.event === "generation") { fall(); status(); }
+  }
+}, fail);

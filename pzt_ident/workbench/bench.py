@@ -1,0 +1,209 @@
+"""The steps of a session as folders, and the commands that fill them, each in a process of its own.
+
+`<folder>/state.json` says which steps there are, and `steps/<number>/` holds `job.yaml`, the results of `pzt-ident run`
+in `run/` and those of `pzt-ident diagnose` in `diagnosis/`. What the page shows is read from there, so that neither a
+reload nor a crash loses anything.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+import shutil
+import signal
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from shlex import join
+from typing import Any
+
+from pzt_ident.amend import with_effects
+from pzt_ident.errors import InputError, RunError
+from pzt_ident.files import write_json, write_text
+from pzt_ident.job import Job, load_job
+from pzt_ident.workbench.form import job_text, with_model
+
+SECONDS_TO_STOP = 8.0
+
+
+class Bench:
+    """One session in `folder`, which lies in `root`; `version` counts what has happened, so that a page can follow."""
+
+    def __init__(self, root: Path, folder: Path) -> None:
+        self.root, self.folder, self.version = root.resolve(), folder.resolve(), 0
+        self.stage, self.since, self.failure = "", 0.0, ""
+        self.closing: Callable[[], bool] = lambda: False
+        self.task: asyncio.Task[None] | None = None
+        self.process: asyncio.subprocess.Process | None = None
+        stored = folder / "state.json"
+        known = json.loads(stored.read_text(encoding="utf-8")) if stored.exists() else {}
+        self.steps: list[dict[str, Any]] = known.get("steps", [])
+        self.at: int = known.get("at", 0)
+
+    @property
+    def data(self) -> Path:
+        return self.folder / "data"
+
+    @property
+    def running(self) -> bool:
+        return self.task is not None and not self.task.done()
+
+    def step(self, number: int | None = None) -> Path:
+        """The folder of a step, of the one shown if none is named. Raises InputError before there is one."""
+        if not self.steps:
+            raise InputError("there is no job yet", remedy="drop a measurement and confirm its columns")
+        return self.folder / "steps" / str(number or self.at)
+
+    def job(self) -> Job:
+        return load_job(self.step() / "job.yaml")
+
+    def chain(self) -> list[dict[str, Any]]:
+        """The steps from the first to the one shown."""
+        found: list[dict[str, Any]] = []
+        number = self.at
+        while number:
+            found.insert(0, self.steps[number - 1])
+            number = found[0]["parent"]
+        return found
+
+    def begin(self, form: dict[str, Any]) -> None:
+        """A first step from what was confirmed on the page. Raises InputError that lists every fault."""
+        for record in form["records"]:
+            record["file"] = os.path.relpath(self.root / record["file"], self.folder / "steps" / str(self._next))
+        self._add(job_text(form), parent=0, change="as given")
+
+    def open(self, path: Path) -> None:
+        """A first step from a job file of the user's."""
+        job = load_job(path)
+        self._add(with_effects(job, job.effects, self.folder / "steps" / str(self._next)), parent=0, change="as given")
+
+    def add(self, effect: str) -> None:
+        job = self.job()
+        if effect in job.effects:
+            raise InputError(f"{effect!r} is in the model already")
+        self._change((*job.effects, effect), f"+ {effect}")
+
+    def remove(self, effect: str) -> None:
+        job = self.job()
+        if effect not in job.effects:
+            raise InputError(f"{effect!r} is not in the model")
+        self._change(tuple(word for word in job.effects if word != effect), f"− {effect}")
+
+    def _change(self, effects: tuple[str, ...], change: str) -> None:
+        before, folder = self.step(), self.folder / "steps" / str(self._next)
+        self._add(with_effects(self.job(), effects, folder), self.at, change)
+        sign, effect = change.split()
+        paths = [self.relative(place / "job.yaml") for place in (before, folder)]
+        add = ["pzt-ident", "add", paths[0], effect, "-o", paths[1]]
+        self.log(join(add) if sign == "+" else f"# {paths[1]} is {paths[0]} less {effect}")
+
+    def choose(self, words: list[str]) -> None:
+        """Another chain of blocks."""
+        folder = self.folder / "steps" / str(self._next)
+        text = with_effects(self.job(), self.job().effects, folder)
+        before = self.step()
+        self._add(with_model(text, words), self.at, " → ".join(words))
+        paths = [self.relative(place / "job.yaml") for place in (folder, before)]
+        self.log(f"# {paths[0]} is {paths[1]} with the model {', '.join(words)}")
+
+    def undo(self) -> None:
+        """Back to the step before; what was made stays in its folder."""
+        if parent := self.chain()[-1]["parent"] if self.at else 0:
+            self.at = parent
+            self._store()
+
+    @property
+    def _next(self) -> int:
+        return len(self.steps) + 1
+
+    def _add(self, text: str, parent: int, change: str) -> None:
+        """A new step, once its job and data are found in order."""
+        from pzt_ident.summary import of_job
+
+        folder = self.folder / "steps" / str(self._next)
+        folder.mkdir(parents=True, exist_ok=True)  # paths of a job lead through it
+        of_job(Job.from_text(text, folder, "job.yaml"))
+        write_text(folder / "job.yaml", text)
+        self.steps.append({"number": self._next, "parent": parent, "change": change})
+        self.at = len(self.steps)
+        self._store()
+
+    def _store(self) -> None:
+        write_json(self.folder / "state.json", {"steps": self.steps, "at": self.at})
+        self.failure = ""
+        self.version += 1
+
+    def relative(self, path: Path) -> str:
+        return os.path.relpath(path, self.root)
+
+    def commands(self, step: Path) -> list[tuple[str, Path, list[str]]]:
+        """What fills a step: a name, the file that comes last, and the arguments of `pzt-ident`."""
+        job, run, diagnosis = (self.relative(step / name) for name in ("job.yaml", "run", "diagnosis"))
+        begun = (step / "run" / "environment.json").exists()
+        search = ["resume", run, "--no-report"] if begun else ["run", job, "--out", run, "--no-report"]
+        return [
+            ("run", step / "run" / "result.json", search),
+            ("compare", step / "run" / "residuals.json", ["compare", run, "--no-report"]),
+            ("diagnose", step / "diagnosis" / "diagnosis.json", ["diagnose", job, "--out", diagnosis, "--no-report"]),
+        ]
+
+    def log(self, line: str) -> None:
+        """Keep a line of what it takes to repeat the session in a terminal."""
+        with (self.folder / "commands.txt").open("a", encoding="utf-8") as log:
+            log.write(line + "\n")
+
+    def start(self) -> None:
+        """Fill the step that is shown. Raises InputError while another is being filled."""
+        if self.running:
+            raise InputError("a command is running", remedy="stop it first")
+        self.failure = ""
+        self.task = asyncio.create_task(self._fill(self.step()))
+
+    async def _fill(self, step: Path) -> None:
+        try:
+            for name, last, arguments in self.commands(step):
+                if not last.exists():
+                    if name == "diagnose":
+                        shutil.rmtree(last.parent, ignore_errors=True)
+                    await self._call(name, arguments)
+        except RunError as error:
+            self.failure = str(error)
+        finally:
+            self.stage, self.process = "", None
+            self.version += 1
+
+    async def _call(self, name: str, arguments: list[str]) -> None:
+        """Run a command to its end. Raises RunError with what it said where it failed."""
+        self.stage, self.since = name, time.time()
+        self.version += 1
+        self.log(join(["pzt-ident", *arguments]))
+        self.process = await asyncio.create_subprocess_exec(
+            *(sys.executable, "-m", "pzt_ident", *arguments, "--quiet"),
+            cwd=self.root,
+            stdin=asyncio.subprocess.DEVNULL,
+            stdout=asyncio.subprocess.DEVNULL,
+            stderr=asyncio.subprocess.PIPE,
+            start_new_session=True,
+        )
+        _, said = await self.process.communicate()
+        code = self.process.returncode or 0
+        if code == 130 or code == -signal.SIGTERM:
+            raise RunError("Stopped. Run goes on from here.")
+        if code < 0:
+            raise RunError(f"`pzt-ident {name}` was killed by signal {-code}. Run goes on from here.")
+        if code:
+            lines = said.decode(errors="replace").strip().splitlines()
+            raise RunError("\n".join(lines[-12:]).removeprefix("Error: ") or f"`pzt-ident {name}` failed")
+
+    async def stop(self) -> None:
+        """End what is running, with its workers; returns when it has ended."""
+        if not self.running or self.task is None:
+            return
+        if self.process and self.process.returncode is None:
+            self.process.terminate()
+        done, _ = await asyncio.wait([self.task], timeout=SECONDS_TO_STOP)
+        if not done and self.process and self.process.returncode is None:
+            os.killpg(self.process.pid, signal.SIGKILL)
+            await asyncio.wait([self.task])

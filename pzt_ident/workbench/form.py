@@ -1,0 +1,66 @@
+"""From what was confirmed on the page to the text of a job."""
+
+from __future__ import annotations
+
+import json
+from io import StringIO
+from typing import Any
+
+OPENING = """\
+# Made in the workbench. In a terminal, from the folder that the workbench was started in:
+#   pzt-ident run JOB          identifies the model
+#   pzt-ident diagnose JOB     says what it misses
+#   pzt-ident improve JOB      adds it, step by step
+
+"""
+SEARCH = """\
+
+# Equal numbers of evaluations; the local polish at the end of a run is the same for all.
+optimizers:
+  - {name: pso, population: 70, generations: 150}
+  - {name: least_squares}
+seed: 7
+"""
+
+
+def job_text(form: dict[str, Any]) -> str:
+    """The job of a form: name, records (file, use), time or sample_rate, axes (drive and response as columns) and
+    model. What is wrong with its words is found when the job is read."""
+    lines = [f"name: {_text(form['name'])}", "records:"]
+    rate = f", sample_rate: {_text(form['sample_rate'])}" if form.get("sample_rate") else ""
+    for record in form["records"]:
+        lines.append(f"  - {{file: {_text(record['file'])}, use: {_text(record['use'])}{rate}}}")
+    lines.append("channels:")
+    if form.get("time"):
+        lines.append(f"  time: {_channel(form['time'])}")
+    lines.append("  axes:")
+    for axis, roles in form["axes"].items():
+        said = ", ".join(f"{role}: {_channel(column)}" for role, column in roles.items())
+        lines.append(f"    {_text(axis)}: {{{said}}}")
+    words = ", ".join(map(_text, form["model"]))
+    return OPENING + "\n".join(lines) + f"\n\nmodel: [{words}]\neffects: []\n" + SEARCH
+
+
+def _channel(column: dict[str, Any]) -> str:
+    """By its heading where it has one, else by its number."""
+    place = f"name: {_text(column['header'])}" if column.get("header") else f"column: {int(column['number'])}"
+    return f"{{{place}, unit: {_text(column['unit'])}}}"
+
+
+def _text(value: Any) -> str:
+    """As YAML, whatever is in it: JSON is."""
+    return json.dumps(str(value), ensure_ascii=False)
+
+
+def with_model(text: str, words: list[str]) -> str:
+    """The text of a job with another chain of blocks, comments kept."""
+    from ruamel.yaml import YAML
+
+    yaml = YAML()
+    yaml.preserve_quotes = True
+    yaml.width = 10_000
+    document: Any = yaml.load(text)
+    document["model"][:] = words
+    written = StringIO()
+    yaml.dump(document, written)
+    return written.getvalue()

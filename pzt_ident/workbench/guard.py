@@ -1,0 +1,86 @@
+"""Who may speak to the workbench: this machine, this page, this session."""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Awaitable, Callable, MutableMapping
+from pathlib import Path
+from typing import Any
+
+from pzt_ident.errors import InputError
+
+Scope = MutableMapping[str, Any]
+Message = MutableMapping[str, Any]
+Send = Callable[[Message], Awaitable[None]]
+Receive = Callable[[], Awaitable[Message]]
+App = Callable[[Scope, Receive, Send], Awaitable[None]]
+
+POLICY = "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+HEADERS = {
+    "x-content-type-options": "nosniff",
+    "referrer-policy": "no-referrer",
+    "cache-control": "no-store",
+    "cross-origin-opener-policy": "same-origin",
+    "cross-origin-resource-policy": "same-origin",
+}
+REPORT = "/report/"  # a page with a policy of its own
+
+
+class Guard:
+    """Lets a request through that names a trusted host, comes from this page or from none, and, under /api/, brings the
+    token. Every answer carries the policy."""
+
+    def __init__(self, app: App, hosts: set[str], token: str) -> None:
+        self.app, self.hosts, self.token = app, hosts, token
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "lifespan":
+            await self.app(scope, receive, send)
+            return
+        if scope["type"] != "http":
+            return
+        path = scope["path"]
+
+        async def guarded(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                added = HEADERS if path.startswith(REPORT) else HEADERS | {"content-security-policy": POLICY}
+                message["headers"] = [*message["headers"], *((k.encode(), v.encode()) for k, v in added.items())]
+            await send(message)
+
+        refusal = self.refusal(path, headers_of(scope))
+        if refusal is None:
+            await self.app(scope, receive, guarded)
+            return
+        status, reason = refusal
+        plain = [(b"content-type", b"text/plain; charset=utf-8"), (b"connection", b"close")]
+        await guarded({"type": "http.response.start", "status": status, "headers": plain})
+        await guarded({"type": "http.response.body", "body": reason.encode()})
+
+    def refusal(self, path: str, headers: dict[str, list[str]]) -> tuple[int, str] | None:
+        """Status and reason; None where the request may pass."""
+        if len(headers.get("host", [])) != 1 or headers["host"][0].lower() not in self.hosts:
+            return 421, "not the host that the workbench was started for"
+        if any(origin.lower() not in {f"http://{host}" for host in self.hosts} for origin in headers.get("origin", [])):
+            return 403, "a page from elsewhere may not speak to the workbench"
+        given = headers.get("x-pzt-token", [""])[0]
+        if path.startswith("/api/") and not secrets.compare_digest(given.encode(), self.token.encode()):
+            return 403, "the token is missing or wrong: open the address that the terminal shows"
+        return None
+
+
+def headers_of(scope: Scope) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for key, value in scope["headers"]:
+        found.setdefault(key.decode("latin-1").lower(), []).append(value.decode("latin-1"))
+    return found
+
+
+def inside(root: Path, name: str) -> Path:
+    """The file of that name below a folder. Raises InputError where it leads out of it, or through a link."""
+    path = Path(name)
+    steps = [root.joinpath(*path.parts[: place + 1]) for place in range(len(path.parts))]
+    if not path.parts or path.is_absolute() or ".." in path.parts or "\0" in name or "\\" in name:
+        raise InputError(f"{name!r} is not in the workbench's folder", remedy="drop the file onto the page")
+    if any(step.is_symlink() for step in steps):
+        raise InputError(f"{name!r} is a link", remedy="copy the file into the folder")
+    return steps[-1]

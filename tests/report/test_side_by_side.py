@@ -1,0 +1,56 @@
+"""Several results on one page."""
+
+import json
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from pzt_ident.cli import main
+from pzt_ident.report.side_by_side import labels, write_side_by_side
+
+from .conftest import make_run
+
+
+@pytest.mark.parametrize(
+    ("folders", "names"),
+    [(["a/x", "a/y"], ["x", "y"]), (["a/x", "b/x"], ["a/x", "b/x"]), (["a", "a"], ["1: a", "2: a"])],
+)
+def test_folders_go_by_as_little_of_their_path_as_tells_them_apart(folders, names):
+    assert labels([Path(folder) for folder in folders]) == names
+
+
+@pytest.fixture
+def pair(tmp_path):
+    first = make_run(tmp_path / "plain", samples=80)
+    second = make_run(tmp_path / "other", samples=80, optimizers=("pso", "rga"))
+    shutil.copy(first / "signals.nc", second / "signals.nc")
+    return first, second
+
+
+def test_models_of_the_same_samples_are_in_one_figure(pair, tmp_path):
+    page = write_side_by_side(pair, tmp_path / "both.html").read_text(encoding="utf-8")
+    content = json.loads(re.search(r'id="content">(.*?)</script>', page, re.S)[1])
+    assert [[model["name"] for model in record["models"]] for record in content["records"]] == [["plain", "other"]] * 2
+    assert "plain leaves least on records the fit never saw" in page
+    assert {path.name for path in (tmp_path / "both").iterdir()} == {
+        f"{table}.{form}" for table in ("results", "parameters") for form in ("csv", "tex")
+    }
+
+
+def test_other_units_are_not_ranked(pair, tmp_path):
+    result = json.loads((pair[1] / "result.json").read_text())
+    (pair[1] / "result.json").write_text(json.dumps(result | {"unit": "nm"}))
+    assert "cannot be ranked" in write_side_by_side(pair, tmp_path / "both.html").read_text(encoding="utf-8")
+
+
+def test_the_command_writes_it(pair, tmp_path, monkeypatch):
+    monkeypatch.setattr("pzt_ident.report.figures.write_paper_figures", lambda results, folder: iter(()))
+    answer = CliRunner().invoke(main, ["report", *map(str, pair), "-o", str(tmp_path / "both.html")])
+    assert answer.exit_code == 0, answer.output
+    assert answer.stdout.splitlines() == [
+        *(str(folder / "report.html") for folder in pair),
+        str(tmp_path / "both.html"),
+    ]

@@ -1,0 +1,140 @@
+"""The steps of a session and what is kept of them on the disk."""
+
+import asyncio
+import json
+
+import pytest
+
+from pzt_ident.errors import InputError
+from pzt_ident.job import load_job
+from pzt_ident.workbench.bench import Bench
+
+from .conftest import form, measured
+
+
+@pytest.fixture
+def begun(bench):
+    measured(bench.root / "data.csv")
+    bench.begin(form())
+    return bench
+
+
+def test_a_step_is_a_job_that_the_command_line_reads(begun):
+    job = load_job(begun.step() / "job.yaml")
+    assert (job.name, job.effects) == ("small", ())
+    assert (begun.step() / job.records[0].file).resolve() == begun.root / "data.csv"
+
+
+def test_add_take_off_and_undo(begun):
+    begun.add("creep")
+    begun.add("drift")
+    assert begun.job().effects == ("creep", "drift")
+    begun.remove("creep")
+    assert [step["change"] for step in begun.chain()] == ["as given", "+ creep", "+ drift", "− creep"]
+    assert begun.job().effects == ("drift",)
+    begun.undo()
+    assert begun.job().effects == ("creep", "drift")
+    begun.add("saturation")
+    assert [step["change"] for step in begun.chain()] == ["as given", "+ creep", "+ drift", "+ saturation"]
+    for _ in range(9):
+        begun.undo()
+    assert begun.job().effects == ()
+
+
+@pytest.mark.parametrize("act", [lambda b: b.add("crep"), lambda b: b.remove("creep"), lambda b: b.choose(["nothing"])])
+def test_what_cannot_be_changes_nothing(begun, act):
+    before = (begun.folder / "state.json").read_text()
+    with pytest.raises(InputError):
+        act(begun)
+    assert (begun.folder / "state.json").read_text() == before
+
+
+def test_a_session_is_taken_up_again(begun):
+    begun.add("creep")
+    again = Bench(begun.root, begun.folder)
+    assert again.chain() == begun.chain() and again.job().effects == ("creep",)
+
+
+def test_comments_of_the_users_job_are_kept(bench):
+    measured(bench.root / "data.csv")
+    (bench.root / "job.yaml").write_text(
+        "# mine\nname: small\nrecords: [{file: data.csv, use: identify}]  # loops\nchannels:\n  time: 'time [s]'\n"
+        "  axes: {x: {drive: 'u_x [V]', response: 'x [um]'}}\nmodel: [bouc_wen]\n"
+    )
+    bench.open(bench.root / "job.yaml")
+    bench.add("creep")
+    text = bench.job().text
+    assert text.startswith("# mine\n") and "# loops" in text and bench.job().effects == ("creep",)
+
+
+def test_the_log_repeats_the_session(begun):
+    begun.add("creep")
+    begun.remove("creep")
+    begun.choose(["bouc_wen", "lumped"])
+    assert (begun.folder / "commands.txt").read_text().splitlines() == [
+        "pzt-ident add workbench/steps/1/job.yaml creep -o workbench/steps/2/job.yaml",
+        "# workbench/steps/3/job.yaml is workbench/steps/2/job.yaml less creep",
+        "# workbench/steps/4/job.yaml is workbench/steps/3/job.yaml with the model bouc_wen, lumped",
+    ]
+
+
+def test_a_run_that_was_cut_off_goes_on(begun):
+    names = [arguments[0] for _, _, arguments in begun.commands(begun.step())]
+    assert names == ["run", "compare", "diagnose"]
+    (begun.step() / "run").mkdir()
+    (begun.step() / "run" / "environment.json").write_text("{}")
+    assert begun.commands(begun.step())[0][2][:2] == ["resume", "workbench/steps/1/run"]
+
+
+def test_a_command_that_fails_says_why_and_one_that_is_stopped_says_so(begun, monkeypatch):
+    async def story():
+        (begun.step() / "job.yaml").write_text("name: broken\n")
+        begun.start()
+        await begun.task
+        assert "missing key 'records'" in begun.failure and "Traceback" not in begun.failure
+        monkeypatch.setattr(begun, "commands", lambda step: [("run", step / "never", ["workbench", "--no-browser"])])
+        begun.start()
+        with pytest.raises(InputError):
+            begun.start()
+        while begun.process is None:
+            await asyncio.sleep(0.02)
+        await begun.stop()
+        assert begun.failure.startswith("Stopped") and not begun.running and begun.stage == ""
+
+    asyncio.run(story())
+
+
+def test_the_page_is_told_of_every_change(client, bench):
+    measured(bench.root / "data.csv")
+    found = client.post("/api/job", json=form()).json()
+    assert found["job"]["model"] == ["bouc_wen"] and found["result"] is None
+    assert found["steps"] == [{"number": 1, "parent": 0, "change": "as given", "identify": None, "validate": None}]
+    assert {"bouc_wen", "lumped"} <= {block["name"] for block in found["blocks"]}
+    assert "creep" in {effect["name"] for effect in found["effects"]}
+    assert found["files"] == ["data.csv"]
+    assert client.get("/api/job").text == (bench.step() / "job.yaml").read_text()
+    assert client.get("/api/drive").status_code == 400
+
+
+def test_events_are_the_lines_of_the_run(bench, monkeypatch):
+    from pzt_ident.workbench.app import following
+
+    measured(bench.root / "data.csv")
+    bench.begin(form())
+    (bench.step() / "run").mkdir()
+    lines = [{"event": "start", "runs": []}, {"event": "done"}]
+    (bench.step() / "run" / "events.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines) + '{"torn')
+
+    class Listening:
+        async def is_disconnected(self):
+            return False
+
+    async def first(count):
+        stream, found = following(bench, Listening()), []
+        async for message in stream:
+            found.append(json.loads(message.removeprefix("data: ")))
+            if len(found) == count:
+                return found
+
+    found = asyncio.run(first(4))
+    assert found == [{"event": "step", "step": 1}, *lines, {"event": "changed", "version": bench.version}]
