@@ -32,7 +32,7 @@ class Job(BaseModel):
     name: Annotated[str, Field(pattern=r"^\w([\w .+-]*\w)?$")]
     records: tuple[Source, ...]
     channels: Channels
-    model: tuple[str, ...]
+    model: tuple[str | Choice, ...]
     effects: tuple[str, ...] = ()
     parameters: dict[str, Setting] = {}
     optimizers: tuple[Choice, ...] = (Choice("pso"),)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from pzt_ident.block import TILES, Addition, Bank, Beside, Block, Coupling, Operator, Place, Shift, Term, asked
 from pzt_ident.parameter import Parameter
 from pzt_ident.record import Record
+from pzt_ident.solve import Solve
 
 Array = NDArray[np.float64]
 
@@ -113,6 +114,7 @@ class Plan:
         self.program: list[tuple[int, ...]] = []
         self.given: list[tuple[int, int]] = []  # row of the scratch, column of theta
         self.known: list[tuple[int, float]] = []  # row of the scratch, the same number for every candidate
+        self.solved: list[tuple[Solve, NDArray[np.int64]]] = []  # what finds numbers, their rows (branches, words)
         self.rows = 0
         self._fresh = set(range(len(model.axes)))  # axes whose tile does not hold a signal yet
         last = max((i for i, block in enumerate(model.blocks) if issubclass(block, Coupling)), default=-1)
@@ -181,6 +183,9 @@ class Plan:
                 "dt": self.record.dt / self.model.oversample,
                 "span": float(np.ptp(self.record.drive[axis])),
             }
+            if issubclass(block, Bank) and block.solved:
+                at = [[row + branch * len(words) + words.index(word) for word in block.solved] for branch in branches]
+                self.solved.append((Solve(block, columns or {}, known), np.array(at)))
             for branch in branches:
                 for word in words:
                     column = columns.get(word) if columns else None
@@ -234,6 +239,8 @@ class Plan:
         rows, columns, known, values = self._sources
         scratch[:, rows] = theta[lanes, columns]
         scratch[:, known] = values
+        for solve, places in self.solved:
+            scratch[:, places] = solve(theta)[lanes[:, 0]].transpose(0, 2, 3, 1)
         return scratch.reshape(groups, -1)
 
     @cached_property

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
+
+from pzt_ident.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -34,3 +36,19 @@ class Parameter:
 
     def __set_name__(self, owner: type, name: str) -> None:
         object.__setattr__(self, "name", name)
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What a job chooses of how a block is built, a whole number: `{name: rod, elements: 16}`."""
+
+    value: int
+    bounds: tuple[int, int]
+    doc: str
+
+    def check(self, value: Any, where: str) -> None:
+        """Raises InputError for what is not a whole number within the bounds."""
+        low, high = self.bounds
+        if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+            remedy = f"give a whole number from {low} to {high}"
+            raise InputError(f"{value!r} is not {remedy.removeprefix('give ')}", where=where, remedy=remedy)

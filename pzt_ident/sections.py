@@ -31,7 +31,7 @@ class Setting:
 
 @dataclass(frozen=True)
 class Choice:
-    """An optimizer by name, and what is set in it."""
+    """An optimizer or block by name, and what is set in it."""
 
     name: str
     settings: dict[str, Any] = field(default_factory=dict)

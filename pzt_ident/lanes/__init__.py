@@ -87,6 +87,7 @@ def template_of(block: type[Block], variant: Variant) -> str:
 def layout_of(block: type[Block], variant: Variant) -> Layout:
     """Counted by asking the block itself, with parameters in the middle of their bounds."""
     known = {p.name: sum(p.bounds) / 2 for p in block.parameters().values()} | {"dt": 1e-3, "span": 1.0, "branch": 0}
+    known |= dict.fromkeys(getattr(block, "solved", ()), 0.5)
     prepared = block.prepare(*(known[word] for word in block.arguments()))  # type: ignore[attr-defined]
     operator, stateless = issubclass(block, Operator), issubclass(block, Coupling | Shift)
     count = sum(len(part) for part in prepared) if operator else len(prepared)

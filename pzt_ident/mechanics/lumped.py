@@ -2,20 +2,19 @@
 
 from math import sqrt
 
-from pzt_ident.block import Block, Place
-from pzt_ident.hold import oscillate, oscillator
+from pzt_ident.hold import oscillator
+from pzt_ident.mechanics._oscillator import Oscillator
 from pzt_ident.parameter import Parameter
 from pzt_ident.registry import blocks
 
 
 @blocks.register
-class Lumped(Block):
+class Lumped(Oscillator):
     """m x'' + b x' + k x = k f, solved exactly for f linear on each step (first-order hold), at rest at the start.
 
     Lin & Lin (2012), Mechatronics 22, 614, eq. 2.
     """
 
-    place = Place.MECHANICS
     mass = Parameter("kg", (0.01, 10), "Moving mass.", scale="log")
     damping = Parameter("N*s/m", (0, 1e4), "Viscous damping.")
     stiffness = Parameter("N/m", (1e5, 1e9), "Stiffness of flexure and actuator together.", scale="log")
@@ -27,10 +26,3 @@ class Lumped(Block):
         omega = sqrt(stiffness / mass)
         zeta = damping / (2 * sqrt(stiffness * mass))
         return oscillator(omega, zeta, dt)
-
-    def start(u, r11, r12, r21, r22, b1, b2):
-        return 0.0, 0.0, u
-
-    def step(w, v, f, u, r11, r12, r21, r22, b1, b2):
-        w, v = oscillate(w, v, u - f, r11, r12, r21, r22, b1, b2)
-        return w, v, u, u + w

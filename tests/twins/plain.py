@@ -89,12 +89,21 @@ def act(block, values, signal, aside, terms):
         return operator(block, asking(block.prepare, values), numbers, signal, aside)
     if issubclass(block, Bank):
         prompt = aside if block.place == Place.OPERATOR else signal
+        values = values | solved(block, values)
         return bank(block, [asking(block.prepare, values, branch) for branch in range(block.branches)], signal, prompt)
     numbers = asking(block.prepare, values)
     if issubclass(block, Shift):
         late = np.arange(len(signal)) - numbers[0]
         return np.interp(late, np.arange(len(signal)), signal)
     return plain(block, numbers, signal, *([aside] if issubclass(block, Beside) else []))
+
+
+def solved(block, values):
+    if not block.solved:
+        return {}
+    values = values | {word: [block.setting(word)] for word in block.settings()}
+    given = [each if len(each := values[word]) > 1 else each[0] for word in asked(block.solve)]
+    return dict(zip(block.solved, map(list, block.solve(*given)), strict=True))
 
 
 def plain(block, numbers, *inputs):

@@ -1,0 +1,18 @@
+"""One degree of freedom."""
+
+from pzt_ident.block import Block, Place
+from pzt_ident.hold import oscillate
+
+
+class Oscillator(Block):
+    """Solved exactly for f linear on each step (first-order hold), at rest at the start; prepare gives the coefficients
+    of hold.oscillate."""
+
+    place = Place.MECHANICS
+
+    def start(u, r11, r12, r21, r22, b1, b2):
+        return 0.0, 0.0, u
+
+    def step(w, v, f, u, r11, r12, r21, r22, b1, b2):
+        w, v = oscillate(w, v, u - f, r11, r12, r21, r22, b1, b2)
+        return w, v, u, u + w

@@ -1,0 +1,77 @@
+"""A rod along its axis: its parameters, and the matrices of its finite elements."""
+
+import numpy as np
+
+from pzt_ident.errors import InputError
+from pzt_ident.mechanics._linear import Linear, sections
+from pzt_ident.parameter import Parameter, Setting
+
+ELEMENTS_PER_MODE = 3
+
+
+class RodData:
+    """Parameters of a rod fixed at x = 0, at the end of which a mass, a damper and a spring pull.
+
+    rho A u_tt = N_x, N = Y A u_x + C A u_xt - A a1 (P - P_R), N(l) = -k u - c u_t - m u_tt. The polarization is the
+    same over the length, so it is a force at the end alone. Smith, Hatch, De, Salapaka, del Rosario & Raye, Model
+    Development for Atomic Force Microscope Stage Mechanisms, eq. 17 to 20; the area that their N and eq. 42 lack is
+    here.
+    """
+
+    density = Parameter("kg/m^3", (1e3, 2e4), "Density of the rod.", scale="log")
+    area = Parameter("m^2", (1e-8, 1e-2), "Area of the cross section.", scale="log")
+    length = Parameter("m", (1e-3, 1), "Length of the rod.", scale="log")
+    modulus = Parameter("Pa", (1e9, 5e11), "Young's modulus, Y.", scale="log")
+    viscosity = Parameter("Pa*s", (1e2, 1e10), "Damping inside the material, C (Kelvin-Voigt).", scale="log")
+    end_mass = Parameter("kg", (0, 10), "Mass at the end.", value=0)
+    end_damping = Parameter("N*s/m", (0, 1e6), "Damper at the end.", value=0)
+    end_stiffness = Parameter("N/m", (0, 1e9), "Spring at the end.", value=0)
+    load = Parameter("kg", (0, 1), "Mass of a payload, added to that at the end.", null=0, effect="load_mass")
+    extra_damping = Parameter("N*s/m", (0, 1e3), "Added to the damper at the end.", null=0, effect="viscous_damping")
+
+
+class RodElements(RodData, Linear):
+    """Linear finite elements of the same length, eq. 40 to 41. f is the displacement of the end at rest."""
+
+    elements = Setting(8, (1, 100), "Linear finite elements.")
+    modes = Setting(0, (0, 100), "Slowest modes that are stepped, those above at rest under the force; 0 for all.")
+
+    def count(elements, modes):
+        if elements < ELEMENTS_PER_MODE * modes:
+            message = f"{elements} elements are too few for mode {modes}"
+            enough = ELEMENTS_PER_MODE * modes
+            remedy = f"give `elements: {enough}`, which leaves 5 % of its frequency, or fewer modes"
+            raise InputError(message, where="rod", remedy=remedy)
+        return modes or elements
+
+    def solve(
+        density,
+        area,
+        length,
+        modulus,
+        viscosity,
+        end_mass,
+        end_damping,
+        end_stiffness,
+        load,
+        extra_damping,
+        elements,
+        modes,
+    ):
+        mass, stiffness = hats(elements, length)
+        damping = viscosity * area * stiffness
+        mass, stiffness = density * area * mass, modulus * area * stiffness
+        mass[-1, -1] += end_mass + load
+        damping[-1, -1] += end_damping + extra_damping
+        stiffness[-1, -1] += end_stiffness
+        end = np.eye(elements)[-1]
+        return tuple(each[: modes or elements] for each in sections(mass, damping, stiffness, end, end))
+
+
+def hats(elements, length):
+    """int phi_i phi_j and int phi_i' phi_j' over the length, (elements, elements) each: linear hats, none at x = 0."""
+    size = length / elements
+    beside = np.eye(elements, k=1) + np.eye(elements, k=-1)
+    mass, stiffness = 4 * np.eye(elements) + beside, 2 * np.eye(elements) - beside
+    mass[-1, -1], stiffness[-1, -1] = 2, 1
+    return mass * size / 6, stiffness / size
