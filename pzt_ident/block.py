@@ -160,9 +160,9 @@ class Bank(Block):
     prepare may ask for `branch`, counted from 0, and is given each branch its own of a counted parameter.
     output(u, total, *coefficients of the first branch) -> y.
 
-    What needs NumPy is done once per distinct candidate: solve(*parameters, *settings) -> one array (branches,) for
-    each word of `solved`, which `prepare` may ask for. Where a job chooses the size, count(*settings) -> branches; it
-    raises InputError where settings do not go together.
+    What needs NumPy is done once per distinct candidate: solve(own) -> one array (branches,) for each word of `solved`,
+    which `prepare` may ask for; own.word is a parameter (an array where it is counted), a setting or dt. Where a job
+    chooses the size, count(*settings) -> branches; it raises InputError where settings do not go together.
     """
 
     branches: ClassVar[int]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag
 
 from pzt_ident.record import Axis, Channel
 
@@ -35,6 +35,14 @@ class Choice:
 
     name: str
     settings: dict[str, Any] = field(default_factory=dict)
+
+
+def _kind(item: object) -> str:
+    return "word" if not isinstance(item, (dict, Choice)) else "choice"
+
+
+Item = Annotated[Annotated[str, Tag("word")] | Annotated[Choice, Tag("choice")], Discriminator(_kind)]
+"""A block: its word, alone or with settings."""
 
 
 @dataclass(frozen=True)

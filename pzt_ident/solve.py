@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import suppress
+from types import SimpleNamespace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.block import Bank, asked
+from pzt_ident.block import Bank
 
 Array = NDArray[np.float64]
 
@@ -18,8 +19,7 @@ class Solve:
 
     def __init__(self, block: type[Bank], columns: Mapping[str, int | list[int]], known: Mapping[str, float]) -> None:
         self.block = block
-        self.asked = asked(block.solve)  # type: ignore[attr-defined]
-        self.columns = {word: columns[word] for word in self.asked if word in columns}
+        self.columns = columns
         self.known = dict(known) | {word: block.setting(word) for word in block.settings()}
 
     def __call__(self, theta: Array) -> Array:
@@ -30,9 +30,6 @@ class Solve:
         for i, candidate in enumerate(theta[first]):
             if np.isfinite(kinds[i]).all():
                 with suppress(np.linalg.LinAlgError), np.errstate(all="ignore"):
-                    found[i] = np.transpose(self.one(candidate))
+                    own = self.known | {word: candidate[column] for word, column in self.columns.items()}
+                    found[i] = np.transpose(self.block.solve(SimpleNamespace(**own)))  # type: ignore[attr-defined]
         return found[which.ravel()]
-
-    def one(self, candidate: Array) -> tuple[Array, ...]:
-        values = self.known | {word: candidate[column] for word, column in self.columns.items()}
-        return tuple(self.block.solve(*(values[word] for word in self.asked)))  # type: ignore[attr-defined]

@@ -1,5 +1,7 @@
 """Linear mechanics of many degrees of freedom as sections of second order in parallel."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from pzt_ident.block import Bank, Place
@@ -10,7 +12,7 @@ class Linear(Bank):
     """y = f + sum_i (share_i w_i + speed_i v_i), (w, v) of each section as in hold.oscillator: solved exactly for f
     linear on each step, at rest at the start. What the shares lack of one follows f at once.
 
-    solve(*parameters) -> (omega, zeta, share, speed), an array (branches,) each.
+    solve(own) -> (omega, zeta, share, speed), an array (branches,) each.
     """
 
     place = Place.MECHANICS
@@ -72,3 +74,26 @@ def paired(poles, residues):
     order = np.argsort(omega)
     found = omega, -(p + q).real / (2 * omega), -(r * q + s * p).real / square, (r + s).real / omega
     return tuple(each[order] for each in found)
+
+
+class Forms(NamedTuple):
+    """What the well-posedness of M x'' + Q x' + K x = load F asks of its forms over V, whose inner product is `inner`.
+
+    Smith et al., H1 to H5: sigma1 is bounded by c1, elliptic by c2 and symmetric up to `skew`; sigma2 is bounded by c3
+    and elliptic by c4, which must be positive.
+    """
+
+    c1: float
+    c2: float
+    skew: float
+    c3: float
+    c4: float
+
+
+def forms(damping, stiffness, inner):
+    """The constants of the discretised forms: sigma1 is K, sigma2 is Q."""
+    root = np.linalg.inv(np.linalg.cholesky(inner))
+    first, second = (root @ form @ root.T for form in (stiffness, damping))
+    bounds = [np.linalg.norm(form, 2) for form in (first, second)]
+    floors = [np.linalg.eigvalsh((form + form.T) / 2)[0] for form in (first, second)]
+    return Forms(bounds[0], floors[0], np.abs(first - first.T).max(), bounds[1], floors[1])

@@ -44,28 +44,20 @@ class RodElements(RodData, Linear):
             raise InputError(message, where="rod", remedy=remedy)
         return modes or elements
 
-    def solve(
-        density,
-        area,
-        length,
-        modulus,
-        viscosity,
-        end_mass,
-        end_damping,
-        end_stiffness,
-        load,
-        extra_damping,
-        elements,
-        modes,
-    ):
-        mass, stiffness = hats(elements, length)
-        damping = viscosity * area * stiffness
-        mass, stiffness = density * area * mass, modulus * area * stiffness
-        mass[-1, -1] += end_mass + load
-        damping[-1, -1] += end_damping + extra_damping
-        stiffness[-1, -1] += end_stiffness
-        end = np.eye(elements)[-1]
-        return tuple(each[: modes or elements] for each in sections(mass, damping, stiffness, end, end))
+    def solve(rod):
+        end = np.eye(rod.elements)[-1]
+        return tuple(each[: rod.modes or rod.elements] for each in sections(*matrices(rod), end, end))
+
+
+def matrices(rod):
+    """M, Q and K of eq. 41 with what pulls at the end, (elements, elements) each."""
+    mass, strain = hats(rod.elements, rod.length)
+    mass, damping = rod.density * rod.area * mass, rod.viscosity * rod.area * strain
+    stiffness = rod.modulus * rod.area * strain
+    mass[-1, -1] += rod.end_mass + rod.load
+    damping[-1, -1] += rod.end_damping + rod.extra_damping
+    stiffness[-1, -1] += rod.end_stiffness
+    return mass, damping, stiffness
 
 
 def hats(elements, length):

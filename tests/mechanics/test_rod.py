@@ -1,6 +1,7 @@
 """The distributed rod against its dense twin, closed forms, and the numbers of the paper."""
 
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from pzt_ident.errors import InputError
-from pzt_ident.mechanics import _rod
+from pzt_ident.mechanics import _linear, _rod
 from pzt_ident.registry import blocks
 from rig import response
 from twins import lumped_twin, rod_twin
@@ -43,8 +44,12 @@ def stiffness(rod):
 
 
 def sections(rod, elements, modes=0):
-    rod = rod | {"load": 0.0, "extra_damping": 0.0}
-    return blocks["rod"].solve(**rod, elements=elements, modes=modes)
+    return blocks["rod"].solve(own(rod, elements, modes))
+
+
+def own(rod, elements, modes=0):
+    """What a candidate's `solve` is given."""
+    return SimpleNamespace(**rod, load=0.0, extra_damping=0.0, elements=elements, modes=modes)
 
 
 def lumped(rod):
@@ -123,12 +128,10 @@ def test_a_free_end_has_the_closed_frequencies():
 def test_static_deflection_is_exact_for_any_number_of_elements(elements):
     """u(l) = F l / (Y A) for the free end, and F / (Y A / l + k_l): the strain is the same everywhere."""
     for rod in (FREE, SOFT):
-        _, _, matrix = rod_twin.matrices(elements, rod)
-        own, hats = _rod.hats(elements, rod["length"])[1], np.eye(elements)[-1]
-        own = rod["modulus"] * rod["area"] * own
-        own[-1, -1] += rod["end_stiffness"]
-        np.testing.assert_allclose(own, matrix, rtol=1e-13, atol=1e-13 * matrix.max())
-        assert np.linalg.solve(own, hats)[-1] == pytest.approx(1 / stiffness(rod), rel=1e-11)
+        for found, expected in zip(_rod.matrices(own(rod, elements)), rod_twin.matrices(elements, rod), strict=True):
+            np.testing.assert_allclose(found, expected, rtol=1e-13, atol=1e-13 * expected.max())
+        deflection = np.linalg.solve(found, np.eye(elements)[-1])[-1]
+        assert deflection == pytest.approx(1 / stiffness(rod), rel=1e-11)
         assert sections(rod, elements)[2].sum() == pytest.approx(1, abs=1e-10)
 
 
@@ -197,6 +200,40 @@ def test_higher_modes_left_out_follow_at_rest():
     whole, part = (end("rod", SOFT, force, 1e-5, elements=9, modes=modes) for modes in (0, 1))
     assert 0 < np.abs(whole - part).max() < 1e-3
     np.testing.assert_array_equal(sections(SOFT, 9, 3)[0], sections(SOFT, 9)[0][:3])
+
+
+@pytest.mark.parametrize("elements", [2, 8, 40])
+@pytest.mark.parametrize("rod", [TABLE_1, REPAIRED, SOFT, FREE], ids=["table 1", "repaired", "soft", "free"])
+def test_forms_are_well_posed_with_the_closed_constants(rod, elements):
+    """H1 to H5: c1 = c2 = 1 where the inner product of V is sigma1. Of sigma2, C A / (Y A + k l) and C / Y + c l / Y A
+    bound c4 and c3 for every rod, as |u(l)|^2 <= l int u'^2, and are reached without a spring, c3 by u = x."""
+    _, damping, spring = _rod.matrices(own(rod, elements))
+    found = _linear.forms(damping, spring, spring)
+    assert found.c1 == pytest.approx(1) and found.c2 == pytest.approx(1) and found.skew < 1e-12
+    axial = rod["modulus"] * rod["area"]
+    low = rod["viscosity"] * rod["area"] / (axial + rod["end_stiffness"] * rod["length"])
+    high = rod["viscosity"] / rod["modulus"] + rod["end_damping"] * rod["length"] / axial
+    assert low * (1 - 1e-9) <= found.c4 <= found.c3 <= high * (1 + 1e-9)
+    if rod["end_stiffness"] < 1:
+        assert (found.c4, found.c3) == pytest.approx((low, high), rel=1e-9)
+
+
+def test_constants_of_table_1():
+    _, damping, spring = _rod.matrices(own(TABLE_1, 8))
+    found = _linear.forms(damping, spring, spring)
+    assert (found.c4, found.c3) == pytest.approx((7.142857e-5, 7.645714e-5), rel=1e-6)
+
+
+def test_without_damping_sigma2_is_not_elliptic():
+    _, damping, spring = _rod.matrices(own(TABLE_1 | {"viscosity": 0.0}, 8))
+    assert _linear.forms(damping, spring, spring).c4 == pytest.approx(0, abs=1e-15)
+
+
+def test_forms_see_what_is_not_symmetric():
+    spring = _rod.matrices(own(FREE, 3))[2]
+    turned = spring + spring.max() * np.triu(np.ones((3, 3)), 1) - spring.max() * np.tril(np.ones((3, 3)), -1)
+    found = _linear.forms(spring, turned, spring)
+    assert found.skew > 0.1 and found.c1 > 1.1 and found.c2 == pytest.approx(1)
 
 
 def test_too_few_elements_for_a_mode_are_refused():

@@ -2,6 +2,7 @@
 
 import math
 from itertools import permutations
+from types import SimpleNamespace
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -102,8 +103,8 @@ def solved(block, values):
     if not block.solved:
         return {}
     values = values | {word: [block.setting(word)] for word in block.settings()}
-    given = [each if len(each := values[word]) > 1 else each[0] for word in asked(block.solve)]
-    return dict(zip(block.solved, map(list, block.solve(*given)), strict=True))
+    own = SimpleNamespace(**{word: each if len(each) > 1 else each[0] for word, each in values.items()})
+    return dict(zip(block.solved, map(list, block.solve(own)), strict=True))
 
 
 def plain(block, numbers, *inputs):
