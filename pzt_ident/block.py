@@ -91,7 +91,8 @@ class Block:
         for owner in reversed(cls.__mro__):
             for word, declared in vars(owner).items():
                 if isinstance(declared, Parameter):
-                    names = [word] if declared.count is None else [f"{word}_{k + 1}" for k in range(declared.count)]
+                    count = cls.setting(declared.count) if isinstance(declared.count, str) else declared.count
+                    names = [word] if count is None else [f"{word}_{k + 1}" for k in range(count)]
                     found.update(dict.fromkeys(names, declared))
         return found
 
@@ -193,6 +194,22 @@ class Addition(Block):
     basis(t, *parameters) -> (b_1, b_2, ...), arrays over t, s from the start of the record. The amounts, parameters
     of each record, are taken in closed form together with the offset, on any record.
     """
+
+
+class Modes(Block):
+    """Mechanics of all axes together: each mode takes the force p = sum_a enters_a f_a, and its displacement q moves
+    every axis, y_a = sum_modes leaves_a q.
+
+    prepare(*parameters of a mode[, dt]) -> coefficients; start(p, *coefficients) -> states;
+    step(*states, p, *coefficients) -> (*states, q). `weights` are the words of enters and leaves.
+    """
+
+    branches: ClassVar[int]
+    weights: ClassVar[tuple[str, str]]
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        cls.branches = cls.setting("modes")
 
 
 class Coupling(Block):

@@ -203,6 +203,10 @@ def _stranger(document: Document, name: str, earlier: Earlier, spelled: Mapping[
         said = f"belongs to the effect {effect!r}", f"add `effects: [{effect}]`"
         if declared.per_record:
             said = "is taken in closed form for each record", "take it out"
+        elif declared.each == "stage":
+            said = "is one of the whole stage", f"write {block}.{word}"
+        elif declared.each == "later axis":
+            said = "is relative to that of the first axis, which has none", "take it out"
     else:
         alike = [known for known in spelled if f"{block}." in known and known.count(".") == name.count(".")]
         said = f"{block!r} has no parameter {word!r}", nearest(name, alike)

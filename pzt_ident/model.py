@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.block import TILES, Addition, Bank, Beside, Block, Coupling, Operator, Place, Shift, Term, asked
+from pzt_ident.block import TILES, Addition, Bank, Beside, Block, Coupling, Modes, Operator, Place, Shift, Term, asked
 from pzt_ident.parameter import Parameter
 from pzt_ident.record import Record
 from pzt_ident.solve import Solve
@@ -58,6 +58,7 @@ class Model:
 
     def _slots(self, block: type[Block]) -> list[Slot]:
         found = []
+        first = self.measured[0]
         for axis in self.measured:
             prefix = f"{self.axes[axis]}." if len(self.measured) > 1 else ""
             others = [b for b in range(len(self.axes)) if b != axis] if issubclass(block, Coupling) else [axis]
@@ -66,7 +67,9 @@ class Model:
                 for word, parameter in block.parameters().items():
                     if parameter.per_record or (parameter.effect and parameter.effect not in self._listed):
                         continue
-                    name = f"{prefix}{block.name}.{word}{suffix}"
+                    if parameter.each != "axis" and (parameter.each == "stage") != (axis == first):
+                        continue
+                    name = f"{'' if parameter.each == 'stage' else prefix}{block.name}.{word}{suffix}"
                     found.append(Slot(name, block, word, axis, other, parameter))
         return found
 
@@ -87,7 +90,7 @@ class Model:
     def columns(self, block: type[Block], axis: int, other: int) -> dict[str, int | list[int]] | None:
         """Columns of theta that hold a block's parameters; None for a pair onto an axis that is not measured."""
         if axis not in self.measured:
-            if issubclass(block, Coupling):
+            if issubclass(block, Coupling | Modes):
                 return None
             axis = other = self.measured[0]
         found: dict[str, int | list[int]] = {}
@@ -117,9 +120,11 @@ class Plan:
         self.solved: list[tuple[Solve, NDArray[np.int64]]] = []  # what finds numbers, their rows (branches, words)
         self.rows = 0
         self._fresh = set(range(len(model.axes)))  # axes whose tile does not hold a signal yet
-        last = max((i for i, block in enumerate(model.blocks) if issubclass(block, Coupling)), default=-1)
+        last = max((i for i, block in enumerate(model.blocks) if issubclass(block, Coupling | Modes)), default=-1)
         for number, block in enumerate(model.blocks):
-            if issubclass(block, Coupling):
+            if issubclass(block, Coupling | Modes):
+                for axis in range(len(model.axes)):
+                    self._keep(number, axis)
                 self._fill(set(self._fresh))
                 self._add(block, 0, Variant(axes=len(model.axes)))
                 continue
@@ -172,8 +177,10 @@ class Plan:
         made = compile_block(block, variant)  # type: ignore[arg-type]
         tile = TILES * axis + (1 if block.place == Place.READOUT and self.model.reads_out else 0)
         self.program.append((made.address, self.rows, 2 * axis, tile, 0))
+        axis = self.model.measured[0] if issubclass(block, Modes) else axis
         places = [(a, b) for a in axes for b in axes if b != a] if coupling else [(axis, axis)]
-        branches = range(block.branches) if issubclass(block, Bank) else [0]
+        branches = range(block.branches) if issubclass(block, Bank | Modes) else [0]
+        weights = [(word, a) for word in block.weights for a in axes] if issubclass(block, Modes) else []
         words = (*block.arguments(), *(asked(block.terms) if variant.terms else ()))  # type: ignore[attr-defined]
         nulls = {p.name: p.null or 0.0 for p in block.parameters().values() if p.effect}
         row = self.rows + made.layout.first_given
@@ -193,6 +200,13 @@ class Plan:
                         self.known.append((row, (known | {"branch": branch}).get(word, 0.0)))
                     else:
                         self.given.append((row, column[branch] if isinstance(column, list) else column))
+                    row += 1
+                for word, a in weights:
+                    found = self.model.columns(block, a, a)
+                    if found is None or word not in found:
+                        self.known.append((row, 0.0 if found is None else 1.0))
+                    else:
+                        self.given.append((row, found[word][branch]))  # type: ignore[index]
                     row += 1
         self.rows += made.layout.rows
 

@@ -18,7 +18,9 @@ class Parameter:
 
     `null` is the value at which the block is exactly the identity; None where there is none.
     `effect` names the effect that the parameter belongs to; unless the job lists it, the parameter stays at its null.
-    `count` makes a parameter one of each branch of the block, `weight_1`, `weight_2`, ...
+    `count` makes a parameter one of each branch of the block, `weight_1`, `weight_2`, ...; where a job chooses how
+    many, it is the setting's name. `each` says who has one of its own: every axis, the stage as a whole, or every axis
+    after the first, to which it is relative.
     `per_record` gives every record one of its own, for what begins anew or at another phase with each measurement.
     `value` is what it is fixed to unless the job frees it with bounds.
     """
@@ -29,7 +31,8 @@ class Parameter:
     null: float | None = None
     scale: Literal["linear", "log"] = "linear"
     effect: str | None = None
-    count: int | None = None
+    count: int | str | None = None
+    each: Literal["axis", "stage", "later axis"] = "axis"
     per_record: bool = False
     value: float | None = None
     name: str = ""
