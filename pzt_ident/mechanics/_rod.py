@@ -2,14 +2,12 @@
 
 import numpy as np
 
-from pzt_ident.errors import InputError
 from pzt_ident.mechanics._linear import Linear, sections
+from pzt_ident.mechanics._solid import Solid, resolved
 from pzt_ident.parameter import Parameter, Setting
 
-ELEMENTS_PER_MODE = 3
 
-
-class RodData:
+class RodData(Solid):
     """Parameters of a rod fixed at x = 0, at the end of which a mass, a damper and a spring pull.
 
     rho A u_tt = N_x, N = Y A u_x + C A u_xt - A a1 (P - P_R), N(l) = -k u - c u_t - m u_tt. The polarization is the
@@ -18,15 +16,9 @@ class RodData:
     here.
     """
 
-    density = Parameter("kg/m^3", (1e3, 2e4), "Density of the rod.", scale="log")
     area = Parameter("m^2", (1e-8, 1e-2), "Area of the cross section.", scale="log")
-    length = Parameter("m", (1e-3, 1), "Length of the rod.", scale="log")
-    modulus = Parameter("Pa", (1e9, 5e11), "Young's modulus, Y.", scale="log")
-    viscosity = Parameter("Pa*s", (1e2, 1e10), "Damping inside the material, C (Kelvin-Voigt).", scale="log")
-    end_mass = Parameter("kg", (0, 10), "Mass at the end.", value=0)
     end_damping = Parameter("N*s/m", (0, 1e6), "Damper at the end.", value=0)
     end_stiffness = Parameter("N/m", (0, 1e9), "Spring at the end.", value=0)
-    load = Parameter("kg", (0, 1), "Mass of a payload, added to that at the end.", null=0, effect="load_mass")
     extra_damping = Parameter("N*s/m", (0, 1e3), "Added to the damper at the end.", null=0, effect="viscous_damping")
 
 
@@ -37,12 +29,7 @@ class RodElements(RodData, Linear):
     modes = Setting(0, (0, 100), "Slowest modes that are stepped, those above at rest under the force; 0 for all.")
 
     def count(elements, modes):
-        if elements < ELEMENTS_PER_MODE * modes:
-            message = f"{elements} elements are too few for mode {modes}"
-            enough = ELEMENTS_PER_MODE * modes
-            remedy = f"give `elements: {enough}`, which leaves 5 % of its frequency, or fewer modes"
-            raise InputError(message, where="rod", remedy=remedy)
-        return modes or elements
+        return resolved(elements, modes, 3, "rod")
 
     def solve(rod):
         end = np.eye(rod.elements)[-1]
