@@ -171,7 +171,8 @@ class Bank(Block):
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        if count := getattr(cls, "count", None):
+        count = getattr(cls, "count", None)
+        if count and set(asked(count)) <= set(cls.settings()):
             cls.branches = count(*(cls.setting(word) for word in asked(count)))
 
 

@@ -63,7 +63,9 @@ def sections(mass, damping, stiffness, load, output):
 
 def paired(poles, residues):
     """omega, zeta, share and speed, slowest first, of sum r / (s - p): conjugates, and the fastest real pole with the
-    slowest."""
+    slowest; one that is left over with one that has no part in the response."""
+    if np.sum(poles.imag == 0) % 2:
+        poles, residues = np.append(poles, 10 * poles.real.min()), np.append(residues, 0)
     upper, real = poles.imag > 0, np.flatnonzero(poles.imag == 0)
     real = real[np.argsort(poles[real].real)]
     fast, slow = real[: real.size // 2], real[::-1][: real.size // 2]
