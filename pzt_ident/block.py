@@ -12,9 +12,10 @@ import math
 from collections.abc import Callable, Mapping
 from enum import IntEnum
 from functools import cache
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from pzt_ident.parameter import Parameter
+from pzt_ident.errors import InputError, nearest
+from pzt_ident.parameter import Parameter, Setting
 
 TILES = 3  # signals that an axis carries: its own, what drives its operator's prompt response, and its mechanics
 
@@ -76,6 +77,7 @@ class Block:
     remedy: ClassVar[str] = ""
     sizes: ClassVar[tuple[float, ...]] = (0.05,)  # of its range, at which its trace is looked for: one if it is linear
     trials: ClassVar[Mapping[str, int]] = {}  # values over the range of a parameter that means nothing at the null
+    chosen: ClassVar[dict[str, int]] = {}
 
     def __init_subclass__(cls) -> None:
         for word, function in list(vars(cls).items()):
@@ -89,15 +91,44 @@ class Block:
         for owner in reversed(cls.__mro__):
             for word, declared in vars(owner).items():
                 if isinstance(declared, Parameter):
-                    names = [word] if declared.count is None else [f"{word}_{k + 1}" for k in range(declared.count)]
+                    count = cls.setting(declared.count) if isinstance(declared.count, str) else declared.count
+                    names = [word] if count is None else [f"{word}_{k + 1}" for k in range(count)]
                     found.update(dict.fromkeys(names, declared))
         return found
+
+    @classmethod
+    def settings(cls) -> dict[str, Setting]:
+        """What a job may choose of how the block is built, by name."""
+        owned = [item for owner in reversed(cls.__mro__) for item in vars(owner).items()]
+        return {word: item for word, item in owned if isinstance(item, Setting)}
+
+    @classmethod
+    def setting(cls, word: str) -> int:
+        return cls.chosen.get(word, cls.settings()[word].value)
+
+    @classmethod
+    def make(cls, **settings: Any) -> type[Block]:
+        """The block with these settings. Raises InputError for an unknown one, or one that does not fit."""
+        known = cls.settings()
+        for word, value in settings.items():
+            if word not in known:
+                remedy = nearest(word, known) if known else f"write just `{cls.name}`"
+                raise InputError(f"unknown setting {word!r}", where=cls.name, remedy=remedy)
+            known[word].check(value, f"{cls.name}.{word}")
+        return _made(cls, tuple(sorted(settings.items())))  # type: ignore[arg-type]
 
     @classmethod
     @cache
     def arguments(cls) -> tuple[str, ...]:
         """What `prepare` asks for."""
         return asked(cls.prepare)  # type: ignore[attr-defined]
+
+
+@cache
+def _made(block: type[Block], chosen: tuple[tuple[str, int], ...]) -> type[Block]:
+    """One class for the same choice, so that it is compiled once."""
+    own = {"__module__": block.__module__, "__doc__": block.__doc__, "chosen": {**block.chosen, **dict(chosen)}}
+    return type(block.__name__, (block,), own) if chosen else block
 
 
 def asked(function: Callable[..., object]) -> tuple[str, ...]:
@@ -129,9 +160,20 @@ class Bank(Block):
 
     prepare may ask for `branch`, counted from 0, and is given each branch its own of a counted parameter.
     output(u, total, *coefficients of the first branch) -> y.
+
+    What needs NumPy is done once per distinct candidate: solve(own) -> one array (branches,) for each word of `solved`,
+    which `prepare` may ask for; own.word is a parameter (an array where it is counted), a setting or dt. Where a job
+    chooses the size, count(*settings) -> branches; it raises InputError where settings do not go together.
     """
 
     branches: ClassVar[int]
+    solved: ClassVar[tuple[str, ...]] = ()
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        count = getattr(cls, "count", None)
+        if count and set(asked(count)) <= set(cls.settings()):
+            cls.branches = count(*(cls.setting(word) for word in asked(count)))
 
 
 class Term(Block):
@@ -158,6 +200,22 @@ class Addition(Block):
     basis(t, *parameters) -> (b_1, b_2, ...), arrays over t, s from the start of the record. The amounts, parameters
     of each record, are taken in closed form together with the offset, on any record.
     """
+
+
+class Modes(Block):
+    """Mechanics of all axes together: each mode takes the force p = sum_a enters_a f_a, and its displacement q moves
+    every axis, y_a = sum_modes leaves_a q.
+
+    prepare(*parameters of a mode[, dt]) -> coefficients; start(p, *coefficients) -> states;
+    step(*states, p, *coefficients) -> (*states, q). `weights` are the words of enters and leaves.
+    """
+
+    branches: ClassVar[int]
+    weights: ClassVar[tuple[str, str]]
+
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        cls.branches = cls.setting("modes")
 
 
 class Coupling(Block):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from pzt_ident import units
 from pzt_ident.document import Document, Loc
 from pzt_ident.errors import InputError, nearest
-from pzt_ident.registry import blocks, optimizers
+from pzt_ident.registry import blocks, optimizers, word_of
 
 if TYPE_CHECKING:
     from pzt_ident.model import Model, Slot
@@ -81,13 +81,13 @@ def _unit(document: Document, at: Loc, unit: str) -> None:
         document.fault(at, error.message, error.remedy)
 
 
-def _model(document: Document, words: tuple[str, ...], earlier: Earlier) -> None:
-    if not words:
+def _model(document: Document, items: tuple[str | Choice, ...], earlier: Earlier) -> None:
+    if not items:
         document.fault(("model",), "the model has no block", "list at least one, see `pzt-ident list blocks`")
     folders: dict[str, str] = {}
     operators = [word for word in blocks.words() if word not in blocks.effects()]
-    for i, word in enumerate(words):
-        at: Loc = ("model", i)
+    for i, item in enumerate(items):
+        word, at = word_of(item), document.reach(("model", i, "name"))
         if word not in blocks:
             document.fault(at, f"unknown block {word!r}", nearest(word, operators))
             continue
@@ -97,6 +97,8 @@ def _model(document: Document, words: tuple[str, ...], earlier: Earlier) -> None
         elif folder in folders:
             message = f"{word!r} beside {folders[folder]!r}: two blocks of {folder}"
             document.fault(at, message, "keep one of the two")
+        elif not isinstance(item, str):
+            _settings(document, ("model", i), item, blocks[word].make)
         folders[folder] = word
 
 
@@ -120,7 +122,7 @@ def _rule_out(document: Document, words: tuple[str, ...], earlier: Earlier) -> N
 
 
 def _effects(document: Document, words: tuple[str, ...], earlier: Earlier) -> None:
-    chosen = [blocks[word] for word in earlier.get("model", ()) if word in blocks]
+    chosen = [blocks[word] for word in map(word_of, earlier.get("model", ())) if word in blocks]
     terms = {declared.effect for block in chosen for declared in block.parameters().values() if declared.effect}
     known = terms | set(blocks.effects())
     for i, word in enumerate(words):
@@ -153,7 +155,10 @@ def _parameters(document: Document, settings: dict[str, Setting], earlier: Earli
     axes = earlier["channels"].axes
     if all(axis.response is None for axis in axes.values()):
         return
-    model = _chain((*earlier["model"], *earlier["effects"]), axes)
+    try:
+        model = _chain((*earlier["model"], *earlier["effects"]), axes)
+    except InputError:
+        return  # a setting of a block, noted where it stands
     spelled = {name: slot for slot in model.slots for name in model.spellings(slot)}
     if spelled and not any(_free(model, slot, settings) for slot in model.slots):
         document.fault(("parameters",), "every parameter is fixed", "free at least one: give it `bounds`")
@@ -176,12 +181,12 @@ def _free(model: Model, slot: Slot, settings: Mapping[str, Setting]) -> bool:
     return slot.parameter.value is None
 
 
-def _chain(words: Iterable[str], axes: Mapping[str, Axis]) -> Model:
-    """The model of the known words; an effect that is a term inside another block adds none."""
+def _chain(items: Iterable[str | Choice], axes: Mapping[str, Axis]) -> Model:
+    """The model of the known words."""
     from pzt_ident.model import Model
 
     measured = [i for i, axis in enumerate(axes.values()) if axis.response is not None]
-    return Model([blocks[word] for word in dict.fromkeys(words) if word in blocks], list(axes), measured)
+    return Model(list(dict.fromkeys(blocks.chain(items))), list(axes), measured)
 
 
 def _setting(document: Document, at: Loc, setting: Setting) -> None:
@@ -200,13 +205,14 @@ def _setting(document: Document, at: Loc, setting: Setting) -> None:
 def _stranger(document: Document, name: str, earlier: Earlier, spelled: Mapping[str, Slot]) -> None:
     """Say what is wrong with a name that no parameter of this job has."""
     *axis, block, word = ["", *name.split(".")]
-    axes, chosen = earlier["channels"].axes, (*earlier["model"], *earlier["effects"])
+    axes, words = earlier["channels"].axes, list(map(word_of, earlier["model"]))
+    chosen = (*words, *earlier["effects"])
     if len(axis) == 2 and axis[1] not in axes:
         said = f"there is no axis {axis[1]!r}", nearest(axis[1], axes)
     elif len(axis) == 2 and axes[axis[1]].response is None:
         said = f"axis {axis[1]!r} has no response, so it has no parameters", "take it out"
     elif block not in chosen and block in blocks:
-        if any(word not in blocks for word in earlier["model"]):
+        if any(word not in blocks for word in words):
             return  # one of the unknown words may well stand for this block
         said = f"{block!r} is not in this model", "list it under `model` or `effects`, or take this out"
     elif block not in chosen:
@@ -216,6 +222,10 @@ def _stranger(document: Document, name: str, earlier: Earlier, spelled: Mapping[
         said = f"belongs to the effect {effect!r}", f"add `effects: [{effect}]`"
         if declared.per_record:
             said = "is taken in closed form for each record", "take it out"
+        elif declared.each == "stage":
+            said = "is one of the whole stage", f"write {block}.{word}"
+        elif declared.each == "later axis":
+            said = "is relative to that of the first axis, which has none", "take it out"
     else:
         alike = [known for known in spelled if f"{block}." in known and known.count(".") == name.count(".")]
         said = f"{block!r} has no parameter {word!r}", nearest(name, alike)
@@ -234,13 +244,16 @@ def _optimizers(document: Document, choices: tuple[Choice, ...], earlier: Earlie
             continue
         if choice.name in names[:i]:
             document.fault(at, f"{choice.name!r} twice", "keep one; compare its settings in a job each")
-        for loc, error in _complaints(choice):
-            document.fault((*at, *loc), error.message, error.remedy, at_key=error.message.startswith("unknown setting"))
+        _settings(document, at, choice, optimizers[choice.name].make)
 
 
-def _complaints(choice: Choice) -> Iterator[tuple[Loc, InputError]]:
-    """What an optimizer says to each setting by itself; to all of them together where each is right by itself."""
-    made = optimizers[choice.name].make
+def _settings(document: Document, at: Loc, choice: Choice, made: Callable[..., Any]) -> None:
+    for loc, error in _complaints(choice, made):
+        document.fault((*at, *loc), error.message, error.remedy, at_key=error.message.startswith("unknown setting"))
+
+
+def _complaints(choice: Choice, made: Callable[..., Any]) -> Iterator[tuple[Loc, InputError]]:
+    """What is said to each setting by itself; to all of them together where each is right by itself."""
     silent = True
     for word, value in choice.settings.items():
         try:

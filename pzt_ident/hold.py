@@ -25,6 +25,19 @@ def oscillator(omega, zeta, dt):
     return r11, r12, r21, r22, r11 * lag - r12 * speed - lag, r21 * lag - r22 * speed + speed
 
 
+def trapezoid(omega, zeta, dt):
+    """The same by the modified trapezoid rule: Smith et al., Model Development for AFM Stage Mechanisms, eq. 42.
+
+    (I - A T / 2) z1 = (I + A T / 2) z0 + T B (f0 + f1) / 2, written for the deviation from rest.
+    """
+    half = omega * dt / 2
+    lag = 2 * zeta * half
+    whole = 1 + lag + half * half
+    r11, r12 = (1 + lag - half * half) / whole, 2 * half / whole
+    r21, r22 = -r12, (1 - lag - half * half) / whole
+    return r11, r12, r21, r22, -(1 + lag) / whole, half / whole
+
+
 def oscillate(w, v, push, r11, r12, r21, r22, b1, b2):
     """(w, v) after a sample over which f moves by `push`; x = f + w."""
     return r11 * w + r12 * v + b1 * push, r21 * w + r22 * v + b2 * push

@@ -17,7 +17,7 @@ from pzt_ident import checks
 from pzt_ident.document import Document, Fault, Loc, reject
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.record import Source
-from pzt_ident.sections import Channels, Choice, Count, Limits, Setting, Stopping
+from pzt_ident.sections import Channels, Choice, Count, Item, Limits, Setting, Stopping
 from pzt_ident.shorthand import written_out
 
 
@@ -33,7 +33,7 @@ class Job(BaseModel):
     name: Annotated[str, Field(pattern=r"^\w([\w .+-]*\w)?$")]
     records: tuple[Source, ...]
     channels: Channels
-    model: tuple[str, ...]
+    model: tuple[Item, ...]
     effects: tuple[str, ...] = ()
     rule_out: tuple[str, ...] = ()
     parameters: dict[str, Setting] = {}

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.block import TILES, Addition, Bank, Beside, Block, Coupling, Operator, Place, Shift, Term, asked
+from pzt_ident.block import TILES, Addition, Bank, Beside, Block, Coupling, Modes, Operator, Place, Shift, Term, asked
 from pzt_ident.parameter import Parameter
 from pzt_ident.record import Record
+from pzt_ident.solve import Solve
 
 Array = NDArray[np.float64]
 
@@ -62,6 +63,7 @@ class Model:
 
     def _slots(self, block: type[Block]) -> list[Slot]:
         found = []
+        first = self.measured[0]
         for axis in self.measured:
             prefix = f"{self.axes[axis]}." if len(self.measured) > 1 else ""
             others = [b for b in range(len(self.axes)) if b != axis] if issubclass(block, Coupling) else [axis]
@@ -70,7 +72,9 @@ class Model:
                 for word, parameter in block.parameters().items():
                     if parameter.per_record or (parameter.effect and parameter.effect not in self._listed):
                         continue
-                    name = f"{prefix}{block.name}.{word}{suffix}"
+                    if parameter.each != "axis" and (parameter.each == "stage") != (axis == first):
+                        continue
+                    name = f"{'' if parameter.each == 'stage' else prefix}{block.name}.{word}{suffix}"
                     found.append(Slot(name, block, word, axis, other, parameter))
         return found
 
@@ -91,7 +95,7 @@ class Model:
     def columns(self, block: type[Block], axis: int, other: int) -> dict[str, int | list[int]] | None:
         """Columns of theta that hold a block's parameters; None for a pair onto an axis that is not measured."""
         if axis not in self.measured:
-            if issubclass(block, Coupling):
+            if issubclass(block, Coupling | Modes):
                 return None
             axis = other = self.measured[0]
         found: dict[str, int | list[int]] = {}
@@ -118,11 +122,14 @@ class Plan:
         self.program: list[tuple[int, ...]] = []
         self.given: list[tuple[int, int]] = []  # row of the scratch, column of theta
         self.known: list[tuple[int, float]] = []  # row of the scratch, the same number for every candidate
+        self.solved: list[tuple[Solve, NDArray[np.int64]]] = []  # what finds numbers, their rows (branches, words)
         self.rows = 0
         self._fresh = set(range(len(model.axes)))  # axes whose tile does not hold a signal yet
-        last = max((i for i, block in enumerate(model.blocks) if issubclass(block, Coupling)), default=-1)
+        last = max((i for i, block in enumerate(model.blocks) if issubclass(block, Coupling | Modes)), default=-1)
         for number, block in enumerate(model.blocks):
-            if issubclass(block, Coupling):
+            if issubclass(block, Coupling | Modes):
+                for axis in range(len(model.axes)):
+                    self._keep(number, axis)
                 self._fill(set(self._fresh))
                 self._add(block, 0, Variant(axes=len(model.axes)))
                 continue
@@ -176,8 +183,10 @@ class Plan:
         made = compile_block(form, variant)  # type: ignore[arg-type]
         tile = TILES * axis + (1 if block.place == Place.READOUT and self.model.reads_out else 0)
         self.program.append((made.address, self.rows, 2 * axis, tile, 0))
+        axis = self.model.measured[0] if issubclass(block, Modes) else axis
         places = [(a, b) for a in axes for b in axes if b != a] if coupling else [(axis, axis)]
-        branches = range(block.branches) if issubclass(block, Bank) else [0]
+        branches = range(block.branches) if issubclass(block, Bank | Modes) else [0]
+        weights = [(word, a) for word in block.weights for a in axes] if issubclass(block, Modes) else []
         words = (*form.arguments(), *(asked(block.terms) if variant.terms else ()))  # type: ignore[attr-defined]
         nulls = {p.name: p.null or 0.0 for p in block.parameters().values() if p.effect}
         row = self.rows + made.layout.first_given
@@ -187,6 +196,9 @@ class Plan:
                 "dt": self.record.dt / self.model.oversample,
                 "span": float(np.ptp(self.record.drive[axis])),
             }
+            if issubclass(block, Bank) and block.solved:
+                at = [[row + branch * len(words) + words.index(word) for word in block.solved] for branch in branches]
+                self.solved.append((Solve(block, columns or {}, known), np.array(at)))
             for branch in branches:
                 for word in words:
                     column = columns.get(word) if columns else None
@@ -194,6 +206,13 @@ class Plan:
                         self.known.append((row, (known | {"branch": branch}).get(word, 0.0)))
                     else:
                         self.given.append((row, column[branch] if isinstance(column, list) else column))
+                    row += 1
+                for word, a in weights:
+                    found = self.model.columns(block, a, a)
+                    if found is None or word not in found:
+                        self.known.append((row, 0.0 if found is None else 1.0))
+                    else:
+                        self.given.append((row, found[word][branch]))  # type: ignore[index]
                     row += 1
         self.rows += made.layout.rows
 
@@ -240,6 +259,8 @@ class Plan:
         rows, columns, known, values = self._sources
         scratch[:, rows] = theta[lanes, columns]
         scratch[:, known] = values
+        for solve, places in self.solved:
+            scratch[:, places] = solve(theta)[lanes[:, 0]].transpose(0, 2, 3, 1)
         return scratch.reshape(groups, -1)
 
     @cached_property

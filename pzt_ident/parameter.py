@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
+
+from pzt_ident.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -16,7 +18,9 @@ class Parameter:
 
     `null` is the value at which the block is exactly the identity; None where there is none.
     `effect` names the effect that the parameter belongs to; unless the job lists it, the parameter stays at its null.
-    `count` makes a parameter one of each branch of the block, `weight_1`, `weight_2`, ...
+    `count` makes a parameter one of each branch of the block, `weight_1`, `weight_2`, ...; where a job chooses how
+    many, it is the setting's name. `each` says who has one of its own: every axis, the stage as a whole, or every axis
+    after the first, to which it is relative.
     `per_record` gives every record one of its own, for what begins anew or at another phase with each measurement.
     `value` is what it is fixed to unless the job frees it with bounds.
     """
@@ -27,10 +31,27 @@ class Parameter:
     null: float | None = None
     scale: Literal["linear", "log"] = "linear"
     effect: str | None = None
-    count: int | None = None
+    count: int | str | None = None
+    each: Literal["axis", "stage", "later axis"] = "axis"
     per_record: bool = False
     value: float | None = None
     name: str = ""
 
     def __set_name__(self, owner: type, name: str) -> None:
         object.__setattr__(self, "name", name)
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What a job chooses of how a block is built, a whole number: `{name: rod, elements: 16}`."""
+
+    value: int
+    bounds: tuple[int, int]
+    doc: str
+
+    def check(self, value: Any, where: str) -> None:
+        """Raises InputError for what is not a whole number within the bounds."""
+        low, high = self.bounds
+        if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+            remedy = f"give a whole number from {low} to {high}"
+            raise InputError(f"{value!r} is not {remedy.removeprefix('give ')}", where=where, remedy=remedy)

@@ -6,11 +6,11 @@ import importlib
 import importlib.util
 import pkgutil
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 from pzt_ident.errors import InputError, nearest
 
@@ -74,6 +74,19 @@ class Registry(Generic[T]):
                 self._items[word] = entry.load()
 
 
+class Choice(Protocol):
+    """A word with the settings beside it: `{name: rod, elements: 16}`."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def settings(self) -> Mapping[str, Any]: ...
+
+
+def word_of(item: str | Choice) -> str:
+    return item if isinstance(item, str) else item.name
+
+
 class Blocks(Registry[Any]):
     def plug(self, path: Path) -> None:
         """Run a file of the user's, which registers the block that it is named like.
@@ -102,6 +115,14 @@ class Blocks(Registry[Any]):
         except Exception as error:
             del sys.modules[module]
             raise InputError(f"{type(error).__name__}: {error}", where=str(path), remedy="mend the file") from error
+
+    def chain(self, items: Iterable[str | Choice]) -> list[Any]:
+        """The blocks of a job's items, as their settings make them; an effect that is only a term has none.
+
+        Raises InputError for an unknown setting, or one that does not fit.
+        """
+        known = [item for item in items if word_of(item) in self]
+        return [self[item] if isinstance(item, str) else self[item.name].make(**item.settings) for item in known]
 
     def effects(self) -> list[str]:
         """The words of what may be missing from a model: each says what to do about it on the rig."""

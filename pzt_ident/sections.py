@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag
 
 from pzt_ident.record import Axis, Channel
 
@@ -31,10 +31,18 @@ class Setting:
 
 @dataclass(frozen=True)
 class Choice:
-    """An optimizer by name, and what is set in it."""
+    """An optimizer or block by name, and what is set in it."""
 
     name: str
     settings: dict[str, Any] = field(default_factory=dict)
+
+
+def _kind(item: object) -> str:
+    return "word" if not isinstance(item, (dict, Choice)) else "choice"
+
+
+Item = Annotated[Annotated[str, Tag("word")] | Annotated[Choice, Tag("choice")], Discriminator(_kind)]
+"""A block: its word, alone or with settings."""
 
 
 @dataclass(frozen=True)

@@ -40,7 +40,11 @@ def _channel(document: Document, loc: Loc, value: Any) -> Any:
     return {"name": value} if isinstance(value, str) else value
 
 
-def _optimizer(document: Document, loc: Loc, value: Any) -> Any:
+def _block(document: Document, loc: Loc, value: Any) -> Any:
+    return value if isinstance(value, str) else _chosen(document, loc, value)
+
+
+def _chosen(document: Document, loc: Loc, value: Any) -> Any:
     if isinstance(value, str):
         return {"name": value}
     if not isinstance(value, dict):
@@ -87,7 +91,8 @@ _SHORT: tuple[tuple[str, Change], ...] = (
     ("channels.time", _channel),
     ("channels.axes.*.drive", _channel),
     ("channels.axes.*.response", _channel),
-    ("optimizers.*", _optimizer),
+    ("model.*", _block),
+    ("optimizers.*", _chosen),
     ("stop.seconds", _in("s")),
     ("stop.target", _target),
 )

@@ -164,7 +164,12 @@ def _block(name: str) -> Facts:
         facts |= {key: getattr(block, key) for key in ("looks_like", "separate_by", "remedy")}
     if issubclass(block, Term):
         return facts | {"parameters": _owned(name)}
-    return facts | {"place": block.place.name.lower(), "parameters": _declared(block)}
+    settings = [
+        {"name": word, "default": item.value, "unit": "1", "bounds": item.bounds, "doc": item.doc}
+        for word, item in block.settings().items()
+    ]
+    own = {"settings": settings} if settings else {}
+    return facts | {"place": block.place.name.lower(), "parameters": _declared(block)} | own
 
 
 def _declared(block: type[Any]) -> list[Facts]:
@@ -189,7 +194,7 @@ def show_word(found: Facts) -> None:
             ("setting", "default", "from - to", "unit", "what it is"),
             [(row["name"], row["default"], _allowed(row), row["unit"], row["doc"]) for row in found["settings"]],
         )
-    else:
+    if "parameters" in found:
         terminal.table(
             ("parameter", "unit", "bounds", "null", "what it is"),
             [

@@ -52,8 +52,7 @@ class Task:
 def problem_of(job: Any, records: list[Record]) -> Problem:
     """The problem that a job states about its records."""
     axes = records[0].axes
-    chosen = [blocks[word] for word in (*job.model, *job.effects) if word in blocks]
-    return Problem(Model(chosen, axes, records[0].measured), records, job.parameters)
+    return Problem(Model(blocks.chain((*job.model, *job.effects)), axes, records[0].measured), records, job.parameters)
 
 
 def unit_of(records: list[Record]) -> str:

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from pzt_ident.block import Coupling
+from pzt_ident.block import Coupling, Modes
 from pzt_ident.model import Model
 from pzt_ident.record import Record
 from pzt_ident.registry import blocks
@@ -30,10 +30,14 @@ def record(*drives, response=None, dt=1e-3, measured=None, **more):
 
 
 def model(*chain, axes=None, measured=None):
-    """A model of blocks or their words; two axes where a block couples them."""
-    chain = [blocks[item] if isinstance(item, str) else item for item in chain]
-    axes = axes or (2 if any(issubclass(block, Coupling) for block in chain) else 1)
+    """A model of blocks or their words, these as small as is worth a test; two axes where a block couples them."""
+    chain = [small(blocks[item]) if isinstance(item, str) else item for item in chain]
+    axes = axes or (2 if any(issubclass(block, Coupling | Modes) for block in chain) else 1)
     return Model(chain, AXES[:axes], range(axes) if measured is None else measured)
+
+
+def small(block):
+    return block.make(**{word: min(item.value, item.bounds[0] + 1) for word, item in block.settings().items()})
 
 
 def response(chain, parameters, *drives, dt=1e-3, **more):

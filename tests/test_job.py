@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from pzt_ident.errors import InputError
 from pzt_ident.job import Job, load_job
 from pzt_ident.record import Axis, Channel, Source
-from pzt_ident.registry import optimizers
+from pzt_ident.registry import blocks, optimizers
 from pzt_ident.search import Generational, setting
 from pzt_ident.sections import Choice, Quantity, Setting
 
@@ -156,6 +156,10 @@ ONE_FAULT = [
     ("    y:", "    bouc_wen:", "9:5: channels.axes.bouc_wen: 'bouc_wen' cannot name an axis", "such as x"),
     ("[bouc_wen, lumped]", "[bouc_wenn, lumped]", "10:9: model[0]: unknown block 'bouc_wenn'", "'bouc_wen'"),
     ("[bouc_wen, lumped]", "bouc_wen", "10:8: model: 'bouc_wen' is not a list", "[first, second]"),
+    ("lumped]", "{name: lumpd}]", "10:26: model[1].name: unknown block 'lumpd'", "did you mean 'lumped'"),
+    ("lumped]", "{name: lumped, size: 3}]", "10:34: model[1].size: unknown setting 'size'", "write just `lumped`"),
+    ("lumped]", "{size: 3}]", "10:19: model[1]: missing key 'name'", "add `name: ...`"),
+    ("lumped]", "3]", "10:19: model[1]: 3 is not a text", "put it in quotes"),
     ("[cross_coupling]", "[cros_coupling]", "11:11: effects[0]: unknown effect 'cros_coupling'", "'cross_coupling'"),
     ("[cross_coupling]", "[lumped]", "11:11: effects[0]: 'lumped' is not an effect", "move it to `model: [lumped]`"),
     ('    y: {drive: "u_y [V]"}\n', "", "10:11: effects[0]: 'cross_coupling' needs a second axis", "`drive`"),
@@ -197,6 +201,29 @@ def test_a_fault_is_told_with_place_value_and_remedy(old, new, said, remedy):
     assert first.startswith("job.yaml:")
     assert said in first
     assert remedy in advice
+
+
+ROD = GOOD.replace("lumped]", "{name: rod, elements: 9, modes: 3}]").replace("x.lumped.mass", "x.rod.density")
+
+
+def test_a_block_may_have_settings():
+    job = Job.from_text(ROD)
+    assert job.model == ("bouc_wen", Choice("rod", {"elements": 9, "modes": 3}))
+    assert job == pickle.loads(pickle.dumps(job))
+    assert [block.chosen for block in blocks.chain(job.model)] == [{}, {"elements": 9, "modes": 3}]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said", "remedy"),
+    [
+        ("elements", "elemnts", "10:31: model[1].elemnts: unknown setting 'elemnts'", "did you mean 'elements'"),
+        ("elements: 9", "elements: 2.5", "10:41: model[1].elements: 2.5 is not a whole number from 1 to 100", "give a"),
+        ("elements: 9", "elements: 8", "10:19: model[1]: 8 elements are too few for mode 3", "`elements: 9`"),
+    ],
+)
+def test_a_setting_that_does_not_fit_is_told(old, new, said, remedy):
+    first, advice = faults(ROD.replace(old, new)).split("\n")
+    assert said in first and remedy in advice
 
 
 def test_two_operators_do_not_go_together():

@@ -15,7 +15,7 @@ from pzt_ident.diagnosis.noise import noise_floor
 from pzt_ident.model import Model
 from pzt_ident.problem import Problem
 from pzt_ident.record import Record
-from pzt_ident.registry import blocks
+from pzt_ident.registry import Choice, blocks
 
 Array = NDArray[np.float64]
 
@@ -31,7 +31,7 @@ class Case:
 
     def __init__(
         self,
-        words: Sequence[str],
+        words: Sequence[str | Choice],
         effects: Sequence[str],
         records: Sequence[Record],
         wishes: Any,
@@ -41,9 +41,10 @@ class Case:
         self.records, self.wishes = tuple(records), wishes
 
     def problem(self, effects: Sequence[str]) -> Problem:
-        chosen = [blocks[word] for word in (*self.words, *effects)]
         first = self.records[0]
-        return Problem(Model(chosen, first.axes, first.measured), self.records, self.wishes)
+        return Problem(
+            Model(blocks.chain((*self.words, *effects)), first.axes, first.measured), self.records, self.wishes
+        )
 
     @cached_property
     def floor(self) -> float:

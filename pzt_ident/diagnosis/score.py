@@ -57,7 +57,7 @@ class Trial:
 
 def applicable(case: Case, effects: tuple[str, ...]) -> list[str]:
     """The effects that this model can take and does not have."""
-    chain = [blocks[word] for word in (*case.words, *effects)]
+    chain = blocks.chain((*case.words, *effects))
     terms = {parameter.effect for block in chain for parameter in block.parameters().values()}
     axes = len(case.records[0].axes)
     found = []

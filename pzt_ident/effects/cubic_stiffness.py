@@ -2,7 +2,8 @@
 
 from pzt_ident.block import Term, expm1, log1p
 from pzt_ident.hold import oscillate
-from pzt_ident.mechanics.lumped import Lumped, mode
+from pzt_ident.mechanics._oscillator import mode
+from pzt_ident.mechanics.lumped import Lumped
 from pzt_ident.registry import blocks
 
 SOFTEST = 0.19  # the slope of the spring is then 0.43 of what it is at x = 0

@@ -16,7 +16,7 @@ from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, NamedTuple
 
-from pzt_ident.block import Bank, Beside, Block, Coupling, Operator, Place, Shift, asked
+from pzt_ident.block import Bank, Beside, Block, Coupling, Modes, Operator, Place, Shift, asked
 from pzt_ident.files import cache_folder
 
 TEMPLATES = Path(__file__).parent
@@ -81,25 +81,29 @@ def compile_block(block: type[Block], variant: Variant = Variant()) -> Compiled:
 def template_of(block: type[Block], variant: Variant) -> str:
     if issubclass(block, Operator):
         return "driven_operator" if variant.driven else "operator"
-    named = {Coupling: "coupling", Bank: "bank", Shift: "shift"}
+    named = {Coupling: "coupling", Modes: "modes", Bank: "bank", Shift: "shift"}
     return next((name for kind, name in named.items() if issubclass(block, kind)), "plain")
 
 
 def layout_of(block: type[Block], variant: Variant) -> Layout:
     """Counted by asking the block itself, with parameters in the middle of their bounds."""
     known = {p.name: sum(p.bounds) / 2 for p in block.parameters().values()} | {"dt": 1e-3, "span": 1.0, "branch": 0}
+    known |= dict.fromkeys(getattr(block, "solved", ()), 0.5)
     prepared = block.prepare(*(known[word] for word in block.arguments()))  # type: ignore[attr-defined]
     operator, stateless = issubclass(block, Operator), issubclass(block, Coupling | Shift)
     count = sum(len(part) for part in prepared) if operator else len(prepared)
     example = () if operator else prepared
     states = 0 if stateless else len(block.start(0.0, *example))  # type: ignore[attr-defined]
     axes = variant.axes
-    copies = block.branches if issubclass(block, Bank) else axes * (axes - 1) if issubclass(block, Coupling) else 1
+    copies = (
+        block.branches if issubclass(block, Bank | Modes) else axes * (axes - 1) if issubclass(block, Coupling) else 1
+    )
     work = 7 if operator else 0
     asking = asked(block.terms) if variant.terms else ()  # type: ignore[attr-defined]
     terms = len(block.terms(*(known[word] for word in asking))) if variant.terms else 0  # type: ignore[attr-defined]
     shared = len(prepared[0]) if operator else 0
-    return Layout(states, count, len(block.arguments()), copies, work, shared, terms, len(asking))
+    given = len(block.arguments()) + (2 * axes if issubclass(block, Modes) else 0)
+    return Layout(states, count, given, copies, work, shared, terms, len(asking))
 
 
 def render(text: str, block: type[Block], layout: Layout, variant: Variant, kernel: ModuleType) -> str:

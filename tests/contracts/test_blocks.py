@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pzt_ident.block import Addition, Bank, Beside, Coupling, Operator, Place, Shift, Term
+from pzt_ident.block import Addition, Bank, Beside, Coupling, Modes, Operator, Place, Shift, Term
 from pzt_ident.model import Plan
 from pzt_ident.registry import blocks
 from pzt_ident.units import is_unit
@@ -283,5 +283,5 @@ def test_nothing_before_the_settling_or_constant_is_scored(words):
 
 def test_kinds_are_all_there():
     """What the laws above are shown on."""
-    kinds = {Operator, Bank, Coupling, Shift, Beside, Term, Addition}
+    kinds = {Operator, Bank, Coupling, Modes, Shift, Beside, Term, Addition}
     assert {kind for kind in kinds if any(issubclass(blocks[word], kind) for word in WORDS)} == kinds

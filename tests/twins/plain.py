@@ -2,12 +2,13 @@
 
 import math
 from itertools import permutations
+from types import SimpleNamespace
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.signal import resample
 
-from pzt_ident.block import Bank, Beside, Coupling, Operator, Place, Shift, asked
+from pzt_ident.block import Bank, Beside, Coupling, Modes, Operator, Place, Shift, asked
 
 
 def simulate(model, record, theta):
@@ -37,6 +38,9 @@ def through(chain, model, record, theta, signals, aside=None):
             signals = couple(block, model, record, theta, signals)
             continue
         given = [parameters(model, block, record, axis, axis, theta) for axis in range(len(signals))]
+        if issubclass(block, Modes):
+            signals = together(block, given, model.measured[0], signals)
+            continue
         terms = bool(model.terms(block))
         signals = [act(model.form(block), *each, terms) for each in zip(given, signals, aside or signals, strict=True)]
     return signals
@@ -53,6 +57,19 @@ def couple(block, model, record, theta, before):
     return after
 
 
+def together(block, given, first, signals):
+    """Every mode under the forces of all axes, each axis moved by all modes; one that is not measured does neither."""
+    enters, leaves = block.weights
+    ones = [1.0] * block.branches
+    moved = [np.zeros(len(signal)) for signal in signals]
+    for mode in range(block.branches):
+        pushes = [0.0 if own is None else own.get(enters, ones)[mode] for own in given]
+        numbers = asking(block.prepare, given[first], mode)
+        q = plain(block, numbers, sum(push * signal for push, signal in zip(pushes, signals, strict=True)))
+        moved = [y if own is None else y + own[leaves][mode] * q for y, own in zip(moved, given, strict=True)]
+    return moved
+
+
 def fine(drive, times, periodic):
     if times == 1:
         return drive
@@ -67,7 +84,7 @@ def parameters(model, block, record, axis, other, theta):
     found = {"dt": [record.dt / model.oversample], "span": [np.ptp(record.drive[axis])]}
     found |= {declared.name: [declared.null] for declared in block.parameters().values() if declared.effect}
     if axis not in model.measured:
-        if other != axis:
+        if other != axis or issubclass(block, Modes):
             return None
         axis = other = model.measured[0]
     own = {}
@@ -89,12 +106,21 @@ def act(block, values, signal, aside, terms):
         return operator(block, asking(block.prepare, values), numbers, signal, aside)
     if issubclass(block, Bank):
         prompt = aside if block.place == Place.OPERATOR else signal
+        values = values | solved(block, values)
         return bank(block, [asking(block.prepare, values, branch) for branch in range(block.branches)], signal, prompt)
     numbers = asking(block.prepare, values)
     if issubclass(block, Shift):
         late = np.arange(len(signal)) - numbers[0]
         return np.interp(late, np.arange(len(signal)), signal)
     return plain(block, numbers, signal, *([aside] if issubclass(block, Beside) else []))
+
+
+def solved(block, values):
+    if not block.solved:
+        return {}
+    values = values | {word: [block.setting(word)] for word in block.settings()}
+    own = SimpleNamespace(**{word: each if len(each) > 1 else each[0] for word, each in values.items()})
+    return dict(zip(block.solved, map(list, block.solve(own)), strict=True))
 
 
 def plain(block, numbers, *inputs):

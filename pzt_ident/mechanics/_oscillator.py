@@ -1,0 +1,25 @@
+"""One degree of freedom."""
+
+from math import sqrt
+
+from pzt_ident.block import Block, Place
+from pzt_ident.hold import oscillate, oscillator
+
+
+class Oscillator(Block):
+    """Solved exactly for f linear on each step (first-order hold), at rest at the start; prepare gives the coefficients
+    of hold.oscillate."""
+
+    place = Place.MECHANICS
+
+    def start(u, r11, r12, r21, r22, b1, b2):
+        return 0.0, 0.0, u
+
+    def step(w, v, f, u, r11, r12, r21, r22, b1, b2):
+        w, v = oscillate(w, v, u - f, r11, r12, r21, r22, b1, b2)
+        return w, v, u, u + w
+
+
+def mode(mass, damping, stiffness, dt):
+    """Coefficients of the mass on its spring."""
+    return oscillator(sqrt(stiffness / mass), damping / (2 * sqrt(stiffness * mass)), dt)

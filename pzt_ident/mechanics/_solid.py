@@ -1,0 +1,24 @@
+"""What rods and shells have in common."""
+
+from pzt_ident.errors import InputError
+from pzt_ident.parameter import Parameter
+
+
+class Solid:
+    """Parameters of a body of piezoceramic that is held at x = 0."""
+
+    density = Parameter("kg/m^3", (1e3, 2e4), "Density of the material.", scale="log")
+    modulus = Parameter("Pa", (1e9, 5e11), "Young's modulus, Y.", scale="log")
+    viscosity = Parameter("Pa*s", (1e2, 1e10), "Damping inside the material, C (Kelvin-Voigt).", scale="log")
+    length = Parameter("m", (1e-3, 1), "Length from the fixed to the free end.", scale="log")
+    end_mass = Parameter("kg", (0, 10), "Mass at the end.", value=0)
+    load = Parameter("kg", (0, 1), "Mass of a payload, added to that at the end.", null=0, effect="load_mass")
+
+
+def resolved(elements, modes, per_mode, word):
+    """The modes to step, all of them where 0. Raises InputError where the elements are too few for the highest."""
+    if elements < per_mode * modes:
+        message = f"{elements} elements are too few for mode {modes}"
+        remedy = f"give `elements: {per_mode * modes}`, which leaves 5 % of its frequency, or fewer modes"
+        raise InputError(message, where=word, remedy=remedy)
+    return modes or elements

@@ -1,0 +1,33 @@
+"""One mass, damper and spring from the data of a rod."""
+
+from pzt_ident.mechanics._oscillator import Oscillator, mode
+from pzt_ident.mechanics._rod import RodData
+from pzt_ident.registry import blocks
+
+
+@blocks.register
+class LumpedRod(RodData, Oscillator):
+    """m x'' + b x' + k x = k f, m = rho A l + m_l, b = C A / l + c_l, k = Y A / l + k_l, solved as `lumped`.
+
+    Smith, Hatch, De, Salapaka, del Rosario & Raye, Model Development for Atomic Force Microscope Stage Mechanisms, eq.
+    21 and 22. All of the rod's mass moves with its end, where a third would be consistent with a strain that is the
+    same everywhere; `rod` is distributed.
+    """
+
+    def prepare(
+        density,
+        area,
+        length,
+        modulus,
+        viscosity,
+        end_mass,
+        end_damping,
+        end_stiffness,
+        load,
+        extra_damping,
+        dt,
+    ):
+        mass = density * area * length + end_mass + load
+        damping = viscosity * area / length + end_damping + extra_damping
+        stiffness = modulus * area / length + end_stiffness
+        return mode(mass, damping, stiffness, dt)
