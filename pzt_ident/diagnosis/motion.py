@@ -83,7 +83,7 @@ def held(drive: Array, turns: list[int], amplitudes: Array, band: float) -> NDAr
 
     holds = np.zeros(drive.size, dtype=bool)
     for (first, last), amplitude in zip(pairwise([*turns, drive.size]), amplitudes, strict=True):
-        turning = np.arccos(max(1 - 2 * band / max(amplitude, band), -1.0)) / np.pi
+        turning = np.arccos(1 - 2 * (band / amplitude if band < amplitude else 1.0)) / np.pi
         least = max(3, int(np.ceil(2 * turning * (last - first))))
         if least > last - first:
             continue

@@ -2,7 +2,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -84,6 +84,7 @@ def test_reversals_alternate_and_leave_nothing_larger_between(drive, turn):
 
 
 @given(arrays(float, st.integers(3, 200), elements=st.floats(-1e3, 1e3)))
+@example(np.array([0.0, 5e-324, 0.0]))
 def test_any_drive_has_a_motion(drive):
     found = motion(drive, DT)
     assert set(np.unique(found.way)) <= {-1, 0, 1}
