@@ -1,11 +1,15 @@
 """The staircase: pairs are found, a wrong pick is taken back, and it ends where nothing more is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import stage
-from pzt_ident.diagnosis.improve import Step, explained, improve, unneeded
+from pzt_ident.diagnosis.improve import Step, both, exchanged, explained, improve, unneeded
 from pzt_ident.diagnosis.refit import first_fit, refit
+from pzt_ident.diagnosis.verdict import diagnose
+from pzt_ident.registry import blocks
 
 PAIR = stage.EFFECTS["creep"] | stage.EFFECTS["quadratic_gain"]
 
@@ -90,3 +94,32 @@ def test_what_no_effect_explains_ends_unexplained():
     steps, last = climbed(stage.with_response(stage.case(), strange))
     assert last.verdict == "unexplained"
     assert steps[-1].fit.identify > 5 * stage.NOISE
+
+
+def test_two_effects_that_hide_each_other_are_two_stairs_the_better_one_first():
+    made = stage.case(PAIR)
+    first = first_fit(made, 0)
+    found = diagnose(made, first)
+    hidden = [item for item in found.candidates if item.score.effect in ("creep", "quadratic_gain")]
+    one, two = both(made, first, first, replace(found, candidates=hidden))
+    assert {one.added, two.added} == set(two.fit.effects) == {"creep", "quadratic_gain"}
+    assert one.fit.effects == (one.added,)
+    assert first.total > one.fit.total > two.fit.total
+    assert two.fit.validate == pytest.approx(stage.NOISE, rel=0.1)
+
+
+def test_a_proxy_is_exchanged_for_what_is_missing():
+    made = stage.case(stage.EFFECTS["quadratic_gain"])
+    first = first_fit(made, 0)
+    (step,) = exchanged(made, first, refit(made, first, ("asymmetry",), {}))
+    assert (step.added, step.removed, step.fit.effects) == ("quadratic_gain", "asymmetry", ("quadratic_gain",))
+    assert step.fit.validate == pytest.approx(stage.NOISE, rel=0.1)
+
+
+def test_what_fits_as_well_in_the_place_of_an_effect_is_told_once_all_are_known():
+    made = stage.case(PAIR)
+    steps, _ = climbed(made)
+    for step in steps:
+        if step.added in steps[-1].fit.effects:
+            assert step.tied[0] == step.added
+            assert set(step.tied[1:]) <= set(blocks[step.added].looks_like)
