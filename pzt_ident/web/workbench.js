@@ -95,7 +95,7 @@ function files() {
   if (!state.files.length) return;
   at("here").append("Or take one of this folder: ");
   for (const name of state.files)
-    element(at("here"), "button", { type: "button" }, name).addEventListener("click", () => look(name));
+    element(at("here"), "button", { type: "button" }, name).addEventListener("click", () => look(name)), at("here").append(" ");
 }
 
 async function look(name) {
