@@ -256,12 +256,14 @@ def demo(out: Path, no_browser: bool, as_json: bool, quiet: bool) -> None:
 
 @main.command()
 @click.argument("source", metavar="[JOB or DATA]", required=False, type=EXISTING)
-@click.option("--out", type=EXISTING, default=Path("workbench"), show_default=True, help="Folder of the session.")
+@click.option("--out", type=EXISTING, help="Folder of the session; workbench/<name of the file> if not given.")
 @click.option("--port", type=click.IntRange(0, 65535), default=0, help="A free one if not given.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen at.")
 @click.option("--allow-network", is_flag=True, help="Let --host be one that other machines can reach.")
 @click.option("--no-browser", is_flag=True, help="Do not open the browser.")
-def workbench(source: Path | None, out: Path, port: int, host: str, allow_network: bool, no_browser: bool) -> None:
+def workbench(
+    source: Path | None, out: Path | None, port: int, host: str, allow_network: bool, no_browser: bool
+) -> None:
     """See and do all of it in the browser, on a job, a measurement, or one that you drop onto the page.
 
     Serves files of the folder it is started in, to this machine only.
@@ -269,13 +271,15 @@ def workbench(source: Path | None, out: Path, port: int, host: str, allow_networ
     from pzt_ident.demo import show_in_browser
     from pzt_ident.workbench.serve import serve
 
+    folder = out or Path("workbench") / (source.stem if source else "session")
+
     def ready(address: str) -> None:
-        click.echo(f"workbench: {address}\nCtrl-C ends it; what was done stays in {out}")
+        click.echo(f"workbench: {address}\nCtrl-C ends it; what was done stays in {folder}")
         if not no_browser:
             show_in_browser(address)
 
     with suppress(KeyboardInterrupt):
-        serve(source, out, host, port, allow_network, ready)
+        serve(source, folder, host, port, allow_network, ready)
 
 
 @main.command()

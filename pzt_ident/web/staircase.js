@@ -55,10 +55,10 @@ export class Staircase {
     const pitch = (area.right - area.left) / this.content.steps.length;
     const wide = Math.min(0.3 * pitch, 4 * area.size);
     const middle = area.left + (place + 0.5) * pitch;
-    USES.forEach((use, side) => {
+    const shown = USES.filter((use) => Number.isFinite(step[use]));
+    shown.forEach((use, side) => {
       const value = step[use];
-      if (!Number.isFinite(value)) return;
-      const [x, y] = [middle + (side - 1) * wide, this.toY(value, area)];
+      const [x, y] = [middle + (side - shown.length / 2) * wide, this.toY(value, area)];
       put(this.svg, "rect", { x: x + 1, y, width: wide - 2, height: area.bottom - y, class: `${use}${step.live ? " live" : ""}` });
       put(this.svg, "text", { x: x + wide / 2, y: y - 4, class: "value" }, number(value));
     });

@@ -9,15 +9,17 @@ const STAGES = { run: "Identifying", compare: "Looking where it fails", diagnose
 const at = (id) => document.getElementById(id);
 const convergence = new Convergence(at("convergence"));
 const columns = new Columns(at("columns"), (form) => act("job", form, "run"));
-let state = null, stairs = null, explorer = null, shown = "";
+let state = null, stairs = null, explorer = null, shown = "", away = false;
 
 /** Do something on the server and show what became of it; an error is said, and nothing is lost. */
 async function act(name, body = {}, then = null) {
   at("error").hidden = true;
+  at("status").textContent = "One moment …";
   try {
     show(await ask(name, body));
     if (then) show(await ask(then, {}));
   } catch (error) {
+    status();
     fail(error);
   }
 }
@@ -74,6 +76,7 @@ function words(begun) {
   else if (result) at("verdict").textContent = `The model leaves ${number(result.best.rmse.validate ?? result.best.rmse.identify)} ${result.unit} RMS${result.best.rmse.validate === null ? "" : " on records the fit never saw"}.`;
   else at("verdict").textContent = state.stage ? "Identifying the model." : "Ready to run.";
   for (const { run, reason } of result?.failed_runs ?? []) element(at("advice"), "span", { class: "warn" }, `${run} failed: ${reason}. `);
+  if (result?.best.rmse.validate === null) at("advice").append("No record is kept back to judge the model on: drop a second one to see whether it holds. ");
   if (!diagnosis) return;
   const missing = diagnosis.candidates.filter((item) => item.decision === "missing");
   for (const item of missing) addButton(at("advice"), item.effect, "strong");
@@ -92,7 +95,7 @@ function files() {
   if (!state.files.length) return;
   at("here").append("Or take one of this folder: ");
   for (const name of state.files)
-    element(at("here"), "button", { type: "button" }, name).addEventListener("click", () => look(name));
+    element(at("here"), "button", { type: "button" }, name).addEventListener("click", () => look(name)), at("here").append(" ");
 }
 
 async function look(name) {
@@ -223,10 +226,11 @@ setInterval(status, 500);
 await refresh();
 if (opening && !state?.steps.length) await look(opening);
 follow((event) => {
+  if (away) [away, at("error").hidden] = [false, true];
   if (event.event === "step") convergence.clear();
   else if (event.event === "changed") { if (event.version !== state?.version || state?.stage) refresh(); }
   else {
     convergence.take(event);
     if (state?.stage === "run" && event.event === "generation") { fall(); status(); }
   }
-}, fail);
+}, (error) => { away = true; fail(error); });

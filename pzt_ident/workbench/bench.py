@@ -75,9 +75,14 @@ class Bench:
         self._add(job_text(form), parent=0, change="as given")
 
     def open(self, path: Path) -> None:
-        """A first step from a job file of the user's."""
-        job = load_job(path)
-        self._add(with_effects(job, job.effects, self.folder / "steps" / str(self._next)), parent=0, change="as given")
+        """A first step from a job file of the user's. Raises InputError where the session began with another."""
+        job, first = load_job(path), self.folder / "steps" / "1"
+        text = with_effects(job, job.effects, first)
+        if not self.steps:
+            self._add(text, parent=0, change="as given")
+        elif (first / "job.yaml").read_text(encoding="utf-8") != text:
+            problem = f"the session in {self.relative(self.folder)} began with another job"
+            raise InputError(problem, where=str(path), remedy="give another folder with --out")
 
     def add(self, effect: str) -> None:
         job = self.job()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -66,14 +67,20 @@ def _regular(values: np.ndarray) -> bool:
 
 
 def _guess(columns: list[dict[str, Any]]) -> None:
-    """One column a role: by its unit, else by its name, else by its place."""
+    """One column a role: by its unit or its name, and where no column says so by its place."""
     for role, fits in (("time", _is_time), ("drive", _is_drive), ("response", _is_response)):
-        free = [item for item in columns if not item["role"] and (role == "time" or item["high"] > item["low"])]
-        named = [item for item in free if fits(item)]
-        if role != "time":
-            named = named or free
-        if named:
-            named[0]["role"] = role
+        _take(columns, role, fits)
+    for role in ("drive", "response"):
+        if role not in [item["role"] for item in columns]:
+            _take(columns, role, lambda item: True)
+
+
+def _take(columns: list[dict[str, Any]], role: str, fits: Callable[[dict[str, Any]], bool]) -> None:
+    """Give a role to the first column that is free, moves and fits."""
+    for item in columns:
+        if not item["role"] and item["high"] > item["low"] and fits(item):
+            item["role"] = role
+            return
 
 
 def _is_time(item: dict[str, Any]) -> bool:

@@ -18,7 +18,7 @@ SEARCH = """\
 # Equal numbers of evaluations; the local polish at the end of a run is the same for all.
 optimizers:
   - {name: pso, population: 70, generations: 150}
-  - {name: least_squares}
+  - {name: differential_evolution}
 seed: 7
 """
 

@@ -43,10 +43,9 @@ def serve(source: Path | None, folder: Path, host: str, port: int, exposed: bool
 
 
 def opened(bench: Bench, source: Path, root: Path) -> str:
-    """Begin with a job; a file of data is named to the page, which asks about its columns."""
+    """Begin with a job, or go on with its session; a file of data is named to the page, which asks for its columns."""
     if source.suffix.lower() in (".yaml", ".yml"):
-        if not bench.steps:
-            bench.open(source)
+        bench.open(source)
         return ""
     if not source.resolve().is_relative_to(root):
         raise InputError("is not in this folder", where=str(source), remedy="start the workbench where the data are")

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-SECONDS = 60
+SECONDS = 180
 
 if CHROMIUM is None and os.environ.get("CI"):
     raise RuntimeError("no chromium: `apt-get install chromium`")
@@ -55,7 +55,7 @@ def workbench(tmp_path):
     running: list[subprocess.Popen[str]] = []
 
     def start(*arguments: str) -> str:
-        command = [sys.executable, "-m", "pzt_ident", "workbench", "--no-browser", *arguments]
+        command = [sys.executable, "-m", "pzt_ident", "workbench", "--no-browser", "--out", "workbench", *arguments]
         source = str(Path(__file__).parents[2])
         environment = os.environ | {"PYTHONUNBUFFERED": "1", "PYTHONPATH": source}
         process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, text=True, env=environment)

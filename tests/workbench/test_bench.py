@@ -63,8 +63,17 @@ def test_comments_of_the_users_job_are_kept(bench):
     )
     bench.open(bench.root / "job.yaml")
     bench.add("creep")
+    bench.open(bench.root / "job.yaml")
+    assert bench.at == 2
     text = bench.job().text
     assert text.startswith("# mine\n") and "# loops" in text and bench.job().effects == ("creep",)
+
+
+def test_a_session_is_of_one_job(begun):
+    path = begun.root / "other.yaml"
+    path.write_text((begun.step() / "job.yaml").read_text().replace("small", "other").replace("../../../", ""))
+    with pytest.raises(InputError, match="began with another job"):
+        begun.open(path)
 
 
 def test_the_log_repeats_the_session(begun):

@@ -29,6 +29,7 @@ def roles(path):
         (None, "tur", ["time", "drive", "response"]),
         (None, "ur", ["drive", "response"]),
         ("E [V/m],x [um]", "ur", ["drive", "response"]),
+        ("displacement,amplifier", "ru", ["response", "drive"]),
     ],
 )
 def test_roles_by_unit_name_or_place(tmp_path, header, order, expected):
