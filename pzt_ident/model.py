@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -186,7 +187,6 @@ class Plan:
         axis = self.model.measured[0] if issubclass(block, Modes) else axis
         places = [(a, b) for a in axes for b in axes if b != a] if coupling else [(axis, axis)]
         branches = range(block.branches) if issubclass(block, Bank | Modes) else [0]
-        weights = [(word, a) for word in block.weights for a in axes] if issubclass(block, Modes) else []
         words = (*form.arguments(), *(asked(block.terms) if variant.terms else ()))  # type: ignore[attr-defined]
         nulls = {p.name: p.null or 0.0 for p in block.parameters().values() if p.effect}
         row = self.rows + made.layout.first_given
@@ -207,14 +207,21 @@ class Plan:
                     else:
                         self.given.append((row, column[branch] if isinstance(column, list) else column))
                     row += 1
-                for word, a in weights:
-                    found = self.model.columns(block, a, a)
-                    if found is None or word not in found:
-                        self.known.append((row, 0.0 if found is None else 1.0))
-                    else:
-                        self.given.append((row, found[word][branch]))  # type: ignore[index]
-                    row += 1
+                if issubclass(block, Modes):
+                    row = self._weigh(block, branch, row)
         self.rows += made.layout.rows
+
+    def _weigh(self, block: type[Modes], mode: int, row: int) -> int:
+        """What push and motion of each axis count for a mode: their own, 1 for the push of the first axis, 0 for an axis
+        that is not measured. From a row of the scratch on; the row behind them."""
+        for word, axis in product(block.weights, range(len(self.model.axes))):
+            columns = self.model.columns(block, axis, axis)
+            if columns is None or word not in columns:
+                self.known.append((row, 0.0 if columns is None else 1.0))
+            else:
+                self.given.append((row, columns[word][mode]))  # type: ignore[index]
+            row += 1
+        return row
 
     @cached_property
     def signals(self) -> Array:
