@@ -52,7 +52,7 @@ def response(chain, parameters, *drives, dt=1e-3, **more):
     return found if len(drives) > 1 else found[0]
 
 
-def candidates(made, drive, count, seed, response=40.0):
+def candidates(made, drive, count, seed, response=10.0):
     """Random theta within the declared bounds, for drives of that span and responses of the given one."""
     rng = np.random.default_rng(seed)
     columns = []
