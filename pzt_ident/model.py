@@ -206,7 +206,7 @@ class Plan:
         self.rows += made.layout.rows
 
     def _weigh(self, block: type[Modes], mode: int, row: int) -> int:
-        """What push and motion of each axis count for a mode: their own, 1 for the push of the first axis, 0 for an axis
+        """What push and motion of each axis are to a mode: their own, 1 for the push of the first axis, 0 for an axis
         that is not measured. From a row of the scratch on; the row behind them."""
         for word, axis in product(block.weights, range(len(self.model.axes))):
             columns = self.model.columns(block, axis, axis)
