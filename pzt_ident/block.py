@@ -57,6 +57,11 @@ def cos(x: float) -> float:
     return math.cos(x) if math.isfinite(x) else math.nan
 
 
+def erf(x: float) -> float:
+    """erf(x) for blocks, likewise; good to 1e-14."""
+    return math.erf(x)
+
+
 class Block:
     """One box of the signal chain, acting on each axis with that axis' own parameters.
 
@@ -129,6 +134,8 @@ class Bank(Block):
 
     prepare may ask for `branch`, counted from 0, and is given each branch its own of a counted parameter.
     output(u, total, *coefficients of the first branch) -> y.
+    rests(*states, low, high, *coefficients) -> whether no input between low and high moves the branch: optional, it
+    saves the steps of a branch that holds still over a tile in every lane.
     """
 
     branches: ClassVar[int]

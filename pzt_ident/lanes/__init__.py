@@ -20,7 +20,7 @@ from pzt_ident.block import Bank, Beside, Block, Coupling, Operator, Place, Shif
 from pzt_ident.files import cache_folder
 
 TEMPLATES = Path(__file__).parent
-FUNCTIONS = ("prepare", "start", "step", "travel", "near", "exact", "output", "terms", "lift", "fade")
+FUNCTIONS = ("prepare", "start", "step", "travel", "near", "exact", "output", "terms", "lift", "fade", "rests")
 
 
 class Layout(NamedTuple):
@@ -84,6 +84,11 @@ def template_of(block: type[Block], variant: Variant) -> str:
     return next((name for kind, name in named.items() if issubclass(block, kind)), "plain")
 
 
+def rests(block: type[Block]) -> bool:
+    """Whether the branches of a bank say when they hold still."""
+    return issubclass(block, Bank) and hasattr(block, "rests")
+
+
 def layout_of(block: type[Block], variant: Variant) -> Layout:
     """Counted by asking the block itself, with parameters in the middle of their bounds."""
     known = {p.name: sum(p.bounds) / 2 for p in block.parameters().values()} | {"dt": 1e-3, "span": 1.0, "branch": 0}
@@ -94,7 +99,7 @@ def layout_of(block: type[Block], variant: Variant) -> Layout:
     states = 0 if stateless else len(block.start(0.0, *example))  # type: ignore[attr-defined]
     axes = variant.axes
     copies = block.branches if issubclass(block, Bank) else axes * (axes - 1) if issubclass(block, Coupling) else 1
-    work = 7 if operator else 0
+    work = 7 if operator else 3 if rests(block) else 0
     asking = asked(block.terms) if variant.terms else ()  # type: ignore[attr-defined]
     terms = len(block.terms(*(known[word] for word in asking))) if variant.terms else 0  # type: ignore[attr-defined]
     shared = len(prepared[0]) if operator else 0
@@ -115,6 +120,8 @@ def render(text: str, block: type[Block], layout: Layout, variant: Variant, kern
         T=[f"e{i}" for i in range(layout.terms)],
         GT=layout.given_terms,
         readout=variant.readout,
+        rests=rests(block),
+        work=layout.rows - layout.work,
         beside=issubclass(block, Beside),
         axes=variant.axes,
         place=block.place,
