@@ -65,7 +65,8 @@ def erf(x: float) -> float:
 class Block:
     """One box of the signal chain, acting on each axis with that axis' own parameters.
 
-    prepare(*parameters[, dt][, span]) -> coefficients; dt in s, span the peak-to-peak drive of the axis.
+    prepare(*parameters[, dt][, span][, peak]) -> coefficients; dt in s, span and peak the peak-to-peak drive of the
+    axis and its largest magnitude.
     start(u, *coefficients) -> states.
     step(*states, u, *coefficients) -> (*states, y).
 
@@ -139,6 +140,26 @@ class Bank(Block):
     """
 
     branches: ClassVar[int]
+
+
+class Relays(Block):
+    """Domains of `coercives` coercive fields, equally many of each, over `interactions` interaction fields that lie a
+    spacing apart about 0. Of each kind a share x points up. Per second a share `rate` of them leaves the side that they
+    are on, which depends on how much further its effective field is from where it would not hold without activation.
+    x relaxes exactly over a step of the field in its middle.
+
+    prepare(*parameters) -> (shape, energy, shared), a tuple of coefficients each; shape[0] is the spacing.
+    coercive_field(i, *shape) -> that of node i. mass(low, high, *shape) -> weight of the interaction fields between.
+    start(u, coercive, low, high, *shape) -> the share that points up under the first input.
+    leave(further, *energy) -> (rate, what is left on that side after a sample, response of a domain on it): tabulated
+    once a candidate, `fine` points a spacing, and interpolated.
+    output(u, total, *shared) -> y.
+    """
+
+    coercives: ClassVar[int] = 64
+    interactions: ClassVar[int] = 64
+    columns: ClassVar[int] = 256  # spacings that the table of `leave` covers
+    fine: ClassVar[int] = 32
 
 
 class Term(Block):

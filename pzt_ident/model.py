@@ -180,6 +180,7 @@ class Plan:
             known = nulls | {
                 "dt": self.record.dt / self.model.oversample,
                 "span": float(np.ptp(self.record.drive[axis])),
+                "peak": float(np.abs(self.record.drive[axis]).max()),
             }
             for branch in branches:
                 for word in words:

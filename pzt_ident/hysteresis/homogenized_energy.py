@@ -26,7 +26,7 @@ class HomogenizedEnergy(Bank):
     place = Place.OPERATOR
     branches = NODES
     gain = Parameter("response/drive", (0, 3), "Response per field of a domain that does not switch, a1 / eta.")
-    remanence = Parameter("drive", (0.05, 20), "Remanent polarization of a domain as the field eta P_R.", scale="log")
+    remanence = Parameter("drive", (0.05, 10), "Remanent polarization of a domain as the field eta P_R.", scale="log")
     coercive = Parameter("drive", (0.005, 5), "Median of the coercive fields.", scale="log")
     spread = Parameter("1", (0.1, 2), "Standard deviation of the logarithm of the coercive field.")
     interaction = Parameter("drive", (0.01, 5), "Standard deviation of the interaction field.", scale="log")
