@@ -27,3 +27,16 @@ T = {
     "thermal_homogenized_energy.poled": 1e6,
 }
 """With thermal activation; the width of its loops follows figure 11."""
+
+STRAIN = 3.52e-2 * 0.02  # beta l, m^3 / C
+
+
+def domain_wall(alpha, k, c, a=4.6e5, p_s=0.49):
+    """Parameters of the block from those of the paper: V m / C, V / m, 1, V / m, C / m^2."""
+    values = {"saturation": STRAIN * p_s, "width": a, "coupling": alpha * p_s / a, "pinning": k, "reversible": c}
+    return {f"domain_wall.{word}": value for word, value in values.items()}
+
+
+PRINTED = {"alpha": 4.5e6, "k": 1.4e5, "c": 0.81}
+DW1, DW2 = {"alpha": 4.5e5, "k": 1.47e4, "c": 0.643}, {"alpha": 2.0e5, "k": 5.01e3, "c": 0.744}
+"""alpha and k a decade below the print: the printed set runs away."""
