@@ -81,6 +81,7 @@ class Block:
     separate_by: ClassVar[str] = ""
     remedy: ClassVar[str] = ""
     sizes: ClassVar[tuple[float, ...]] = (0.05,)  # of its range, at which its trace is looked for: one if it is linear
+    seen: ClassVar[tuple[str, ...]] = ()  # parameters that a record shows only where its drive is of their size
     trials: ClassVar[int] = 6  # values over the range of a parameter that means nothing at the null
 
     def __init_subclass__(cls) -> None:
@@ -149,8 +150,9 @@ class Relays(Block):
     x relaxes exactly over a step of the field in its middle.
 
     prepare(*parameters) -> (shape, energy, shared), a tuple of coefficients each; shape[0] is the spacing.
-    coercive_field(i, *shape) -> that of node i. mass(low, high, *shape) -> weight of the interaction fields between.
-    start(u, coercive, low, high, *shape) -> the share that points up under the first input.
+    field(u, *shape) -> in the material. coercive_field(i, *shape) -> that of node i.
+    mass(low, high, *shape) -> weight of the interaction fields between.
+    start(field, coercive, low, high, *shape) -> the share that points up under the first one.
     leave(further, *energy) -> (rate, what is left on that side after a sample, response of a domain on it): tabulated
     once a candidate, `fine` points a spacing, and interpolated.
     output(u, total, *shared) -> y.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from pzt_ident import units
@@ -126,6 +126,16 @@ def _is(word: str, kind: str) -> bool:
     return issubclass(blocks[word], getattr(block, kind))
 
 
+def _shared(document: Document, names: tuple[str, ...], earlier: Earlier) -> None:
+    if not {"model", "effects"} <= set(earlier):
+        return
+    chosen = [blocks[word] for word in (*earlier["model"], *earlier["effects"]) if word in blocks]
+    known = [f"{block.name}.{word}" for block in chosen for word in block.parameters()]
+    for i, name in enumerate(names):
+        if name not in known:
+            document.fault(("shared", i), f"unknown parameter {name!r}", nearest(name, known))
+
+
 def _parameters(document: Document, settings: dict[str, Setting], earlier: Earlier) -> None:
     for name, setting in settings.items():
         _setting(document, ("parameters", name), setting)
@@ -134,7 +144,7 @@ def _parameters(document: Document, settings: dict[str, Setting], earlier: Earli
     axes = earlier["channels"].axes
     if all(axis.response is None for axis in axes.values()):
         return
-    model = _chain((*earlier["model"], *earlier["effects"]), axes)
+    model = _chain((*earlier["model"], *earlier["effects"]), axes, earlier.get("shared", ()))
     spelled = {name: slot for slot in model.slots for name in model.spellings(slot)}
     if spelled and not any(_free(model, slot, settings) for slot in model.slots):
         document.fault(("parameters",), "every parameter is fixed", "free at least one: give it `bounds`")
@@ -157,12 +167,12 @@ def _free(model: Model, slot: Slot, settings: Mapping[str, Setting]) -> bool:
     return slot.parameter.value is None
 
 
-def _chain(words: Iterable[str], axes: Mapping[str, Axis]) -> Model:
+def _chain(words: Iterable[str], axes: Mapping[str, Axis], shared: Sequence[str] = ()) -> Model:
     """The model of the known words; an effect that is a term inside another block adds none."""
     from pzt_ident.model import Model
 
     measured = [i for i, axis in enumerate(axes.values()) if axis.response is not None]
-    return Model([blocks[word] for word in dict.fromkeys(words) if word in blocks], list(axes), measured)
+    return Model([blocks[word] for word in dict.fromkeys(words) if word in blocks], list(axes), measured, shared)
 
 
 def _setting(document: Document, at: Loc, setting: Setting) -> None:
@@ -247,6 +257,7 @@ SECTIONS: Mapping[str, Callable[[Document, Any, Earlier], None]] = {
     "channels": _channels,
     "model": _model,
     "effects": _effects,
+    "shared": _shared,
     "parameters": _parameters,
     "optimizers": _optimizers,
     "stop": _stop,

@@ -34,6 +34,7 @@ class Job(BaseModel):
     channels: Channels
     model: tuple[str, ...]
     effects: tuple[str, ...] = ()
+    shared: tuple[str, ...] = ()
     parameters: dict[str, Setting] = {}
     optimizers: tuple[Choice, ...] = (Choice("pso"),)
     repeats: Count = 1

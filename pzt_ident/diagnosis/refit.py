@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.diagnosis.noise import noise_floor
+from pzt_ident.diagnosis.noise import noise_floor, sizes
 from pzt_ident.model import Model
 from pzt_ident.problem import Problem
 from pzt_ident.record import Record
@@ -28,20 +28,28 @@ DAMPINGS = 10.0 ** np.arange(-5, 4)
 class Case:
     """A model, its records and what is free, to which effects can be added."""
 
-    def __init__(self, words: Sequence[str], effects: Sequence[str], records: Sequence[Record], wishes: Any) -> None:
-        self.words, self.effects = tuple(words), tuple(effects)
-        self.records, self.wishes = tuple(records), wishes
+    def __init__(
+        self,
+        words: Sequence[str],
+        effects: Sequence[str],
+        records: Sequence[Record],
+        wishes: Any,
+        shared: Sequence[str] = (),
+    ) -> None:
+        self.words, self.effects, self.shared = tuple(words), tuple(effects), tuple(shared)
+        self.records, self.wishes, self.sizes = tuple(records), wishes, sizes(list(records))
 
     def problem(self, effects: Sequence[str]) -> Problem:
         chosen = [blocks[word] for word in (*self.words, *effects)]
         first = self.records[0]
-        return Problem(Model(chosen, first.axes, first.measured), self.records, self.wishes)
+        model = Model(chosen, first.axes, first.measured, self.shared)
+        return Problem(model, self.records, self.wishes, self.sizes)
 
     @cached_property
     def floor(self) -> float:
-        """Noise floor of all measured axes together, SI units."""
+        """Noise floor of all measured axes together, in units of the loss."""
         found = [noise_floor(list(self.records), axis).value for axis in self.records[0].measured]
-        return float(np.sqrt(np.mean(np.square(found))))
+        return float(np.sqrt(np.mean(np.square(found / self.sizes))))
 
 
 @dataclass(frozen=True)

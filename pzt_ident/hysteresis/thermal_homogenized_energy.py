@@ -25,30 +25,34 @@ class ThermalHomogenizedEnergy(Relays):
     """
 
     place = Place.OPERATOR
+    seen = ("coercive",)
     gain, remanence = HomogenizedEnergy.gain, HomogenizedEnergy.remanence
     coercive, spread, interaction = HomogenizedEnergy.coercive, HomogenizedEnergy.spread, HomogenizedEnergy.interaction
     thermal = Parameter(
         "1", (0.002, 0.1), "Thermal width of the polarization over its remanence, s / P_R.", scale="log"
     )
     dwell = Parameter("s", (1e-6, 1), "Time constant of a domain without a barrier, T.", scale="log")
-    quadratic, poled = HomogenizedEnergy.quadratic, HomogenizedEnergy.poled
+    quadratic, poled, bias = HomogenizedEnergy.quadratic, HomogenizedEnergy.poled, HomogenizedEnergy.bias
 
-    def prepare(gain, remanence, coercive, spread, interaction, thermal, dwell, quadratic, poled, dt, peak):
-        least = 2 * (peak + remanence) / (COLUMNS - INTERACTIONS)
+    def prepare(gain, remanence, coercive, spread, interaction, thermal, dwell, quadratic, poled, bias, dt, peak):
+        least = 2 * (peak + abs(bias) + remanence) / (COLUMNS - INTERACTIONS)
         spacing = max(8 * interaction / INTERACTIONS, least)
         below = normal(log(remanence / coercive) / spread)
-        shape = spacing, coercive, spread, below, interaction, poled
-        return shape, (remanence, thermal * remanence, dwell, dt), (gain, remanence, quadratic)
+        shape = spacing, coercive, spread, below, interaction, poled - bias, bias
+        return shape, (remanence, thermal * remanence, dwell, dt), (gain, remanence, quadratic, bias)
 
-    def coercive_field(i, spacing, coercive, spread, below, interaction, poled):
+    def field(u, spacing, coercive, spread, below, interaction, poled, bias):
+        return u - bias
+
+    def coercive_field(i, spacing, coercive, spread, below, interaction, poled, bias):
         return coercive * exp(spread * quantile((i + 0.5) / COERCIVES * below))
 
-    def mass(low, high, spacing, coercive, spread, below, interaction, poled):
+    def mass(low, high, spacing, coercive, spread, below, interaction, poled, bias):
         covered = erf(INTERACTIONS * spacing / (2 * sqrt(2.0) * interaction))
         return below * (normal(high / interaction) - normal(low / interaction)) / covered
 
-    def start(u, half, low, high, spacing, coercive, spread, below, interaction, poled):
-        return min(max((high + play(play(0.0, poled, half), u, half)) / (high - low), 0.0), 1.0)
+    def start(field, half, low, high, spacing, coercive, spread, below, interaction, poled, bias):
+        return min(max((high + play(play(0.0, poled, half), field, half)) / (high - low), 0.0), 1.0)
 
     def leave(further, remanence, width, dwell, dt):
         ahead = further / width
@@ -57,8 +61,8 @@ class ThermalHomogenizedEnergy(Relays):
         rate = max(odds / (1 + odds) / dwell, 1e-300)
         return rate, exp(-rate * dt), remanence + width * hazard
 
-    def output(u, total, gain, remanence, quadratic):
-        worth = u + total - remanence
+    def output(u, total, gain, remanence, quadratic, bias):
+        worth = u - bias + total - remanence
         return (gain + quadratic * worth) * worth
 
 

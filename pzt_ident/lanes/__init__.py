@@ -23,7 +23,7 @@ TEMPLATES = Path(__file__).parent
 FUNCTIONS = (
     *("prepare", "start", "step", "output", "rests"),
     *("travel", "near", "exact", "terms", "lift", "fade"),
-    *("coercive_field", "mass", "leave"),
+    *("field", "coercive_field", "mass", "leave"),
 )
 
 

@@ -34,7 +34,7 @@ def loop(low, high, points=400):
 @quick
 def test_plays_in_a_loop(levels, points, poled):
     field = path(*levels, points=points)
-    for known in ({"quadratic": 0.0}, {"quadratic": 3e-13}, {"spread": 0.3, "interaction": 900.0}):
+    for known in ({"quadratic": 0.0}, {"quadratic": 3e-13}, {"spread": 0.3, "interaction": 900.0, "bias": 400.0}):
         expected = twin.homogenized_energy(field, **SHAPE | known | {"poled": poled})
         found = displacement(field, poled=poled, **known)
         np.testing.assert_allclose(found, expected, rtol=0, atol=2e-14 * smith.REMANENCE)
@@ -177,6 +177,12 @@ def test_quadratic_term_bends_about_the_poled_state():
     linear = displacement(field, quadratic=0.0)
     bent = displacement(field, quadratic=0.2 / (smith.ETA**2 * smith.REMANENCE))
     np.testing.assert_allclose(bent, linear + 0.2 / smith.REMANENCE * linear**2, rtol=1e-12)
+
+
+def test_bias_is_a_shift_of_the_drive():
+    field = path(0, 8000, 100, 5000)
+    shifted = displacement(field + 700, bias=700.0, poled=2700.0)
+    np.testing.assert_allclose(shifted, displacement(field, poled=2000.0), rtol=0, atol=1e-17)
 
 
 def test_rate_does_not_matter():

@@ -113,6 +113,12 @@ def test_at_rest_nothing_is_lost():
     assert np.all(np.diff(poled) < 0) and poled[0] - poled[-1] < 0.1 * smith.T_REMANENCE
 
 
+def test_bias_is_a_shift_of_the_drive():
+    field = path(0, 8000, 100, points=20)
+    shifted = displacement(field + 700, 0.01, bias=700.0, poled=2700.0)
+    np.testing.assert_allclose(shifted, displacement(field, 0.01, poled=2000.0), rtol=0, atol=1e-3 * smith.T_REMANENCE)
+
+
 def test_mirrored():
     field = path(0, 8000, -3000, 2000, points=30)
     found = displacement(field, 0.01, poled=3000.0) + displacement(-field, 0.01, poled=-3000.0)

@@ -31,9 +31,12 @@ def quantiles(nodes):
     return ndtri((np.arange(nodes) + 0.5) / nodes)
 
 
-def homogenized_energy(field, gain, remanence, coercive, spread, interaction, quadratic=0.0, poled=0.0, nodes=64):
+def homogenized_energy(
+    field, gain, remanence, coercive, spread, interaction, quadratic=0.0, poled=0.0, bias=0.0, nodes=64
+):
     """a1 (P - P_R) + a2 (P - P_R)^2, by plays with the normal distribution as readout."""
+    field, poled = np.asarray(field) - bias, poled - bias
     fields = coercive * np.exp(spread * quantiles(nodes))
     share = plays(field, fields, lambda p: erf(p / np.sqrt(2) / interaction), poled)
-    worth = np.asarray(field) + remanence * (share - 1)
+    worth = field + remanence * (share - 1)
     return gain * worth + quadratic * worth**2

@@ -73,7 +73,7 @@ def parameters(model, block, record, axis, other, theta):
         axis = other = model.measured[0]
     own = {}
     for slot, value in zip(model.slots, theta, strict=True):
-        if (slot.block, slot.axis, slot.other) == (block, axis, other):
+        if slot.block is block and ((slot.axis, slot.other) == (axis, other) or slot.name in model.shared):
             own.setdefault(slot.parameter.name, []).append(value)
     return found | own
 
@@ -142,13 +142,14 @@ def relays(block, coefficients, signal, prompt):
     grid = spacing * (np.arange(block.columns * block.fine + 1) / block.fine - block.columns // 2)
     here = np.array([block.leave(z, *energy) for z in grid]).T
     there = here[:, ::-1]  # the grid is the same about zero
+    fields = [block.field(u, *shape) for u in signal]
     edges = spacing * np.arange(-half_grid, half_grid + 1)
     weights = np.array([block.mass(low, high, *shape) for low, high in pairwise(edges)]) / block.coercives
     field = np.array([block.coercive_field(i, *shape) for i in range(block.coercives)])[:, None]
     bins = list(pairwise(edges))
-    up = np.array([[block.start(signal[0], half, low, high, *shape) for low, high in bins] for half in field[:, 0]])
+    up = np.array([[block.start(fields[0], half, low, high, *shape) for low, high in bins] for half in field[:, 0]])
     between, before, result = (edges[1:] + edges[:-1]) / 2, None, []
-    for now, v in zip(signal, prompt, strict=True):
+    for now, v in zip(fields, prompt, strict=True):
         middle = (now if before is None else (before + now) / 2) + between
         out, kept_up = (np.interp(middle + field, grid, row) for row in here[:2])
         back, kept_down = (np.interp(middle - field, grid, row) for row in there[:2])
