@@ -58,10 +58,16 @@ def cos(x: float) -> float:
     return math.cos(x) if math.isfinite(x) else math.nan
 
 
+def erf(x: float) -> float:
+    """erf(x) for blocks, likewise; good to 1e-14."""
+    return math.erf(x)
+
+
 class Block:
     """One box of the signal chain, acting on each axis with that axis' own parameters.
 
-    prepare(*parameters[, dt][, span]) -> coefficients; dt in s, span the peak-to-peak drive of the axis.
+    prepare(*parameters[, dt][, span][, peak]) -> coefficients; dt in s, span and peak the peak-to-peak drive of the
+    axis and its largest magnitude.
     start(u, *coefficients) -> states.
     step(*states, u, *coefficients) -> (*states, y).
 
@@ -76,6 +82,7 @@ class Block:
     separate_by: ClassVar[str] = ""
     remedy: ClassVar[str] = ""
     sizes: ClassVar[tuple[float, ...]] = (0.05,)  # of its range, at which its trace is looked for: one if it is linear
+    seen: ClassVar[tuple[str, ...]] = ()  # parameters that a record shows only where its drive is of their size
     trials: ClassVar[Mapping[str, int]] = {}  # values over the range of a parameter that means nothing at the null
     chosen: ClassVar[dict[str, int]] = {}
 
@@ -160,6 +167,8 @@ class Bank(Block):
 
     prepare may ask for `branch`, counted from 0, and is given each branch its own of a counted parameter.
     output(u, total, *coefficients of the first branch) -> y.
+    rests(*states, low, high, *coefficients) -> whether no input between low and high moves the branch: optional, it
+    saves the steps of a branch that holds still over a tile in every lane.
 
     What needs NumPy is done once per distinct candidate: solve(own) -> one array (branches,) for each word of `solved`,
     which `prepare` may ask for; own.word is a parameter (an array where it is counted), a setting or dt. Where a job
@@ -174,6 +183,27 @@ class Bank(Block):
         count = getattr(cls, "count", None)
         if count and set(asked(count)) <= set(cls.settings()):
             cls.branches = count(*(cls.setting(word) for word in asked(count)))
+
+
+class Relays(Block):
+    """Domains of `coercives` coercive fields, equally many of each, over `interactions` interaction fields that lie a
+    spacing apart about 0. Of each kind a share x points up. Per second a share `rate` of them leaves the side that they
+    are on, which depends on how much further its effective field is from where it would not hold without activation.
+    x relaxes exactly over a step of the field in its middle.
+
+    prepare(*parameters) -> (shape, energy, shared), a tuple of coefficients each; shape[0] is the spacing.
+    field(u, *shape) -> in the material. coercive_field(i, *shape) -> that of node i.
+    mass(low, high, *shape) -> weight of the interaction fields between.
+    start(field, coercive, low, high, *shape) -> the share that points up under the first one.
+    leave(further, *energy) -> (rate, what is left on that side after a sample, response of a domain on it): tabulated
+    once a candidate, `fine` points a spacing, and interpolated.
+    output(u, total, *shared) -> y.
+    """
+
+    coercives: ClassVar[int] = 64
+    interactions: ClassVar[int] = 64
+    columns: ClassVar[int] = 256  # spacings that the table of `leave` covers
+    fine: ClassVar[int] = 32
 
 
 class Term(Block):

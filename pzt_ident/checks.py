@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from pzt_ident import units
@@ -147,6 +147,16 @@ def _is(word: str, kind: str) -> bool:
     return issubclass(blocks[word], getattr(block, kind))
 
 
+def _shared(document: Document, names: tuple[str, ...], earlier: Earlier) -> None:
+    if not {"model", "effects"} <= set(earlier):
+        return
+    chosen = [blocks[word] for word in (*earlier["model"], *earlier["effects"]) if word in blocks]
+    known = [f"{block.name}.{word}" for block in chosen for word in block.parameters()]
+    for i, name in enumerate(names):
+        if name not in known:
+            document.fault(("shared", i), f"unknown parameter {name!r}", nearest(name, known))
+
+
 def _parameters(document: Document, settings: dict[str, Setting], earlier: Earlier) -> None:
     for name, setting in settings.items():
         _setting(document, ("parameters", name), setting)
@@ -156,7 +166,7 @@ def _parameters(document: Document, settings: dict[str, Setting], earlier: Earli
     if all(axis.response is None for axis in axes.values()):
         return
     try:
-        model = _chain((*earlier["model"], *earlier["effects"]), axes)
+        model = _chain((*earlier["model"], *earlier["effects"]), axes, earlier.get("shared", ()))
     except InputError:
         return  # a setting of a block, noted where it stands
     spelled = {name: slot for slot in model.slots for name in model.spellings(slot)}
@@ -181,12 +191,12 @@ def _free(model: Model, slot: Slot, settings: Mapping[str, Setting]) -> bool:
     return slot.parameter.value is None
 
 
-def _chain(items: Iterable[str | Choice], axes: Mapping[str, Axis]) -> Model:
+def _chain(items: Iterable[str | Choice], axes: Mapping[str, Axis], shared: Sequence[str] = ()) -> Model:
     """The model of the known words."""
     from pzt_ident.model import Model
 
     measured = [i for i, axis in enumerate(axes.values()) if axis.response is not None]
-    return Model(list(dict.fromkeys(blocks.chain(items))), list(axes), measured)
+    return Model(list(dict.fromkeys(blocks.chain(items))), list(axes), measured, shared)
 
 
 def _setting(document: Document, at: Loc, setting: Setting) -> None:
@@ -281,6 +291,7 @@ SECTIONS: Mapping[str, Callable[[Document, Any, Earlier], None]] = {
     "model": _model,
     "effects": _effects,
     "rule_out": _rule_out,
+    "shared": _shared,
     "parameters": _parameters,
     "optimizers": _optimizers,
     "stop": _stop,

@@ -33,7 +33,7 @@ def begun(job: Job, out: Path | None) -> tuple[Case, Path]:
     make_empty(folder)
     write_text(folder / "job.yaml", with_effects(job, job.effects, folder))
     write_json(folder / "environment.json", environment(job, records))
-    return Case(job.model, job.effects, records, job.parameters, job.rule_out), folder
+    return Case(job.model, job.effects, records, job.parameters, job.rule_out, job.shared), folder
 
 
 def diagnose(job: Job, out: Path | None = None, tell: Tell = lambda event: None) -> Path:

@@ -36,6 +36,7 @@ class Job(BaseModel):
     model: tuple[Item, ...]
     effects: tuple[str, ...] = ()
     rule_out: tuple[str, ...] = ()
+    shared: tuple[str, ...] = ()
     parameters: dict[str, Setting] = {}
     optimizers: tuple[Choice, ...] = (Choice("pso"),)
     repeats: Count = 1

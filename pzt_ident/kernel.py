@@ -121,6 +121,22 @@ def cos_lanes(x):
     return half_wave(x, n, n - 0.5)
 
 
+@register_jitable(forceinline=True)
+def erf_lanes(x):
+    """x P(x^2) / Q(x^2), a rational fit over |x| < 5.7, beyond which erf is 1 to 1e-15."""
+    x = min(max(x, -5.7), 5.7)
+    z = x * x
+    p = 3.847400556209708e-09 + z * (4.443189190677514e-11 + z * 7.388764175151343e-14)
+    p = 5.012092761694756e-05 + z * (3.1987896617852972e-06 + z * (1.1788858232347475e-07 + z * p))
+    p = 0.06504868415342534 + z * (0.006617756678312501 + z * (0.0007996755629146477 + z * p))
+    p = 1.1283791670955843 + z * (0.21822456998884568 + z * p)
+    q = 5.017070291241489e-10 + z * (2.4556390924398634e-12 + z * 8.552561380708888e-16)
+    q = 1.3216404640572998e-05 + z * (6.396443142854327e-07 + z * (2.2335858573983423e-08 + z * q))
+    q = 0.021409543387979013 + z * (0.002434314698011718 + z * (0.00020592629940553638 + z * q))
+    q = 1 + z * (0.5267298230545343 + z * (0.13322450303298028 + z * q))
+    return x * (p / q)
+
+
 @overload(block.expm1, jit_options={"forceinline": True})
 def _expm1(x):
     return lambda x: expm1_lanes(x)
@@ -129,6 +145,11 @@ def _expm1(x):
 @overload(block.log1p, jit_options={"forceinline": True})
 def _log1p(x):
     return lambda x: log1p_lanes(x)
+
+
+@overload(block.erf, jit_options={"forceinline": True})
+def _erf(x):
+    return lambda x: erf_lanes(x)
 
 
 @overload(block.sin, jit_options={"forceinline": True})

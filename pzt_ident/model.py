@@ -37,16 +37,19 @@ class Model:
     theta is (candidates, parameters) in SI units, in the order of `slots`; a simulation is (candidates, measured axes,
     samples). An axis without a response is simulated as far as the last coupling, with the parameters of the first
     measured axis. Parameter names carry the axis where more than one is measured. A parameter that belongs to an effect
-    is there only where the effect is among the blocks.
+    is there only where the effect is among the blocks. One in `shared`, such as `bouc_wen.alpha`, is the same on every
+    axis.
     """
 
-    def __init__(self, blocks: Sequence[type[Block]], axes: Sequence[str], measured: Sequence[int]) -> None:
+    def __init__(
+        self, blocks: Sequence[type[Block]], axes: Sequence[str], measured: Sequence[int], shared: Sequence[str] = ()
+    ) -> None:
         chain = [block for block in blocks if not issubclass(block, Term | Addition)]
         self.blocks = tuple(sorted(chain, key=lambda block: block.place))
         self.additions = tuple(block for block in blocks if issubclass(block, Addition))
         self._listed = {block.name for block in blocks if issubclass(block, Term)}
         self._forms = {word: form for block in blocks if issubclass(block, Term) for word, form in block.forms.items()}
-        self.axes, self.measured = tuple(axes), tuple(measured)
+        self.axes, self.measured, self.shared = tuple(axes), tuple(measured), frozenset(shared)
         self.slots = tuple(slot for block in (*self.blocks, *self.additions) for slot in self._slots(block))
 
     def terms(self, block: type[Block]) -> set[str]:
@@ -71,17 +74,22 @@ class Model:
             for other in others:
                 suffix = f"_from_{self.axes[other]}" if len(others) > 1 else ""
                 for word, parameter in block.parameters().items():
-                    if parameter.per_record or (parameter.effect and parameter.effect not in self._listed):
+                    plain = f"{block.name}.{word}"
+                    again = plain in self.shared and axis != self.measured[0]
+                    if again or parameter.per_record or (parameter.effect and parameter.effect not in self._listed):
                         continue
                     if parameter.each != "axis" and (parameter.each == "stage") != (axis == first):
                         continue
-                    name = f"{'' if parameter.each == 'stage' else prefix}{block.name}.{word}{suffix}"
+                    everywhere = parameter.each == "stage" or plain in self.shared
+                    name = plain if everywhere else f"{prefix}{plain}{suffix}"
                     found.append(Slot(name, block, word, axis, other, parameter))
         return found
 
     def spellings(self, slot: Slot) -> tuple[str, ...]:
         """The names that a job may call a parameter by, the most particular first."""
         plain = f"{slot.block.name}.{slot.word}"
+        if plain in self.shared:
+            return (plain,)
         paired = (f"{plain}_from_{self.axes[slot.other]}",) if slot.other != slot.axis else ()
         return *(f"{self.axes[slot.axis]}.{name}" for name in (*paired, plain)), *paired, plain
 
@@ -101,7 +109,7 @@ class Model:
             axis = other = self.measured[0]
         found: dict[str, int | list[int]] = {}
         for column, slot in enumerate(self.slots):
-            if slot.block is block and (slot.axis, slot.other) == (axis, other):
+            if slot.block is block and ((slot.axis, slot.other) == (axis, other) or slot.name in self.shared):
                 if slot.parameter.count is None:
                     found[slot.parameter.name] = column
                 else:
@@ -195,6 +203,7 @@ class Plan:
             known = nulls | {
                 "dt": self.record.dt / self.model.oversample,
                 "span": float(np.ptp(self.record.drive[axis])),
+                "peak": float(np.abs(self.record.drive[axis]).max()),
             }
             if issubclass(block, Bank) and block.solved:
                 at = [[row + branch * len(words) + words.index(word) for word in block.solved] for branch in branches]

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from pzt_ident.errors import InputError
 from pzt_ident.model import Model, Plan, Slot
@@ -15,6 +15,9 @@ from pzt_ident.record import Record
 from pzt_ident.units import factor
 
 Array = NDArray[np.float64]
+
+
+SMALL, LARGE = 1e-3, 5.0  # of the drive's span, between which it can tell of a field
 
 
 class Wish(Protocol):
@@ -29,8 +32,9 @@ class Wish(Protocol):
 class Problem:
     """Find the free parameters that leave the least RMSE on the records to identify.
 
-    The loss is sqrt(mean over measured axes of RMSE^2), pooled over records, each record's and axis' free offset
-    removed (Lin & Lin 2012, eq. 8 and 19), in SI units. A simulation that fails is infinite here, and counted.
+    The loss is sqrt(mean over measured axes of (RMSE / size)^2), pooled over records, each record's and axis' free
+    offset removed (Lin & Lin 2012, eq. 8 and 19), in SI units; sizes are 1 unless given, one a measured axis, to weigh
+    responses of different kinds. A simulation that fails is infinite here, and counted.
     names, units, lower, upper: of the free parameters, in the user's units. Points are (candidates, free) in [0, 1].
     Raises InputError for a record shorter than the model needs or bounds that the model cannot take.
     """
@@ -40,8 +44,10 @@ class Problem:
         model: Model,
         records: Sequence[Record],
         wishes: Mapping[str, Wish] | None = None,
+        sizes: ArrayLike | None = None,
     ) -> None:
         self.model, self.records = model, tuple(records)
+        self.sizes: Array = np.ones(len(model.measured)) if sizes is None else np.asarray(sizes, dtype=np.float64)
         self.failed = 0
         identify = [record for record in records if record.use == "identify"]
         if not identify:
@@ -49,6 +55,7 @@ class Problem:
         self.plans = {use: [Plan(model, r) for r in records if r.use == use] for use in ("identify", "validate")}
         self._settle(identify, wishes or {})
         self._enough(identify)
+        self._seen(identify)
 
     def _settle(self, identify: list[Record], wishes: Mapping[str, Wish]) -> None:
         """Which parameters are free, within which bounds, and what the others are fixed to."""
@@ -121,6 +128,27 @@ class Problem:
                     remedy="give a longer stretch, a shorter `settle`, or fix parameters",
                 )
 
+    def _seen(self, identify: list[Record]) -> None:
+        """Raises InputError where the drive is far from all that the job lets a parameter be: the numbers of one of
+        them are in another unit, such as V for V/m, or the drive never leaves the linear range."""
+        for column, slot in enumerate(self.model.slots):
+            if slot.word not in slot.block.seen:
+                continue
+            place, of = np.flatnonzero(self.free == column), self._factor[column]
+            known = self.theta[column] / of
+            low, high = (self.lower[place[0]], self.upper[place[0]]) if place.size else (known, known)
+            span = max(float(np.ptp(record.drive[slot.axis])) for record in identify) / of
+            if not SMALL * span < high or not low < LARGE * span:
+                unit = self.all_units[column]
+                says = "nothing switches: the response is linear" if low > span else "everything switches at once"
+                remedy = (
+                    "are they in the same unit? A drive in volts over 20 mm has the unit `50 V/m`. Else drive further, "
+                    "or let the parameter be of the size of the drive"
+                )
+                problem = f"at least {low:g} {unit}" if low > span else f"at most {high:g} {unit}"
+                problem = f"is {problem} beside a drive of {span:.3g} {unit} peak to peak, so {says}"
+                raise InputError(problem, where=slot.name, remedy=remedy)
+
     @property
     def scored(self) -> int:
         """Scored samples of the records to identify, over all measured axes."""
@@ -173,7 +201,7 @@ class Problem:
         """(candidates,); infinite where the simulation failed, NaN where there is no record of that use."""
         if not self.plans[use]:
             return np.full(np.atleast_2d(points).shape[0], np.nan)
-        rmse = self.by_axis(points, use)
+        rmse = self.by_axis(points, use) / self.sizes
         return rmse[:, 0] if rmse.shape[1] == 1 else np.sqrt(np.mean(rmse**2, axis=1))
 
     def residuals(self, points: Array) -> Array:
@@ -181,7 +209,8 @@ class Problem:
         theta = self.parameters(points)
         plans = self.plans["identify"]
         with np.errstate(all="ignore"):
-            found = np.hstack([plan.residuals(theta).reshape(theta.shape[0], -1) for plan in plans])
+            each = [plan.residuals(theta) / self.sizes[:, None] for plan in plans]
+            found = np.hstack([part.reshape(theta.shape[0], -1) for part in each])
             found /= np.sqrt(self.scored)
             wrong = ~np.isfinite(np.square(found).sum(axis=1))
         self.failed += int(wrong.sum())

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from pzt_ident.diagnosis.noise import sizes
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.estimate import estimates
 from pzt_ident.files import write_json
@@ -22,7 +23,7 @@ from pzt_ident.problem import Problem
 from pzt_ident.record import Record
 from pzt_ident.registry import blocks, optimizers
 from pzt_ident.search import Optimizer, Outcome, State, Stop, drive
-from pzt_ident.units import factor
+from pzt_ident.units import factor, same_kind
 
 Tell = Callable[[dict[str, Any]], None]
 
@@ -52,11 +53,14 @@ class Task:
 def problem_of(job: Any, records: list[Record]) -> Problem:
     """The problem that a job states about its records."""
     axes = records[0].axes
-    return Problem(Model(blocks.chain((*job.model, *job.effects)), axes, records[0].measured), records, job.parameters)
+    model = Model(blocks.chain((*job.model, *job.effects)), axes, records[0].measured, job.shared)
+    return Problem(model, records, job.parameters, sizes(records))
 
 
 def unit_of(records: list[Record]) -> str:
-    return str(records[0].response_units[records[0].measured[0]])
+    """That of the loss: noise floors (1) where the responses are of different kinds."""
+    units = [str(records[0].response_units[axis]) for axis in records[0].measured]
+    return units[0] if all(same_kind(unit, units[0]) for unit in units) else "1"
 
 
 def search(task: Task, job: Any, records: list[Record], tell: Tell) -> None:

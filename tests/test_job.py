@@ -168,6 +168,7 @@ ONE_FAULT = [
     ("bouc_wen.alpha", "y.bouc_wen.alpha", "axis 'y' has no response, so it has no parameters", "take it out"),
     ("bouc_wen.alpha", "alpha", "13:3: parameters.alpha: unknown parameter 'alpha'", "bouc_wen.alpha"),
     ("bouc_wen.alpha", "prandtl_ishlinskii.gain", "'prandtl_ishlinskii' is not in this model", "`model`"),
+    ("repeats: 3", "shared: [lumped.mas]", "17:10: shared[0]: unknown parameter 'lumped.mas'", "'lumped.mass'"),
     ("[1e-6, 1]", "[1, 1e-6]", "13:28: parameters.bouc_wen.alpha.bounds: bounds reversed", "[low"),
     ("[1e-6, 1]", "[0, .inf]", "13:32: parameters.bouc_wen.alpha.bounds[1]: .inf is not a finite", "plain"),
     ("[1e-6, 1]}", "[0, 1], value: 2}", "13:43: parameters.bouc_wen.alpha.value: beside `bounds`", "keep one"),

@@ -9,6 +9,7 @@ from numba import njit
 from pzt_ident import block, kernel
 
 EXPM1, LOG1P, SIN, COS = kernel.expm1_lanes, kernel.log1p_lanes, kernel.sin_lanes, kernel.cos_lanes
+ERF = kernel.erf_lanes
 
 
 @njit(fastmath={"contract"}, error_model="numpy")
@@ -32,6 +33,14 @@ def waves(x):
     found = np.empty((2, x.size))
     for i in range(x.size):
         found[0, i], found[1, i] = SIN(x[i]), COS(x[i])
+    return found
+
+
+@njit(fastmath={"contract"}, error_model="numpy")
+def erf(x):
+    found = np.empty_like(x)
+    for i in range(x.size):
+        found[i] = ERF(x[i])
     return found
 
 
@@ -99,10 +108,19 @@ def test_waves_begin_at_rest_and_end_in_no_number():
     assert np.isnan(waves(np.array([np.nan, np.inf]))).all()
 
 
+def test_erf_over_the_whole_range():
+    x = np.concatenate([both_signs(-300, 300), np.linspace(-6, 6, 40001)])
+    np.testing.assert_allclose(erf(x), [math.erf(each) for each in x], rtol=0, atol=1e-14)
+    small = both_signs(-300, -1)
+    np.testing.assert_allclose(erf(small), [math.erf(each) for each in small], rtol=1e-11)
+    assert np.isnan(erf(np.array([np.nan])))[0]
+
+
 def test_authors_have_them_in_plain_python():
     assert block.expm1(1e-20) == block.log1p(1e-20) == block.sin(1e-20) == 1e-20
     assert block.cos(0.0) == 1
     assert math.isnan(block.sin(math.inf)) and math.isnan(block.cos(math.inf))
+    assert block.erf(0.5) == math.erf(0.5)
     assert math.isnan(block.log1p(-1.0)) and math.isnan(block.log1p(-5.0))
 
 

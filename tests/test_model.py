@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import lin_lin
-from pzt_ident.model import Plan
+from pzt_ident.model import Model, Plan
 from pzt_ident.registry import blocks
 from rig import assert_close, candidates, model, record, response, rounding, triangle
 from twins import plain
@@ -88,6 +88,21 @@ def test_names_carry_the_axis_only_where_there_are_several():
     assert model("prandtl_ishlinskii").names[:3] == tuple(
         f"prandtl_ishlinskii.{word}" for word in ("gain", "weight_1", "weight_2")
     )
+
+
+def test_shared_parameters_are_one_for_every_axis():
+    chain = [blocks[word] for word in AXIS]
+    names = {name for name in Model(chain, "xy", (0, 1)).names if "beta" not in name}
+    shared = Model(chain, "xy", (0, 1), ["bouc_wen.beta"])
+    assert set(shared.names) == names | {"bouc_wen.beta"}
+    apart, made = Model(chain, "xy", (0, 1)), record(*noise(2))
+    theta = candidates(shared, SPAN, 5, 3)
+    known = dict(zip(shared.names, theta.T, strict=True))
+    known |= {"x.bouc_wen.beta": known["bouc_wen.beta"], "y.bouc_wen.beta": known["bouc_wen.beta"]}
+    expected = apart.simulate(made, np.array([known[name] for name in apart.names]).T)
+    np.testing.assert_array_equal(shared.simulate(made, theta), expected)
+    spellings = {slot.name: shared.spellings(slot) for slot in shared.slots}
+    assert spellings["bouc_wen.beta"] == ("bouc_wen.beta",)
 
 
 def test_a_model_of_nothing_passes_the_drive_on():

@@ -1,9 +1,11 @@
 """The noise floor against noise that was put in."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
-from pzt_ident.diagnosis.noise import noise_floor, period_of, quantiser
+from pzt_ident.diagnosis.noise import noise_floor, period_of, quantiser, sizes
 from pzt_ident.record import Record
 
 SIGMA = 30e-9
@@ -65,3 +67,16 @@ def test_period_of_any_shape(period):
 def test_a_chirp_has_no_period():
     t = np.linspace(0, 1, 4000)
     assert period_of(np.sin(2 * np.pi * (5 * t + 40 * t**2))[None]) == 0
+
+
+def test_responses_of_different_kinds_are_weighed_by_their_noise(noise):
+    drive = np.sin(2 * np.pi * np.arange(noise.size) / 500)
+    both = [1e-7 * drive + noise, 1e-2 * drive + 3e4 * noise]
+    made = record([drive, drive], both, axes=("x", "y"), drive_units=("V", "V"), response_units=("um", "nm"))
+    assert sizes([made]).tolist() == [1, 1]
+    mixed = dataclasses.replace(made, response_units=("um", "uC/cm2"))
+    assert sizes([mixed]) == pytest.approx(noise.std() * np.array([1, 3e4]), rel=0.1)
+    smooth = dataclasses.replace(
+        mixed, response=mixed.response + np.array([[0], [1]]) * (1e-2 * drive - mixed.response)
+    )
+    assert sizes([smooth])[1] == pytest.approx(5e-3 * 2e-2, rel=1e-3)

@@ -17,6 +17,7 @@ from pzt_ident.search import Stop, drive
 TRUTH = {"bouc_wen.gain": 0.082, "bouc_wen.alpha": 0.56, "bouc_wen.beta": 0.015, "bouc_wen.gamma": 0.055}
 MECHANICS = {"lumped.mass": 0.16, "lumped.damping": 100.0, "lumped.stiffness": 7e7}
 NONE = {"lumped.load": 0.0, "lumped.extra_damping": 0.0, "lumped.cubic": 0.0}
+TWO = {"axes": ("x", "y"), "drive_units": ("V", "V"), "response_units": ("um", "uC/cm2")}
 
 
 def wish(bounds=None, value=None):
@@ -54,6 +55,17 @@ def test_loss_is_the_norm_of_the_residuals():
     residuals = problem.residuals(points)
     assert residuals.shape == (30, 3500) == (30, problem.scored)
     np.testing.assert_allclose(np.linalg.norm(residuals, axis=1), problem.loss(points), rtol=1e-9)
+
+
+def test_sizes_weigh_the_axes():
+    drive = 65 * (1 - np.cos(np.arange(500) / 30))
+    model = Model([blocks["bouc_wen"]], "xy", (0, 1), ["bouc_wen.alpha", "bouc_wen.beta", "bouc_wen.gamma"])
+    record = Record("r", "identify", 1e-3, np.array([drive, drive]), np.array([drive * 1e-7, drive * 1e-3]), **TWO)
+    sizes = np.array([1e-9, 1e-4])
+    problem, points = Problem(model, [record], {}, sizes), np.random.default_rng(2).uniform(size=(4, 5))
+    expected = np.sqrt(np.mean((problem.by_axis(points) / sizes) ** 2, axis=1))
+    np.testing.assert_allclose(problem.loss(points), expected, rtol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(problem.residuals(points), axis=1), expected, rtol=1e-9)
 
 
 def test_a_term_is_searched_for_where_its_effect_is_listed():
@@ -212,3 +224,17 @@ def test_a_record_shorter_than_the_model_needs():
     short = Record("r", "identify", 1e-3, np.arange(5.0)[None], np.arange(5.0)[None], file="short.csv")
     with pytest.raises(InputError, match=r"short.csv: 4 scored samples for 4 free parameters.*\n.*longer"):
         Problem(Model([blocks["bouc_wen"]], ["x"], [0]), [Record(**{**short.__dict__, "settle": 1})])
+
+
+@pytest.mark.parametrize(
+    ("field", "says"), [(2400.0, "at least 2400 V .* linear"), (0.01, "at most 0.01 V .* at once")]
+)
+def test_a_field_far_from_the_drive_is_refused(field, says):
+    """Volts where volts per metre are meant, or a drive that never leaves the linear range."""
+    drive = 80 * (1 - np.cos(np.arange(500) / 30))
+    record = Record("r", "identify", 1e-3, drive[None], drive[None] * 1e-7, response_units=("um",))
+    model = Model([blocks["homogenized_energy"]], ["x"], [0])
+    with pytest.raises(InputError, match=says) as error:
+        Problem(model, [record], {"homogenized_energy.coercive": wish(value=field)})
+    assert error.value.where == "homogenized_energy.coercive" and "50 V/m" in error.value.remedy
+    Problem(model, [record], {"homogenized_energy.coercive": wish(bounds=(1, 2400))})

@@ -8,11 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.record import Record
+from pzt_ident.units import same_kind
 
 Array = NDArray[np.float64]
 
 
 LINE = 30.0
+WHOLE = 5e-3
 
 
 class Floor(NamedTuple):
@@ -42,6 +44,18 @@ def noise_floor(records: list[Record], axis: int) -> Floor:
             value = float(np.sqrt(np.average(values**2, weights=seconds)))
             return Floor(value, source) if value > least else Floor(least, "quantiser")
     return Floor(least, "quantiser")
+
+
+def sizes(records: list[Record]) -> Array:
+    """What the errors of each measured axis are weighed by: nothing where responses are of one kind, else their noise
+    floors, so that a polarization and a displacement count by what their noise lets see; at least WHOLE of the span,
+    since an integrated charge is smooth far below what any model reaches."""
+    units = [str(records[0].response_units[axis]) for axis in records[0].measured]
+    if all(same_kind(unit, units[0]) for unit in units):
+        return np.ones(len(units))
+    spans = np.array([max(np.ptp(record.response[axis]) for record in records) for axis in records[0].measured])
+    floors = np.array([noise_floor(records, axis).value for axis in records[0].measured])
+    return np.maximum(floors, WHOLE * spans)
 
 
 def quantiser(response: Array) -> float:

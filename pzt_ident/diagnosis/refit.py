@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.diagnosis.noise import noise_floor
+from pzt_ident.diagnosis.noise import noise_floor, sizes
 from pzt_ident.model import Model
 from pzt_ident.problem import Problem
 from pzt_ident.record import Record
@@ -36,21 +36,23 @@ class Case:
         records: Sequence[Record],
         wishes: Any,
         ruled_out: Sequence[str] = (),
+        shared: Sequence[str] = (),
     ) -> None:
-        self.words, self.effects, self.ruled_out = tuple(words), tuple(effects), tuple(ruled_out)
-        self.records, self.wishes = tuple(records), wishes
+        self.words, self.effects = tuple(words), tuple(effects)
+        self.ruled_out, self.shared = tuple(ruled_out), tuple(shared)
+        self.records, self.wishes, self.sizes = tuple(records), wishes, sizes(list(records))
 
     def problem(self, effects: Sequence[str]) -> Problem:
         first = self.records[0]
-        return Problem(
-            Model(blocks.chain((*self.words, *effects)), first.axes, first.measured), self.records, self.wishes
-        )
+        chain = blocks.chain((*self.words, *effects))
+        model = Model(chain, first.axes, first.measured, self.shared)
+        return Problem(model, self.records, self.wishes, self.sizes)
 
     @cached_property
     def floor(self) -> float:
-        """Noise floor of all measured axes together, SI units."""
+        """Noise floor of all measured axes together, in units of the loss."""
         found = [noise_floor(list(self.records), axis).value for axis in self.records[0].measured]
-        return float(np.sqrt(np.mean(np.square(found))))
+        return float(np.sqrt(np.mean(np.square(found / self.sizes))))
 
 
 @dataclass(frozen=True)

@@ -16,24 +16,30 @@ from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, NamedTuple
 
-from pzt_ident.block import Bank, Beside, Block, Coupling, Modes, Operator, Place, Shift, asked
+from pzt_ident.block import Bank, Beside, Block, Coupling, Modes, Operator, Place, Relays, Shift, asked
 from pzt_ident.files import cache_folder
 
 TEMPLATES = Path(__file__).parent
-FUNCTIONS = ("prepare", "start", "step", "travel", "near", "exact", "output", "terms", "lift", "fade")
+FUNCTIONS = (
+    *("prepare", "start", "step", "output", "rests"),
+    *("travel", "near", "exact", "terms", "lift", "fade"),
+    *("field", "coercive_field", "mass", "leave"),
+)
 
 
 class Layout(NamedTuple):
     """Rows of WIDTH numbers in a block's scratch: states of all copies (branches, or pairs of axes), coefficients of
-    all, what `prepare` is given of all, then work. An operator's coefficients are shared, along, against, and those of
-    its terms, which have their own share of what is given."""
+    all, what `prepare` is given of all, then work. An operator's coefficients are shared, along, against, those of
+    relays shape, energy, shared: `first` and `second` count the former two. Its terms have coefficients and a share of
+    what is given of their own."""
 
     states: int
     coefficients: int
     given: int
     copies: int
     work: int
-    shared: int
+    first: int
+    second: int
     terms: int
     given_terms: int
 
@@ -81,29 +87,39 @@ def compile_block(block: type[Block], variant: Variant = Variant()) -> Compiled:
 def template_of(block: type[Block], variant: Variant) -> str:
     if issubclass(block, Operator):
         return "driven_operator" if variant.driven else "operator"
-    named = {Coupling: "coupling", Modes: "modes", Bank: "bank", Shift: "shift"}
+    named = {Coupling: "coupling", Modes: "modes", Bank: "bank", Shift: "shift", Relays: "relays"}
     return next((name for kind, name in named.items() if issubclass(block, kind)), "plain")
+
+
+def rests(block: type[Block]) -> bool:
+    """Whether the branches of a bank say when they hold still."""
+    return issubclass(block, Bank) and hasattr(block, "rests")
+
+
+def relays_room(block: type[Relays]) -> int:
+    """Shares, weights, coercive fields, sums, the field before, six tables; whether lanes are alike."""
+    tables = 6 * (block.fine + 1) * block.columns
+    return (block.coercives + 2) * block.interactions + block.coercives + 2 + tables
 
 
 def layout_of(block: type[Block], variant: Variant) -> Layout:
     """Counted by asking the block itself, with parameters in the middle of their bounds."""
-    known = {p.name: sum(p.bounds) / 2 for p in block.parameters().values()} | {"dt": 1e-3, "span": 1.0, "branch": 0}
-    known |= dict.fromkeys(getattr(block, "solved", ()), 0.5)
+    known = {p.name: sum(p.bounds) / 2 for p in block.parameters().values()} | {"dt": 1e-3, "branch": 0}
+    known |= {"span": 1.0, "peak": 1.0} | dict.fromkeys(getattr(block, "solved", ()), 0.5)
     prepared = block.prepare(*(known[word] for word in block.arguments()))  # type: ignore[attr-defined]
-    operator, stateless = issubclass(block, Operator), issubclass(block, Coupling | Shift)
-    count = sum(len(part) for part in prepared) if operator else len(prepared)
+    operator, stateless = issubclass(block, Operator), issubclass(block, Coupling | Shift | Relays)
+    parts = [len(part) for part in prepared] if operator or issubclass(block, Relays) else [0, 0, len(prepared)]
     example = () if operator else prepared
     states = 0 if stateless else len(block.start(0.0, *example))  # type: ignore[attr-defined]
     axes = variant.axes
     copies = (
         block.branches if issubclass(block, Bank | Modes) else axes * (axes - 1) if issubclass(block, Coupling) else 1
     )
-    work = 7 if operator else 0
+    work = 7 if operator else 3 if rests(block) else relays_room(block) if issubclass(block, Relays) else 0
     asking = asked(block.terms) if variant.terms else ()  # type: ignore[attr-defined]
     terms = len(block.terms(*(known[word] for word in asking))) if variant.terms else 0  # type: ignore[attr-defined]
-    shared = len(prepared[0]) if operator else 0
     given = len(block.arguments()) + (2 * axes if issubclass(block, Modes) else 0)
-    return Layout(states, count, given, copies, work, shared, terms, len(asking))
+    return Layout(states, sum(parts), given, copies, work, parts[0], parts[1], terms, len(asking))
 
 
 def render(text: str, block: type[Block], layout: Layout, variant: Variant, kernel: ModuleType) -> str:
@@ -115,11 +131,16 @@ def render(text: str, block: type[Block], layout: Layout, variant: Variant, kern
         K=[f"k{i}" for i in range(layout.coefficients)],
         G=layout.given,
         given=layout.first_given,
-        shared=layout.shared,
+        first=layout.first,
+        second=layout.second,
         copies=layout.copies,
         T=[f"e{i}" for i in range(layout.terms)],
         GT=layout.given_terms,
         readout=variant.readout,
+        rests=rests(block),
+        block=block,
+        rows=layout.rows,
+        work=layout.rows - layout.work,
         beside=issubclass(block, Beside),
         axes=variant.axes,
         place=block.place,
@@ -143,11 +164,16 @@ def load(path: Path, block: type[Block]) -> Any:
     assert spec and spec.loader
     module = importlib.util.module_from_spec(spec)
     sys.modules[path.stem] = module
-    for word in FUNCTIONS:
-        if function := getattr(block, word, None):
-            setattr(module, word, jitted(function))
+    for word, function in functions(block).items():
+        setattr(module, word, jitted(function))
     spec.loader.exec_module(module)
     return module
+
+
+def functions(block: type[Block]) -> dict[str, FunctionType]:
+    """What an author has written; a parameter may have the name of a function of another kind of block."""
+    found = {word: getattr(block, word, None) for word in FUNCTIONS}
+    return {word: function for word, function in found.items() if isinstance(function, FunctionType)}
 
 
 def jitted(function: FunctionType) -> Any:
@@ -171,6 +197,6 @@ def helpers(function: FunctionType) -> set[FunctionType]:
 
 def authors(block: type[Block]) -> list[str]:
     """The sources of all files that a block's functions come from."""
-    own = [function for word in FUNCTIONS if (function := getattr(block, word, None))]
+    own = functions(block).values()
     every = {block.__module__} | {each.__module__ for function in own for each in {function} | helpers(function)}
     return [inspect.getsource(sys.modules[name]) for name in sorted(every)]

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pzt_ident.block import Addition, Bank, Beside, Coupling, Modes, Operator, Place, Shift, Term
+from pzt_ident.block import Addition, Bank, Beside, Coupling, Modes, Operator, Place, Relays, Shift, Term
 from pzt_ident.model import Plan
 from pzt_ident.registry import blocks
 from pzt_ident.units import is_unit
@@ -173,9 +173,10 @@ def test_term_at_its_null_is_not_there(host, term, drive, seed):
 @quick
 @given(drive=drives, seed=seeds)
 def test_compiled_is_what_the_author_wrote(words, drive, seed):
-    drive = drive[:: model(*words.split()).oversample]
+    slow = any(issubclass(blocks[word], Relays) for word in words.split())
+    drive = drive[:: model(*words.split()).oversample][: 30 if slow else None]
     if drive.size > 1:
-        chain, measured, theta = made(words, drive, seed=seed)
+        chain, measured, theta = made(words, drive, 1 if slow else 3, seed)
         expected = np.array([plain.simulate(chain, measured, candidate) for candidate in theta])
         assert_close(chain.simulate(measured, theta), expected, rounding(chain, measured, theta))
 
@@ -278,10 +279,10 @@ def test_nothing_before_the_settling_or_constant_is_scored(words):
     expected = Plan(chain, measured).squares(theta)
     measured.response[:, :80] = 1e3
     measured.response[:] += 7.0
-    np.testing.assert_allclose(Plan(chain, measured).squares(theta), expected, rtol=1e-9)
+    np.testing.assert_allclose(Plan(chain, measured).squares(theta), expected, rtol=1e-9, atol=1e-7)
 
 
 def test_kinds_are_all_there():
     """What the laws above are shown on."""
-    kinds = {Operator, Bank, Coupling, Modes, Shift, Beside, Term, Addition}
+    kinds = {Operator, Bank, Relays, Coupling, Modes, Shift, Beside, Term, Addition}
     assert {kind for kind in kinds if any(issubclass(blocks[word], kind) for word in WORDS)} == kinds

@@ -1,14 +1,14 @@
 """Slow twin of the kernel: the author's own functions, one candidate, one sample after the other, in plain Python."""
 
 import math
-from itertools import permutations
+from itertools import pairwise, permutations
 from types import SimpleNamespace
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.signal import resample
 
-from pzt_ident.block import Bank, Beside, Coupling, Modes, Operator, Place, Shift, asked
+from pzt_ident.block import Bank, Beside, Coupling, Modes, Operator, Place, Relays, Shift, asked
 
 
 def simulate(model, record, theta):
@@ -82,6 +82,7 @@ def fine(drive, times, periodic):
 def parameters(model, block, record, axis, other, theta):
     """Values by name; an axis that is not measured takes those of the first that is, and nothing from another axis."""
     found = {"dt": [record.dt / model.oversample], "span": [np.ptp(record.drive[axis])]}
+    found |= {"peak": [np.abs(record.drive[axis]).max()]}
     found |= {declared.name: [declared.null] for declared in block.parameters().values() if declared.effect}
     if axis not in model.measured:
         if other != axis or issubclass(block, Modes):
@@ -89,7 +90,7 @@ def parameters(model, block, record, axis, other, theta):
         axis = other = model.measured[0]
     own = {}
     for slot, value in zip(model.slots, theta, strict=True):
-        if (slot.block, slot.axis, slot.other) == (block, axis, other):
+        if slot.block is block and ((slot.axis, slot.other) == (axis, other) or slot.name in model.shared):
             own.setdefault(slot.parameter.name, []).append(value)
     return found | own
 
@@ -109,6 +110,8 @@ def act(block, values, signal, aside, terms):
         values = values | solved(block, values)
         return bank(block, [asking(block.prepare, values, branch) for branch in range(block.branches)], signal, prompt)
     numbers = asking(block.prepare, values)
+    if issubclass(block, Relays):
+        return relays(block, numbers, signal, aside)
     if issubclass(block, Shift):
         late = np.arange(len(signal)) - numbers[0]
         return np.interp(late, np.arange(len(signal)), signal)
@@ -155,4 +158,29 @@ def operator(block, coefficients, terms, signal, prompt):
             h = math.nan
         h *= block.fade(*terms) if terms else 1.0
         result.append(block.output(h, v, *shared))
+    return np.array(result)
+
+
+def relays(block, coefficients, signal, prompt):
+    """What leaves a domain in a table over the field, interpolated; all domains of a sample at once."""
+    shape, energy, shared = coefficients
+    spacing, half_grid = shape[0], block.interactions // 2
+    grid = spacing * (np.arange(block.columns * block.fine + 1) / block.fine - block.columns // 2)
+    here = np.array([block.leave(z, *energy) for z in grid]).T
+    there = here[:, ::-1]  # the grid is the same about zero
+    fields = [block.field(u, *shape) for u in signal]
+    edges = spacing * np.arange(-half_grid, half_grid + 1)
+    weights = np.array([block.mass(low, high, *shape) for low, high in pairwise(edges)]) / block.coercives
+    field = np.array([block.coercive_field(i, *shape) for i in range(block.coercives)])[:, None]
+    bins = list(pairwise(edges))
+    up = np.array([[block.start(fields[0], half, low, high, *shape) for low, high in bins] for half in field[:, 0]])
+    between, before, result = (edges[1:] + edges[:-1]) / 2, None, []
+    for now, v in zip(fields, prompt, strict=True):
+        middle = (now if before is None else (before + now) / 2) + between
+        out, kept_up = (np.interp(middle + field, grid, row) for row in here[:2])
+        back, kept_down = (np.interp(middle - field, grid, row) for row in there[:2])
+        rest = back / (out + back)
+        up, before = (up if before is None else rest + (up - rest) * kept_up * kept_down), now
+        above, below = np.interp(now + between + field, grid, here[2]), np.interp(now + between - field, grid, there[2])
+        result.append(block.output(v, np.sum((up * (above + below) - below) @ weights), *shared))
     return np.array(result)

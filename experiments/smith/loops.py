@@ -1,0 +1,189 @@
+"""Loops, rates and creep of the ferroelectric models, beside the axes and captions of the papers; the tables and the
+figure of the README.
+
+python -m experiments.smith.loops
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from experiments.tables import number, table
+from pzt_ident.model import Model, Plan
+from pzt_ident.record import Record
+from pzt_ident.registry import blocks
+
+OUT = Path(__file__).parents[2] / "results" / "reference" / "smith"
+DENSITY = {"spread": 0.887, "interaction": 6120.0, "quadratic": 0.0, "poled": 1e6, "bias": 0.0}
+A = {"gain": 1 / 1.09e8, "remanence": 1.09e8 * 8.79e-5, "coercive": 2400.0} | DENSITY
+T = {"gain": 1 / 1.071e8, "remanence": 1.071e8 * 9.39e-5, "coercive": 3290.0, "thermal": 0.02, "dwell": 1e-3} | DENSITY
+ROD = {"mass": 4.21, "damping": 1.52e5, "stiffness": 8.75e7}
+WALL = {"saturation": 3.52e-2 * 0.02 * 0.49, "width": 4.6e5, "coupling": 4.5e5 * 0.49 / 4.6e5}
+WALL |= {"pinning": 1.47e4, "reversible": 0.643}
+PLAIN, THERMAL = {"homogenized_energy": A}, {"thermal_homogenized_energy": T}
+HERTZ = (0.279, 1.12, 5.58, 27.9)
+POINTS = 400
+Chain = dict[str, dict[str, float]]
+
+
+def plan(chain: Chain, field: np.ndarray, dt: float = 1e-3) -> tuple[Plan, np.ndarray]:
+    model = Model([blocks[word] for word in chain], ["x"], [0])
+    theta = [[(chain[s.block.name] | {"load": 0.0, "extra_damping": 0.0})[s.word] for s in model.slots]]
+    record = Record("r", "identify", dt, field[None], np.zeros((1, field.size)), drive_units=("V/m",))
+    return Plan(model, record), np.array(theta)
+
+
+def response(chain: Chain, field: np.ndarray, dt: float = 1e-3) -> np.ndarray:
+    made, theta = plan(chain, field, dt)
+    return np.asarray(made.simulate(theta)[0, 0])
+
+
+def path(*levels: float) -> np.ndarray:
+    legs = [np.linspace(a, b, POINTS, endpoint=False) for a, b in pairwise(levels)]
+    return np.append(np.concatenate(legs), levels[-1])
+
+
+def settled(chain: Chain, low: float, high: float, cycles: int = 2) -> tuple[np.ndarray, np.ndarray]:
+    """Field and displacement of the last rise and fall between two fields."""
+    field = path(0, high, *[low, high] * cycles, low)
+    return field[-2 * POINTS - 1 :], response(chain, field)[-2 * POINTS - 1 :]
+
+
+def width(y: np.ndarray) -> float:
+    """Largest width of a loop of one rise and one fall over its span, percent."""
+    return float(100 * np.max(y[POINTS:][::-1] - y[: POINTS + 1]) / np.ptp(y))
+
+
+def sine(chain: Chain, hertz: float) -> tuple[np.ndarray, np.ndarray]:
+    """The last of four periods from 0 to 8 kV/m."""
+    field = 4000 * (1 - np.cos(2 * np.pi * np.arange(4 * POINTS) / POINTS))
+    return field[-POINTS:], response(chain, field, 1 / (POINTS * hertz))[-POINTS:]
+
+
+def middle(y: np.ndarray) -> float:
+    return float(100 * abs(y[POINTS // 4] - y[3 * POINTS // 4]) / np.ptp(y))
+
+
+def crept(back: float, dt: float = 0.02) -> float:
+    """Growth from 0.1 to 100 s after 0 -> 8 kV/m, 0.5 s and a step back by a share, percent of the first step."""
+    field = np.concatenate([np.zeros(50), np.full(25, 8000.0), np.full(5010, 8000 * (1 - back))])
+    y = response(THERMAL, field, dt)
+    return float(100 * (y[75 + 5000] - y[75 + 5]) / (y[55] - y[49]))
+
+
+def relays(field: np.ndarray, coercive: np.ndarray, interaction: np.ndarray) -> Callable[[], np.ndarray]:
+    """The paper's grid, one relay after the other, compiled."""
+    from numba import njit
+
+    @njit(fastmath={"contract"})
+    def run(field: np.ndarray, coercive: np.ndarray, interaction: np.ndarray) -> np.ndarray:
+        up = np.ones((coercive.size, interaction.size))
+        found = np.empty(field.size)
+        for k in range(field.size):
+            total = 0.0
+            for i in range(coercive.size):
+                for j in range(interaction.size):
+                    e = field[k] + interaction[j]
+                    up[i, j] = 1.0 if e >= coercive[i] else -1.0 if e <= -coercive[i] else up[i, j]
+                    total += up[i, j]
+            found[k] = total / up.size
+        return found
+
+    return lambda: run(field, coercive, interaction)
+
+
+def cpu(function: Callable[[], object], rounds: int = 8) -> float:
+    """Least CPU seconds of a call, warm."""
+    function()
+    spent = []
+    for _ in range(rounds):
+        begun = time.process_time()
+        function()
+        spent.append(time.process_time() - begun)
+    return min(spent)
+
+
+def speed() -> str:
+    from statistics import NormalDist
+
+    normal = NormalDist().inv_cdf
+    field = 4000 * (1 - np.cos(2 * np.pi * np.arange(5000) / 1000))
+    lanes, rng = 24, np.random.default_rng(0)
+    rows = []
+    for name, chain in (("plays, 64 nodes", PLAIN), ("thermal, 64 x 64 nodes", THERMAL)):
+        made, theta = plan(chain, field)
+        many = theta * np.exp(rng.normal(0, 0.05, (lanes, theta.shape[1])))
+        rows.append((name, number(1e3 * cpu(lambda m=made, t=many: m.squares(t)) / lanes, 3)))
+    share = lambda n: np.array([normal((i + 0.5) / n) for i in range(n)])  # noqa: E731
+    coercive, exact = 2400 * np.exp(0.887 * share(24)), response(PLAIN, field) / (A["gain"] * A["remanence"])
+    grid = relays(field, coercive, 6120 * share(80))
+    error = grid() + field / A["remanence"] - 1 - exact
+    rows.insert(1, ("relays, 24 x 80", number(1e3 * cpu(grid), 3)))
+    said = f"Largest difference of the relays from the plays: {100 * np.abs(error).max():.2g} % of P_R."
+    return table(["5,000 samples, one candidate", "CPU ms"], rows) + "\n\n" + said
+
+
+def figure() -> None:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    fig, axes = plt.subplots(2, 2, figsize=(180 / 25.4, 140 / 25.4), layout="constrained")
+    for high in (2000, 4000, 6000, 8000):
+        field, y = settled(PLAIN, 0, high)
+        axes[0, 0].plot(field, y * 1e6, lw=1)
+    axes[0, 0].set_title("nested loops, set A", fontsize=9)
+    for axis, chain, title in (
+        (axes[0, 1], PLAIN | {"lumped": ROD}, "set A behind the lumped rod"),
+        (axes[1, 0], THERMAL, "thermal activation, set T"),
+    ):
+        for hertz in HERTZ:
+            field, y = sine(chain, hertz)
+            axis.plot(field, y * 1e6, lw=1, label=f"{hertz:g} Hz")
+        axis.set_title(title, fontsize=9)
+        axis.legend(fontsize=7, frameon=False)
+    field, y = settled({"domain_wall": WALL}, -1000, 13500, 3)
+    axes[1, 1].plot(field, y * 1e6, lw=1)
+    axes[1, 1].set_title("domain walls, set DW1", fontsize=9)
+    for axis in axes.flat:
+        axis.set_xlabel("E (V/m)", fontsize=8)
+        axis.set_ylabel("u (µm)", fontsize=8)
+        axis.tick_params(labelsize=7)
+        axis.grid(alpha=0.25, lw=0.5)
+    OUT.mkdir(parents=True, exist_ok=True)
+    for kind in ("svg", "pdf", "png"):
+        fig.savefig(OUT / f"loops.{kind}", dpi=160)
+
+
+def text() -> str:
+    loops = [(0, 8000), (0, 4000), (2700, 5300)]
+    nested = [(f"{low} to {high} V/m", f"{width(settled(PLAIN, low, high)[1]):.1f}") for low, high in loops]
+    rates = []
+    for hertz in HERTZ:
+        behind, alone = sine(PLAIN | {"lumped": ROD}, hertz)[1], sine(THERMAL, hertz)[1]
+        over = 1e6 * (behind.max() - behind[POINTS // 2])
+        rates.append((f"{hertz:g}", f"{middle(behind):.1f}", f"{over:.2g}", f"{middle(alone):.1f}"))
+    walls = settled({"domain_wall": WALL}, -1000, 13500, 3)[1]
+    back = [(f"{100 * share:g}", f"{crept(share):+.2f}") for share in (0, 0.02, 0.05, 0.1, 0.2, 0.4)]
+    return "\n\n".join(
+        [
+            table(["nested loop, set A", "width [%]"], nested),
+            table(["Hz", "set A behind the rod: width [%]", "overshoot [um]", "set T: width [%]"], rates),
+            f"Domain walls, set DW1: span {1e6 * np.ptp(walls):.2f} um, width {width(walls):.1f} %.",
+            table(["step back [%]", "creep of set T, 0.1 to 100 s [%]"], back),
+            speed(),
+        ]
+    )
+
+
+if __name__ == "__main__":
+    figure()
+    found = text()
+    (OUT / "tables.md").write_text(found + "\n", encoding="utf-8")
+    print(found)

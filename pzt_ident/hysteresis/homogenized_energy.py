@@ -1,0 +1,62 @@
+"""The homogenized energy model without thermal activation, as plays with a nonlinear readout."""
+
+from math import exp, sqrt
+from statistics import NormalDist
+
+from pzt_ident.block import Bank, Place, erf
+from pzt_ident.parameter import Parameter
+from pzt_ident.registry import blocks
+
+NODES = 64
+QUANTILES = tuple(NormalDist().inv_cdf((i + 0.5) / NODES) for i in range(NODES))
+
+
+@blocks.register
+class HomogenizedEnergy(Bank):
+    """y = a1 (P - P_R) + a2 (P - P_R)^2,  P = E / eta + P_R int nu1(Ec) (2 Phi2(F_Ec[E]) - 1) dEc.
+
+    Smith et al., Model Development for Atomic Force Microscope Stage Mechanisms, eqs. 7, 12 and 15, with u for E.
+    nu1 is lognormal, nu2 normal. The domains of one coercive field that point up are those of interaction fields above
+    -F_Ec, F_Ec the play p <- max(E - Ec, min(E + Ec, p)) (Krasnosel'skii & Pokrovskii 1989): exact in the interaction
+    field. Coercive fields are taken at 64 nodes of equal probability. P is counted as the field eta P.
+
+    E is the drive less the bias. Before the first sample the material was taken from its virgin state to `poled` and
+    from there to the sample. Responses of different kinds, such as P itself and a displacement, may share all but gain
+    and quadratic.
+    """
+
+    place = Place.OPERATOR
+    seen = ("coercive",)
+    branches = NODES
+    gain = Parameter("response/drive", (0, 3), "Response per field of a domain that does not switch, a1 / eta.")
+    remanence = Parameter("drive", (0.05, 10), "Remanent polarization of a domain as the field eta P_R.", scale="log")
+    coercive = Parameter("drive", (0.005, 5), "Median of the coercive fields.", scale="log")
+    spread = Parameter("1", (0.1, 2), "Standard deviation of the logarithm of the coercive field.")
+    interaction = Parameter("drive", (0.01, 5), "Standard deviation of the interaction field.", scale="log")
+    quadratic = Parameter("response/drive^2", (-3, 3), "Response per square of the field, a2 / eta^2.", value=0)
+    poled = Parameter("drive", (-3, 3), "Field that the material had seen before, 0 where it is virgin.", value=0)
+    bias = Parameter("drive", (-0.5, 0.5), "Part of the drive that is no field in the material.", value=0)
+
+    def prepare(gain, remanence, coercive, spread, interaction, quadratic, poled, bias, branch):
+        per_width = 1 / (sqrt(2.0) * interaction)
+        half = coercive * exp(spread * QUANTILES[int(branch)]) * per_width
+        before = play(0.0, (poled - bias) * per_width, half)
+        return gain, remanence, quadratic, bias, per_width, half, before
+
+    def start(u, gain, remanence, quadratic, bias, per_width, half, before):
+        return (play(before, (u - bias) * per_width, half),)
+
+    def step(p, u, gain, remanence, quadratic, bias, per_width, half, before):
+        p = play(p, (u - bias) * per_width, half)
+        return p, erf(p)
+
+    def rests(p, low, high, gain, remanence, quadratic, bias, per_width, half, before):
+        return (low - bias) * per_width >= p - half and (high - bias) * per_width <= p + half
+
+    def output(u, total, gain, remanence, quadratic, bias, per_width, half, before):
+        field = u - bias + remanence * (total / NODES - 1)
+        return (gain + quadratic * field) * field
+
+
+def play(p, u, half):
+    return max(u - half, min(u + half, p))

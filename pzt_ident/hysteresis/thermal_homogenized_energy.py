@@ -1,0 +1,94 @@
+"""The homogenized energy model with thermal activation: its domains relax, so loops depend on the rate and creep."""
+
+from math import erf, erfc, exp, expm1, log, pi, sqrt
+
+from pzt_ident.block import Place, Relays
+from pzt_ident.hysteresis.homogenized_energy import HomogenizedEnergy, play
+from pzt_ident.parameter import Parameter
+from pzt_ident.registry import blocks
+
+COERCIVES, INTERACTIONS, COLUMNS = Relays.coercives, Relays.interactions, Relays.columns
+SHELL = 0.1  # width of the shell about the inflection point from which domains switch, over the thermal width s
+
+
+@blocks.register
+class ThermalHomogenizedEnergy(Relays):
+    """y = a1 (P - P_R) + a2 (P - P_R)^2,  P = int int nu1(Ec) nu2(EI) (x <P+> + (1 - x) <P->) dEI dEc,
+    dx/dt = -p+- x + p-+ (1 - x).
+
+    Smith et al., Model Development for Atomic Force Microscope Stage Mechanisms, eqs. 8 to 12 and 15. With the thermal
+    width s = 1 / sqrt(B eta), B = V / kT, a = -(E + EI + Ec) / (eta s), g(a) = sqrt(2 / pi) / erfcx(a / sqrt 2):
+    <P+> = P_R + (E + EI) / eta + s g(a) and p+- = (1 / T) N / (N + s / g(a)), N the integral of the Boltzmann density
+    over a shell of 0.1 s behind the inflection point. The energy is taken as linear over it: of p+- that neglects the
+    share (0.1)^2 / 6 Ec / (eta P_R - Ec). Both are mirrored for p-+ and <P->. Coercive fields, lognormal, are at 64
+    nodes of equal probability below eta P_R; beyond it a domain has no inflection point, and its mass is left out.
+    """
+
+    place = Place.OPERATOR
+    seen = ("coercive",)
+    gain, remanence = HomogenizedEnergy.gain, HomogenizedEnergy.remanence
+    coercive, spread, interaction = HomogenizedEnergy.coercive, HomogenizedEnergy.spread, HomogenizedEnergy.interaction
+    thermal = Parameter(
+        "1", (0.002, 0.1), "Thermal width of the polarization over its remanence, s / P_R.", scale="log"
+    )
+    dwell = Parameter("s", (1e-6, 1), "Time constant of a domain without a barrier, T.", scale="log")
+    quadratic, poled, bias = HomogenizedEnergy.quadratic, HomogenizedEnergy.poled, HomogenizedEnergy.bias
+
+    def prepare(gain, remanence, coercive, spread, interaction, thermal, dwell, quadratic, poled, bias, dt, peak):
+        least = 2 * (peak + abs(bias) + remanence) / (COLUMNS - INTERACTIONS)
+        spacing = max(8 * interaction / INTERACTIONS, least)
+        below = normal(log(remanence / coercive) / spread)
+        shape = spacing, coercive, spread, below, interaction, poled - bias, bias
+        return shape, (remanence, thermal * remanence, dwell, dt), (gain, remanence, quadratic, bias)
+
+    def field(u, spacing, coercive, spread, below, interaction, poled, bias):
+        return u - bias
+
+    def coercive_field(i, spacing, coercive, spread, below, interaction, poled, bias):
+        return coercive * exp(spread * quantile((i + 0.5) / COERCIVES * below))
+
+    def mass(low, high, spacing, coercive, spread, below, interaction, poled, bias):
+        covered = erf(INTERACTIONS * spacing / (2 * sqrt(2.0) * interaction))
+        return below * (normal(high / interaction) - normal(low / interaction)) / covered
+
+    def start(field, half, low, high, spacing, coercive, spread, below, interaction, poled, bias):
+        return min(max((high + play(play(0.0, poled, half), field, half)) / (high - low), 0.0), 1.0)
+
+    def leave(further, remanence, width, dwell, dt):
+        ahead = further / width
+        hazard = sqrt(2 / pi) / erfcx(-ahead / sqrt(2.0))
+        odds = SHELL * hazard * shell(SHELL * ahead)
+        rate = max(odds / (1 + odds) / dwell, 1e-300)
+        return rate, exp(-rate * dt), remanence + width * hazard
+
+    def output(u, total, gain, remanence, quadratic, bias):
+        worth = u - bias + total - remanence
+        return (gain + quadratic * worth) * worth
+
+
+def normal(z):
+    """Phi."""
+    return 0.5 * (1 + erf(z / sqrt(2.0)))
+
+
+def quantile(p):
+    """Inverse of Phi: Newton's steps from 0 do not overshoot, since Phi bends towards 1/2."""
+    z = 0.0
+    for _ in range(16):
+        z += min(max((p - normal(z)) * sqrt(2 * pi) * exp(0.5 * z * z), -2.0), 2.0)
+    return z
+
+
+def erfcx(y):
+    """exp(y^2) erfc(y), to 3e-12."""
+    if y > 20:
+        v = 0.5 / (y * y)
+        return (1 - v * (1 - 3 * v * (1 - 5 * v * (1 - 7 * v)))) / (sqrt(pi) * y)
+    y = max(y, -26.0)
+    return exp(y * y) * erfc(y)
+
+
+def shell(v):
+    """(1 - exp(-v)) / v, of the energy falling linearly over the shell."""
+    v = max(v, -600.0)
+    return -expm1(-v) / v if abs(v) > 1e-9 else 1.0
