@@ -34,7 +34,8 @@ def run(command: str, job: Path, out: Path, retry: bool) -> bool:
     if result.exists() or (failure.exists() and not retry):
         return result.exists()
     out.mkdir(parents=True, exist_ok=True)
-    line = [str(Path(sys.executable).with_name("pzt-ident")), command, str(job), "--json", "--quiet", "--no-report", "--out"]
+    program = Path(sys.executable).with_name("pzt-ident")
+    line = [str(program), command, str(job), "--json", "--quiet", "--no-report", "--out"]
     start = time.monotonic()
     try:
         ended = subprocess.run([*line, str(result.parent)], capture_output=True, text=True, timeout=PATIENCE)
