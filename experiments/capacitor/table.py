@@ -8,10 +8,10 @@ from experiments.tables import Result, command, number, staircase, table
 
 
 def lag(improvement: Result) -> str:
-    """The time constant once the lag is in the model, before anything is added to it."""
-    step = next(step for step in improvement["steps"] if step["added"] == "amplifier_lag")
-    tau = 1e6 * step["parameters"]["amplifier_lag.tau"]["value"]
-    return table(["lag [us]", "here", "from the loop's width"], [["400 to 1000 Hz", number(tau), "13.0"]])
+    """The dead time once it is in the model, before anything is added to it."""
+    step = next(step for step in improvement["steps"] if step["added"] == "delay")
+    late = 1e6 * step["parameters"]["delay.time"]["value"]
+    return table(["lag [us]", "here", "from the loop's width"], [["400 to 1000 Hz", number(late), "13.0"]])
 
 
 def text(results: Mapping[str, Result]) -> str:

@@ -31,7 +31,7 @@ def follow(folder: Path, name: str) -> Path | None:
         more = "records:\n  - {file: proposed.csv, use: identify}\n"
         (job / "job.yaml").write_text(text.replace("records:\n", more, 1), encoding="utf-8")
     solved = folder / "followed" / name / "solved"
-    run("improve", job / "job.yaml", solved)
+    run("improve", job / "job.yaml", solved, retry=False)
     return solved
 
 
