@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.model import Model, Plan
+from pzt_ident.model import Model
+from pzt_ident.plan import Plan
 from pzt_ident.record import Record
 from pzt_ident.registry import blocks
 

@@ -85,6 +85,7 @@ class Block:
     seen: ClassVar[tuple[str, ...]] = ()  # parameters that a record shows only where its drive is of their size
     trials: ClassVar[Mapping[str, int]] = {}  # values over the range of a parameter that means nothing at the null
     chosen: ClassVar[dict[str, int]] = {}
+    forms: ClassVar[Mapping[str, type[Block]]] = {}  # by an effect's word: itself, where that takes another step
 
     def __init_subclass__(cls) -> None:
         for word, function in list(vars(cls).items()):
@@ -207,12 +208,7 @@ class Relays(Block):
 
 
 class Term(Block):
-    """An effect inside the equation of other blocks, which is written there: parameters of theirs name it.
-
-    `forms`: by a block's word, the block with the effect in its equation, where that takes another step.
-    """
-
-    forms: ClassVar[Mapping[str, type[Block]]] = {}
+    """An effect inside the equation of other blocks, which is written there: parameters of theirs name it."""
 
 
 class Shift(Block):

@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pzt_ident.errors import InputError
-from pzt_ident.model import Model, Plan, Slot
+from pzt_ident.model import Model, Slot
+from pzt_ident.plan import Plan
 from pzt_ident.record import Record
 from pzt_ident.units import factor
 

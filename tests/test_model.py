@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import lin_lin
-from pzt_ident.model import Model, Plan
+from pzt_ident.model import Model
+from pzt_ident.plan import Plan
 from pzt_ident.registry import blocks
 from rig import assert_close, candidates, model, record, response, rounding, triangle
 from twins import plain

@@ -25,6 +25,7 @@ def text(rows: list[Mapping[str, Any]]) -> str:
         "adequate",
         "unexplained",
         "validate RMSE, floors: median / 90 %",
+        "proposed drives that separate",
         "s a case, median",
     )
     return table(header, [_row(row) for row in rows])
@@ -35,7 +36,9 @@ def _row(row: Mapping[str, Any]) -> tuple[object, ...]:
     floors = f"{row['validate_median']:.2f} / {row['validate_90']:.2f}" if row["validate_median"] else ""
     seconds = f"{row['seconds_median']:.0f}" if row["seconds_median"] else ""
     counts = [row[key] for key in COUNTS]
-    return row["kind"], row["cases"], exact, inside, *counts, adequate, unexplained, floors, seconds
+    separated, proposed = (round(row[key] * row["cases"]) for key in ("separated", "proposed"))
+    drives = f"{separated} of {proposed}" if proposed else ""
+    return row["kind"], row["cases"], exact, inside, *counts, adequate, unexplained, floors, drives, seconds
 
 
 if __name__ == "__main__":

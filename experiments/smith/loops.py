@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from experiments.tables import number, table
-from pzt_ident.model import Model, Plan
+from pzt_ident.model import Model
+from pzt_ident.plan import Plan
 from pzt_ident.record import Record
 from pzt_ident.registry import blocks
 

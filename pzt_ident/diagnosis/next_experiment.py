@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.diagnosis.refit import Case, Fit
-from pzt_ident.model import Plan
+from pzt_ident.plan import Plan
 from pzt_ident.record import Record
 
 Array = NDArray[np.float64]

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pzt_ident.block import Addition, Bank, Beside, Coupling, Modes, Operator, Place, Relays, Shift, Term
-from pzt_ident.model import Plan
+from pzt_ident.plan import Plan
 from pzt_ident.registry import blocks
 from pzt_ident.units import is_unit
 from rig import assert_close, candidates, model, path, record, rounding
@@ -163,7 +163,7 @@ def test_term_at_its_null_is_not_there(host, term, drive, seed):
         every = np.array([known.get(name, null) for name, null in zip(within.names, nulls, strict=True)]).T
         assert len(every.T) > len(theta.T)
         found, expected = within.simulate(measured, every), without.simulate(measured, theta)
-        if host not in blocks[term].forms and (ahead or host not in OPERATORS):
+        if term not in blocks[host].forms and (ahead or host not in OPERATORS):
             assert np.array_equal(found, expected)
         else:
             assert_close(found, expected, rounding(without, measured, theta))

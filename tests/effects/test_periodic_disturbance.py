@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pzt_ident.effects.periodic_disturbance import PeriodicDisturbance
-from pzt_ident.model import Plan
+from pzt_ident.plan import Plan
 from rig import model, record
 
 
