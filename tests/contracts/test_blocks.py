@@ -157,9 +157,10 @@ def test_term_at_its_null_is_not_there(host, term, drive, seed):
     """Bit by bit in the same lane loop; to rounding where an operator has its own for a drive, or the term its own."""
     for ahead in ([], [Identity]):
         without, within = model(*ahead, host), model(*ahead, host, term)
-        measured, theta = record(drive), candidates(without, SPAN, 30, seed)
+        count = 3 if getattr(blocks[host], "solved", ()) else 30  # NumPy's share is once a candidate
+        measured, theta = record(drive), candidates(without, SPAN, count, seed)
         known = dict(zip(without.names, theta.T, strict=True))
-        nulls = [np.full(30, slot.parameter.null or 0.0) for slot in within.slots]
+        nulls = [np.full(count, slot.parameter.null or 0.0) for slot in within.slots]
         every = np.array([known.get(name, null) for name, null in zip(within.names, nulls, strict=True)]).T
         assert len(every.T) > len(theta.T)
         found, expected = within.simulate(measured, every), without.simulate(measured, theta)

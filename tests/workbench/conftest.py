@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import asyncio
+from collections.abc import Coroutine
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import pytest
 from starlette.testclient import TestClient
@@ -13,6 +17,12 @@ from pzt_ident.workbench.bench import Bench
 TOKEN = "a-token-of-the-session"
 HOST = "127.0.0.1:8000"
 GOOD = {"host": HOST, "x-pzt-token": TOKEN}
+
+
+def alone(story: Coroutine[Any, Any, Any]) -> Any:
+    """Run in a thread of its own: the tests in a browser leave a loop running in this one."""
+    with ThreadPoolExecutor(1) as pool:
+        return pool.submit(asyncio.run, story).result()
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ from pzt_ident.errors import InputError
 from pzt_ident.job import load_job
 from pzt_ident.workbench.bench import Bench
 
-from .conftest import form, measured
+from .conftest import alone, form, measured
 
 
 @pytest.fixture
@@ -110,7 +110,7 @@ def test_a_command_that_fails_says_why_and_one_that_is_stopped_says_so(begun, mo
         await begun.stop()
         assert begun.failure.startswith("Stopped") and not begun.running and begun.stage == ""
 
-    asyncio.run(story())
+    alone(story())
 
 
 def test_the_page_is_told_of_every_change(client, bench):
@@ -145,5 +145,5 @@ def test_events_are_the_lines_of_the_run(bench, monkeypatch):
             if len(found) == count:
                 return found
 
-    found = asyncio.run(first(4))
+    found = alone(first(4))
     assert found == [{"event": "step", "step": 1}, *lines, {"event": "changed", "version": bench.version}]
