@@ -14,10 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pzt_ident.shell import EXISTING, Commands, answer, output, reporting, searching, trusting
+from pzt_ident.shell import EXISTING, Commands, answer, diagnosing, output, reporting, searching, trusting
 
 if TYPE_CHECKING:
-    from pzt_ident.job import Job
     from pzt_ident.terminal import Listener
 
 
@@ -103,19 +102,13 @@ def compare(source: Path, out: Path | None, no_report: bool, plugins: bool, as_j
 
 
 @main.command()
-@click.argument("job", type=EXISTING)
-@click.option("--out", type=EXISTING, help="Folder for the results; results/<name>/<time>-<hash> if not given.")
-@reporting
-@trusting
-@output
-def diagnose(job: Path, out: Path | None, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
+@diagnosing
+def diagnose(job: Path, **options: Any) -> None:
     """Say which physical effect the model of a job file JOB misses."""
     from pzt_ident import staircase
     from pzt_ident.improve import diagnose
-    from pzt_ident.job import load_job
 
-    made = load_job(job, plugins)
-    _diagnose(diagnose, "diagnosis", staircase.show_diagnosis, made, out, no_report, as_json, quiet)
+    _diagnose(diagnose, "diagnosis", staircase.show_diagnosis, job, **options)
 
 
 @main.command()
@@ -134,38 +127,33 @@ def add(job: Path, effect: str, out: Path, plugins: bool, as_json: bool, quiet: 
 
 
 @main.command()
-@click.argument("job", type=EXISTING)
-@click.option("--out", type=EXISTING, help="Folder for the results; results/<name>/<time>-<hash> if not given.")
-@reporting
-@trusting
-@output
-def improve(job: Path, out: Path | None, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
+@diagnosing
+def improve(job: Path, **options: Any) -> None:
     """Add what the model of a job file JOB misses, effect by effect, and watch the error fall."""
     from pzt_ident import staircase
     from pzt_ident.improve import improve
-    from pzt_ident.job import load_job
 
-    _diagnose(
-        improve, "improvement", staircase.show_improvement, load_job(job, plugins), out, no_report, as_json, quiet
-    )
+    _diagnose(improve, "improvement", staircase.show_improvement, job, **options)
 
 
 def _diagnose(
     work: Callable[..., Path],
     name: str,
     show: Callable[[dict[str, Any], Path], None],
-    job: Job,
+    job: Path,
     out: Path | None,
     no_report: bool,
+    plugins: bool,
     as_json: bool,
     quiet: bool,
 ) -> None:
     from pzt_ident import staircase, terminal
+    from pzt_ident.job import load_job
     from pzt_ident.report.page import write_report
 
     silent = as_json or quiet
     with terminal.listening(silent):
-        folder = work(job, out, staircase.told(silent))
+        folder = work(load_job(job, plugins), out, staircase.told(silent))
         if not no_report:
             write_report(folder)
     found = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))

@@ -77,6 +77,13 @@ def searching(command: Command) -> Command:
     return click.option("--workers", type=workers, help="Processes side by side; all cores if not given.")(command)
 
 
+def diagnosing(command: Command) -> Command:
+    """JOB, --out and the options of a command that looks for what a model misses."""
+    said = "Folder for the results; results/<name>/<time>-<hash> if not given."
+    command = reporting(trusting(output(command)))
+    return click.argument("job", type=EXISTING)(click.option("--out", type=EXISTING, help=said)(command))
+
+
 def answer(found: dict[str, Any], say: Callable[[], None], as_json: bool, quiet: bool) -> None:
     if as_json:
         click.echo(json.dumps(found, indent=2))
