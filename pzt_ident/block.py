@@ -190,7 +190,8 @@ class Relays(Block):
     """Domains of `coercives` coercive fields, equally many of each, over `interactions` interaction fields that lie a
     spacing apart about 0. Of each kind a share x points up. Per second a share `rate` of them leaves the side that they
     are on, which depends on how much further its effective field is from where it would not hold without activation.
-    x relaxes exactly over a step of the field in its middle.
+    x relaxes exactly over a step of the field in its middle. Where all domains of a kind are on one side and none leaves,
+    to 1e-15, they are not stepped.
 
     prepare(*parameters) -> (shape, energy, shared), a tuple of coefficients each; shape[0] is the spacing.
     field(u, *shape) -> in the material. coercive_field(i, *shape) -> that of node i.

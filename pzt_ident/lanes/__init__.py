@@ -97,9 +97,10 @@ def rests(block: type[Block]) -> bool:
 
 
 def relays_room(block: type[Relays]) -> int:
-    """Shares, weights, coercive fields, sums, the field before, six tables; whether lanes are alike."""
+    """Shares, weights, coercive fields, sums, the weight below each, between where each coercive field's are not at
+    rest, the field before, six tables; whether lanes are alike."""
     tables = 6 * (block.fine + 1) * block.columns
-    return (block.coercives + 2) * block.interactions + block.coercives + 2 + tables
+    return (block.coercives + 3) * block.interactions + 3 * block.coercives + 3 + tables
 
 
 def layout_of(block: type[Block], variant: Variant) -> Layout:
