@@ -62,28 +62,28 @@ class Model:
 
     def _slots(self, block: type[Block]) -> list[Slot]:
         found = []
-        first = self.measured[0]
         for axis in self.measured:
             prefix = f"{self.axes[axis]}." if len(self.measured) > 1 else ""
             others = [b for b in range(len(self.axes)) if b != axis] if issubclass(block, Coupling) else [axis]
             for other in others:
                 suffix = f"_from_{self.axes[other]}" if len(others) > 1 else ""
                 for word, parameter in block.parameters().items():
-                    plain = f"{block.name}.{word}"
-                    again = plain in self.shared and axis != self.measured[0]
-                    if again or parameter.per_record or (parameter.effect and parameter.effect not in self._listed):
+                    plain, each = f"{block.name}.{word}", self._each(block, word, parameter)
+                    if parameter.per_record or (parameter.effect and parameter.effect not in self._listed):
                         continue
-                    if parameter.each != "axis" and (parameter.each == "stage") != (axis == first):
-                        continue
-                    everywhere = parameter.each == "stage" or plain in self.shared
-                    name = plain if everywhere else f"{prefix}{plain}{suffix}"
-                    found.append(Slot(name, block, word, axis, other, parameter))
+                    if each == "axis" or (each == "stage") == (axis == self.measured[0]):
+                        name = plain if each == "stage" else f"{prefix}{plain}{suffix}"
+                        found.append(Slot(name, block, word, axis, other, parameter))
         return found
+
+    def _each(self, block: type[Block], word: str, parameter: Parameter) -> str:
+        """Who has one of its own, as the block declares it or the job shares it."""
+        return "stage" if f"{block.name}.{word}" in self.shared else parameter.each
 
     def spellings(self, slot: Slot) -> tuple[str, ...]:
         """The names that a job may call a parameter by, the most particular first."""
         plain = f"{slot.block.name}.{slot.word}"
-        if plain in self.shared:
+        if self._each(slot.block, slot.word, slot.parameter) == "stage":
             return (plain,)
         paired = (f"{plain}_from_{self.axes[slot.other]}",) if slot.other != slot.axis else ()
         return *(f"{self.axes[slot.axis]}.{name}" for name in (*paired, plain)), *paired, plain
@@ -104,7 +104,8 @@ class Model:
             axis = other = self.measured[0]
         found: dict[str, int | list[int]] = {}
         for column, slot in enumerate(self.slots):
-            if slot.block is block and ((slot.axis, slot.other) == (axis, other) or slot.name in self.shared):
+            stage = self._each(slot.block, slot.word, slot.parameter) == "stage"
+            if slot.block is block and (stage or (slot.axis, slot.other) == (axis, other)):
                 if slot.parameter.count is None:
                     found[slot.parameter.name] = column
                 else:
