@@ -15,7 +15,7 @@ from functools import cache
 from typing import Any, ClassVar
 
 from pzt_ident.errors import InputError, nearest
-from pzt_ident.parameter import Parameter, Setting
+from pzt_ident.parameter import Form, Parameter, Setting
 
 TILES = 3  # signals that an axis carries: its own, what drives its operator's prompt response, and its mechanics
 
@@ -71,6 +71,9 @@ class Block:
     start(u, *coefficients) -> states.
     step(*states, u, *coefficients) -> (*states, y).
 
+    refuse(least, most), where it is there, raises InputError for bounds between which no candidate can be simulated: two
+    namespaces of parameters in SI units.
+
     What can be missing from a model is an effect and says more of itself: which effects leave the same trace, the
     experiment that tells them apart, and what to do about it on the rig.
     """
@@ -84,8 +87,10 @@ class Block:
     sizes: ClassVar[tuple[float, ...]] = (0.05,)  # of its range, at which its trace is looked for: one if it is linear
     seen: ClassVar[tuple[str, ...]] = ()  # parameters that a record shows only where its drive is of their size
     trials: ClassVar[Mapping[str, int]] = {}  # values over the range of a parameter that means nothing at the null
-    chosen: ClassVar[dict[str, int]] = {}
-    forms: ClassVar[Mapping[str, type[Block]]] = {}  # by an effect's word: itself, where that takes another step
+    chosen: ClassVar[dict[str, Any]] = {}
+    forms: ClassVar[Mapping[str, type[Block]]] = {}  # itself, by the word of an effect or a `Form` that changes its step
+    watch: ClassVar[type[Block] | None] = None  # itself, giving what its equation wants above zero
+    broken: ClassVar[str] = ""  # what is said where that is not
 
     def __init_subclass__(cls) -> None:
         for word, function in list(vars(cls).items()):
@@ -105,25 +110,26 @@ class Block:
         return found
 
     @classmethod
-    def settings(cls) -> dict[str, Setting]:
+    def settings(cls) -> dict[str, Setting | Form]:
         """What a job may choose of how the block is built, by name."""
         owned = [item for owner in reversed(cls.__mro__) for item in vars(owner).items()]
-        return {word: item for word, item in owned if isinstance(item, Setting)}
+        return {word: item for word, item in owned if isinstance(item, Setting | Form)}
 
     @classmethod
-    def setting(cls, word: str) -> int:
+    def setting(cls, word: str) -> Any:
         return cls.chosen.get(word, cls.settings()[word].value)
 
     @classmethod
     def make(cls, **settings: Any) -> type[Block]:
         """The block with these settings. Raises InputError for an unknown one, or one that does not fit."""
-        known = cls.settings()
+        form = next((cls.forms[str(value)] for value in settings.values() if str(value) in cls.forms), cls)
+        known = cls.settings() | form.settings()
         for word, value in settings.items():
             if word not in known:
                 remedy = nearest(word, known) if known else f"write just `{cls.name}`"
                 raise InputError(f"unknown setting {word!r}", where=cls.name, remedy=remedy)
             known[word].check(value, f"{cls.name}.{word}")
-        return _made(cls, tuple(sorted(settings.items())))  # type: ignore[arg-type]
+        return _made(form, cls.name, tuple(sorted(settings.items())))  # type: ignore[arg-type]
 
     @classmethod
     @cache
@@ -133,9 +139,10 @@ class Block:
 
 
 @cache
-def _made(block: type[Block], chosen: tuple[tuple[str, int], ...]) -> type[Block]:
+def _made(block: type[Block], name: str, chosen: tuple[tuple[str, Any], ...]) -> type[Block]:
     """One class for the same choice, so that it is compiled once."""
-    own = {"__module__": block.__module__, "__doc__": block.__doc__, "chosen": {**block.chosen, **dict(chosen)}}
+    own = {"__module__": block.__module__, "__doc__": block.__doc__, "name": name}
+    own |= {"chosen": {**block.chosen, **dict(chosen)}}
     return type(block.__name__, (block,), own) if chosen else block
 
 

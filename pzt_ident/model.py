@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,6 +88,13 @@ class Model:
             return (plain,)
         paired = (f"{plain}_from_{self.axes[slot.other]}",) if slot.other != slot.axis else ()
         return *(f"{self.axes[slot.axis]}.{name}" for name in (*paired, plain)), *paired, plain
+
+    def watched(self, block: type[Block]) -> Model:
+        """The chain as far as a block, of which it gives what its equation wants above zero."""
+        made = copy(self)
+        made.blocks = (*self.blocks[: self.blocks.index(block)], block.watch)  # type: ignore[assignment]
+        made.slots = tuple(replace(slot, block=block.watch) if slot.block is block else slot for slot in self.slots)
+        return made
 
     @property
     def names(self) -> tuple[str, ...]:

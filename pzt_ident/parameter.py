@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from pzt_ident.errors import InputError
+from pzt_ident.errors import InputError, nearest
 
 
 @dataclass(frozen=True)
@@ -55,3 +55,17 @@ class Setting:
         if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
             remedy = f"give a whole number from {low} to {high}"
             raise InputError(f"{value!r} is not {remedy.removeprefix('give ')}", where=where, remedy=remedy)
+
+
+@dataclass(frozen=True)
+class Form:
+    """Which of its forms a job chooses of a block, by a word: `{name: homogenized_energy, density: free}`."""
+
+    value: str
+    words: tuple[str, ...]
+    doc: str
+
+    def check(self, value: Any, where: str) -> None:
+        """Raises InputError for another word."""
+        if value not in self.words:
+            raise InputError(f"{value!r} is no such form", where=where, remedy=nearest(str(value), self.words))

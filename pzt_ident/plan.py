@@ -264,6 +264,16 @@ class Plan:
                     error[same, i] -= (basis @ (solve @ (own.T @ error[same, i, settle:].T))).T
         return error
 
+    def broken(self, theta: Array) -> tuple[str, ...]:
+        """What one candidate breaks of the conditions of its blocks' equations over this record."""
+        said = []
+        for block in self.model.blocks:
+            if block.watch:
+                room = Plan(self.model.watched(block), self.record).simulate(theta)
+                if share := float(np.mean(room <= 0)):
+                    said.append(f"at {share:.1%} of its samples {block.broken}")
+        return tuple(said)
+
     def _basis(self, axis: int, theta: Array) -> Array:
         """One, and the signals of all additions of an axis: (samples, signals)."""
         time, signals = self.record.time, [np.ones(self.record.samples)]

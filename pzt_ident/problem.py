@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from itertools import product
+from types import SimpleNamespace
 from typing import Protocol
 
 import numpy as np
@@ -56,6 +58,7 @@ class Problem:
         self.plans = {use: [Plan(model, r) for r in records if r.use == use] for use in ("identify", "validate")}
         self._settle(identify, wishes or {})
         self._enough(identify)
+        self._possible()
         self._seen(identify)
 
     def _settle(self, identify: list[Record], wishes: Mapping[str, Wish]) -> None:
@@ -128,6 +131,15 @@ class Problem:
                     where=record.file or record.name,
                     remedy="give a longer stretch, a shorter `settle`, or fix parameters",
                 )
+
+    def _possible(self) -> None:
+        """Raises InputError where a block refuses the bounds."""
+        least, most = self.theta.copy(), self.theta.copy()
+        least[self.free], most[self.free] = (bound * self._factor[self.free] for bound in (self.lower, self.upper))
+        for block, axis in product(self.model.blocks, self.model.measured):
+            if refuse := getattr(block, "refuse", None):
+                columns = self.model.columns(block, axis, axis) or {}
+                refuse(*(SimpleNamespace(**{word: end[c] for word, c in columns.items()}) for end in (least, most)))
 
     def _seen(self, identify: list[Record]) -> None:
         """Raises InputError where the drive is far from all that the job lets a parameter be: the numbers of one of
