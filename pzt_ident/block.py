@@ -66,13 +66,13 @@ def erf(x: float) -> float:
 class Block:
     """One box of the signal chain, acting on each axis with that axis' own parameters.
 
-    prepare(*parameters[, dt][, span][, peak]) -> coefficients; dt in s, span and peak the peak-to-peak drive of the
-    axis and its largest magnitude.
+    prepare(*parameters[, dt][, span][, peak][, settings]) -> coefficients; dt in s, span and peak the peak-to-peak
+    drive of the axis and its largest magnitude.
     start(u, *coefficients) -> states.
     step(*states, u, *coefficients) -> (*states, y).
 
-    refuse(least, most), where it is there, raises InputError for bounds between which no candidate can be simulated: two
-    namespaces of parameters in SI units.
+    refuse(least, most), where it is there, raises InputError for bounds between which no candidate can be simulated:
+    two namespaces of parameters in SI units.
 
     What can be missing from a model is an effect and says more of itself: which effects leave the same trace, the
     experiment that tells them apart, and what to do about it on the rig.
@@ -88,7 +88,9 @@ class Block:
     seen: ClassVar[tuple[str, ...]] = ()  # parameters that a record shows only where its drive is of their size
     trials: ClassVar[Mapping[str, int]] = {}  # values over the range of a parameter that means nothing at the null
     chosen: ClassVar[dict[str, Any]] = {}
-    forms: ClassVar[Mapping[str, type[Block]]] = {}  # itself, by the word of an effect or a `Form` that changes its step
+    forms: ClassVar[
+        Mapping[str, type[Block]]
+    ] = {}  # itself, by the word of an effect or a `Form` that changes its step
     watch: ClassVar[type[Block] | None] = None  # itself, giving what its equation wants above zero
     broken: ClassVar[str] = ""  # what is said where that is not
 
@@ -120,16 +122,27 @@ class Block:
         return cls.chosen.get(word, cls.settings()[word].value)
 
     @classmethod
+    def numbers(cls) -> dict[str, int]:
+        """The whole numbers among the settings, as chosen; `prepare` may ask for them."""
+        return {word: cls.setting(word) for word, item in cls.settings().items() if isinstance(item, Setting)}
+
+    @classmethod
     def make(cls, **settings: Any) -> type[Block]:
         """The block with these settings. Raises InputError for an unknown one, or one that does not fit."""
-        form = next((cls.forms[str(value)] for value in settings.values() if str(value) in cls.forms), cls)
-        known = cls.settings() | form.settings()
+        form = cls.formed(settings)
+        known = form.settings()
         for word, value in settings.items():
             if word not in known:
                 remedy = nearest(word, known) if known else f"write just `{cls.name}`"
                 raise InputError(f"unknown setting {word!r}", where=cls.name, remedy=remedy)
             known[word].check(value, f"{cls.name}.{word}")
         return _made(form, cls.name, tuple(sorted(settings.items())))  # type: ignore[arg-type]
+
+    @classmethod
+    def formed(cls, settings: Mapping[str, Any]) -> type[Block]:
+        """The form that is chosen by the words among some settings, right or wrong as they are."""
+        words = [settings.get(word) for word, item in cls.settings().items() if isinstance(item, Form)]
+        return _made(next((cls.forms[str(word)] for word in words if str(word) in cls.forms), cls), cls.name, ())  # type: ignore[arg-type]
 
     @classmethod
     @cache
@@ -141,9 +154,9 @@ class Block:
 @cache
 def _made(block: type[Block], name: str, chosen: tuple[tuple[str, Any], ...]) -> type[Block]:
     """One class for the same choice, so that it is compiled once."""
-    own = {"__module__": block.__module__, "__doc__": block.__doc__, "name": name}
+    own: dict[str, Any] = {"__module__": block.__module__, "__doc__": block.__doc__, "name": name}
     own |= {"chosen": {**block.chosen, **dict(chosen)}}
-    return type(block.__name__, (block,), own) if chosen else block
+    return type(block.__name__, (block,), own) if chosen or block.name != name else block
 
 
 def asked(function: Callable[..., object]) -> tuple[str, ...]:
@@ -175,6 +188,7 @@ class Bank(Block):
 
     prepare may ask for `branch`, counted from 0, and is given each branch its own of a counted parameter.
     output(u, total, *coefficients of the first branch) -> y.
+    stands(*parameters[, settings], branch), optional: the drive that a branch's own of a counted parameter stands for.
     rests(*states, low, high, *coefficients) -> whether no input between low and high moves the branch: optional, it
     saves the steps of a branch that holds still over a tile in every lane.
 
@@ -197,8 +211,8 @@ class Relays(Block):
     """Domains of `coercives` coercive fields, equally many of each, over `interactions` interaction fields that lie a
     spacing apart about 0. Of each kind a share x points up. Per second a share `rate` of them leaves the side that they
     are on, which depends on how much further its effective field is from where it would not hold without activation.
-    x relaxes exactly over a step of the field in its middle. Where all domains of a kind are on one side and none leaves,
-    to 1e-15, they are not stepped.
+    x relaxes exactly over a step of the field in its middle. Where all domains of a kind are on one side and none
+    leaves, to 1e-15, they are not stepped.
 
     prepare(*parameters) -> (shape, energy, shared), a tuple of coefficients each; shape[0] is the spacing.
     field(u, *shape) -> in the material. coercive_field(i, *shape) -> that of node i.

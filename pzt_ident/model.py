@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.block import Addition, Block, Coupling, Modes, Place, Term
+from pzt_ident.block import Addition, Block, Coupling, Modes, Place, Term, asked
 from pzt_ident.parameter import Parameter
 from pzt_ident.record import Record
 
@@ -91,10 +91,22 @@ class Model:
 
     def watched(self, block: type[Block]) -> Model:
         """The chain as far as a block, of which it gives what its equation wants above zero."""
-        made = copy(self)
-        made.blocks = (*self.blocks[: self.blocks.index(block)], block.watch)  # type: ignore[assignment]
-        made.slots = tuple(replace(slot, block=block.watch) if slot.block is block else slot for slot in self.slots)
+        made, watch = copy(self), block.watch
+        assert watch
+        made.blocks = (*self.blocks[: self.blocks.index(block)], watch)
+        made.slots = tuple(replace(slot, block=watch) if slot.block is block else slot for slot in self.slots)
         return made
+
+    def stands(self, column: int, theta: Array) -> float | None:
+        """The drive that a counted parameter of one candidate stands for, None where its block says nothing of that."""
+        slot = self.slots[column]
+        stands = getattr(slot.block, "stands", None)
+        if stands is None or slot.parameter.count is None:
+            return None
+        columns = self.columns(slot.block, slot.axis, slot.other) or {}
+        known = {word: theta[at] for word, at in columns.items()} | slot.block.numbers()
+        branch = np.flatnonzero(np.array(columns[slot.parameter.name]) == column)[0]
+        return float(stands(*((known | {"branch": branch})[word] for word in asked(stands))))
 
     @property
     def names(self) -> tuple[str, ...]:

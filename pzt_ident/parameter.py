@@ -23,6 +23,9 @@ class Parameter:
     after the first, to which it is relative.
     `per_record` gives every record one of its own, for what begins anew or at another phase with each measurement.
     `value` is what it is fixed to unless the job frees it with bounds.
+    `linear` has it solved for inside the search where the job says nothing of it: the response must be linear in all
+    such parameters together, and they are not negative, or not positive where the response falls with the drive.
+    `smooth` names the parameter that weighs the squared second differences of a counted one of these.
     """
 
     unit: str
@@ -35,6 +38,8 @@ class Parameter:
     each: Literal["axis", "stage", "later axis"] = "axis"
     per_record: bool = False
     value: float | None = None
+    linear: bool = False
+    smooth: str | None = None
     name: str = ""
 
     def __set_name__(self, owner: type, name: str) -> None:

@@ -96,11 +96,15 @@ class Plan:
         row = self.rows + made.layout.first_given
         for axis, other in places:
             columns = self.model.columns(block, axis, other)
-            known = nulls | {
-                "dt": self.record.dt / self.model.oversample,
-                "span": float(np.ptp(self.record.drive[axis])),
-                "peak": float(np.abs(self.record.drive[axis]).max()),
-            }
+            known = (
+                nulls
+                | block.numbers()
+                | {
+                    "dt": self.record.dt / self.model.oversample,
+                    "span": float(np.ptp(self.record.drive[axis])),
+                    "peak": float(np.abs(self.record.drive[axis]).max()),
+                }
+            )
             if issubclass(block, Bank) and block.solved:
                 at = [[row + branch * len(words) + words.index(word) for word in block.solved] for branch in branches]
                 self.solved.append((Solve(block, columns or {}, known), np.array(at)))

@@ -76,7 +76,7 @@ def _parameters(problem: Problem) -> list[Facts]:
         facts: Facts = {"name": slot.name, "unit": unit, "doc": slot.parameter.doc}
         if slot.name in bounds:
             facts["bounds"] = [float(bound) for bound in bounds[slot.name]]
-        else:
+        elif np.isfinite(value):
             facts["value"] = float(value / factor(unit))
         found.append(facts)
     return found
@@ -115,6 +115,9 @@ def _range(axis: Facts, channel: str) -> str:
 
 
 def _searched(row: Facts) -> str:
+    """What becomes of a parameter."""
+    if not {"value", "bounds"} & set(row):
+        return "solved for"
     return "fixed at {:.4g}".format(row["value"]) if "value" in row else "{:.4g} to {:.4g}".format(*row["bounds"])
 
 
@@ -189,7 +192,9 @@ def _declared(block: type[Any]) -> list[Facts]:
     for word, each in _forms(block):
         more = block.make(**{word: each}).parameters()
         own = {name: (declared, f"{word}: {each}") for name, declared in more.items()} | own
-    return [{"name": name, "form": form} | {key: getattr(item, key) for key in keys} for name, (item, form) in own.items()]
+    return [
+        {"name": name, "form": form} | {key: getattr(item, key) for key in keys} for name, (item, form) in own.items()
+    ]
 
 
 def _optimizer(name: str) -> Facts:

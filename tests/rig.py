@@ -41,7 +41,7 @@ def block_of(word):
     """The block of a word, or one of its forms: `homogenized_energy:free`."""
     word, _, form = word.partition(":")
     named = [name for name, item in blocks[word].settings().items() if form in getattr(item, "words", ())]
-    return blocks[word].make(**{name: form for name in named})
+    return blocks[word].make(**dict.fromkeys(named, form))
 
 
 def small(block):

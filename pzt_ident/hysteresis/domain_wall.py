@@ -19,15 +19,15 @@ class DomainWall(Block):
     Smith & Salapaka, Model Development for the Positioning Mechanisms in an Atomic Force Microscope, eqs. 3 to 8, u
     for E and P over P_s. P is solved for at each stage of a fourth-order Runge-Kutta step in E. Begins unpolarized at
     no field. Where g comes to k / alpha (against eq. 9) the walls run away; here they then jump, at most onto the
-    anhysteretic curve, and the result says so. A candidate with c alpha P_s >= a, for which P has no single solution, fails. Minor loops do not
-    close, as in all models of this kind, unless they are biased.
+    anhysteretic curve, and the result says so. A candidate with c alpha P_s >= a, for which P has no single solution,
+    fails. Minor loops do not close, as in all models of this kind, unless they are biased.
     """
 
     place = Place.OPERATOR
     broken = (
         "domain walls run away, against condition (9) of Smith & Salapaka, k > alpha |P_an - P_irr|: there the model "
-        "jumps onto its anhysteretic curve. Raise `domain_wall.pinning`, lower `domain_wall.coupling` (with alpha P_s > a "
-        "they always do), or sample the drive more finely"
+        "jumps onto its anhysteretic curve. Raise `domain_wall.pinning`, lower `domain_wall.coupling` (with alpha P_s "
+        "above a they always do), or sample the drive more finely"
     )
     minor_loops = Form("open", ("open", "biased"), "`biased` closes minor loops, eq. 5 of the paper.")
     saturation = Parameter("response", (0, 20), "Response at the saturation polarization, b P_s.")
@@ -65,9 +65,9 @@ class Biased(DomainWall):
     P_an = g Pt(E, P) - (1 - g) P_s after a rise, P_an = 2 P0 - (g Pt(2 E0 - E, 2 P0 - P) - (1 - g) P_s) back,
     g = (P1 + P_s) / (Pt(E1, P1) + P_s), Pt of eq. 4.
 
-    Eq. 5, its two signs. Since P is continuous, P_irr is P at each reversal. Back at (E1, P1) the loop has closed and is
-    forgotten: the plain curve goes on. A reversal on the way back takes the place of the first, so of loops within loops
-    the innermost one closes. g is at most 1.
+    Eq. 5, its two signs. Since P is continuous, P_irr is P at each reversal. Back at (E1, P1) the loop has closed and
+    is forgotten: the plain curve goes on. A reversal on the way back takes the place of the first, so of loops within
+    loops the innermost one closes. g is at most 1.
     """
 
     def start(u, saturation, per_width, coupling, pinning, reversible):
@@ -112,8 +112,8 @@ DomainWall.watch, Biased.watch = Room, BiasedRoom
 
 
 def turned(pin, before, p, way, side, end, p_end, curve, u, per_width, coupling, pinning, reversible):
-    """The state of `Biased` at u, its curve, and the room of eq. 9. side: the way that led to the end of the minor loop,
-    0 outside of any."""
+    """The state of `Biased` at u, its curve, and the room of eq. 9. side: the way that led to the end of the minor
+    loop, 0 outside of any."""
     now = 1.0 if u > before else -1.0 if u < before else way
     turns = now * way < 0
     away, back = turns and side != -way, turns and side == -way

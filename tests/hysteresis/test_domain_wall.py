@@ -120,7 +120,9 @@ def test_walls_that_break_condition_9_are_said_to(word):
 def test_a_set_that_can_only_run_away_is_refused():
     """As printed: c alpha P_s / a = 3.9."""
     model, field = Model([block_of("domain_wall")], "x", [0]), record(path(0, 13500, points=100))
-    values = {name: SimpleNamespace(bounds=None, value=value) for name, value in smith.domain_wall(**smith.PRINTED).items()}
+    values = {
+        name: SimpleNamespace(bounds=None, value=value) for name, value in smith.domain_wall(**smith.PRINTED).items()
+    }
     with pytest.raises(InputError, match=r"c alpha P_s / a is 3.88 or more: no polarization is stable") as error:
         Problem(model, [field], values)
     assert error.value.where == "domain_wall.coupling" and "smaller alpha" in error.value.remedy

@@ -16,9 +16,7 @@ def biased(reversal, bias, way, a, alpha, p_s):
     """P_an(E, P) of eq. 5 by the reversal (E1, P1) and the bias (E0, P0); way is the sign of dE."""
     (e1, p1), (e0, p0) = reversal, bias
     share = (p1 + p_s) / (plain(e1, p1, a, alpha, p_s) + p_s)
-    return lambda e, p: (
-        -(share * plain(2 * e0 - e, 2 * p0 - p, a, alpha, p_s) - (1 - share) * way * p_s) + 2 * p0
-    )
+    return lambda e, p: -(share * plain(2 * e0 - e, 2 * p0 - p, a, alpha, p_s) - (1 - share) * way * p_s) + 2 * p0
 
 
 def anhysteretic(pin, field, a, alpha, c, p_s, curve=None):
