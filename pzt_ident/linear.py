@@ -83,10 +83,10 @@ def solve(residuals: Residuals, units: Array, curves: Sequence[Whole], weight: f
     """
     from scipy.optimize import nnls
 
-    values, residual = np.zeros(units.size), residuals(np.zeros((1, units.size)))[0]
+    values = np.zeros(units.size)
     for _ in range(PASSES):
-        tries = values + np.diag(units)
-        columns = (residuals(tries) - residual).T
+        residual, *moved = residuals(values + np.vstack([np.zeros(units.size), np.diag(units)]))
+        columns = (np.array(moved) - residual).T
         if not np.isfinite(columns).all():
             nothing = np.full(units.size, np.nan)
             return Solved(nothing, columns, np.zeros((0, units.size)), residual, units)

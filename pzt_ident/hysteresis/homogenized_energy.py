@@ -69,7 +69,7 @@ class FreeDensity(Bank):
 
     place = Place.OPERATOR
     density = HomogenizedEnergy.density
-    nodes = Setting(32, (4, 128), "Coercive fields, evenly from 0 to `reach`.")
+    nodes = Setting(22, (4, 128), "Coercive fields, evenly from 0 to `reach`.")  # with gain and none one group of lanes
     seen = ("reach",)
     gain = Parameter("response/drive", (0, 3), HomogenizedEnergy.gain.doc, linear=True)
     weight = Parameter(
