@@ -8,7 +8,7 @@ the hash of its source; the driver calls it through its address, so no combinati
 from __future__ import annotations
 
 import os
-from math import log, pi
+from math import log, pi, prod
 from typing import Any
 
 import numba
@@ -321,7 +321,7 @@ def address(function: Any) -> int:
 
 def aligned(*shape: int) -> np.ndarray:
     """Zeros that begin on a cache line."""
-    size = int(np.prod(shape))
+    size = prod(shape)
     raw = np.zeros(size + 8)
     shift = (-raw.ctypes.data // 8) % 8
     return raw[shift : shift + size].reshape(shape)
