@@ -1,15 +1,20 @@
 """The domain wall model against its differential equation and the numbers of Smith and Salapaka."""
 
+import json
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import smith
+from pzt_ident.diagnosis.refit import Case, first_fit
 from pzt_ident.errors import InputError
+from pzt_ident.improve import broken
+from pzt_ident.job import Job
 from pzt_ident.model import Model
 from pzt_ident.plan import Plan
 from pzt_ident.problem import Problem
+from pzt_ident.run import read, run
 from rig import block_of, path, record, response
 from twins import domain_wall_twin as twin
 
@@ -115,6 +120,44 @@ def test_walls_that_break_condition_9_are_said_to(word):
     assert broken(**smith.DW1) == ()
     (said,) = broken(alpha=4.5e6, k=2e3, c=0.1)
     assert "condition (9)" in said and "% of its samples" in said and "`domain_wall.pinning`" in said
+
+
+JOB = """\
+name: walls
+records: [{file: loop.csv, use: identify}]
+channels:
+  time: "time [s]"
+  axes:
+    x: {drive: "E [V/m]", response: "x [um]"}
+model: [{name: domain_wall, minor_loops: biased}]
+parameters:
+  domain_wall.coupling: {value: 4.79}
+  domain_wall.reversible: {value: 0.1}
+  domain_wall.pinning: {value: 2000}
+  domain_wall.width: {value: 4.6e+5}
+optimizers: [{name: least_squares, budget: 20}]
+polish: false
+"""
+
+
+def test_a_job_says_that_its_walls_run_away(tmp_path):
+    """In its result, its report and its diagnosis."""
+    field = path(0, 13500, -1000, 4000, points=60)
+    rows = np.column_stack([np.arange(field.size) / 1e3, field, 1e6 * displacement(field, **smith.DW1)])
+    np.savetxt(tmp_path / "loop.csv", rows, "%.9g", ",", header="time [s],E [V/m],x [um]", comments="")
+    job = Job.from_text(JOB, tmp_path)
+    folder = run(job, tmp_path / "out", workers=1)
+    (note,) = json.loads((folder / "result.json").read_text())["records"][0]["notes"]
+    assert "condition (9)" in note
+    assert "Record loop: at" in (folder / "report.html").read_text()
+    case = Case(job.model, (), read(job), job.parameters)
+    assert "Record loop: at" in broken(first_fit(case, 0))
+
+
+def test_another_form_is_unknown():
+    with pytest.raises(InputError, match=r"minor_loops: 'bised' is no such form") as error:
+        Job.from_text(JOB.replace("minor_loops: biased", "minor_loops: bised"))
+    assert "did you mean 'biased'?" in str(error.value)
 
 
 def test_a_set_that_can_only_run_away_is_refused():
