@@ -32,5 +32,5 @@ def draw(figure: Figure, name: str, entries: Sequence[dict[str, Any]]) -> None:
     axes.errorbar(at[~still], values[~still], errors[~still], elinewidth=0.6, **look)  # type: ignore[arg-type]
     axes.axhline(0, color="0.6", linewidth=0.5, zorder=0)
     axes.set_xlim(min(0.0, at[0] - half), at[-1] + half)
-    label(axes.xaxis, "stands for", entries[0]["at"][1], at)
+    label(axes.xaxis, "drive that each stands for", entries[0]["at"][1], at)
     label(axes.yaxis, name.rpartition(".")[2], entries[0]["unit"], values)
