@@ -190,7 +190,10 @@ def test_settle_leaves_something(tmp_path, read, problem):
 def test_a_period_is_decimated_whole(tmp_path, read, problem):
     path = write(tmp_path, *ROWS)
     assert read(path, run_in=1, decimate=2).samples == 3
-    assert "decimate 2 does not divide the 5 samples of a period" in problem(path, run_in=1, rows=(0, 5), decimate=2).message
+    assert (
+        "decimate 2 does not divide the 5 samples of a period"
+        in problem(path, run_in=1, rows=(0, 5), decimate=2).message
+    )
 
 
 @pytest.mark.parametrize("rows", [(0, 7), (4, 2), (3, 3), (-1, 3), (6, None)])
