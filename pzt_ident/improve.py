@@ -68,7 +68,7 @@ def improve(job: Job, out: Path | None = None, tell: Tell = lambda event: None) 
     added = [word for word in effects if word not in job.effects]
     if verdict == "unexplained" and added:
         reason += f" {', '.join(added)}: taken up on the way, and not proven, since something else is at work."
-    reason += bounded(steps[-1].fit)
+    reason += bounded(steps[-1].fit) + broken(steps[-1].fit)
     content = {
         "name": job.name,
         "steps": [stair(case, step) for step in steps],
@@ -94,6 +94,13 @@ def bounded(fit: Fit) -> str:
         value = f"{fit.value(name):.3g} {unit}".removesuffix(" 1")
         said += f" {name} ended on its bound of {value}: its name is doubtful, or its bounds are too narrow."
     return said
+
+
+def broken(fit: Fit) -> str:
+    """A sentence about each record over which a block breaks a condition of its own equation."""
+    theta = fit.problem.parameters(fit.point)
+    plans = [plan for plans in fit.problem.plans.values() for plan in plans]
+    return "".join(f" Record {plan.record.name}: {each}." for plan in plans for each in plan.broken(theta))
 
 
 def size_of(case: Case) -> float:
@@ -133,7 +140,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
     proposal = propose(case, rivals, reach_of(job, case)) if len(rivals) > 1 else None
     return {
         "verdict": found.verdict,
-        "reason": found.reason,
+        "reason": found.reason + broken(found.before),
         "unit": unit_of(list(case.records)),
         "noise_floor": floors(case),
         "rmse": errors_of(case, found.before),

@@ -212,7 +212,8 @@ def collect(job: Job, records: list[Record], folder: Path, tasks: list[Task], fa
 
 def about(record: Record, problem: Problem, point: np.ndarray) -> dict[str, Any]:
     plan = next(plan for plans in problem.plans.values() for plan in plans if plan.record is record)
-    rmse = np.sqrt(plan.squares(problem.parameters(point))[0] / plan.scored)
+    theta = problem.parameters(point)
+    rmse = np.sqrt(plan.squares(theta)[0] / plan.scored)
     return {
         "name": record.name,
         "use": record.use,
@@ -225,7 +226,7 @@ def about(record: Record, problem: Problem, point: np.ndarray) -> dict[str, Any]
         "rmse": {
             record.axes[a]: rmse[i] / factor(str(record.response_units[a])) for i, a in enumerate(record.measured)
         },
-        "notes": list(record.notes),
+        "notes": [*record.notes, *plan.broken(theta)],
     }
 
 
