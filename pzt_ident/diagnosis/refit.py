@@ -19,8 +19,8 @@ from pzt_ident.registry import Choice, blocks
 
 Array = NDArray[np.float64]
 
-STARTS = 240  # chance points, of which the best few are refined
-REFINED = 4
+STARTS = 240  # chance points, of which the best few are refined, so many at a time until two agree
+REFINED, MOST = 4, 24
 AGREE = 0.01  # of the loss, between the two best of them
 EDGE = 1e-4  # of a parameter's range: as near to its end it is on the bound
 DAMPINGS = 10.0 ** np.arange(-5, 4)
@@ -91,18 +91,21 @@ def made(effects: tuple[str, ...], problem: Problem, point: Array, converged: bo
     )
 
 
-def first_fit(case: Case, seed: int, known: dict[str, float] | None = None) -> Fit:
+def first_fit(case: Case, seed: int) -> Fit:
     """The job's own model, from chance points; not converged where the two best of their minima differ."""
     problem = case.problem(case.effects)
     rng = np.random.default_rng(seed)
     starts = rng.uniform(size=(STARTS, problem.dimensions))
-    order = np.argsort(problem.loss(starts), kind="stable")[:REFINED]
-    with ThreadPoolExecutor(2) as pool:
-        ends = list(pool.map(lambda i: descend(problem, starts[i]), order))
-    losses = problem.loss(np.array(ends))
-    best, second = np.argsort(losses)[:2]
-    agreed = bool(losses[second] <= (1 + AGREE) * losses[best] + 0.1 * case.floor) and bool(np.isfinite(losses[best]))
-    return made(case.effects, problem, ends[best], agreed)
+    order = np.argsort(problem.loss(starts), kind="stable")[:MOST]
+    ends, agreed = np.empty((0, problem.dimensions)), False
+    while len(ends) < MOST and not agreed:
+        own = starts[order[len(ends) : len(ends) + REFINED]]
+        with ThreadPoolExecutor(2) as pool:
+            ends = np.vstack([ends, *pool.map(lambda start: descend(problem, start), own)])
+        losses = problem.loss(ends)
+        best, second = np.sort(losses)[:2]
+        agreed = bool(second <= (1 + AGREE) * best + 0.1 * case.floor and np.isfinite(best))
+    return made(case.effects, problem, ends[np.argmin(losses)], agreed)
 
 
 def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, float]) -> Fit:

@@ -72,7 +72,7 @@ def adequate(case: Case, first: Fit, fit: Fit) -> bool:
 def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     """Score every effect, refit the short list, judge; `first` as for `least`, by default the model itself."""
     first = first or before
-    if not before.converged:
+    if not before.converged and not adequate(case, first, before):
         reason = "Two starts of the fit do not agree: what is left may be the search's fault. Narrow the bounds."
         return Diagnosis("refused", reason, before, [], [])
     scorer = Scorer(case, before)
