@@ -120,7 +120,12 @@ def speed() -> str:
     field = 4000 * (1 - np.cos(2 * np.pi * np.arange(5000) / 1000))
     lanes, rng = 24, np.random.default_rng(0)
     rows = []
-    for name, chain in (("plays, 64 nodes", PLAIN), ("thermal, 64 x 64 nodes", THERMAL)):
+    cases = (
+        ("plays, 64 nodes", PLAIN),
+        ("plays that heat helps, 64 nodes", HELPED),
+        ("thermal, 64 x 64 nodes", THERMAL),
+    )
+    for name, chain in cases:
         made, theta = plan(chain, field)
         many = theta * np.exp(rng.normal(0, 0.05, (lanes, theta.shape[1])))
         rows.append((name, number(1e3 * cpu(lambda m=made, t=many: m.squares(t)) / lanes, 3)))
