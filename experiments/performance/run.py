@@ -45,7 +45,9 @@ BOUNDS = {  # Lin & Lin (2012), Table 2, X axis
     "lumped.damping": (0, 10),
     "lumped.stiffness": (7e7, 8e7),
 }
+BASE = ("bouc_wen", "lumped")
 MILLION = 1e6
+HIDDEN = [*(("single", seed) for seed in (104, 110, 119, 125)), *(("pair", seed) for seed in (2, 100, 102, 103))]
 WHOLE = "Bouc-Wen + lumped + error"
 
 
@@ -59,11 +61,11 @@ def drives(time_axis: np.ndarray) -> dict[str, np.ndarray]:
     }
 
 
-def problem(u: np.ndarray, words: tuple[str, ...] = ("bouc_wen", "lumped")) -> Problem:
-    model = Model([blocks[word] for word in words], ["x"], [0])
+def problem(u: np.ndarray, words: tuple[str, ...] = BASE) -> Problem:
+    model, stage = (Model([blocks[word] for word in chain], ["x"], [0]) for chain in (words, BASE))
     blank = Record("r", "identify", 1e-3, u[None], u[None] * 1e-7, response_units=("um",))
-    truth = np.array([[TRUTH[slot.word] for slot in model.slots]])
-    y = np.round(model.simulate(blank, truth)[0] / 1e-7) * 1e-7
+    truth = np.array([[TRUTH[slot.word] for slot in stage.slots]])
+    y = np.round(stage.simulate(blank, truth)[0] / 1e-7) * 1e-7
     record = Record("r", "identify", 1e-3, u[None], y, response_units=("um",))
     wishes = {name: SimpleNamespace(bounds=b, value=None) for name, b in BOUNDS.items() if name in model.names}
     return Problem(model, [record], wishes)
@@ -107,6 +109,24 @@ def kernels(samples: int = 5000, candidates: int = 70) -> list[tuple[str, float]
     lsoda(t[:501], u[:501], response[:501], theta[0])
     spent = (time.process_time() - begun) * samples / 500
     return [*rows, ("solve_ivp LSODA, rtol 1e-6 (500 samples, scaled)", spent * MILLION)]
+
+
+def added(samples: int = 5000, candidates: int = 72) -> list[tuple[str, float]]:
+    """CPU microseconds a candidate with an effect more, in the middle of its bounds."""
+    u = drives(np.arange(samples) / 1e3)["general (sine, 1 Hz)"]
+    rng = np.random.default_rng(0)
+    base = rng.uniform(size=(candidates, len(BOUNDS)))
+    functions = {}
+    for effect in ("", *blocks.effects()):
+        made = problem(u, (*BASE, *filter(None, [effect])))
+        if effect and made.dimensions == len(BOUNDS):  # couples axes, of which there is one here
+            continue
+        points = np.full((candidates, made.dimensions), 0.5)
+        own = [made.names.index(name) for name in BOUNDS]
+        points[:, own] = base
+        functions[effect] = lambda p=made, x=points: p.loss(x)
+    rows = [(name or "none", seconds / candidates * MILLION) for name, seconds in cpu(functions).items()]
+    return sorted(rows, key=lambda row: row[1])
 
 
 def whole_search() -> list[tuple[str, float]]:
@@ -163,6 +183,21 @@ def command_line() -> list[tuple[str, float]]:
                 subprocess.run(command(i), check=True, stdout=subprocess.DEVNULL)
                 spent = time.perf_counter() - begun
             rows.append((name, spent))
+    return rows
+
+
+def improvement() -> list[tuple[str, float]]:
+    """Wall seconds of `pzt-ident improve` on cases of experiments/hidden_effect, start of the program included."""
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for kind, seed in HIDDEN:
+            draw = ["draw", "--seed", str(seed), "--cases", "1", "--kind", kind, "--out", folder]
+            subprocess.run([sys.executable, "-m", "experiments.hidden_effect", *draw], check=True, cwd=HERE.parents[1])
+            job = f"{folder}/cases/{kind}-{seed}/job.yaml"
+            tool = [sys.executable, "-m", "pzt_ident", "improve", job, "--quiet", "--out", f"{folder}/{kind}-{seed}"]
+            begun = time.perf_counter()
+            subprocess.run(tool, check=True, stdout=subprocess.DEVNULL)
+            rows.append((f"{kind} {seed}", time.perf_counter() - begun))
     return rows
 
 
@@ -228,8 +263,10 @@ def main() -> None:
     parts = [
         table("5,000 samples, 7 parameters, 70 candidates", "CPU µs a candidate", rows),
         table("in ratio to pzt-ident on the same drive (sine)", "times as much", ratios),
+        table("Bouc-Wen + lumped + error on the sine, and an effect more", "CPU µs a candidate", added()),
         table("a search of 17,500 evaluations, warm", "CPU s", whole_search()),
         table("command line", "wall s", command_line()),
+        table("improve, six records of some 60,000 samples, one or two hidden effects", "wall s", improvement()),
         table("peak memory, population 10", "MiB", memory()),
     ]
     text = f"Cores: {os.cpu_count()}. Load before: {os.getloadavg()[0]:.1f}.\n\n" + "\n\n".join(parts) + "\n"
