@@ -20,8 +20,8 @@ from pzt_ident.registry import Choice, blocks
 
 Array = NDArray[np.float64]
 
-STARTS = 240  # chance points, of which the best few are refined
-REFINED = 4
+STARTS = 240  # chance points, of which the best few are refined, so many at a time until two agree
+REFINED, MOST = 4, 24
 AGREE = 0.01  # of the loss, between the two best of them
 FINE = 0.3  # of the misfit or the noise, at most, by which halving the steps of the simulation may change the response
 EDGE = 1e-4  # of a parameter's range: as near to its end it is on the bound
@@ -96,19 +96,22 @@ def made(effects: tuple[str, ...], problem: Problem, point: Array, doubt: str = 
     return Fit(effects, problem, point, float(problem.loss(point)[0]), None if np.isnan(validate) else validate, doubt)
 
 
-def first_fit(case: Case, seed: int, known: dict[str, float] | None = None) -> Fit:
+def first_fit(case: Case, seed: int) -> Fit:
     """The job's own model, from chance points; in doubt where the two best of their minima differ, or where the steps
     of the simulation are too coarse for what is left."""
     problem = case.problem(case.effects)
     rng = np.random.default_rng(seed)
     starts = rng.uniform(size=(STARTS, problem.dimensions))
-    order = np.argsort(problem.loss(starts), kind="stable")[:REFINED]
-    with ThreadPoolExecutor(2) as pool:
-        ends = list(pool.map(lambda i: descend(problem, starts[i]), order))
-    losses = problem.loss(np.array(ends))
-    best, second = np.argsort(losses)[:2]
-    agreed = bool(losses[second] <= (1 + AGREE) * losses[best] + 0.1 * case.floor) and bool(np.isfinite(losses[best]))
-    fit = made(case.effects, problem, ends[best])
+    order = np.argsort(problem.loss(starts), kind="stable")[:MOST]
+    ends, agreed = np.empty((0, problem.dimensions)), False
+    while len(ends) < MOST and not agreed:
+        own = starts[order[len(ends) : len(ends) + REFINED]]
+        with ThreadPoolExecutor(2) as pool:
+            ends = np.vstack([ends, *pool.map(lambda start: descend(problem, start), own)])
+        losses = problem.loss(ends)
+        best, second = np.sort(losses)[:2]
+        agreed = bool(second <= (1 + AGREE) * best + 0.1 * case.floor and np.isfinite(best))
+    fit = made(case.effects, problem, ends[np.argmin(losses)])
     return replace(fit, doubt=doubt(case, fit, agreed))
 
 

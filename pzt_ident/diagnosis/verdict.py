@@ -72,7 +72,7 @@ def adequate(case: Case, first: Fit, fit: Fit) -> bool:
 def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     """Score every effect, refit the short list, judge; `first` as for `least`, by default the model itself."""
     first = first or before
-    if before.doubt:
+    if before.doubt and not adequate(case, first, before):
         return Diagnosis("refused", before.doubt, before, [], [])
     scorer = Scorer(case, before)
     with ThreadPoolExecutor(2) as pool:

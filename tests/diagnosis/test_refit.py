@@ -48,6 +48,19 @@ def test_a_fit_whose_starts_end_apart_has_not_converged(plain, monkeypatch):
     assert not first_fit(plain, 0).converged
 
 
+def test_more_starts_are_refined_until_two_agree(plain, monkeypatch):
+    """Of each four of the first twenty all but the first get nowhere."""
+    seen, whole = [], refit.descend
+
+    def lame(problem, point):
+        seen.append(point)
+        return whole(problem, point) if len(seen) in (1, 21) else point
+
+    monkeypatch.setattr(refit, "descend", lame)
+    assert first_fit(plain, 0).converged
+    assert len(seen) == 24
+
+
 def test_without_records_to_validate_there_is_no_error_of_them(plain):
     alone = refit.Case(plain.words, (), plain.records[:1], {})
     assert first_fit(alone, 0).validate is None
