@@ -18,7 +18,7 @@ from pzt_ident.diagnosis.verdict import diagnose as judge
 from pzt_ident.files import write_json, write_text
 from pzt_ident.job import Job
 from pzt_ident.registry import blocks
-from pzt_ident.run import environment, folder_for, make_empty, problem_of, read, unit_of
+from pzt_ident.run import environment, errors_in, folder_for, make_empty, problem_of, read, unit_of
 from pzt_ident.signals import write_signals
 from pzt_ident.units import factor
 
@@ -129,6 +129,7 @@ def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
         "removed": step.removed,
         "class": list(step.tied),
         "rmse": errors_of(case, step.fit),
+        "records": [errors_in(record, problem, point) for record in case.records],
         "explained": step.explained,
         "expected": step.expected,
         "parameters": {name: {"value": float(value), "unit": unit} for name, value, unit in units},

@@ -72,9 +72,8 @@ def adequate(case: Case, first: Fit, fit: Fit) -> bool:
 def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     """Score every effect, refit the short list, judge; `first` as for `least`, by default the model itself."""
     first = first or before
-    if not before.converged:
-        reason = "Two starts of the fit do not agree: what is left may be the search's fault. Narrow the bounds."
-        return Diagnosis("refused", reason, before, [], [])
+    if before.doubt and not adequate(case, first, before):
+        return Diagnosis("refused", before.doubt, before, [], [])
     scorer = Scorer(case, before)
     with ThreadPoolExecutor(2) as pool:
         scores = list(pool.map(scorer.score, applicable(case, before.effects)))

@@ -4,6 +4,7 @@ from math import exp, sqrt
 from statistics import NormalDist
 
 from pzt_ident.block import Bank, Place, erf
+from pzt_ident.hysteresis._play import play, relaxed, relaxing
 from pzt_ident.parameter import Form, Parameter, Setting
 from pzt_ident.registry import blocks
 
@@ -37,6 +38,13 @@ class HomogenizedEnergy(Bank):
     quadratic = Parameter("response/drive^2", (-3, 3), "Response per square of the field, a2 / eta^2.", value=0)
     poled = Parameter("drive", (-3, 3), "Field that the material had seen before, 0 where it is virgin.", value=0)
     bias = Parameter("drive", (-0.5, 0.5), "Part of the drive that is no field in the material.", value=0)
+    fluctuation = Parameter(
+        "drive",
+        (0, 0.1),
+        "Growth of coercive fields with the rate, a factor of e.",
+        null=0,
+        effect="thermal_relaxation",
+    )
 
     def prepare(gain, remanence, coercive, spread, interaction, quadratic, poled, bias, branch):
         per_width = 1 / (sqrt(2.0) * interaction)
@@ -109,8 +117,31 @@ class FreeDensity(Bank):
         return gain * (u - bias) + total
 
 
-HomogenizedEnergy.forms = {"free": FreeDensity}
+class Relaxing(HomogenizedEnergy):
+    """The same with plays that heat helps along. Coercive fields are those that are met at the rate of one fluctuation
+    field a second; in a hold the domains go on with the logarithm of time."""
+
+    rests = None
+
+    def prepare(gain, remanence, coercive, spread, interaction, quadratic, poled, bias, fluctuation, branch, dt):
+        per_width = 1 / (sqrt(2.0) * interaction)
+        half = coercive * exp(spread * QUANTILES[int(branch)]) * per_width
+        before = play(0.0, (poled - bias) * per_width, half)
+        heat = relaxing(fluctuation * per_width, dt)
+        return gain, remanence, quadratic, bias, per_width, half, before, *heat
+
+    def start(u, gain, remanence, quadratic, bias, per_width, half, before, width, waited):
+        field = (u - bias) * per_width
+        return play(before, field, half), field
+
+    def step(p, last, u, gain, remanence, quadratic, bias, per_width, half, before, width, waited):
+        field = (u - bias) * per_width
+        p = relaxed(p, last, field, half, width, waited)
+        return p, field, erf(p)
+
+    def output(u, total, gain, remanence, quadratic, bias, per_width, half, before, width, waited):
+        field = u - bias + remanence * (total / NODES - 1)
+        return (gain + quadratic * field) * field
 
 
-def play(p, u, half):
-    return max(u - half, min(u + half, p))
+HomogenizedEnergy.forms = {"free": FreeDensity, "thermal_relaxation": Relaxing}

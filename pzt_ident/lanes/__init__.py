@@ -93,7 +93,7 @@ def template_of(block: type[Block], variant: Variant) -> str:
 
 def rests(block: type[Block]) -> bool:
     """Whether the branches of a bank say when they hold still."""
-    return issubclass(block, Bank) and hasattr(block, "rests")
+    return issubclass(block, Bank) and getattr(block, "rests", None) is not None
 
 
 def relays_room(block: type[Relays]) -> int:

@@ -1,5 +1,6 @@
 """What is said of a model: missing, a tie, adequate, unexplained, refused, and what these data cannot show."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -100,6 +101,12 @@ def test_a_fit_that_has_not_converged_is_blamed_on_no_effect(monkeypatch):
     assert found.verdict == "refused"
     assert "do not agree" in found.reason and "bounds" in found.reason
     assert found.candidates == []
+
+
+def test_where_one_start_reaches_the_noise_nothing_is_left_to_blame_on_the_search():
+    made = stage.case()
+    found = diagnose(made, replace(first_fit(made, 0), doubt="Two starts do not agree."))
+    assert found.verdict == "adequate"
 
 
 LINEAR = {"bouc_wen.alpha": 0.0, "bouc_wen.beta": 0.01, "bouc_wen.gamma": 0.0}
