@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,16 +11,6 @@ from pzt_ident.report.words import step_name
 from pzt_ident.terminal import number, table
 
 Facts = dict[str, Any]
-
-
-def told(silent: bool) -> Callable[[Facts], None]:
-    """Each stair on stderr as it is climbed."""
-
-    def tell(step: Facts) -> None:
-        if not silent:
-            click.echo(f"{step_name(step)}: RMSE {number(step['rmse']['identify'])}", err=True)
-
-    return tell
 
 
 def show_diagnosis(found: Facts, folder: Path) -> None:

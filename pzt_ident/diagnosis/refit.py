@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,6 +18,7 @@ from pzt_ident.record import Record
 from pzt_ident.registry import Choice, blocks
 
 Array = NDArray[np.float64]
+Tell = Callable[[dict[str, Any]], None]
 
 STARTS = 240  # chance points, of which the best few are refined
 REFINED = 4
@@ -27,7 +28,11 @@ DAMPINGS = 10.0 ** np.arange(-5, 4)
 
 
 class Case:
-    """A model, its records and what is free, to which effects can be added that are not ruled out."""
+    """A model, its records and what is free, to which effects can be added that are not ruled out.
+
+    `tell` hears of every start that was fitted, effect that was scored and model that was refitted, as it happens, from
+    any thread; errors are in units of the loss.
+    """
 
     def __init__(
         self,
@@ -37,7 +42,9 @@ class Case:
         wishes: Any,
         ruled_out: Sequence[str] = (),
         shared: Sequence[str] = (),
+        tell: Tell = lambda event: None,
     ) -> None:
+        self.tell = tell
         self.words, self.effects = tuple(words), tuple(effects)
         self.ruled_out, self.shared = tuple(ruled_out), tuple(shared)
         self.records, self.wishes, self.sizes = tuple(records), wishes, sizes(list(records))
@@ -97,8 +104,11 @@ def first_fit(case: Case, seed: int, known: dict[str, float] | None = None) -> F
     rng = np.random.default_rng(seed)
     starts = rng.uniform(size=(STARTS, problem.dimensions))
     order = np.argsort(problem.loss(starts), kind="stable")[:REFINED]
+    ends: list[Array] = []
     with ThreadPoolExecutor(2) as pool:
-        ends = list(pool.map(lambda i: descend(problem, starts[i]), order))
+        for end in pool.map(lambda i: descend(problem, starts[i]), order):
+            ends.append(end)
+            case.tell({"event": "fitted", "done": len(ends), "of": len(order)})
     losses = problem.loss(np.array(ends))
     best, second = np.argsort(losses)[:2]
     agreed = bool(losses[second] <= (1 + AGREE) * losses[best] + 0.1 * case.floor) and bool(np.isfinite(losses[best]))
@@ -111,7 +121,9 @@ def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, fl
     old = dict(zip(before.problem.names, before.problem.physical(before.point)[0], strict=True))
     middle = problem.physical(np.full(problem.dimensions, 0.5))[0]
     start = {name: guess.get(name, old.get(name, middle[i])) for i, name in enumerate(problem.names)}
-    return made(effects, problem, descend(problem, problem.unit_point(start)))
+    found = made(effects, problem, descend(problem, problem.unit_point(start)))
+    case.tell({"event": "refitted", "effects": effects, "identify": found.identify, "validate": found.validate})
+    return found
 
 
 def descend(problem: Problem, point: Array, most: int = 30) -> Array:

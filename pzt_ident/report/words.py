@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from pzt_ident.report.numbers import count, number, quantity
+from pzt_ident.report.numbers import count, number, percent, quantity
 from pzt_ident.report.results import Results
 
 
@@ -98,6 +98,19 @@ def _failures(results: Results) -> list[str]:
         noun = "run" if len(failed) == 1 else "runs"
         said.append(f"{count(len(failed))} {noun} did not finish: {listed(entry['run'] for entry in failed)}.")
     return said
+
+
+def happening(event: Mapping[str, Any], unit: str) -> str:
+    """What a diagnosis is at, from one of its events."""
+    if event["event"] == "fitted":
+        return f"fitted from {event['done']} of {event['of']} starts"
+    if event["event"] == "scored":
+        part = f"{event['effect']} would explain {percent(event['explained'])}"
+        return f"{event['done']} of {event['of']} effects scored; {part}"
+    if event["event"] == "refitted":
+        chosen = f"with {listed(event['effects'])}" if event["effects"] else "without an effect"
+        return f"refitted {chosen}: RMSE {quantity(event['identify'], unit)}"
+    return f"{step_name(event)}: RMSE {quantity(event['rmse']['identify'], unit)}"
 
 
 def listed(names: Iterable[str]) -> str:
