@@ -26,6 +26,7 @@ from pzt_ident.job import Job, load_job
 from pzt_ident.workbench.form import job_text, with_model
 
 SECONDS_TO_STOP = 8.0
+CUT_OFF = "The workbench ended while this was running. Run goes on from here."
 
 
 class Bench:
@@ -41,6 +42,8 @@ class Bench:
         known = json.loads(stored.read_text(encoding="utf-8")) if stored.exists() else {}
         self.steps: list[dict[str, Any]] = known.get("steps", [])
         self.at: int = known.get("at", 0)
+        if self.at and 0 < sum(last.exists() for last in self._traces()) < len(self._traces()):
+            self.failure = CUT_OFF
 
     @property
     def data(self) -> Path:
@@ -154,6 +157,11 @@ class Bench:
             ("diagnose", step / "diagnosis" / "diagnosis.json", ["diagnose", job, "--out", diagnosis, "--no-report"]),
         ]
 
+    def _traces(self) -> list[Path]:
+        """What a step has of its own in the course of being filled, from the first to the last."""
+        step = self.step()
+        return [step / "run" / "environment.json", *(last for _, last, _ in self.commands(step))]
+
     def log(self, line: str) -> None:
         """Keep a line of what it takes to repeat the session in a terminal."""
         with (self.folder / "commands.txt").open("a", encoding="utf-8") as log:
@@ -185,15 +193,16 @@ class Bench:
         self.version += 1
         self.log(join(["pzt-ident", *arguments]))
         self.process = await asyncio.create_subprocess_exec(
-            *(sys.executable, "-m", "pzt_ident", *arguments, "--quiet"),
+            *(sys.executable, "-m", "pzt_ident.workbench.command", *arguments, "--quiet"),
             cwd=self.root,
-            stdin=asyncio.subprocess.DEVNULL,
+            stdin=asyncio.subprocess.PIPE,  # open as long as this process lives
             stdout=asyncio.subprocess.DEVNULL,
             stderr=asyncio.subprocess.PIPE,
             start_new_session=True,
         )
-        _, said = await self.process.communicate()
-        code = self.process.returncode or 0
+        assert self.process.stderr
+        said = await self.process.stderr.read()
+        code = await self.process.wait()
         if code == 130 or code == -signal.SIGTERM:
             raise RunError("Stopped. Run goes on from here.")
         if code < 0:
