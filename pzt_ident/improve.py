@@ -164,6 +164,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
                 "class": found.tied if item.score.effect in found.tied else [item.score.effect],
                 "explained": item.score.explained,
                 "expected": item.score.guess,
+                "units": {name: item.score.units[name] for name in item.score.guess},
                 "visibility": item.score.visibility,
                 "power": item.score.power if np.isfinite(item.score.power) else None,
                 "rmse": errors_of(case, item.fit) if item.fit else None,

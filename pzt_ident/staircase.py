@@ -7,6 +7,7 @@ from typing import Any
 
 import click
 
+from pzt_ident.report.tables import expected
 from pzt_ident.report.words import step_name
 from pzt_ident.terminal import number, table
 
@@ -20,7 +21,7 @@ def show_diagnosis(found: Facts, folder: Path) -> None:
         (
             item["effect"],
             f"{100 * item['explained']:.0f} %",
-            ", ".join(f"{name.split('.')[-1]} {number(value)}" for name, value in list(item["expected"].items())[:3]),
+            expected(item["expected"], item["units"]),
             f"{item['visibility']:.2f}",
             number(item["rmse"]["identify"]) if item["rmse"] else "",
             number(item["rmse"]["validate"]) if item["rmse"] else "",

@@ -168,7 +168,9 @@ class TestImprove:
     def test_the_terminal_shows_the_staircase(self, improved):
         answer, out = improved
         assert "+ quadratic_gain: RMSE 0.00" in answer.stderr
-        assert [line["added"] for line in map(json.loads, (out / "events.jsonl").open()) if line["event"] == "stair"] == [
+        assert [
+            line["added"] for line in map(json.loads, (out / "events.jsonl").open()) if line["event"] == "stair"
+        ] == [
             None,
             "quadratic_gain",
         ]

@@ -3,6 +3,7 @@ import { errorOf, extent, lowerBound, marksInBox, marksInTime, number, opened, t
 
 const MODELS = ["--model", "--before", "--third", "--fourth"];
 const DASHES = [[], [6, 3], [2, 2], [8, 2, 2, 2]];
+const DASHED = 20000; // points: in longer records dashes run together, and cost a tenth of a second
 
 /** Model beside measurement: in time, as a loop and as a map of the residual. What is marked in one is seen in all. */
 export class Explorer {
@@ -77,7 +78,7 @@ export class Explorer {
     if (written) [this.from.value, this.to.value] = ends.map((value) => (value === "" ? "" : Number(value.toPrecision(7))));
     this.say();
     for (const plot of this.plots) plot.redraw(false);
-    for (const plane of [this.loop, this.map]) { plane.scene.marks = marks; plane.overlay(); }
+    for (const plane of [this.loop, this.map]) plane.mark(marks);
   }
 
   /** The stretch that is written in the fields, an empty one being the end of the record. */
@@ -124,16 +125,16 @@ export class Explorer {
     this.plots = [
       this.plot(`response [${record.unit}]`, 0.26, 0, [record.response, ...record.models.map((model) => sum(record.response, model.residual))], [
         { label: "measured", stroke: () => colour("--measured"), width: 3 },
-        ...record.models.map((model, place) => line(named ? model.name : "model", place)),
+        ...record.models.map((model, place) => this.line(named ? model.name : "model", place)),
       ]),
       this.plot(`residual [${record.unit}]`, 0.18, this.floors[record.axis] ?? 0, record.models.map((model) => model.residual),
-        record.models.map((model, place) => line(named ? `residual, ${model.name}` : "residual: model less measured", place))),
+        record.models.map((model, place) => this.line(named ? `residual, ${model.name}` : "residual: model less measured", place))),
     ];
     this.loop.show(this.scene(record.response, `response [${record.unit}]`, {
       curves: [
         { xs: record.drive, ys: record.response, colour: "--measured", width: 3 },
         ...record.models.map((model, place) => ({
-          xs: record.drive, ys: sum(record.response, model.residual), colour: MODELS[place % 4], width: 1.1, dash: DASHES[place % 4],
+          xs: record.drive, ys: sum(record.response, model.residual), colour: MODELS[place % 4], width: 1.1, dash: this.dash(place),
         })).reverse(),
       ],
     }));
@@ -183,6 +184,12 @@ export class Explorer {
     const [low, high] = [Math.min(-floor || Infinity, ...ends.map(([low]) => low)), Math.max(floor || -Infinity, ...ends.map(([, high]) => high))];
     return [low - 0.06 * (high - low), high + 0.06 * (high - low)];
   }
+
+  line(label, place) {
+    return { label, stroke: () => colour(MODELS[place % 4]), width: 1.2, dash: this.dash(place) };
+  }
+
+  dash(place) { return this.record.index.length > DASHED ? [] : DASHES[place % 4]; }
 
   dragged(plot) {
     if (plot.select.width < 3) return;
@@ -256,10 +263,6 @@ export class Explorer {
     this.mark(marksInTime(this.record, from, to));
     this.root.scrollIntoView({ block: "start" });
   }
-}
-
-function line(label, place) {
-  return { label, stroke: () => colour(MODELS[place % 4]), width: 1.2, dash: DASHES[place % 4] };
 }
 
 function sum(a, b) {

@@ -71,7 +71,8 @@ function said({ steps, unit }) {
   return "RMSE by step: " + steps.map((step) => `${step.name} ${USES.filter((use) => Number.isFinite(step[use])).map((use) => `${use} ${number(step[use])} ${unit}`).join(", ")}`).join("; ");
 }
 
-function put(parent, tag, attributes, text = "") {
+/** A new element of a drawing inside another. */
+export function put(parent, tag, attributes, text = "") {
   const made = document.createElementNS(SVG, tag);
   for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
   made.textContent = text;

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 import re
 import secrets
 from collections.abc import AsyncIterator, Awaitable, Callable
@@ -46,7 +47,7 @@ def make_app(bench: Bench, hosts: set[str], token: str) -> Guard:
             try:
                 return await handler(bench, request)
             except (InputError, RunError) as error:
-                return JSONResponse({"error": str(error)}, status_code=400)
+                return JSONResponse({"error": str(error).replace(f"{bench.root}{os.sep}", "")}, status_code=400)
             except (KeyError, TypeError, ValueError) as error:
                 return JSONResponse({"error": f"not a form of the workbench: {error!r}"}, status_code=400)
 
@@ -65,7 +66,7 @@ def make_app(bench: Bench, hosts: set[str], token: str) -> Guard:
         return FileResponse(path, media_type="text/html") if path else PlainTextResponse("not found", 404)
 
     posts = {"upload": upload, "look": look, "job": begin, "run": run, "stop": stop, "model": choose, "report": ticket}
-    posts |= {"add": change, "remove": change, "undo": undo}
+    posts |= {"add": change, "remove": change, "undo": undo, "back": back}
     gets = {"state": state, "signals": signals, "events": events, "job": job_file, "drive": drive_file}
     routes = [
         route("/", page),
@@ -132,6 +133,7 @@ async def upload(bench: Bench, request: Request) -> Response:
         return too_large()
     bench.data.mkdir(parents=True, exist_ok=True)
     path, part = bench.data / name, bench.data / f".{secrets.token_hex(8)}.part"
+    new = not path.exists()
     try:
         size = 0
         with part.open("wb") as file:
@@ -143,9 +145,13 @@ async def upload(bench: Bench, request: Request) -> Response:
         if path.exists() and path.read_bytes() != part.read_bytes():
             raise InputError(f"another {name!r} was dropped before", remedy="give it another name")
         part.replace(path)
+        return await looked_at(bench, path)
+    except InputError:
+        if new:  # it may be dropped again once it is mended
+            path.unlink(missing_ok=True)
+        raise
     finally:
         part.unlink(missing_ok=True)
-    return await looked_at(bench, path)
 
 
 def too_large() -> Response:
@@ -154,12 +160,13 @@ def too_large() -> Response:
 
 
 async def look(bench: Bench, request: Request) -> Response:
-    """What is in a file of the folder that the workbench was started in."""
-    return await looked_at(bench, inside(bench.root, (await form(request))["file"]))
+    """What is in a file of the folder that the workbench was started in, or in one of its tables or sheets."""
+    wanted = await form(request)
+    return await looked_at(bench, inside(bench.root, wanted["file"]), wanted.get("part"))
 
 
-async def looked_at(bench: Bench, path: Path) -> Response:
-    found = await asyncio.to_thread(columns_of, path)
+async def looked_at(bench: Bench, path: Path, part: str | None = None) -> Response:
+    found = await asyncio.to_thread(columns_of, path, part)
     return JSONResponse(found | {"file": bench.relative(path)})
 
 
@@ -205,6 +212,13 @@ async def undo(bench: Bench, request: Request) -> Response:
     return await state(bench, request)
 
 
+async def back(bench: Bench, request: Request) -> Response:
+    number = int((await form(request))["step"])
+    await bench.stop()
+    bench.go(number)
+    return await state(bench, request)
+
+
 async def job_file(bench: Bench, request: Request) -> Response:
     return PlainTextResponse(bench.job().text)
 
@@ -217,27 +231,35 @@ async def drive_file(bench: Bench, request: Request) -> Response:
 
 
 async def events(bench: Bench, request: Request) -> Response:
-    """Server-sent events: the lines of `events.jsonl` of the step shown, and `changed` when the state has."""
+    """Server-sent events: the lines of the `events.jsonl` of the step shown, and `changed` when the state has."""
     return StreamingResponse(following(bench, request), media_type="text/event-stream")
 
 
 async def following(bench: Bench, request: Request) -> AsyncIterator[str]:
-    shown, version, told = -1, -1, 0
+    shown, version, told = -1, -1, dict[Path, int]()
     while not bench.closing() and not await request.is_disconnected():
         if bench.at != shown:
-            shown, told = bench.at, 0
+            shown, told = bench.at, {}
             yield event({"event": "step", "step": shown})
-        if bench.at:
-            with suppress(FileNotFoundError), (bench.step() / "run" / "events.jsonl").open("rb") as file:
-                file.seek(told)
-                lines = file.read().rpartition(b"\n")[0]
-                told += len(lines) + bool(lines)
-                for line in lines.splitlines():
-                    yield event(json.loads(line))
+        for path in bench.logs():
+            for line in news(path, told):
+                yield event(view.printed(json.loads(line)))
         if bench.version != version:
             version = bench.version
             yield event({"event": "changed", "version": version})
         await asyncio.sleep(SECONDS_BETWEEN_LOOKS)
+
+
+def news(path: Path, told: dict[Path, int]) -> list[bytes]:
+    """The whole lines of a log that were not told yet; all of them where it began anew."""
+    with suppress(FileNotFoundError), path.open("rb") as file:
+        if told.get(path, 0) > path.stat().st_size:
+            told[path] = 0
+        file.seek(told.get(path, 0))
+        lines = file.read().rpartition(b"\n")[0]
+        told[path] = told.get(path, 0) + len(lines) + bool(lines)
+        return lines.splitlines()
+    return []
 
 
 def event(content: dict[str, Any]) -> str:

@@ -118,7 +118,7 @@ def test_what_is_inside_is_read(client, bench):
     measured(bench.root / "deep" / "data.csv")
     assert inside(bench.root, "deep/data.csv") == bench.root / "deep" / "data.csv"
     found = client.post("/api/look", json={"file": "deep/data.csv"}).json()
-    assert [column["role"] for column in found["columns"]] == ["time", "drive", "response"]
+    assert [column["role"] for column in found["columns"]] == ["time", "x.drive", "x.response"]
     with pytest.raises(InputError):
         inside(bench.root, "deep/../deep/data.csv")
 

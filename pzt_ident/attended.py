@@ -1,4 +1,4 @@
-"""`python -m pzt_ident.workbench.command`: the command line, ended when whoever started it is gone."""
+"""`python -m pzt_ident.attended`: the command line, ended when whoever started it is gone."""
 
 from __future__ import annotations
 
