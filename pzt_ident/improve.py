@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from pzt_ident.amend import with_effects
+from pzt_ident.compare import compare
 from pzt_ident.diagnosis import improve as stairs
 from pzt_ident.diagnosis.next_experiment import LEAST, Proposal, Reach, propose
 from pzt_ident.diagnosis.noise import noise_floor
@@ -57,7 +58,8 @@ def told(case: Case, step: stairs.Step) -> None:
 
 
 def diagnose(job: Job, out: Path | None = None, listen: Listen = lambda event: None) -> Path:
-    """Fit the job's model, say what it misses; writes `diagnosis.json` and `signals.nc` into the folder returned."""
+    """Fit the job's model, say where it fails and what it misses; writes `diagnosis.json`, `residuals.json` and
+    `signals.nc` into the folder returned."""
     with begun(job, out, listen) as (case, folder):
         first = first_fit(case, job.seed)
         told(case, stairs.Step(first))
@@ -65,14 +67,15 @@ def diagnose(job: Job, out: Path | None = None, listen: Listen = lambda event: N
         content = diagnosis_of(job, case, found, folder)
         write_signals(folder / "signals.nc", first.problem, first.point)
         write_json(folder / "diagnosis.json", content)
+        compare(folder, folder)
     return folder
 
 
 def improve(job: Job, out: Path | None = None, listen: Listen = lambda event: None) -> Path:
     """Diagnose, add what is missing and diagnose again, until nothing is missing or nothing more is known.
 
-    Writes `improved.yaml`, `diagnosis.json` of the last model, `improvement.json`, and the signals of the model as
-    given and of the last one.
+    Writes `improved.yaml`, `diagnosis.json` and `residuals.json` of the last model, `improvement.json`, and the signals
+    of the model as given and of the last one.
     """
     with begun(job, out, listen) as (case, folder):
         steps, last = stairs.improve(case, first_fit(case, job.seed), partial(told, case))
@@ -83,6 +86,7 @@ def improve(job: Job, out: Path | None = None, listen: Listen = lambda event: No
         write_text(folder / "improved.yaml", with_effects(job, steps[-1].fit.effects, folder))
         write_json(folder / "diagnosis.json", diagnosis)
         write_json(folder / "improvement.json", content)
+        compare(folder, folder)
     return folder
 
 

@@ -120,6 +120,6 @@ def listed(names: Iterable[str]) -> str:
 
 
 def step_name(step: Mapping[str, Any]) -> str:
-    """`as given`, `+ effect`, `- effect`, or both where one takes the place of another."""
+    """`as given`, `+ effect`, `- effect`, or both where one takes the place of another; what the step itself says."""
     words = [f"{sign} {step[key]}" for sign, key in (("+", "added"), ("-", "removed")) if step[key]]
-    return " ".join(words) or "as given"
+    return step.get("change") or " ".join(words) or "as given"

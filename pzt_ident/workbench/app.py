@@ -22,6 +22,7 @@ from pzt_ident.errors import InputError, RunError
 from pzt_ident.workbench import view
 from pzt_ident.workbench.bench import Bench
 from pzt_ident.workbench.columns import columns_of
+from pzt_ident.workbench.gather import gathered
 from pzt_ident.workbench.guard import Guard, inside
 
 LARGEST_UPLOAD = 256 << 20
@@ -57,7 +58,7 @@ def make_app(bench: Bench, hosts: set[str], token: str) -> Guard:
         """Write the report of the step shown; where it can be read, by who has the address only."""
         from pzt_ident.report.page import write_report
 
-        made, key = await asyncio.to_thread(write_report, bench.step() / "run"), secrets.token_urlsafe(24)
+        made, key = await asyncio.to_thread(lambda: write_report(gathered(bench))), secrets.token_urlsafe(24)
         tickets[key] = made
         return JSONResponse({"url": f"/report/{key}", "file": bench.relative(made)})
 
