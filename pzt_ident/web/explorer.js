@@ -24,8 +24,7 @@ export class Explorer {
     const redraw = () => this.record && this.draw();
     new ResizeObserver(() => this.root.clientWidth !== this.drawnAt && redraw()).observe(root);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
-    addEventListener("beforeprint", () => { document.documentElement.dataset.theme = "light"; redraw(); });
-    addEventListener("afterprint", () => { delete document.documentElement.dataset.theme; redraw(); });
+    printed(redraw);
     this.choose(0);
   }
 
@@ -119,12 +118,13 @@ export class Explorer {
 
   draw() {
     this.drawnAt = this.root.clientWidth;
+    this.fine = document.documentElement.hasAttribute("data-print") ? 2 : 1; // pixels a pixel
     this.curves.replaceChildren();
     const { record } = this;
     const named = record.models.length > 1;
     this.plots = [
       this.plot(`response [${record.unit}]`, 0.26, 0, [record.response, ...record.models.map((model) => sum(record.response, model.residual))], [
-        { label: "measured", stroke: () => colour("--measured"), width: 3 },
+        { label: "measured", stroke: () => colour("--measured"), width: 3 * this.fine },
         ...record.models.map((model, place) => this.line(named ? model.name : "model", place)),
       ]),
       this.plot(`residual [${record.unit}]`, 0.18, this.floors[record.axis] ?? 0, record.models.map((model) => model.residual),
@@ -140,7 +140,7 @@ export class Explorer {
     }));
     const cells = gridded(record.drive, this.open, record.models[0].residual, this.scored);
     this.map.caption.textContent = `Residual map: mean residual along the loop, its slope taken out. Violet: the model is ${number(cells.largest, 2)} ${record.unit} or more below the measurement; orange: above.`;
-    this.map.show(this.scene(this.open, `response less a straight line [${record.unit}]`, { cells }));
+    this.map.show(this.scene(this.open, `off a straight line [${record.unit}]`, { cells }));
     this.mark(this.marks);
   }
 
@@ -150,16 +150,19 @@ export class Explorer {
   }
 
   plot(label, share, floor, arrays, series) {
-    const { record } = this;
+    const { record, fine } = this;
     const width = Math.max(280, this.curves.clientWidth - 4);
-    const font = `${Math.round(0.78 * parseFloat(getComputedStyle(this.curves).fontSize))}px system-ui, sans-serif`;
-    const axis = (more) => ({ font, labelFont: font, stroke: () => colour("--quiet"), grid: { stroke: () => colour("--rule"), width: 1 }, ticks: { show: false }, ...more });
+    const font = `${Math.round(0.78 * fine * parseFloat(getComputedStyle(this.curves).fontSize))}px system-ui, sans-serif`;
+    const axis = (label, labelSize, size, more) => ({
+      label, labelSize: fine * labelSize, size: fine * size, gap: 5 * fine, space: (self, axis) => fine * (axis ? 30 : 50), font, labelFont: font,
+      stroke: () => colour("--quiet"), grid: { stroke: () => colour("--rule"), width: fine }, ticks: { show: false }, ...more,
+    });
     const plot = new uPlot({
-      width, height: Math.round(Math.min(Math.max(width * share, 130), 420)),
+      width: fine * width, height: fine * Math.round(Math.min(Math.max(width * share, 130), 420)),
       legend: { live: false },
       cursor: { sync: { key: this.record.name }, drag: { x: true, y: false, setScale: false }, points: { show: false } },
       scales: { x: { time: false }, y: { range: () => this.range(arrays, floor) } },
-      axes: [axis({ label: "time [s]", labelSize: 18, size: 32 }), axis({ label, labelSize: 20, size: 58, values: (_, values) => values.map(tick) })],
+      axes: [axis("time [s]", 18, 32), axis(label, 20, 58, { values: (_, values) => values.map(tick) })],
       series: [{ label: "time" }, ...series],
       hooks: {
         setSelect: [(self) => this.dragged(self)],
@@ -186,7 +189,7 @@ export class Explorer {
   }
 
   line(label, place) {
-    return { label, stroke: () => colour(MODELS[place % 4]), width: 1.2, dash: this.dash(place) };
+    return { label, stroke: () => colour(MODELS[place % 4]), width: 1.2 * this.fine, dash: this.dash(place) };
   }
 
   dash(place) { return this.record.index.length > DASHED ? [] : DASHES[place % 4]; }
@@ -267,6 +270,15 @@ export class Explorer {
 
 function sum(a, b) {
   return a.map((value, i) => value + b[i]);
+}
+
+/** Draw as wide as a sheet of paper and in its colours while it is printed. */
+export function printed(redraw) {
+  for (const [name, on] of [["beforeprint", true], ["afterprint", false]])
+    addEventListener(name, () => {
+      document.documentElement.toggleAttribute("data-print", on);
+      redraw();
+    });
 }
 
 /** A new element inside another. */

@@ -1,4 +1,4 @@
-import { element } from "./explorer.js";
+import { element, printed } from "./explorer.js";
 import { number, ticks } from "./signals.js";
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -10,6 +10,7 @@ export class Staircase {
     this.root = root;
     root.classList.add("staircase");
     new ResizeObserver(() => root.clientWidth !== this.drawnAt && this.show(this.content)).observe(root);
+    printed(() => this.show(this.content));
     this.show(content);
   }
 

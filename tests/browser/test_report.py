@@ -99,5 +99,11 @@ def test_the_keyboard_reaches_the_mark(opened):
 
 
 def test_it_prints(opened, tmp_path):
+    opened.emulate_media(media="print")
+    opened.evaluate("dispatchEvent(new Event('beforeprint'))")
+    width = "[...document.querySelectorAll('.explorer canvas')].map((one) => one.getBoundingClientRect().right)"
+    assert max(opened.evaluate(width)) < 180 / 25.4 * 96
+    opened.evaluate("dispatchEvent(new Event('afterprint'))")
+    opened.emulate_media(media="screen")
     opened.pdf(path=tmp_path / "report.pdf", format="A4")
     assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
