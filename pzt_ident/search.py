@@ -84,6 +84,20 @@ class Generational(Optimizer):
         return replace(self, generations=math.ceil(evaluations / self.population))
 
 
+@dataclass(frozen=True)
+class Budgeted(Optimizer):
+    """An optimizer that takes as many evaluations a generation as it comes to need."""
+
+    budget: int = setting(17_500, "1", (1, 1_000_000_000), "Evaluations.")
+
+    @property
+    def evaluations(self) -> int:
+        return self.budget
+
+    def with_budget(self, evaluations: int) -> Self:
+        return replace(self, budget=evaluations)
+
+
 def _check(value: Any, default: Any, facts: Any, where: str) -> None:
     if "words" in facts:
         if value not in facts["words"]:

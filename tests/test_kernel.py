@@ -8,40 +8,28 @@ from numba import njit
 
 from pzt_ident import block, kernel
 
-EXPM1, LOG1P, SIN, COS = kernel.expm1_lanes, kernel.log1p_lanes, kernel.sin_lanes, kernel.cos_lanes
-ERF = kernel.erf_lanes
+
+def over(function):
+    """The compiled function over an array."""
+
+    @njit(fastmath={"contract"}, error_model="numpy")
+    def loop(x):
+        found = np.empty_like(x)
+        for i in range(x.size):
+            found[i] = function(x[i])
+        return found
+
+    return loop
 
 
-@njit(fastmath={"contract"}, error_model="numpy")
-def expm1(x):
-    found = np.empty_like(x)
-    for i in range(x.size):
-        found[i] = EXPM1(x[i])
-    return found
+expm1, log1p, sin, cos, erf = (
+    over(function)
+    for function in (kernel.expm1_lanes, kernel.log1p_lanes, kernel.sin_lanes, kernel.cos_lanes, kernel.erf_lanes)
+)
 
 
-@njit(fastmath={"contract"}, error_model="numpy")
-def log1p(x):
-    found = np.empty_like(x)
-    for i in range(x.size):
-        found[i] = LOG1P(x[i])
-    return found
-
-
-@njit(fastmath={"contract"}, error_model="numpy")
 def waves(x):
-    found = np.empty((2, x.size))
-    for i in range(x.size):
-        found[0, i], found[1, i] = SIN(x[i]), COS(x[i])
-    return found
-
-
-@njit(fastmath={"contract"}, error_model="numpy")
-def erf(x):
-    found = np.empty_like(x)
-    for i in range(x.size):
-        found[i] = ERF(x[i])
-    return found
+    return np.array([sin(x), cos(x)])
 
 
 def both_signs(*exponents):

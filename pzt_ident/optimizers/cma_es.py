@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Generator
-from dataclasses import dataclass, replace
-from typing import Self
+from dataclasses import dataclass
 
 import numpy as np
 
 from pzt_ident.registry import optimizers
-from pzt_ident.search import Array, Optimizer, Search, setting
+from pzt_ident.search import Array, Budgeted, Search, setting
 
 
 @optimizers.register
 @dataclass(frozen=True)
-class CMAES(Optimizer):
+class CMAES(Budgeted):
     """CMA-ES in pycma's form, restarted when it has converged: x ~ m + sigma N(0, C), C learnt from the better half.
 
     Restarts alternate between populations that double and small ones from narrower starts, so that both have used
@@ -23,16 +22,8 @@ class CMAES(Optimizer):
 
     source = "Hansen & Ostermeier (2001), Evol. Comput. 9, 159; Hansen (2009), BBOB workshop, BIPOP"
 
-    budget: int = setting(17_500, "1", (1, 1_000_000_000), "Evaluations.")
     population: int = setting(0, "1", (0, 100_000), "Candidates in a generation of the first start; 0: 4 + 3 ln P.")
     sigma: float = setting(0.3, "range", (1e-6, 1), "Standard deviation of the first generation.")
-
-    @property
-    def evaluations(self) -> int:
-        return self.budget
-
-    def with_budget(self, evaluations: int) -> Self:
-        return replace(self, budget=evaluations)
 
     def search(self, dimensions: int, rng: np.random.Generator) -> Search:
         first = self.population or 4 + int(3 * np.log(dimensions))

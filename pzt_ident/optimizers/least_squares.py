@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Generator
-from dataclasses import dataclass, replace
-from typing import Self
+from dataclasses import dataclass
 
 import numpy as np
 
 from pzt_ident.registry import optimizers
-from pzt_ident.search import Array, Optimizer, Search, setting
+from pzt_ident.search import Array, Budgeted, Search, setting
 
 ROUNDING = float(np.finfo(np.float64).eps)
 STEP = ROUNDING**0.5  # of a forward difference
@@ -18,7 +17,7 @@ SMALLEST = 1e-11  # move that ends a start
 
 @optimizers.register
 @dataclass(frozen=True)
-class LeastSquares(Optimizer):
+class LeastSquares(Budgeted):
     """Levenberg-Marquardt from many starts: (J'J + mu D) s = -J'r within the bounds, J by a batch of differences.
 
     Without residuals the model of the loss is quadratic with a BFGS Hessian in place of J'J. The first start is the
@@ -28,15 +27,7 @@ class LeastSquares(Optimizer):
     source = "Marquardt (1963), J. SIAM 11, 431; Nielsen (1999), IMM-REP-1999-05; Nocedal & Wright (2006), ch. 6 and 10"
     wants = "residuals"
 
-    budget: int = setting(17_500, "1", (1, 1_000_000_000), "Evaluations.")
     samples: int = setting(10, "1", (1, 100_000), "Random points of which the best one is a start.")
-
-    @property
-    def evaluations(self) -> int:
-        return self.budget
-
-    def with_budget(self, evaluations: int) -> Self:
-        return replace(self, budget=evaluations)
 
     def search(self, dimensions: int, rng: np.random.Generator) -> Search:
         while True:

@@ -1,0 +1,57 @@
+"""What the papers say of Levenberg-Marquardt and of the secant Hessian."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import lsq_linear
+
+from pzt_ident.optimizers.least_squares import LeastSquares, bounded_step, secant
+from pzt_ident.search import Stop, drive
+
+seeds = st.integers(0, 2**32 - 1)
+
+
+@given(seed=seeds)
+@settings(max_examples=30, deadline=None)
+def test_a_step_without_damping_is_that_of_gauss_and_newton(seed):
+    rng = np.random.default_rng(seed)
+    jacobian, answer = rng.normal(size=(9, 4)), 1e-3 * rng.normal(size=9)
+    step = bounded_step(np.full(4, 0.5), jacobian.T @ answer, jacobian.T @ jacobian, 0.0)
+    np.testing.assert_allclose(step, -np.linalg.lstsq(jacobian, answer, rcond=None)[0], rtol=1e-6, atol=1e-12)
+
+
+def test_damping_turns_the_step_downhill_and_shortens_it():
+    hessian, gradient = np.diag([1.0, 100.0]), np.array([1e-3, 1e-3])
+    steps = [bounded_step(np.full(2, 0.5), gradient, hessian, damping) for damping in (0.0, 1.0, 1e6)]
+    np.testing.assert_allclose(steps[1], -gradient / (2 * np.diag(hessian)))
+    assert [float(np.linalg.norm(step)) for step in steps] == sorted((np.linalg.norm(s) for s in steps), reverse=True)
+
+
+@given(seed=seeds)
+@settings(max_examples=10, deadline=None)
+def test_a_linear_problem_is_solved_at_once_even_on_its_bounds(seed):
+    rng = np.random.default_rng(seed)
+    matrix, target = rng.normal(size=(12, 3)), rng.normal(size=12)
+    optimizer = LeastSquares(budget=120)
+    residuals = lambda points: points @ matrix.T - target  # noqa: E731
+    found = drive(
+        optimizer, 3, lambda x: np.sqrt(np.mean(residuals(x) ** 2, axis=1)), 1, Stop(120), residuals=residuals
+    )
+    best = lsq_linear(matrix, target, bounds=(0, 1), tol=1e-14).x
+    assert found.loss == pytest.approx(float(np.sqrt(np.mean((matrix @ best - target) ** 2))), rel=1e-9)
+
+
+@given(seed=seeds)
+@settings(max_examples=30, deadline=None)
+def test_the_secant_hessian_knows_the_last_move(seed):
+    """Nocedal & Wright (2006), 6.6: H s = y, and H stays positive definite."""
+    rng = np.random.default_rng(seed)
+    root = rng.normal(size=(4, 4))
+    true = root @ root.T + np.eye(4)
+    s = rng.normal(size=4)
+    before = np.zeros(4), np.zeros(4)
+    hessian = secant(np.eye(4), before, s, true @ s)
+    np.testing.assert_allclose(hessian @ s, true @ s, rtol=1e-9, atol=1e-9)
+    bent = secant(np.eye(4), before, s, -true @ s)
+    assert np.linalg.eigvalsh(hessian).min() > 0 and np.linalg.eigvalsh(bent).min() > 0
