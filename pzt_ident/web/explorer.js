@@ -3,7 +3,7 @@ import { errorOf, extent, lowerBound, marksInBox, marksInTime, number, opened, t
 
 const MODELS = ["--model", "--before", "--third", "--fourth"];
 const DASHES = [[], [6, 3], [2, 2], [8, 2, 2, 2]];
-const DASHED = 20000; // points: in longer records dashes run together, and cost a tenth of a second
+const LONG = 20000; // points: in longer records dashes run together, and a line of one pixel is drawn five times as fast
 
 /** Model beside measurement: in time, as a loop and as a map of the residual. What is marked in one is seen in all. */
 export class Explorer {
@@ -134,7 +134,7 @@ export class Explorer {
       curves: [
         { xs: record.drive, ys: record.response, colour: "--measured", width: 3 },
         ...record.models.map((model, place) => ({
-          xs: record.drive, ys: sum(record.response, model.residual), colour: MODELS[place % 4], width: 1.1, dash: this.dash(place),
+          xs: record.drive, ys: sum(record.response, model.residual), colour: MODELS[place % 4], width: 1, dash: this.dash(place),
         })).reverse(),
       ],
     }));
@@ -189,10 +189,11 @@ export class Explorer {
   }
 
   line(label, place) {
-    return { label, stroke: () => colour(MODELS[place % 4]), width: 1.2 * this.fine, dash: this.dash(place) };
+    const width = (this.record.index.length > LONG ? 1 : 1.2) * this.fine;
+    return { label, stroke: () => colour(MODELS[place % 4]), width, dash: this.dash(place) };
   }
 
-  dash(place) { return this.record.index.length > DASHED ? [] : DASHES[place % 4]; }
+  dash(place) { return this.record.index.length > LONG ? [] : DASHES[place % 4]; }
 
   dragged(plot) {
     if (plot.select.width < 3) return;

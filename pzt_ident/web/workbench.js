@@ -241,12 +241,13 @@ function share(part) {
 async function signals() {
   const key = state.steps.map((step) => `${step.number}:${step.identify}`).join(" ");
   const none = !state.steps.some((step) => step.identify !== null);
-  if (none || !explorer) at("fit").hidden = none || !state.result;
+  at("fit").hidden = none || !explorer;
   if (none || key === shown || !state.result) return;
   shown = key;
   const found = await ask("signals");
   const records = await Promise.all(found.records.map(decode));
   if (!records.length) return;
+  at("fit").hidden = false;
   if (explorer) Object.assign(explorer, { floors: found.floors }).update(records);
   else explorer = new Explorer(at("explorer"), records, { floors: found.floors });
 }
