@@ -44,6 +44,17 @@ def test_without_rest_or_repeats_the_evidence_is_weak(noise):
     assert floor.value == pytest.approx(SIGMA, rel=0.2)
 
 
+def test_records_measured_again_give_the_noise_of_any_signal(noise):
+    """Wide-band signals have neither rest nor a smooth course; a settled offset between both counts for nothing."""
+    rng = np.random.default_rng(3)
+    drive = rng.normal(size=3000)
+    again = [record(drive, 1e-7 * drive + each) for each in (noise[:3000], 1e-6 + noise[3000:])]
+    floor = noise_floor([*again, record(rng.normal(size=3000), noise[:3000] * 7)], 0)
+    assert floor.source == "repeated records"
+    assert floor.value == pytest.approx(SIGMA, rel=0.1)
+    assert "weak" in noise_floor(again[:1], 0).source
+
+
 def test_never_below_the_quantiser():
     t = np.arange(6000)
     drive = 50 * (1 - np.cos(2 * np.pi * t / 1000))

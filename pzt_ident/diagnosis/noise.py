@@ -25,14 +25,19 @@ class Floor(NamedTuple):
 
 
 def noise_floor(records: list[Record], axis: int) -> Floor:
-    """Noise of an axis, from the best evidence there is: rest segments, repeated periods, else the high frequencies.
+    """Noise of an axis, from the best evidence there is: records measured again, rest segments, repeated periods, else
+    the high frequencies.
 
     Never less than the quantiser's q / sqrt(12) where the response takes few values. The high-frequency part is weak
     evidence: it takes slow noise for signal and fast signal for noise.
     """
     signals = [(r.drive, r.response[axis], r.settle, r.dt) for r in records]
+    again = [(r, other) for i, r in enumerate(records) for other in records[:i] if same_drive(r, other)]
     step = min((quantiser(y) for _, y, _, _ in signals), default=0.0)
     least = step / np.sqrt(12)
+    if again:
+        change = [(a.response[axis] - b.response[axis])[max(a.settle, b.settle) :] for a, b in again]
+        return at_least(np.sqrt(np.mean([scatter(each, 1) ** 2 / 2 for each in change])), "repeated records", least)
     for find, source in (
         (resting, "rest segments"),
         (repeated, "repeated periods"),
@@ -41,9 +46,21 @@ def noise_floor(records: list[Record], axis: int) -> Floor:
         found = [(v, n * dt) for u, y, settle, dt in signals for v, n in find(u[:, settle:], y[settle:])]
         if found:
             values, seconds = np.array(found).T
-            value = float(np.sqrt(np.average(values**2, weights=seconds)))
-            return Floor(value, source) if value > least else Floor(least, "quantiser")
+            return at_least(np.sqrt(np.average(values**2, weights=seconds)), source, least)
     return Floor(least, "quantiser")
+
+
+def at_least(value: float, source: str, least: float) -> Floor:
+    """A scatter, or the quantiser where that is more."""
+    return Floor(float(value), source) if value > least else Floor(least, "quantiser")
+
+
+def same_drive(one: Record, other: Record, tolerance: float = 2e-3) -> bool:
+    """Whether a record was measured again: all drives differ by no more than a share of their spans."""
+    if one.drive.shape != other.drive.shape or one.dt != other.dt:
+        return False
+    span = np.ptp(one.drive, axis=1)
+    return bool((np.abs(one.drive - other.drive).max(axis=1) <= tolerance * span).all())
 
 
 def sizes(records: list[Record]) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.diagnosis.noise import noise_floor, sizes
 from pzt_ident.model import Model
+from pzt_ident.plan import between
 from pzt_ident.problem import Problem
 from pzt_ident.record import Record
 from pzt_ident.registry import Choice, blocks
@@ -23,6 +24,7 @@ Tell = Callable[[dict[str, Any]], None]
 STARTS = 240  # chance points, of which the best few are refined
 REFINED = 4
 AGREE = 0.01  # of the loss, between the two best of them
+FINE = 0.3  # of the misfit or the noise, at most, by which halving the steps of the simulation may change the response
 EDGE = 1e-4  # of a parameter's range: as near to its end it is on the bound
 DAMPINGS = 10.0 ** np.arange(-5, 4)
 
@@ -64,14 +66,19 @@ class Case:
 
 @dataclass(frozen=True)
 class Fit:
-    """A model with its effects at its best point; RMSE in SI units, validate None without such records."""
+    """A model with its effects at its best point; RMSE in SI units, validate None without such records. `doubt` is why
+    what it leaves may not be the model's fault."""
 
     effects: tuple[str, ...]
     problem: Problem
     point: Array
     identify: float
     validate: float | None
-    converged: bool = True
+    doubt: str = ""
+
+    @property
+    def converged(self) -> bool:
+        return not self.doubt
 
     @property
     def total(self) -> float:
@@ -91,15 +98,14 @@ class Fit:
         return float(self.problem.physical(self.point)[0][self.problem.names.index(name)])
 
 
-def made(effects: tuple[str, ...], problem: Problem, point: Array, converged: bool = True) -> Fit:
+def made(effects: tuple[str, ...], problem: Problem, point: Array, doubt: str = "") -> Fit:
     validate = float(problem.loss(point, "validate")[0])
-    return Fit(
-        effects, problem, point, float(problem.loss(point)[0]), None if np.isnan(validate) else validate, converged
-    )
+    return Fit(effects, problem, point, float(problem.loss(point)[0]), None if np.isnan(validate) else validate, doubt)
 
 
 def first_fit(case: Case, seed: int, known: dict[str, float] | None = None) -> Fit:
-    """The job's own model, from chance points; not converged where the two best of their minima differ."""
+    """The job's own model, from chance points; in doubt where the two best of their minima differ, or where the steps
+    of the simulation are too coarse for what is left."""
     problem = case.problem(case.effects)
     rng = np.random.default_rng(seed)
     starts = rng.uniform(size=(STARTS, problem.dimensions))
@@ -112,7 +118,34 @@ def first_fit(case: Case, seed: int, known: dict[str, float] | None = None) -> F
     losses = problem.loss(np.array(ends))
     best, second = np.argsort(losses)[:2]
     agreed = bool(losses[second] <= (1 + AGREE) * losses[best] + 0.1 * case.floor) and bool(np.isfinite(losses[best]))
-    return made(case.effects, problem, ends[best], agreed)
+    fit = made(case.effects, problem, ends[best])
+    return replace(fit, doubt=doubt(case, fit, agreed))
+
+
+def doubt(case: Case, fit: Fit, agreed: bool) -> str:
+    if not agreed:
+        return "Two starts of the fit do not agree: what is left may be the search's fault. Narrow the bounds."
+    left = max(case.floor, float(np.sqrt(max(fit.identify**2 - case.floor**2, 0))))
+    error = step_error(fit.problem, fit.point)
+    if error <= FINE * left:
+        return ""
+    change = f"Halving the steps of the simulation changes the response by {error / left:.0%} of what is left"
+    return f"{change}: the solver may be at fault. Sample faster."
+
+
+def step_error(problem: Problem, point: Array) -> float:
+    """Change of the response of the identify records, root mean square, in units of the loss, when every step of the
+    simulation is halved."""
+    model, theta, squares, count = problem.model, problem.parameters(point), 0.0, 0
+    for record in (record for record in problem.records if record.use == "identify"):
+        smooth = model.oversample > 1
+        drive = np.array([between(row, 2, bool(record.run_in), smooth) for row in record.drive])
+        halved = replace(record, drive=drive, response=np.repeat(record.response, 2, axis=1), dt=record.dt / 2)
+        change = model.simulate(halved, theta)[0, :, ::2] - model.simulate(record, theta)[0]
+        change = change[:, record.settle :] / problem.sizes[:, None]
+        squares += float(np.sum((change - change.mean(axis=1, keepdims=True)) ** 2))
+        count += change.size
+    return float(np.sqrt(squares / count))
 
 
 def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, float]) -> Fit:

@@ -72,9 +72,8 @@ def adequate(case: Case, first: Fit, fit: Fit) -> bool:
 def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     """Score every effect, refit the short list, judge; `first` as for `least`, by default the model itself."""
     first = first or before
-    if not before.converged:
-        reason = "Two starts of the fit do not agree: what is left may be the search's fault. Narrow the bounds."
-        return Diagnosis("refused", reason, before, [], [])
+    if before.doubt:
+        return Diagnosis("refused", before.doubt, before, [], [])
     scorer = Scorer(case, before)
     candidates = sorted(map(Candidate, scored(case, before, scorer)), key=lambda item: -item.score.explained)
     if adequate(case, first, before) and not any(_worth(case, first, before, item) for item in candidates):

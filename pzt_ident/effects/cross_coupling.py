@@ -13,7 +13,7 @@ class CrossCoupling(Coupling):
     """
 
     place = Place.COUPLING
-    ratio = Parameter("1", (-0.2, 0.2), "Stiffness coupling k12 / k11 from the other axis.", null=0)
+    ratio = Parameter("1", (-5, 5), "Stiffness coupling k12 / k11 from the other axis.", null=0)
     looks_like = ("kinematic_coupling",)
     separate_by = (
         "Chirp the other axis beyond the resonances of both with this one at rest: stiffness coupling rings at this "

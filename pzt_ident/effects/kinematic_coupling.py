@@ -13,7 +13,7 @@ class KinematicCoupling(Coupling):
     """
 
     place = Place.OUTPUT
-    ratio = Parameter("1", (-0.2, 0.2), "Share of the other axis' displacement in this axis' reading.", null=0)
+    ratio = Parameter("1", (-5, 5), "Share of the other axis' displacement in this axis' reading.", null=0)
     looks_like = ("cross_coupling",)
     separate_by = (
         "Chirp the other axis beyond the resonances of both with this one at rest: this coupling rings at the other "

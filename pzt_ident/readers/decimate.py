@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,10 +11,11 @@ STOPBAND = 60.0
 """Attenuation from the new Nyquist frequency on, dB; the passband ends at 0.8 of it."""
 
 
-def decimated(signal: NDArray[np.float64], step: int) -> NDArray[np.float64]:
+def decimated(signal: NDArray[np.float64], step: int, periodic: bool = False) -> NDArray[np.float64]:
     """Every `step`-th sample, (samples,), behind a low-pass of zero phase and unit gain at rest (Kaiser window).
 
-    At its ends the signal goes on point-symmetrically, so that neither an offset nor a slope is bent there.
+    At its ends the signal goes on as itself where it is periodic, else point-symmetrically, so that neither an offset
+    nor a slope is bent there.
     """
     if step == 1:
         return signal
@@ -21,5 +24,6 @@ def decimated(signal: NDArray[np.float64], step: int) -> NDArray[np.float64]:
     taps, beta = kaiserord(STOPBAND, 0.2 / step)
     half = taps // 2
     window = firwin(2 * half + 1, 0.9 / step, window=("kaiser", beta), scale=True)
-    extended = np.pad(signal - signal[0], half, mode="reflect", reflect_type="odd")
+    goes_on: dict[str, Any] = {"mode": "wrap"} if periodic else {"mode": "reflect", "reflect_type": "odd"}
+    extended = np.pad(signal - signal[0], half, **goes_on)
     return signal[0] + oaconvolve(extended, window, mode="valid")[::step]

@@ -73,16 +73,15 @@ def _record(finder: Finder, axes: Mapping[str, Axis], time: Channel | None) -> R
     grid = finder.grid(time, rows)
     part = stretch(grid, rows, source.time, where)
     first = drives[0].first if drives[0] else 0
-    samples = len(range(part.start, part.stop, source.decimate))
-    _check_length(samples, source, grid.dt, where)
+    _check_length(part, source, grid.dt, where)
     for response in filter(None, responses):
         _check_moving(response.cut(part).complete())
     return Record(
         name=source.name or Path(source.file).stem,
         use=source.use,
         dt=grid.dt * source.decimate,
-        drive=_sampled(drives, part, source.decimate),
-        response=_sampled(responses, part, source.decimate),
+        drive=_sampled(drives, part, source),
+        response=_sampled(responses, part, source),
         start=grid.start + grid.dt * part.start,
         settle=round(source.settle / (grid.dt * source.decimate)),
         run_in=source.run_in,
@@ -104,10 +103,14 @@ def _rows(signals: Sequence[Signal | None], where: str) -> int:
     return next(iter(rows.values()))
 
 
-def _check_length(samples: int, source: Source, dt: float, where: str) -> None:
+def _check_length(part: slice, source: Source, dt: float, where: str) -> None:
+    samples = len(range(part.start, part.stop, source.decimate))
     if samples < SHORTEST:
         problem = f"the record has {samples} samples, at least {SHORTEST} are needed"
         raise InputError(problem, where=where, remedy="widen `rows` or `time`, or decimate less")
+    if source.run_in and (part.stop - part.start) % source.decimate:
+        problem = f"decimate {source.decimate} does not divide the {part.stop - part.start} samples of a period"
+        raise InputError(problem, where=where, remedy="cut whole periods with `rows`, or decimate by a divisor")
     if round(source.settle / (dt * source.decimate)) >= samples:
         problem = f"settle {source.settle:g} s leaves nothing of {samples * dt * source.decimate:g} s"
         raise InputError(problem, where=where, remedy="shorten it")
@@ -119,11 +122,12 @@ def _check_moving(response: Signal) -> None:
         raise InputError(problem, where=response.where, remedy="is it the right column, and was the sensor connected?")
 
 
-def _sampled(signals: Sequence[Signal | None], part: slice, step: int) -> NDArray[np.float64]:
-    """(axes, samples); NaN for a signal that is not measured."""
-    size = len(range(part.start, part.stop, step))
-    rows = [decimated(item.cut(part).complete().values, step) if item else np.full(size, np.nan) for item in signals]
-    return np.array(rows)
+def _sampled(signals: Sequence[Signal | None], part: slice, source: Source) -> NDArray[np.float64]:
+    """(axes, samples); NaN for a signal that is not measured. A record that is run in is periodic."""
+    step, periodic = source.decimate, source.run_in > 0
+    missing = np.full(len(range(part.start, part.stop, step)), np.nan)
+    cut = [item.cut(part).complete().values if item else None for item in signals]
+    return np.array([missing if values is None else decimated(values, step, periodic) for values in cut])
 
 
 def _notes(source: Source) -> tuple[str, ...]:

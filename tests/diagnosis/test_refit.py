@@ -128,6 +128,41 @@ def test_a_descent_from_where_the_simulation_fails_is_no_success(plain, monkeypa
     assert inside[4] < 0.5
 
 
+class Coarse(Block):
+    """A lag of two samples by Euler's step, which is of first order only."""
+
+    name = "coarse"
+    place = Place.SENSOR
+    tau = Parameter("s", (0.008, 0.012), "Two samples of the stage.")
+
+    def prepare(tau, dt):
+        return (dt / tau,)
+
+    def start(u, share):
+        return (u,)
+
+    def step(x, u, share):
+        x = x + share * (u - x)
+        return x, x
+
+
+def test_halving_the_step_changes_nothing_of_what_is_exact(plain):
+    fit = first_fit(plain, 0)
+    assert refit.step_error(fit.problem, fit.point) < 1e-9 * plain.floor
+
+
+def test_a_solver_too_coarse_for_what_is_left_is_blamed_on_no_effect(plain, monkeypatch):
+    monkeypatch.setitem(blocks._items, "coarse", Coarse)
+    made = refit.Case((*plain.words, "coarse"), (), plain.records, {})
+    fit = first_fit(made, 0)
+    problem = fit.problem
+    response = problem.model.simulate(problem.records[0], problem.parameters(fit.point))[0, 0]
+    half_a_step = np.gradient(response) / 2  # by which Euler's lag is too short
+    assert refit.step_error(problem, fit.point) == pytest.approx(np.std(half_a_step), rel=0.1)
+    assert "Halving the steps" in fit.doubt and "Sample faster" in fit.doubt
+    assert not fit.converged
+
+
 def test_a_parameter_on_a_bound_is_told_unless_it_is_its_null(creeping):
     fit = refit.refit(creeping, first_fit(creeping, 0), ("amplifier_lag",), {})
     place = {name: i for i, name in enumerate(fit.problem.names)}

@@ -121,6 +121,15 @@ def test_decimation_passes_below_the_new_nyquist_and_stops_above(step):
         assert np.abs(decimated(np.sin(np.pi * frequency * n / step + 0.3), step)[middle]).max() < 2e-3
 
 
+@pytest.mark.parametrize("step", [2, 4, 8])
+def test_decimation_of_a_period_is_that_of_many(step):
+    """To the ends: tones of whole periods below the new Nyquist frequency come back as they are."""
+    n = np.arange(512)
+    tones = sum(np.sin(2 * np.pi * k * n / 512 + k) for k in (1, 5, 256 * 7 // (10 * step)))
+    wrapped, folded = (np.abs(decimated(tones, step, each) - tones[::step]).max() for each in (True, False))
+    assert wrapped < 1e-3 < folded
+
+
 def test_decimation_does_not_bias_a_noisy_record_at_its_ends():
     rng = np.random.default_rng(5)
     ends = [decimated(7 + 0.1 * rng.normal(size=200), 8)[[0, -1]] for _ in range(300)]
