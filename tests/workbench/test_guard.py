@@ -89,6 +89,7 @@ def test_no_path_leads_out_of_the_page(client, path):
     "name",
     [
         "../secret.csv",
+        "${HOME}/secret.csv",
         "/etc/passwd",
         "a/../../secret.csv",
         "..",
