@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -19,6 +19,7 @@ from pzt_ident.record import Record
 from pzt_ident.registry import Choice, blocks
 
 Array = NDArray[np.float64]
+Tell = Callable[[dict[str, Any]], None]
 
 STARTS = 240  # chance points, of which the best few are refined, so many at a time until two agree
 REFINED, MOST = 4, 24
@@ -29,7 +30,11 @@ DAMPINGS = 10.0 ** np.arange(-5, 4)
 
 
 class Case:
-    """A model, its records and what is free, to which effects can be added that are not ruled out."""
+    """A model, its records and what is free, to which effects can be added that are not ruled out.
+
+    `tell` hears of every start that was fitted, effect that was scored and model that was refitted, as it happens, from
+    any thread; errors are in units of the loss.
+    """
 
     def __init__(
         self,
@@ -39,7 +44,9 @@ class Case:
         wishes: Any,
         ruled_out: Sequence[str] = (),
         shared: Sequence[str] = (),
+        tell: Tell = lambda event: None,
     ) -> None:
+        self.tell = tell
         self.words, self.effects = tuple(words), tuple(effects)
         self.ruled_out, self.shared = tuple(ruled_out), tuple(shared)
         self.records, self.wishes, self.sizes = tuple(records), wishes, sizes(list(records))
@@ -107,7 +114,9 @@ def first_fit(case: Case, seed: int) -> Fit:
     while len(ends) < MOST and not agreed:
         own = starts[order[len(ends) : len(ends) + REFINED]]
         with ThreadPoolExecutor(2) as pool:
-            ends = np.vstack([ends, *pool.map(lambda start: descend(problem, start), own)])
+            for end in pool.map(lambda start: descend(problem, start), own):
+                ends = np.vstack([ends, end])
+                case.tell({"event": "fitted", "done": len(ends), "of": len(order)})
         losses = problem.loss(ends)
         best, second = np.sort(losses)[:2]
         agreed = bool(second <= (1 + AGREE) * best + 0.1 * case.floor and np.isfinite(best))
@@ -147,7 +156,9 @@ def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, fl
     old = dict(zip(before.problem.names, before.problem.physical(before.point)[0], strict=True))
     middle = problem.physical(np.full(problem.dimensions, 0.5))[0]
     start = {name: guess.get(name, old.get(name, middle[i])) for i, name in enumerate(problem.names)}
-    return made(effects, problem, descend(problem, problem.unit_point(start)))
+    found = made(effects, problem, descend(problem, problem.unit_point(start)))
+    case.tell({"event": "refitted", "effects": effects, "identify": found.identify, "validate": found.validate})
+    return found
 
 
 def descend(problem: Problem, point: Array, most: int = 30) -> Array:

@@ -75,9 +75,7 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     if before.doubt and not adequate(case, first, before):
         return Diagnosis("refused", before.doubt, before, [], [])
     scorer = Scorer(case, before)
-    with ThreadPoolExecutor(2) as pool:
-        scores = list(pool.map(scorer.score, applicable(case, before.effects)))
-    candidates = sorted((Candidate(score) for score in scores), key=lambda item: -item.score.explained)
+    candidates = sorted(map(Candidate, scored(case, before, scorer)), key=lambda item: -item.score.explained)
     if adequate(case, first, before) and not any(_worth(case, first, before, item) for item in candidates):
         settle(case, candidates)
         return nothing(case, first, before, candidates)
@@ -99,6 +97,17 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     verdict = "missing" if len(words) == 1 else "inconclusive"
     rest = sorted((item for item in passing if item not in tied), key=lambda item: item.fit.total)  # type: ignore[union-attr]
     return Diagnosis(verdict, sentence(case, before, best, words), before, candidates, words, [best, *rest])
+
+
+def scored(case: Case, before: Fit, scorer: Scorer) -> list[Score]:
+    """Every effect that the model could have more."""
+    words, found = applicable(case, before.effects), list[Score]()
+    with ThreadPoolExecutor(2) as pool:
+        for score in pool.map(scorer.score, words):
+            found.append(score)
+            facts = {"effect": score.effect, "explained": score.explained}
+            case.tell({"event": "scored", **facts, "done": len(found), "of": len(words)})
+    return found
 
 
 def alike(case: Case, effect: str, fit: Fit, rival: Fit) -> bool:

@@ -123,9 +123,9 @@ def test_lags_before_and_behind_a_linear_stage_are_the_same_to_these_data():
 
 def test_what_leaves_less_than_the_noise_at_its_strongest_cannot_be_seen():
     unseen, none, small = (
-        Score("delay", 0.5, power=0.1),
-        Score("creep", 0.001, power=3.0),
-        Score("drift", 0.1, power=3.0),
+        Score("delay", explained=0.5, power=0.1),
+        Score("creep", explained=0.001, power=3.0),
+        Score("drift", explained=0.1, power=3.0),
     )
     items = [Candidate(score) for score in (unseen, none, small)]
     settle(stage.case(), items)
