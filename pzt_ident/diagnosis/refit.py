@@ -25,6 +25,7 @@ STARTS = 240  # chance points, of which the best few are refined, so many at a t
 REFINED, MOST = 4, 24
 AGREE = 0.01  # of the loss, between the two best of them
 FINE = 0.3  # of the misfit or the noise, at most, by which halving the steps of the simulation may change the response
+ELSEWHERE = 2  # chance points of one block that are refined
 EDGE = 1e-4  # of a parameter's range: as near to its end it is on the bound
 DAMPINGS = 10.0 ** np.arange(-5, 4)
 
@@ -159,6 +160,28 @@ def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, fl
     found = made(effects, problem, descend(problem, problem.unit_point(start)))
     case.tell({"event": "refitted", "effects": effects, "identify": found.identify, "validate": found.validate})
     return found
+
+
+def elsewhere(fit: Fit) -> Fit:
+    """The fit, or a better one that starts from other values of one block on one axis, the others kept: beside a
+    greater misfit, since explained, a block may have come to rest in a side minimum, such as a resonance far off."""
+    problem = fit.problem
+    slots = [problem.model.slots[column] for column in problem.free]
+    owners = np.array([f"{slot.axis} {slot.block.name}" for slot in slots])
+    rng = np.random.default_rng(0)
+    ends = [fit.point]
+    for owner in dict.fromkeys(owners):
+        starts = np.where(owners == owner, scattered(problem, rng), fit.point)
+        ends += [descend(problem, starts[i]) for i in np.argsort(problem.loss(starts))[:ELSEWHERE]]
+    best = int(np.argmin(problem.loss(np.array(ends))))
+    return made(fit.effects, problem, ends[best], fit.doubt) if best else fit
+
+
+def scattered(problem: Problem, rng: np.random.Generator) -> Array:
+    """Chance points; half of them keep near 0 what may range from there over decades, such as a damping."""
+    points = rng.uniform(size=(STARTS, problem.dimensions))
+    near = (problem.lower == 0) & (rng.random((STARTS, 1)) < 0.5)
+    return np.where(near, points**4, points)
 
 
 def descend(problem: Problem, point: Array, most: int = 30) -> Array:
