@@ -257,6 +257,7 @@ class TestWords:
             "scale": "linear",
             "effect": None,
             "per_record": False,
+            "form": "",
             "doc": "",
         }
 

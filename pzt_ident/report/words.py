@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from pzt_ident.report.numbers import count, number, quantity
+from pzt_ident.report.numbers import count, number, percent, quantity
 from pzt_ident.report.results import Results
 
 
@@ -133,6 +133,19 @@ def _failures(results: Results) -> list[str]:
     return said
 
 
+def happening(event: Mapping[str, Any], unit: str) -> str:
+    """What a diagnosis is at, from one of its events."""
+    if event["event"] == "fitted":
+        return f"fitted from {event['done']} of {event['of']} starts"
+    if event["event"] == "scored":
+        part = f"{event['effect']} would explain {percent(event['explained'])}"
+        return f"{event['done']} of {event['of']} effects scored; {part}"
+    if event["event"] == "refitted":
+        chosen = f"with {listed(event['effects'])}" if event["effects"] else "without an effect"
+        return f"refitted {chosen}: RMSE {quantity(event['identify'], unit)}"
+    return f"{step_name(event)}: RMSE {quantity(event['rmse']['identify'], unit)}"
+
+
 def listed(names: Iterable[str]) -> str:
     """a, b and c."""
     *most, last = names
@@ -140,6 +153,6 @@ def listed(names: Iterable[str]) -> str:
 
 
 def step_name(step: Mapping[str, Any]) -> str:
-    """`as given`, `+ effect`, `- effect`, or both where one takes the place of another."""
+    """`as given`, `+ effect`, `- effect`, or both where one takes the place of another; what the step itself says."""
     words = [f"{sign} {step[key]}" for sign, key in (("+", "added"), ("-", "removed")) if step[key]]
-    return " ".join(words) or "as given"
+    return step.get("change") or " ".join(words) or "as given"
