@@ -257,7 +257,6 @@ class TestWords:
             "scale": "linear",
             "effect": None,
             "per_record": False,
-            "form": "",
             "doc": "",
         }
 
