@@ -96,7 +96,7 @@ def records(result: Result) -> str:
 
 def staircase(improvement: Result) -> str:
     """One row a step of `improve`, its verdict below."""
-    unit, floor = improvement["unit"], max(improvement["noise_floor"].values())
+    unit, floor = improvement["unit"], improvement["floor"]
     header = ["step", f"identify [{unit}]", f"validate [{unit}]", "in noise floors", "these data cannot tell it from"]
     rows = []
     for step in improvement["steps"]:

@@ -22,7 +22,18 @@ from pzt_ident.files import write_json, write_text
 from pzt_ident.job import Job
 from pzt_ident.registry import blocks
 from pzt_ident.report.words import happening
-from pzt_ident.run import Event, Listen, environment, folder_for, make_empty, problem_of, read, recorded, unit_of
+from pzt_ident.run import (
+    Event,
+    Listen,
+    environment,
+    errors_in,
+    folder_for,
+    make_empty,
+    problem_of,
+    read,
+    recorded,
+    unit_of,
+)
 from pzt_ident.signals import write_signals
 from pzt_ident.units import factor
 
@@ -98,7 +109,7 @@ def improvement_of(job: Job, case: Case, steps: list[stairs.Step], last: Diagnos
     added = [word for word in steps[-1].fit.effects if word not in job.effects]
     if verdict == "unexplained" and added:
         reason += f" {', '.join(added)}: taken up on the way, and not proven, since something else is at work."
-    reason += bounded(steps[-1].fit)
+    reason += bounded(steps[-1].fit) + broken(steps[-1].fit)
     return {
         "name": job.name,
         "steps": [stair(case, step) for step in steps],
@@ -119,6 +130,13 @@ def bounded(fit: Fit) -> str:
         value = f"{fit.value(name):.3g} {unit}".removesuffix(" 1")
         said += f" {name} ended on its bound of {value}: its name is doubtful, or its bounds are too narrow."
     return said
+
+
+def broken(fit: Fit) -> str:
+    """A sentence about each record over which a block breaks a condition of its own equation."""
+    theta = fit.problem.parameters(fit.point)
+    plans = [plan for plans in fit.problem.plans.values() for plan in plans]
+    return "".join(f" Record {plan.record.name}: {each}." for plan in plans for each in plan.broken(theta))
 
 
 def size_of(case: Case) -> float:
@@ -147,6 +165,7 @@ def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
         "removed": step.removed,
         "class": list(step.tied),
         "rmse": errors_of(case, step.fit),
+        "records": [errors_in(record, problem, point) for record in case.records],
         "explained": step.explained,
         "expected": step.expected,
         "parameters": {name: {"value": float(value), "unit": unit} for name, value, unit in units},
@@ -158,7 +177,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
     proposal = propose(case, rivals, reach_of(job, case)) if len(rivals) > 1 else None
     return {
         "verdict": found.verdict,
-        "reason": found.reason,
+        "reason": found.reason + broken(found.before),
         "unit": unit_of(list(case.records)),
         "noise_floor": floors(case),
         "rmse": errors_of(case, found.before),

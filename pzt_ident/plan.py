@@ -96,11 +96,15 @@ class Plan:
         row = self.rows + made.layout.first_given
         for axis, other in places:
             columns = self.model.columns(block, axis, other)
-            known = nulls | {
-                "dt": self.record.dt / self.model.oversample,
-                "span": float(np.ptp(self.record.drive[axis])),
-                "peak": float(np.abs(self.record.drive[axis]).max()),
-            }
+            known = (
+                nulls
+                | block.numbers()
+                | {
+                    "dt": self.record.dt / self.model.oversample,
+                    "span": float(np.ptp(self.record.drive[axis])),
+                    "peak": float(np.abs(self.record.drive[axis]).max()),
+                }
+            )
             if issubclass(block, Bank) and block.solved:
                 at = [[row + branch * len(words) + words.index(word) for word in block.solved] for branch in branches]
                 self.solved.append((Solve(block, columns or {}, known), np.array(at)))
@@ -253,6 +257,16 @@ class Plan:
                 for _ in range(2):  # the second time takes back the rounding of the first
                     error[same, i] -= (basis @ (solve @ (own.T @ error[same, i, settle:].T))).T
         return error
+
+    def broken(self, theta: Array) -> tuple[str, ...]:
+        """What one candidate breaks of the conditions of its blocks' equations over this record."""
+        said = []
+        for block in self.model.blocks:
+            if block.watch:
+                room = Plan(self.model.watched(block), self.record).simulate(theta)
+                if share := float(np.mean(room <= 0)):
+                    said.append(f"at {share:.1%} of its samples {block.broken}")
+        return tuple(said)
 
     def _basis(self, axis: int, theta: Array) -> Array:
         """One, and the signals of all additions of an axis: (samples, signals)."""

@@ -222,21 +222,26 @@ def collect(job: Job, records: list[Record], folder: Path, tasks: list[Task], fa
 
 def about(record: Record, problem: Problem, point: np.ndarray) -> dict[str, Any]:
     plan = next(plan for plans in problem.plans.values() for plan in plans if plan.record is record)
-    rmse = np.sqrt(plan.squares(problem.parameters(point))[0] / plan.scored)
+    theta = problem.parameters(point)
     return {
-        "name": record.name,
-        "use": record.use,
+        **errors_in(record, problem, point),
         "file": record.file,
         "sha256": record.sha256,
         "samples": record.samples,
         "sample_rate": 1 / record.dt,
         "settle": record.settle * record.dt,
         "axes": [record.axes[a] for a in record.measured],
-        "rmse": {
-            record.axes[a]: rmse[i] / factor(str(record.response_units[a])) for i, a in enumerate(record.measured)
-        },
-        "notes": list(record.notes),
+        "notes": [*record.notes, *plan.broken(theta)],
     }
+
+
+def errors_in(record: Record, problem: Problem, point: np.ndarray) -> dict[str, Any]:
+    """RMSE of each measured axis of a record, each in its own unit."""
+    plan = next(plan for plans in problem.plans.values() for plan in plans if plan.record is record)
+    rmse = np.sqrt(plan.squares(problem.parameters(point))[0] / plan.scored)
+    sizes = [factor(str(record.response_units[a])) for a in record.measured]
+    each = {record.axes[a]: rmse[i] / sizes[i] for i, a in enumerate(record.measured)}
+    return {"name": record.name, "use": record.use, "rmse": each}
 
 
 def history_of(task: Task, size: float) -> np.ndarray:

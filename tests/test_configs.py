@@ -53,4 +53,5 @@ def test_the_job_of_an_experiment_runs(path, tmp_path):
 
 def test_there_are_jobs_to_test():
     assert {path.stem for path in CONFIGS} >= {"x_axis", "lin_lin_x", "lin_lin_y", "picma", "bender"}
+    assert {path.stem for path in CONFIGS} >= {"homogenized_energy", "free_density", "rod", "shell"}
     assert EXPERIMENTS

@@ -141,6 +141,8 @@ class TestImprove:
         for step in found["steps"]:
             assert {"added", "removed", "class", "rmse", "explained"} <= set(step)
             assert set(step["rmse"]) == {"identify", "validate"}
+            for record in step["records"]:
+                assert record["rmse"] == {"x": pytest.approx(step["rmse"][record["use"]])}
         assert [step["added"] for step in found["steps"]] == [None, "quadratic_gain"]
         assert found["steps"][0]["class"] == [] and found["steps"][0]["removed"] is None
         floor = found["noise_floor"]["x"]

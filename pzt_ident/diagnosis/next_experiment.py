@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -49,9 +49,9 @@ def propose(case: Case, rivals: dict[str, Fit], reach: Reach) -> Proposal | None
     """
     best: Proposal | None = None
     most = (0.0, 0.0)
-    axes = len(case.records[0].axes)
-    axis = case.records[0].measured[0]
-    for name, why, dt, drive in protocols(reach, axes, axis):
+    alike = drives_of(case.records)
+    for name, why, dt, own in protocols(reach, alike.max() + 1, alike[case.records[0].measured[0]]):
+        drive = own[alike]
         responses = [respond(case, fit, dt, drive) for fit in rivals.values()]
         pairs = [float(np.sqrt(np.mean((a - b) ** 2))) / case.floor for a, b in combinations(responses, 2)]
         told = (sum(min(apart, AMPLE) for apart in pairs if apart > LEAST), min(pairs))
@@ -60,11 +60,19 @@ def propose(case: Case, rivals: dict[str, Fit], reach: Reach) -> Proposal | None
     return best
 
 
+def drives_of(records: Sequence[Record]) -> NDArray[np.intp]:
+    """The number of each axis' drive: that of an earlier axis where every record moves both alike, as it does where
+    two responses of one drive are measured."""
+    whole = np.hstack([record.drive for record in records])
+    first = [next(a for a, other in enumerate(whole) if np.array_equal(other, drive)) for drive in whole]
+    return np.unique(first, return_inverse=True)[1]
+
+
 def respond(case: Case, fit: Fit, dt: float, drive: Array) -> Array:
-    """Response of the first measured axis about its mean."""
+    """Response of the first measured axis about its mean, in units of the loss."""
     first = case.records[0]
     blank: Record = replace(first, dt=dt, drive=drive, response=np.zeros_like(drive), settle=0, run_in=0)
-    found = Plan(fit.problem.model, blank).simulate(fit.problem.parameters(fit.point))[0, 0]
+    found = Plan(fit.problem.model, blank).simulate(fit.problem.parameters(fit.point))[0, 0] / case.sizes[0]
     return found - found.mean()
 
 

@@ -21,10 +21,11 @@ from pzt_ident.registry import Choice, blocks
 Array = NDArray[np.float64]
 Tell = Callable[[dict[str, Any]], None]
 
-STARTS = 240  # chance points, of which the best few are refined
-REFINED = 4
+STARTS = 240  # chance points, of which the best few are refined, so many at a time until two agree
+REFINED, MOST = 4, 24
 AGREE = 0.01  # of the loss, between the two best of them
 FINE = 0.3  # of the misfit or the noise, at most, by which halving the steps of the simulation may change the response
+ELSEWHERE = 2  # chance points of one block that are refined
 EDGE = 1e-4  # of a parameter's range: as near to its end it is on the bound
 DAMPINGS = 10.0 ** np.arange(-5, 4)
 
@@ -103,22 +104,24 @@ def made(effects: tuple[str, ...], problem: Problem, point: Array, doubt: str = 
     return Fit(effects, problem, point, float(problem.loss(point)[0]), None if np.isnan(validate) else validate, doubt)
 
 
-def first_fit(case: Case, seed: int, known: dict[str, float] | None = None) -> Fit:
+def first_fit(case: Case, seed: int) -> Fit:
     """The job's own model, from chance points; in doubt where the two best of their minima differ, or where the steps
     of the simulation are too coarse for what is left."""
     problem = case.problem(case.effects)
     rng = np.random.default_rng(seed)
     starts = rng.uniform(size=(STARTS, problem.dimensions))
-    order = np.argsort(problem.loss(starts), kind="stable")[:REFINED]
-    ends: list[Array] = []
-    with ThreadPoolExecutor(2) as pool:
-        for end in pool.map(lambda i: descend(problem, starts[i]), order):
-            ends.append(end)
-            case.tell({"event": "fitted", "done": len(ends), "of": len(order)})
-    losses = problem.loss(np.array(ends))
-    best, second = np.argsort(losses)[:2]
-    agreed = bool(losses[second] <= (1 + AGREE) * losses[best] + 0.1 * case.floor) and bool(np.isfinite(losses[best]))
-    fit = made(case.effects, problem, ends[best])
+    order = np.argsort(problem.loss(starts), kind="stable")[:MOST]
+    ends, agreed = np.empty((0, problem.dimensions)), False
+    while len(ends) < MOST and not agreed:
+        own = starts[order[len(ends) : len(ends) + REFINED]]
+        with ThreadPoolExecutor(2) as pool:
+            for end in pool.map(lambda start: descend(problem, start), own):
+                ends = np.vstack([ends, end])
+                case.tell({"event": "fitted", "done": len(ends), "of": len(order)})
+        losses = problem.loss(ends)
+        best, second = np.sort(losses)[:2]
+        agreed = bool(second <= (1 + AGREE) * best + 0.1 * case.floor and np.isfinite(best))
+    fit = made(case.effects, problem, ends[np.argmin(losses)])
     return replace(fit, doubt=doubt(case, fit, agreed))
 
 
@@ -157,6 +160,28 @@ def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, fl
     found = made(effects, problem, descend(problem, problem.unit_point(start)))
     case.tell({"event": "refitted", "effects": effects, "identify": found.identify, "validate": found.validate})
     return found
+
+
+def elsewhere(fit: Fit) -> Fit:
+    """The fit, or a better one that starts from other values of one block on one axis, the others kept: beside a
+    greater misfit, since explained, a block may have come to rest in a side minimum, such as a resonance far off."""
+    problem = fit.problem
+    slots = [problem.model.slots[column] for column in problem.free]
+    owners = np.array([f"{slot.axis} {slot.block.name}" for slot in slots])
+    rng = np.random.default_rng(0)
+    ends = [fit.point]
+    for owner in dict.fromkeys(owners):
+        starts = np.where(owners == owner, scattered(problem, rng), fit.point)
+        ends += [descend(problem, starts[i]) for i in np.argsort(problem.loss(starts))[:ELSEWHERE]]
+    best = int(np.argmin(problem.loss(np.array(ends))))
+    return made(fit.effects, problem, ends[best], fit.doubt) if best else fit
+
+
+def scattered(problem: Problem, rng: np.random.Generator) -> Array:
+    """Chance points; half of them keep near 0 what may range from there over decades, such as a damping."""
+    points = rng.uniform(size=(STARTS, problem.dimensions))
+    near = (problem.lower == 0) & (rng.random((STARTS, 1)) < 0.5)
+    return np.where(near, points**4, points)
 
 
 def descend(problem: Problem, point: Array, most: int = 30) -> Array:

@@ -7,6 +7,7 @@ from pzt_ident.parameter import Parameter
 from pzt_ident.registry import blocks
 
 PERIODS = 8
+LEAST = 3  # periods in a record, of fewer it could be the response itself
 HARMONICS = 20  # of the drive, that hysteresis leaves in the residual
 
 
@@ -14,7 +15,8 @@ HARMONICS = 20  # of the drive, that hysteresis leaves in the residual
 class PeriodicDisturbance(Addition):
     """Hum or vibration adds to the displacement: y = x + a sin(2 pi f t) + b cos(2 pi f t), t from the start.
 
-    Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems. Each record has its own phase.
+    Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems. Each record has its own phase; one
+    of fewer than three periods has none.
     """
 
     place = Place.OUTPUT
@@ -26,8 +28,8 @@ class PeriodicDisturbance(Addition):
     remedy = "Ground and shield against hum, isolate the stage from the floor, or filter the line out."
 
     def basis(t, frequency):
-        phase = 2 * np.pi * frequency * t
-        return np.sin(phase), np.cos(phase)
+        phase, there = 2 * np.pi * frequency * t, frequency * (t[-1] - t[0]) >= LEAST
+        return there * np.sin(phase), there * np.cos(phase)
 
     def guess(times, drives, residuals, low, high):
         """The strongest lines of the residuals of all records, Hz: those of some periods that are not the drive's."""

@@ -6,10 +6,11 @@ from pzt_ident.registry import blocks
 
 @blocks.register
 class ThermalRelaxation(Term):
-    """Thermally activated switching lets the hysteretic part relax: dh/dt <- dh/dt - h / tau.
+    """Domains that switch by heat let the hysteretic part relax: dh/dt <- dh/dt - h / tau, or the logarithm of time.
 
-    Smith, Seelecke, Ounaies & Smith (2003), J. Intell. Mater. Syst. Struct. 14, 719, in its simplest form. Unlike
-    creep it does not grow with the step but with h, and a small step back arrests it.
+    Smith, Seelecke, Ounaies & Smith (2003), J. Intell. Mater. Syst. Struct. 14, 719, in its simplest form: of
+    Bouc-Wen an exponential, of plays a logarithm. Unlike creep it does not grow with the step but with h, and a small
+    step back arrests it.
     """
 
     looks_like = ("creep", "drift", "rate_dependence")

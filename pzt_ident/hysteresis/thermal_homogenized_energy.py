@@ -3,7 +3,8 @@
 from math import erf, erfc, exp, expm1, log, pi, sqrt
 
 from pzt_ident.block import Place, Relays
-from pzt_ident.hysteresis.homogenized_energy import HomogenizedEnergy, play
+from pzt_ident.hysteresis._play import play
+from pzt_ident.hysteresis.homogenized_energy import HomogenizedEnergy
 from pzt_ident.parameter import Parameter
 from pzt_ident.registry import blocks
 

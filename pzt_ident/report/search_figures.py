@@ -85,7 +85,8 @@ def descent(history: pd.DataFrame, cost: str, points: int = 60) -> tuple[Floats,
 
 
 def free_parameters(results: Results) -> list[str]:
-    return [name for name, entry in results.best["parameters"].items() if entry["verdict"] != "fixed"]
+    """Those that are searched for or stand alone."""
+    return [name for name, entry in results.best["parameters"].items() if not entry.get("at")]
 
 
 def estimates_height(width: float, parameters: int) -> float:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import stage
 from pzt_ident.block import Block, Place
 from pzt_ident.diagnosis import refit
-from pzt_ident.diagnosis.refit import descend, first_fit, stepped
+from pzt_ident.diagnosis.refit import descend, elsewhere, first_fit, made, stepped
 from pzt_ident.improve import bounded
 from pzt_ident.parameter import Parameter
 from pzt_ident.registry import blocks
@@ -46,6 +46,31 @@ def test_the_first_fit_is_a_function_of_its_seed(creeping):
 def test_a_fit_whose_starts_end_apart_has_not_converged(plain, monkeypatch):
     monkeypatch.setattr(refit, "descend", lambda problem, point: point)
     assert not first_fit(plain, 0).converged
+
+
+def test_more_starts_are_refined_until_two_agree(plain, monkeypatch):
+    """Of each four of the first twenty all but the first get nowhere."""
+    seen, whole = [], refit.descend
+
+    def lame(problem, point):
+        seen.append(point)
+        return whole(problem, point) if len(seen) in (1, 21) else point
+
+    monkeypatch.setattr(refit, "descend", lame)
+    assert first_fit(plain, 0).converged
+    assert len(seen) == 24
+
+
+def test_a_block_is_found_elsewhere_and_a_fit_at_the_noise_stays(plain):
+    soft = {"lumped.mass": 1.0, "lumped.stiffness": 1e5, "lumped.damping": 100.0}  # 50 Hz, 16 %
+    ringing = stage.case(soft, model=("bouc_wen", "lumped"), noise=1e-9)
+    problem = ringing.problem(())
+    stiff = stage.STAGE | {"bouc_wen.gain": 0.082, "lumped.mass": 0.01, "lumped.stiffness": 9e8, "lumped.damping": 50.0}
+    stuck = made((), problem, problem.unit_point(stiff))
+    assert stuck.identify > 3e-9
+    assert elsewhere(stuck).identify == pytest.approx(1e-9, rel=0.1)
+    fit = first_fit(plain, 0)
+    assert elsewhere(fit).identify == pytest.approx(fit.identify, rel=1e-3)
 
 
 def test_without_records_to_validate_there_is_no_error_of_them(plain):

@@ -22,6 +22,12 @@ def test_takes_its_own_line_out_of_a_record_and_no_other(frequency, left):
     assert np.sqrt(plan.squares(np.array([[frequency]]))[0, 0] / 1000) == pytest.approx(left, rel=1e-3, abs=1e-12)
 
 
+def test_a_record_of_less_than_three_periods_has_none():
+    t = np.linspace(0, 0.1, 500)
+    assert np.ptp(PeriodicDisturbance.basis(t, 31.0)) > 1.9
+    assert not np.any(PeriodicDisturbance.basis(t, 29.0))
+
+
 def waves(frequency, hum, size=0.2):
     """A sine drive over 10 s whose residual has its second and third harmonic, and a hum."""
     t = np.arange(20_000) / 2000
