@@ -30,12 +30,12 @@ class Score:
     trace that the fitted parameters cannot take up, `power` the largest plausible rms of that, in noise floors."""
 
     effect: str
-    units: dict[str, str] = field(default_factory=dict)
     explained: float = 0.0
     guess: dict[str, float] = field(default_factory=dict)
     visibility: float = 0.0
     power: float = 0.0
     trace: Array = field(default_factory=lambda: np.zeros(0), repr=False)
+    units: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class Scorer:
 
     def score(self, effect: str) -> Score:
         problem = self.case.problem((*self.fit.effects, effect))
-        found = Score(effect, dict(zip(problem.names, problem.units, strict=True)))
+        found = Score(effect, units=dict(zip(problem.names, problem.units, strict=True)))
         if issubclass(blocks[effect], Addition):
             return self._addition(found, problem)
         for trial, columns in self._trials(effect, problem):
