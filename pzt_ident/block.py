@@ -15,7 +15,7 @@ from functools import cache
 from typing import Any, ClassVar
 
 from pzt_ident.errors import InputError, nearest
-from pzt_ident.parameter import Parameter, Setting
+from pzt_ident.parameter import Form, Parameter, Setting
 
 TILES = 3  # signals that an axis carries: its own, what drives its operator's prompt response, and its mechanics
 
@@ -66,10 +66,13 @@ def erf(x: float) -> float:
 class Block:
     """One box of the signal chain, acting on each axis with that axis' own parameters.
 
-    prepare(*parameters[, dt][, span][, peak]) -> coefficients; dt in s, span and peak the peak-to-peak drive of the
-    axis and its largest magnitude.
+    prepare(*parameters[, dt][, span][, peak][, settings]) -> coefficients; dt in s, span and peak the peak-to-peak
+    drive of the axis and its largest magnitude.
     start(u, *coefficients) -> states.
     step(*states, u, *coefficients) -> (*states, y).
+
+    refuse(least, most), where it is there, raises InputError for bounds between which no candidate can be simulated:
+    two namespaces of parameters in SI units.
 
     What can be missing from a model is an effect and says more of itself: which effects leave the same trace, the
     experiment that tells them apart, and what to do about it on the rig.
@@ -84,8 +87,12 @@ class Block:
     sizes: ClassVar[tuple[float, ...]] = (0.05,)  # of its range, at which its trace is looked for: one if it is linear
     seen: ClassVar[tuple[str, ...]] = ()  # parameters that a record shows only where its drive is of their size
     trials: ClassVar[Mapping[str, int]] = {}  # values over the range of a parameter that means nothing at the null
-    chosen: ClassVar[dict[str, int]] = {}
-    forms: ClassVar[Mapping[str, type[Block]]] = {}  # by an effect's word: itself, where that takes another step
+    chosen: ClassVar[dict[str, Any]] = {}
+    forms: ClassVar[
+        Mapping[str, type[Block]]
+    ] = {}  # itself, by the word of an effect or a `Form` that changes its step
+    watch: ClassVar[type[Block] | None] = None  # itself, giving what its equation wants above zero
+    broken: ClassVar[str] = ""  # what is said where that is not
 
     def __init_subclass__(cls) -> None:
         for word, function in list(vars(cls).items()):
@@ -105,25 +112,37 @@ class Block:
         return found
 
     @classmethod
-    def settings(cls) -> dict[str, Setting]:
+    def settings(cls) -> dict[str, Setting | Form]:
         """What a job may choose of how the block is built, by name."""
         owned = [item for owner in reversed(cls.__mro__) for item in vars(owner).items()]
-        return {word: item for word, item in owned if isinstance(item, Setting)}
+        return {word: item for word, item in owned if isinstance(item, Setting | Form)}
 
     @classmethod
-    def setting(cls, word: str) -> int:
+    def setting(cls, word: str) -> Any:
         return cls.chosen.get(word, cls.settings()[word].value)
+
+    @classmethod
+    def numbers(cls) -> dict[str, int]:
+        """The whole numbers among the settings, as chosen; `prepare` may ask for them."""
+        return {word: cls.setting(word) for word, item in cls.settings().items() if isinstance(item, Setting)}
 
     @classmethod
     def make(cls, **settings: Any) -> type[Block]:
         """The block with these settings. Raises InputError for an unknown one, or one that does not fit."""
-        known = cls.settings()
+        form = cls.formed(settings)
+        known = form.settings()
         for word, value in settings.items():
             if word not in known:
                 remedy = nearest(word, known) if known else f"write just `{cls.name}`"
                 raise InputError(f"unknown setting {word!r}", where=cls.name, remedy=remedy)
             known[word].check(value, f"{cls.name}.{word}")
-        return _made(cls, tuple(sorted(settings.items())))  # type: ignore[arg-type]
+        return _made(form, cls.name, tuple(sorted(settings.items())))  # type: ignore[arg-type]
+
+    @classmethod
+    def formed(cls, settings: Mapping[str, Any]) -> type[Block]:
+        """The form that is chosen by the words among some settings, right or wrong as they are."""
+        words = [settings.get(word) for word, item in cls.settings().items() if isinstance(item, Form)]
+        return _made(next((cls.forms[str(word)] for word in words if str(word) in cls.forms), cls), cls.name, ())  # type: ignore[arg-type]
 
     @classmethod
     @cache
@@ -133,10 +152,11 @@ class Block:
 
 
 @cache
-def _made(block: type[Block], chosen: tuple[tuple[str, int], ...]) -> type[Block]:
+def _made(block: type[Block], name: str, chosen: tuple[tuple[str, Any], ...]) -> type[Block]:
     """One class for the same choice, so that it is compiled once."""
-    own = {"__module__": block.__module__, "__doc__": block.__doc__, "chosen": {**block.chosen, **dict(chosen)}}
-    return type(block.__name__, (block,), own) if chosen else block
+    own: dict[str, Any] = {"__module__": block.__module__, "__doc__": block.__doc__, "name": name}
+    own |= {"chosen": {**block.chosen, **dict(chosen)}}
+    return type(block.__name__, (block,), own) if chosen or block.name != name else block
 
 
 def asked(function: Callable[..., object]) -> tuple[str, ...]:
@@ -168,6 +188,7 @@ class Bank(Block):
 
     prepare may ask for `branch`, counted from 0, and is given each branch its own of a counted parameter.
     output(u, total, *coefficients of the first branch) -> y.
+    stands(*parameters[, settings], branch), optional: the drive that a branch's own of a counted parameter stands for.
     rests(*states, low, high, *coefficients) -> whether no input between low and high moves the branch: optional, it
     saves the steps of a branch that holds still over a tile in every lane.
 
@@ -190,7 +211,8 @@ class Relays(Block):
     """Domains of `coercives` coercive fields, equally many of each, over `interactions` interaction fields that lie a
     spacing apart about 0. Of each kind a share x points up. Per second a share `rate` of them leaves the side that they
     are on, which depends on how much further its effective field is from where it would not hold without activation.
-    x relaxes exactly over a step of the field in its middle.
+    x relaxes exactly over a step of the field in its middle. Where all domains of a kind are on one side and none
+    leaves, to 1e-15, they are not stepped.
 
     prepare(*parameters) -> (shape, energy, shared), a tuple of coefficients each; shape[0] is the spacing.
     field(u, *shape) -> in the material. coercive_field(i, *shape) -> that of node i.

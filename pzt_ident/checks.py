@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from pzt_ident import units
@@ -98,7 +99,7 @@ def _model(document: Document, items: tuple[str | Choice, ...], earlier: Earlier
             message = f"{word!r} beside {folders[folder]!r}: two blocks of {folder}"
             document.fault(at, message, "keep one of the two")
         elif not isinstance(item, str):
-            _settings(document, ("model", i), item, blocks[word].make)
+            _settings(document, ("model", i), item, blocks[word].formed(item.settings).make)
         folders[folder] = word
 
 
@@ -150,11 +151,12 @@ def _is(word: str, kind: str) -> bool:
 def _shared(document: Document, names: tuple[str, ...], earlier: Earlier) -> None:
     if not {"model", "effects"} <= set(earlier):
         return
-    chosen = [blocks[word] for word in (*earlier["model"], *earlier["effects"]) if word in blocks]
-    known = [f"{block.name}.{word}" for block in chosen for word in block.parameters()]
-    for i, name in enumerate(names):
-        if name not in known:
-            document.fault(("shared", i), f"unknown parameter {name!r}", nearest(name, known))
+    with suppress(InputError):  # a setting of a block, noted where it stands
+        chosen = blocks.chain((*earlier["model"], *earlier["effects"]))
+        known = [f"{block.name}.{word}" for block in chosen for word in block.parameters()]
+        for i, name in enumerate(names):
+            if name not in known:
+                document.fault(("shared", i), f"unknown parameter {name!r}", nearest(name, known))
 
 
 def _parameters(document: Document, settings: dict[str, Setting], earlier: Earlier) -> None:
@@ -188,7 +190,7 @@ def _free(model: Model, slot: Slot, settings: Mapping[str, Setting]) -> bool:
     setting = next((settings[name] for name in model.spellings(slot) if name in settings), None)
     if setting is not None:
         return setting.bounds is not None
-    return slot.parameter.value is None
+    return slot.parameter.value is None and not slot.parameter.linear
 
 
 def _chain(items: Iterable[str | Choice], axes: Mapping[str, Axis], shared: Sequence[str] = ()) -> Model:

@@ -147,13 +147,12 @@ def _diagnose(
     as_json: bool,
     quiet: bool,
 ) -> None:
-    from pzt_ident import staircase, terminal
+    from pzt_ident import terminal
     from pzt_ident.job import load_job
     from pzt_ident.report.page import write_report
 
-    silent = as_json or quiet
-    with terminal.listening(silent):
-        folder = work(load_job(job, plugins), out, staircase.told(silent))
+    with terminal.listening(silent=as_json or quiet) as listen:
+        folder = work(load_job(job, plugins), out, listen)
         if not no_report:
             write_report(folder)
     found = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
@@ -227,8 +226,8 @@ def demo(out: Path, no_browser: bool, as_json: bool, quiet: bool) -> None:
     job = write_demo(out)
     if not silent:
         click.echo(f"wrote {job}, which knows of no effect, and a measurement with effects hidden in it", err=True)
-    with terminal.listening(silent):
-        folder = improve(load_job(job), out / "improved", staircase.told(silent))
+    with terminal.listening(silent) as listen:
+        folder = improve(load_job(job), out / "improved", listen)
         write_report(folder)
     found = json.loads((folder / "improvement.json").read_text(encoding="utf-8"))
 

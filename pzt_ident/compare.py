@@ -1,4 +1,4 @@
-"""Model beside measurement: where the best run of a folder of results fails."""
+"""Model beside measurement: where the model of a folder of results fails."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from pzt_ident.diagnosis.noise import Floor
 from pzt_ident.files import write_json
 from pzt_ident.job import load_job
 from pzt_ident.record import Record
-from pzt_ident.report.results import Results, read_results
+from pzt_ident.report.results import Results, read_folder
 from pzt_ident.run import Listen, run
 from pzt_ident.units import factor
 
@@ -31,11 +31,12 @@ def finished(source: Path, out: Path | None, listen: Listen, plugins: bool = Fal
 
 
 def compare(folder: Path, out: Path) -> dict[str, Any]:
-    """Where the best run of a finished run's folder misfits; written to `residuals.json` in the folder `out`.
+    """Where the best run of a finished run's folder misfits, or the model of a diagnosis, the last one of an
+    improvement; written to `residuals.json` in the folder `out`.
 
-    Raises InputError where the folder holds no finished run.
+    Raises InputError where the folder holds none.
     """
-    results = read_results(folder)
+    results = read_folder(folder)
     found = misfits(results)
     write_json(out / "residuals.json", found)
     return found
@@ -46,7 +47,7 @@ def draw(folder: Path, out: Path, found: dict[str, Any]) -> Iterator[object]:
     Yields what is done."""
     from pzt_ident.report.figures import write_misfit_figures
 
-    yield from write_misfit_figures(replace(read_results(folder), misfit=found), out / "figures")
+    yield from write_misfit_figures(replace(read_folder(folder), misfit=found), out / "figures")
     if out == folder and (folder / "report.html").exists():
         from pzt_ident.report.page import write_report
 
@@ -55,10 +56,11 @@ def draw(folder: Path, out: Path, found: dict[str, Any]) -> Iterator[object]:
 
 def misfits(results: Results) -> dict[str, Any]:
     """The content of `residuals.json`: by axis, what `locate` finds."""
-    records, residuals = read_signals(results.folder / "signals.nc", [row["name"] for row in results.result["records"]])
+    names = list(dict.fromkeys(trace.record for trace in results.traces))
+    records, residuals = read_signals(results.folder / "signals.nc", names)
     return {
-        "job": results.result["name"],
-        "run": results.best["run"],
+        "job": results.name,
+        "run": results.best["run"] if results.result else None,
         "unit": results.unit,
         "axes": {found.axis: asdict(found) for found in locate(records, residuals, floors(results, records[0]))},
     }
@@ -66,7 +68,7 @@ def misfits(results: Results) -> dict[str, Any]:
 
 def floors(results: Results, record: Record) -> list[Floor]:
     """The noise floor of each measured axis, 0 where none is known."""
-    values, sources = results.result["noise_floor"], results.result.get("noise_floor_source", {})
+    values, sources = results.floors, results.result.get("noise_floor_source", {})
     return [
         Floor(
             (values.get(record.axes[a]) or 0.0) * factor(str(record.response_units[a])),

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.problem import Problem
+from pzt_ident.units import factor
 
 Array = NDArray[np.float64]
 
@@ -19,7 +20,8 @@ TIED = 0.995  # correlation of two parameters that are known together only
 
 
 class Estimate(NamedTuple):
-    """One free parameter in the user's units; standard_error is None where it is not determined."""
+    """One free parameter in the user's units; standard_error is None where it is not determined. `at` is the drive that
+    one of a counted parameter stands for, and its unit."""
 
     name: str
     value: float
@@ -30,10 +32,12 @@ class Estimate(NamedTuple):
     scale: str
     verdict: str
     note: str
+    at: tuple[float, str] | None = None
 
 
 def estimates(problem: Problem, point: Array) -> tuple[list[Estimate], Array]:
-    """Value, standard error and verdict of each free parameter, and their correlations (free, free).
+    """Value, standard error and verdict of each free parameter and of those that are solved for, and the correlations
+    of the former (free, free).
 
     Standard errors are those of least squares with correlated residuals: (J'J)^-1 M (J'J)^-1 with M summed over
     blocks of neighbouring samples (White 1980; Newey & West 1987). A parameter is not determined where its standard
@@ -55,7 +59,45 @@ def estimates(problem: Problem, point: Array) -> tuple[list[Estimate], Array]:
         lower, upper = float(problem.lower[i]), float(problem.upper[i])
         axis = "log" if problem.log[i] else "linear"
         found.append(Estimate(name, float(value[i]), problem.units[i], lower, upper, known, axis, verdict, note))
-    return found, correlation
+    return found + solved(problem, point), correlation
+
+
+def solved(problem: Problem, point: Array) -> list[Estimate]:
+    """Of the parameters that the response is linear in; those at zero are held there for their errors."""
+    theta = problem.parameters(point)[0]
+    columns = problem.linear.columns
+    if not columns.size:
+        return []
+    own = problem.linear.solved(theta)
+    share, active = own.values / own.units, own.values != 0
+    jacobian = np.vstack([own.columns, own.prior])[:, active]
+    error = np.zeros(columns.size)
+    if active.any():
+        error[active] = np.sqrt(np.diag(covariance_of(jacobian, np.append(own.residual, own.prior @ share))))
+    found = []
+    for i, column in enumerate(columns):
+        slot, unit = problem.model.slots[column], problem.all_units[column]
+        peers = [j for j, other in enumerate(columns) if problem.model.slots[other].parameter is slot.parameter]
+        verdict, note = judge_solved(bool(own.columns[:, i].any()), share[i], error[i], share[peers].max())
+        known = float(error[i] * abs(own.units[i])) / factor(unit) if verdict == "determined" and active[i] else None
+        lower, upper = sorted(bound * own.units[i] / factor(unit) for bound in slot.parameter.bounds)
+        value = float(own.values[i]) / factor(unit)
+        stands = problem.model.stands(column, theta)
+        drive = problem.records[0].drive_units[slot.axis]
+        at = None if stands is None else (float(stands) / factor(drive), drive)
+        found.append(Estimate(slot.name, value, unit, lower, upper, known, "linear", verdict, note, at))
+    return found
+
+
+def judge_solved(seen: bool, value: float, error: float, largest: float) -> tuple[str, str]:
+    """Verdict and its reason, the value and its standard error beside the largest of its like."""
+    if not seen:
+        return "not moved", "no record moves it: these data say nothing of it"
+    if value == 0:
+        return "determined", "zero: less than nothing is not allowed"
+    if error > largest / 2:
+        return "not determined", "its standard error is half the largest of its like, or more"
+    return "determined", ""
 
 
 def doubts(problem: Problem, i: int, value: float, error: float, correlation: Array) -> str:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from pzt_ident.amend import with_effects
+from pzt_ident.compare import compare
 from pzt_ident.diagnosis import improve as stairs
 from pzt_ident.diagnosis.next_experiment import LEAST, Proposal, Reach, propose
 from pzt_ident.diagnosis.noise import noise_floor
@@ -18,58 +21,96 @@ from pzt_ident.diagnosis.verdict import diagnose as judge
 from pzt_ident.files import write_json, write_text
 from pzt_ident.job import Job
 from pzt_ident.registry import blocks
-from pzt_ident.run import environment, errors_in, folder_for, make_empty, problem_of, read, unit_of
+from pzt_ident.report.words import happening
+from pzt_ident.run import (
+    Event,
+    Listen,
+    environment,
+    errors_in,
+    folder_for,
+    make_empty,
+    problem_of,
+    read,
+    recorded,
+    unit_of,
+)
 from pzt_ident.signals import write_signals
 from pzt_ident.units import factor
 
-Tell = Callable[[dict[str, Any]], None]
 
+@contextmanager
+def begun(job: Job, out: Path | None, listen: Listen) -> Iterator[tuple[Case, Path]]:
+    """The case, and a folder that holds the job, what it runs on and, in `events.jsonl`, what happens as it does.
 
-def begun(job: Job, out: Path | None) -> tuple[Case, Path]:
-    """The case, and a folder that holds the job and what it runs on. Raises InputError where job or data are wrong."""
+    Raises InputError where job or data are wrong.
+    """
     records = read(job)
     problem_of(job, records)
     folder = folder_for(job, out)
     make_empty(folder)
     write_text(folder / "job.yaml", with_effects(job, job.effects, folder))
     write_json(folder / "environment.json", environment(job, records))
-    return Case(job.model, job.effects, records, job.parameters, job.rule_out, job.shared), folder
+    case = Case(job.model, job.effects, records, job.parameters, job.rule_out, job.shared)
+    with recorded(folder, listen) as tell, np.errstate(all="ignore"):
+        case.tell = lambda event: tell(spoken(case, event))
+        yield case, folder
+        tell({"event": "done", "folder": str(folder)})
 
 
-def diagnose(job: Job, out: Path | None = None, tell: Tell = lambda event: None) -> Path:
-    """Fit the job's model, say what it misses; writes `diagnosis.json` and `signals.nc` into the folder returned."""
-    case, folder = begun(job, out)
-    with np.errstate(all="ignore"):
+def spoken(case: Case, event: Event) -> Event:
+    """An event with its errors in the user's unit, and in words."""
+    size = size_of(case)
+    found = event | {use: event[use] / size for use in ("identify", "validate") if event.get(use) is not None}
+    return found | {"said": happening(found, unit_of(list(case.records)))}
+
+
+def told(case: Case, step: stairs.Step) -> None:
+    case.tell({"event": "stair", **stair(case, step)})
+
+
+def diagnose(job: Job, out: Path | None = None, listen: Listen = lambda event: None) -> Path:
+    """Fit the job's model, say where it fails and what it misses; writes `diagnosis.json`, `residuals.json` and
+    `signals.nc` into the folder returned."""
+    with begun(job, out, listen) as (case, folder):
         first = first_fit(case, job.seed)
-        tell(stair(case, stairs.Step(first)))
+        told(case, stairs.Step(first))
         found = judge(case, first)
         content = diagnosis_of(job, case, found, folder)
         write_signals(folder / "signals.nc", first.problem, first.point)
-    write_json(folder / "diagnosis.json", content)
+        write_json(folder / "diagnosis.json", content)
+        compare(folder, folder)
     return folder
 
 
-def improve(job: Job, out: Path | None = None, tell: Tell = lambda event: None) -> Path:
+def improve(job: Job, out: Path | None = None, listen: Listen = lambda event: None) -> Path:
     """Diagnose, add what is missing and diagnose again, until nothing is missing or nothing more is known.
 
-    Writes `improved.yaml`, `diagnosis.json` of the last model, `improvement.json`, and the signals of the model as
-    given and of the last one.
+    Writes `improved.yaml`, `diagnosis.json` and `residuals.json` of the last model, `improvement.json`, and the signals
+    of the model as given and of the last one.
     """
-    case, folder = begun(job, out)
-    with np.errstate(all="ignore"):
-        steps, last = stairs.improve(case, first_fit(case, job.seed), lambda step: tell(stair(case, step)))
+    with begun(job, out, listen) as (case, folder):
+        steps, last = stairs.improve(case, first_fit(case, job.seed), partial(told, case))
         diagnosis = diagnosis_of(job, case, last, folder)
         for name, step in (("signals_as_given.nc", steps[0]), ("signals.nc", steps[-1])):
             write_signals(folder / name, step.fit.problem, step.fit.point)
+        content = improvement_of(job, case, steps, last) | {"next_experiment": diagnosis["next_experiment"]}
+        write_text(folder / "improved.yaml", with_effects(job, steps[-1].fit.effects, folder))
+        write_json(folder / "diagnosis.json", diagnosis)
+        write_json(folder / "improvement.json", content)
+        compare(folder, folder)
+    return folder
+
+
+def improvement_of(job: Job, case: Case, steps: list[stairs.Step], last: Diagnosis) -> dict[str, Any]:
+    """The content of `improvement.json`, less the next experiment."""
     verdict, reason = last.verdict, last.reason
     if verdict in ("missing", "inconclusive"):
         verdict, reason = "unexplained", f"The next step was tried and taken back, or is one too many. {reason}"
-    effects = list(steps[-1].fit.effects)
-    added = [word for word in effects if word not in job.effects]
+    added = [word for word in steps[-1].fit.effects if word not in job.effects]
     if verdict == "unexplained" and added:
         reason += f" {', '.join(added)}: taken up on the way, and not proven, since something else is at work."
-    reason += bounded(steps[-1].fit)
-    content = {
+    reason += bounded(steps[-1].fit) + broken(steps[-1].fit)
+    return {
         "name": job.name,
         "steps": [stair(case, step) for step in steps],
         "verdict": verdict,
@@ -78,12 +119,7 @@ def improve(job: Job, out: Path | None = None, tell: Tell = lambda event: None) 
         "noise_floor": floors(case),
         "floor": case.floor / size_of(case),
         "unit": unit_of(list(case.records)),
-        "next_experiment": diagnosis["next_experiment"],
     }
-    write_text(folder / "improved.yaml", with_effects(job, effects, folder))
-    write_json(folder / "diagnosis.json", diagnosis)
-    write_json(folder / "improvement.json", content)
-    return folder
 
 
 def bounded(fit: Fit) -> str:
@@ -94,6 +130,13 @@ def bounded(fit: Fit) -> str:
         value = f"{fit.value(name):.3g} {unit}".removesuffix(" 1")
         said += f" {name} ended on its bound of {value}: its name is doubtful, or its bounds are too narrow."
     return said
+
+
+def broken(fit: Fit) -> str:
+    """A sentence about each record over which a block breaks a condition of its own equation."""
+    theta = fit.problem.parameters(fit.point)
+    plans = [plan for plans in fit.problem.plans.values() for plan in plans]
+    return "".join(f" Record {plan.record.name}: {each}." for plan in plans for each in plan.broken(theta))
 
 
 def size_of(case: Case) -> float:
@@ -138,7 +181,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
     proposal = propose(case, rivals, reach_of(job, case)) if len(rivals) > 1 else None
     return {
         "verdict": found.verdict,
-        "reason": found.reason,
+        "reason": found.reason + broken(found.before),
         "unit": unit_of(list(case.records)),
         "noise_floor": floors(case),
         "rmse": errors_of(case, found.before),
@@ -149,6 +192,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
                 "class": found.tied if item.score.effect in found.tied else [item.score.effect],
                 "explained": item.score.explained,
                 "expected": item.score.guess,
+                "units": {name: item.score.units[name] for name in item.score.guess},
                 "visibility": item.score.visibility,
                 "power": item.score.power if np.isfinite(item.score.power) else None,
                 "rmse": errors_of(case, item.fit) if item.fit else None,

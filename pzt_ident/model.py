@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.block import Addition, Block, Coupling, Modes, Place, Term
+from pzt_ident.block import Addition, Block, Coupling, Modes, Place, Term, asked
 from pzt_ident.parameter import Parameter
 from pzt_ident.record import Record
 
@@ -62,31 +63,50 @@ class Model:
 
     def _slots(self, block: type[Block]) -> list[Slot]:
         found = []
-        first = self.measured[0]
         for axis in self.measured:
             prefix = f"{self.axes[axis]}." if len(self.measured) > 1 else ""
             others = [b for b in range(len(self.axes)) if b != axis] if issubclass(block, Coupling) else [axis]
             for other in others:
                 suffix = f"_from_{self.axes[other]}" if len(others) > 1 else ""
                 for word, parameter in block.parameters().items():
-                    plain = f"{block.name}.{word}"
-                    again = plain in self.shared and axis != self.measured[0]
-                    if again or parameter.per_record or (parameter.effect and parameter.effect not in self._listed):
+                    plain, each = f"{block.name}.{word}", self._each(block, word, parameter)
+                    if parameter.per_record or (parameter.effect and parameter.effect not in self._listed):
                         continue
-                    if parameter.each != "axis" and (parameter.each == "stage") != (axis == first):
-                        continue
-                    everywhere = parameter.each == "stage" or plain in self.shared
-                    name = plain if everywhere else f"{prefix}{plain}{suffix}"
-                    found.append(Slot(name, block, word, axis, other, parameter))
+                    if each == "axis" or (each == "stage") == (axis == self.measured[0]):
+                        name = plain if each == "stage" else f"{prefix}{plain}{suffix}"
+                        found.append(Slot(name, block, word, axis, other, parameter))
         return found
+
+    def _each(self, block: type[Block], word: str, parameter: Parameter) -> str:
+        """Who has one of its own, as the block declares it or the job shares it."""
+        return "stage" if f"{block.name}.{word}" in self.shared else parameter.each
 
     def spellings(self, slot: Slot) -> tuple[str, ...]:
         """The names that a job may call a parameter by, the most particular first."""
         plain = f"{slot.block.name}.{slot.word}"
-        if plain in self.shared:
+        if self._each(slot.block, slot.word, slot.parameter) == "stage":
             return (plain,)
         paired = (f"{plain}_from_{self.axes[slot.other]}",) if slot.other != slot.axis else ()
         return *(f"{self.axes[slot.axis]}.{name}" for name in (*paired, plain)), *paired, plain
+
+    def watched(self, block: type[Block]) -> Model:
+        """The chain as far as a block, of which it gives what its equation wants above zero."""
+        made, watch = copy(self), block.watch
+        assert watch
+        made.blocks = (*self.blocks[: self.blocks.index(block)], watch)
+        made.slots = tuple(replace(slot, block=watch) if slot.block is block else slot for slot in self.slots)
+        return made
+
+    def stands(self, column: int, theta: Array) -> float | None:
+        """The drive that a counted parameter of one candidate stands for, None where its block says nothing of that."""
+        slot = self.slots[column]
+        stands = getattr(slot.block, "stands", None)
+        if stands is None or slot.parameter.count is None:
+            return None
+        columns = self.columns(slot.block, slot.axis, slot.other) or {}
+        known = {word: theta[at] for word, at in columns.items()} | slot.block.numbers()
+        branch = np.flatnonzero(np.array(columns[slot.parameter.name]) == column)[0]
+        return float(stands(*((known | {"branch": branch})[word] for word in asked(stands))))
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -104,7 +124,8 @@ class Model:
             axis = other = self.measured[0]
         found: dict[str, int | list[int]] = {}
         for column, slot in enumerate(self.slots):
-            if slot.block is block and ((slot.axis, slot.other) == (axis, other) or slot.name in self.shared):
+            stage = self._each(slot.block, slot.word, slot.parameter) == "stage"
+            if slot.block is block and (stage or (slot.axis, slot.other) == (axis, other)):
                 if slot.parameter.count is None:
                     found[slot.parameter.name] = column
                 else:

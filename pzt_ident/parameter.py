@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from pzt_ident.errors import InputError
+from pzt_ident.errors import InputError, nearest
 
 
 @dataclass(frozen=True)
@@ -23,6 +23,9 @@ class Parameter:
     after the first, to which it is relative.
     `per_record` gives every record one of its own, for what begins anew or at another phase with each measurement.
     `value` is what it is fixed to unless the job frees it with bounds.
+    `linear` has it solved for inside the search where the job says nothing of it: the response must be linear in all
+    such parameters together, and they are not negative, or not positive where the response falls with the drive.
+    `smooth` names the parameter that weighs the squared second differences of a counted one of these.
     """
 
     unit: str
@@ -35,6 +38,8 @@ class Parameter:
     each: Literal["axis", "stage", "later axis"] = "axis"
     per_record: bool = False
     value: float | None = None
+    linear: bool = False
+    smooth: str | None = None
     name: str = ""
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -55,3 +60,17 @@ class Setting:
         if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
             remedy = f"give a whole number from {low} to {high}"
             raise InputError(f"{value!r} is not {remedy.removeprefix('give ')}", where=where, remedy=remedy)
+
+
+@dataclass(frozen=True)
+class Form:
+    """Which of its forms a job chooses of a block, by a word: `{name: homogenized_energy, density: free}`."""
+
+    value: str
+    words: tuple[str, ...]
+    doc: str
+
+    def check(self, value: Any, where: str) -> None:
+        """Raises InputError for another word."""
+        if value not in self.words:
+            raise InputError(f"{value!r} is no such form", where=where, remedy=nearest(str(value), self.words))

@@ -96,11 +96,15 @@ class Plan:
         row = self.rows + made.layout.first_given
         for axis, other in places:
             columns = self.model.columns(block, axis, other)
-            known = nulls | {
-                "dt": self.record.dt / self.model.oversample,
-                "span": float(np.ptp(self.record.drive[axis])),
-                "peak": float(np.abs(self.record.drive[axis]).max()),
-            }
+            known = (
+                nulls
+                | block.numbers()
+                | {
+                    "dt": self.record.dt / self.model.oversample,
+                    "span": float(np.ptp(self.record.drive[axis])),
+                    "peak": float(np.abs(self.record.drive[axis]).max()),
+                }
+            )
             if issubclass(block, Bank) and block.solved:
                 at = [[row + branch * len(words) + words.index(word) for word in block.solved] for branch in branches]
                 self.solved.append((Solve(block, columns or {}, known), np.array(at)))
@@ -148,18 +152,8 @@ class Plan:
         return np.hstack([table[:, :1], table, np.repeat(table[:, -1:], PADDING, axis=1)])
 
     def _fine(self, drive: Array) -> Array:
-        """The drive at `oversample` steps a sample: band-limited where the record is periodic, else a cubic spline."""
-        times = self.model.oversample
-        if times == 1:
-            return drive
-        if self.record.run_in:
-            from scipy.signal import resample
-
-            return resample(drive, times * drive.size)
-        from scipy.interpolate import CubicSpline
-
-        grid = np.minimum(np.arange(times * drive.size) / times, drive.size - 1)
-        return CubicSpline(np.arange(drive.size), drive)(grid)
+        """The drive at `oversample` steps a sample."""
+        return between(drive, self.model.oversample, bool(self.record.run_in), smooth=True)
 
     def _scratch(self, theta: Array) -> Array:
         """What every block's `prepare` is given, in lanes: (groups, rows * WIDTH)."""
@@ -264,6 +258,16 @@ class Plan:
                     error[same, i] -= (basis @ (solve @ (own.T @ error[same, i, settle:].T))).T
         return error
 
+    def broken(self, theta: Array) -> tuple[str, ...]:
+        """What one candidate breaks of the conditions of its blocks' equations over this record."""
+        said = []
+        for block in self.model.blocks:
+            if block.watch:
+                room = Plan(self.model.watched(block), self.record).simulate(theta)
+                if share := float(np.mean(room <= 0)):
+                    said.append(f"at {share:.1%} of its samples {block.broken}")
+        return tuple(said)
+
     def _basis(self, axis: int, theta: Array) -> Array:
         """One, and the signals of all additions of an axis: (samples, signals)."""
         time, signals = self.record.time, [np.ones(self.record.samples)]
@@ -271,3 +275,21 @@ class Plan:
             columns = self.model.columns(block, axis, axis) or {}
             signals += block.basis(time, *(theta[columns[word]] for word in asked(block.basis)[1:]))  # type: ignore[attr-defined]
         return np.array(signals).T
+
+
+def between(drive: Array, times: int, periodic: bool, smooth: bool) -> Array:
+    """A drive at so many steps a sample, the last sample held: linear between samples, or smooth, which is band-limited
+    where it is periodic and else a cubic spline. (samples,) -> (times * samples,)."""
+    if times == 1:
+        return drive
+    if smooth and periodic:
+        from scipy.signal import resample
+
+        return np.asarray(resample(drive, times * drive.size))
+    ahead = np.append(drive, drive[0] if periodic else drive[-1])
+    grid = np.arange(times * drive.size) / times
+    if not smooth:
+        return np.interp(grid, np.arange(ahead.size), ahead)
+    from scipy.interpolate import CubicSpline
+
+    return np.asarray(CubicSpline(np.arange(drive.size), drive)(np.minimum(grid, drive.size - 1)))

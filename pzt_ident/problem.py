@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from itertools import product
+from types import SimpleNamespace
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pzt_ident.errors import InputError
+from pzt_ident.linear import Linear
 from pzt_ident.model import Model, Slot
 from pzt_ident.plan import Plan
 from pzt_ident.record import Record
@@ -18,6 +21,7 @@ from pzt_ident.units import factor
 Array = NDArray[np.float64]
 
 
+CLEAR = 0.5  # correlation above which a response rises with its drive
 SMALL, LARGE = 1e-3, 5.0  # of the drive's span, between which it can tell of a field
 
 
@@ -56,6 +60,7 @@ class Problem:
         self.plans = {use: [Plan(model, r) for r in records if r.use == use] for use in ("identify", "validate")}
         self._settle(identify, wishes or {})
         self._enough(identify)
+        self._possible()
         self._seen(identify)
 
     def _settle(self, identify: list[Record], wishes: Mapping[str, Wish]) -> None:
@@ -64,7 +69,7 @@ class Problem:
         self.all_units = [self._unit(slot, identify[0]) for slot in self.model.slots]
         self._factor = np.array([factor(unit) for unit in self.all_units])
         self.theta = np.full(count, np.nan)
-        free, lower, upper = [], [], []
+        free, lower, upper, linear = [], [], [], []
         for column, slot in enumerate(self.model.slots):
             wish = next((wishes[name] for name in self.model.spellings(slot) if name in wishes), None)
             parameter = slot.parameter
@@ -72,6 +77,8 @@ class Problem:
                 self.theta[column] = wish.value * self._factor[column]
             elif parameter.value is not None and not wish:
                 self.theta[column] = parameter.value * self._size(slot, identify)
+            elif parameter.linear and not wish:
+                linear.append(column)
             else:
                 own = wish.bounds if wish else None
                 low, high = own or self._bounds(slot, identify) / self._factor[column]
@@ -79,6 +86,10 @@ class Problem:
                 lower.append(low)
                 upper.append(high)
         self.free = np.array(free, dtype=int)
+        slots = [self.model.slots[column] for column in linear]
+        turn = [np.sign(follows(identify, slot.axis)) or 1.0 for slot in slots]
+        units = np.array([sign * self._size(slot, identify) for sign, slot in zip(turn, slots, strict=True)])
+        self.linear = Linear(self.model, linear, units, self._scaled)
         self.names = tuple(self.model.names[column] for column in free)
         self.units = tuple(self.all_units[column] for column in free)
         self.lower, self.upper = np.array(lower), np.array(upper)
@@ -97,7 +108,7 @@ class Problem:
         """Declared bounds in SI units; those of a gain also with the other sign, unless the response rises with the
         drive: an inverting amplifier turns it round, and so does a drive above the resonance."""
         low, high = slot.parameter.bounds
-        if slot.parameter.unit == "response/drive" and not rises(records, slot.axis):
+        if slot.parameter.unit == "response/drive" and follows(records, slot.axis) <= CLEAR:
             low, high = min(low, -high), max(high, -low)
         return np.array([low, high]) * self._size(slot, records)
 
@@ -122,12 +133,22 @@ class Problem:
 
     def _enough(self, identify: list[Record]) -> None:
         for record in identify:
-            if record.samples - record.settle <= len(self.free):
+            free = self.dimensions + self.linear.columns.size
+            if record.samples - record.settle <= free:
                 raise InputError(
-                    f"{record.samples - record.settle} scored samples for {len(self.free)} free parameters",
+                    f"{record.samples - record.settle} scored samples for {free} free parameters",
                     where=record.file or record.name,
                     remedy="give a longer stretch, a shorter `settle`, or fix parameters",
                 )
+
+    def _possible(self) -> None:
+        """Raises InputError where a block refuses the bounds."""
+        least, most = self.theta.copy(), self.theta.copy()
+        least[self.free], most[self.free] = (bound * self._factor[self.free] for bound in (self.lower, self.upper))
+        for block, axis in product(self.model.blocks, self.model.measured):
+            if refuse := getattr(block, "refuse", None):
+                columns = self.model.columns(block, axis, axis) or {}
+                refuse(*(SimpleNamespace(**{word: end[c] for word, c in columns.items()}) for end in (least, most)))
 
     def _seen(self, identify: list[Record]) -> None:
         """Raises InputError where the drive is far from all that the job lets a parameter be: the numbers of one of
@@ -182,6 +203,7 @@ class Problem:
         theta = np.empty((len(values), len(self.theta)))
         theta[:] = self.theta
         theta[:, self.free] = values * self._factor[self.free]
+        self.linear.fill(theta)
         return theta
 
     def by_axis(self, points: Array, use: str = "identify") -> Array:
@@ -207,16 +229,17 @@ class Problem:
 
     def residuals(self, points: Array) -> Array:
         """(candidates, scored samples of all records and axes), scaled so that the norm is the loss; inf if failed."""
-        theta = self.parameters(points)
-        plans = self.plans["identify"]
+        found = self._scaled(self.parameters(points))
         with np.errstate(all="ignore"):
-            each = [plan.residuals(theta) / self.sizes[:, None] for plan in plans]
-            found = np.hstack([part.reshape(theta.shape[0], -1) for part in each])
-            found /= np.sqrt(self.scored)
             wrong = ~np.isfinite(np.square(found).sum(axis=1))
         self.failed += int(wrong.sum())
         found[wrong] = np.inf
         return found
+
+    def _scaled(self, theta: Array) -> Array:
+        with np.errstate(all="ignore"):
+            each = [plan.residuals(theta) / self.sizes[:, None] for plan in self.plans["identify"]]
+            return np.hstack([part.reshape(len(theta), -1) for part in each]) / np.sqrt(self.scored)
 
     def jacobian(self, point: Array, step: float = 1e-5) -> Array:
         """Central differences of the residuals over the cube, one-sided on its faces and beside points that fail, zero
@@ -256,8 +279,9 @@ class Problem:
         return (found.x if better else np.asarray(point)), int(found.nfev + each * found.njev)
 
 
-def rises(records: Sequence[Record], axis: int) -> bool:
-    """Whether the response of an axis clearly follows its drive: their correlation over all records is above 0.5."""
+def follows(records: Sequence[Record], axis: int) -> float:
+    """Correlation of an axis' response with its drive over all records, 0 where one of them is constant."""
     moves = [(record.drive[axis], record.response[axis]) for record in records]
     drive, response = (np.concatenate([signal - signal.mean() for signal in part]) for part in zip(*moves, strict=True))
-    return bool(drive @ response > 0.5 * np.sqrt((drive @ drive) * (response @ response)))
+    size = np.sqrt((drive @ drive) * (response @ response))
+    return float(drive @ response / size) if size > 0 else 0.0

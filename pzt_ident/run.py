@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from datetime import datetime
 from importlib import import_module
 from pathlib import Path
-from threading import Thread
+from threading import Lock, Thread
 from typing import Any
 
 import numpy as np
@@ -123,13 +124,7 @@ def go_on(
     listen: Listen,
 ) -> Path:
     missing = [task for task in tasks if not task.result.exists()]
-    with (folder / "events.jsonl").open("a", encoding="utf-8") as events:
-
-        def tell(event: Event) -> None:
-            events.write(json.dumps(plain(event)) + "\n")
-            events.flush()
-            listen(event)
-
+    with recorded(folder, listen) as tell:
         if missing or not (folder / "result.json").exists():
             runs, budget = [task.run for task in missing], sum(task.stop["evaluations"] for task in missing)
             tell({"event": "start", "runs": runs, "budget": budget, "unit": unit_of(records), "folder": str(folder)})
@@ -145,6 +140,21 @@ def go_on(
             write_report(folder)
         tell({"event": "done", "folder": str(folder)})
     return folder
+
+
+@contextmanager
+def recorded(folder: Path, listen: Listen) -> Iterator[Listen]:
+    """A listener that keeps each event as a line of `events.jsonl` and tells it on; any thread may call it."""
+    one_at_a_time = Lock()
+    with (folder / "events.jsonl").open("a", encoding="utf-8") as events:
+
+        def tell(event: Event) -> None:
+            with one_at_a_time:
+                events.write(json.dumps(plain(event)) + "\n")
+                events.flush()
+                listen(event)
+
+        yield tell
 
 
 def import_ahead() -> None:
@@ -211,6 +221,8 @@ def collect(job: Job, records: list[Record], folder: Path, tasks: list[Task], fa
 
 
 def about(record: Record, problem: Problem, point: np.ndarray) -> dict[str, Any]:
+    plan = next(plan for plans in problem.plans.values() for plan in plans if plan.record is record)
+    theta = problem.parameters(point)
     return {
         **errors_in(record, problem, point),
         "file": record.file,
@@ -219,7 +231,7 @@ def about(record: Record, problem: Problem, point: np.ndarray) -> dict[str, Any]
         "sample_rate": 1 / record.dt,
         "settle": record.settle * record.dt,
         "axes": [record.axes[a] for a in record.measured],
-        "notes": list(record.notes),
+        "notes": [*record.notes, *plan.broken(theta)],
     }
 
 

@@ -20,7 +20,7 @@ class Solve:
     def __init__(self, block: type[Bank], columns: Mapping[str, int | list[int]], known: Mapping[str, float]) -> None:
         self.block = block
         self.columns = columns
-        self.known = dict(known) | {word: block.setting(word) for word in block.settings()}
+        self.known = dict(known)
 
     def __call__(self, theta: Array) -> Array:
         """(candidates, branches, words of `solved`); NaN where a candidate has none."""

@@ -2,26 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import click
 
+from pzt_ident.report.tables import expected
 from pzt_ident.report.words import step_name
 from pzt_ident.terminal import number, table
 
 Facts = dict[str, Any]
-
-
-def told(silent: bool) -> Callable[[Facts], None]:
-    """Each stair on stderr as it is climbed."""
-
-    def tell(step: Facts) -> None:
-        if not silent:
-            click.echo(f"{step_name(step)}: RMSE {number(step['rmse']['identify'])}", err=True)
-
-    return tell
 
 
 def show_diagnosis(found: Facts, folder: Path) -> None:
@@ -31,7 +21,7 @@ def show_diagnosis(found: Facts, folder: Path) -> None:
         (
             item["effect"],
             f"{100 * item['explained']:.0f} %",
-            ", ".join(f"{name.split('.')[-1]} {number(value)}" for name, value in list(item["expected"].items())[:3]),
+            expected(item["expected"], item["units"]),
             f"{item['visibility']:.2f}",
             number(item["rmse"]["identify"]) if item["rmse"] else "",
             number(item["rmse"]["validate"]) if item["rmse"] else "",

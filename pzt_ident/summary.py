@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from dataclasses import fields
+from dataclasses import asdict, fields
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -17,6 +17,7 @@ from pzt_ident.units import factor
 
 if TYPE_CHECKING:
     from pzt_ident.job import Job
+    from pzt_ident.parameter import Form, Setting
     from pzt_ident.problem import Problem
     from pzt_ident.record import Record
 
@@ -75,7 +76,7 @@ def _parameters(problem: Problem) -> list[Facts]:
         facts: Facts = {"name": slot.name, "unit": unit, "doc": slot.parameter.doc}
         if slot.name in bounds:
             facts["bounds"] = [float(bound) for bound in bounds[slot.name]]
-        else:
+        elif np.isfinite(value):
             facts["value"] = float(value / factor(unit))
         found.append(facts)
     return found
@@ -114,6 +115,9 @@ def _range(axis: Facts, channel: str) -> str:
 
 
 def _searched(row: Facts) -> str:
+    """What becomes of a parameter."""
+    if not {"value", "bounds"} & set(row):
+        return "solved for"
     return "fixed at {:.4g}".format(row["value"]) if "value" in row else "{:.4g} to {:.4g}".format(*row["bounds"])
 
 
@@ -164,18 +168,32 @@ def _block(name: str) -> Facts:
         facts |= {key: getattr(block, key) for key in ("looks_like", "separate_by", "remedy")}
     if issubclass(block, Term):
         return facts | {"parameters": _owned(name)}
-    settings = [
-        {"name": word, "default": item.value, "unit": "1", "bounds": item.bounds, "doc": item.doc}
-        for word, item in block.settings().items()
-    ]
-    own = {"settings": settings} if settings else {}
+    forms = [block, *(block.make(**{word: each}) for word, each in _forms(block))]
+    settings = {word: item for form in forms for word, item in form.settings().items()}
+    rows = [{"name": word, "default": item.value, "unit": "1"} | _choices(item) for word, item in settings.items()]
+    own = {"settings": rows} if rows else {}
     return facts | {"place": block.place.name.lower(), "parameters": _declared(block)} | own
 
 
+def _forms(block: type[Any]) -> list[tuple[str, str]]:
+    """Settings with the words that make another form of a block."""
+    every = [(word, each) for word, item in block.settings().items() for each in getattr(item, "words", ())]
+    return [(word, each) for word, each in every if each in block.forms]
+
+
+def _choices(item: Setting | Form) -> Facts:
+    return {key: value for key, value in asdict(item).items() if key != "value"}
+
+
 def _declared(block: type[Any]) -> list[Facts]:
+    """Parameters of a block, and what another form of it has beside them."""
     keys = ("unit", "bounds", "null", "value", "scale", "effect", "per_record", "doc")
+    own = {word: (declared, "") for word, declared in block.parameters().items()}
+    for word, each in _forms(block):
+        more = block.make(**{word: each}).parameters()
+        own = {name: (declared, f"{word}: {each}") for name, declared in more.items()} | own
     return [
-        {"name": word} | {key: getattr(declared, key) for key in keys} for word, declared in block.parameters().items()
+        {"name": name, "form": form} | {key: getattr(item, key) for key in keys} for name, (item, form) in own.items()
     ]
 
 
@@ -223,4 +241,5 @@ def _meaning(row: Facts) -> str:
     fixed = "" if row["value"] is None else f" Fixed at {row['value']:g} unless the job gives bounds."
     effect = "" if row["effect"] is None else f" With the effect {row['effect']} only."
     own = " Each record has its own." if row["per_record"] else ""
-    return row["doc"] + fixed + effect + own
+    form = f" With `{row['form']}` only." if row["form"] else ""
+    return row["doc"] + fixed + effect + own + form

@@ -33,6 +33,7 @@ class Progress:
     unit: str = ""
     best: float = math.inf
     folder: str = ""
+    asking: str = ""
     evaluations: dict[str, int] = field(default_factory=dict)
     first: tuple[float, int] | None = None
 
@@ -46,6 +47,8 @@ class Progress:
             self.first = self.first or (time.perf_counter(), self.done)
         elif event["event"] in ("run", "failed") and self.evaluations:
             self.evaluations[event["run"]] = self.budget // len(self.evaluations)
+        elif "said" in event:
+            self.asking = event["said"]
 
     @property
     def done(self) -> int:
@@ -60,7 +63,7 @@ class Progress:
 
     def __str__(self) -> str:
         if not self.budget:
-            return "finishing"
+            return self.asking or "finishing"
         left = self.seconds_left()
         ahead = "finishing" if self.done >= self.budget else "" if left is None else f"{duration(left)} left"
         share = f"{100 * self.done / self.budget:.0f} %: {self.done} of {self.budget} evaluations"
@@ -125,7 +128,7 @@ def _bar(progress: Progress) -> Iterator[Listener]:
             progress.take(event)
             if said := _said(event):
                 bar.console.print(said, markup=False, highlight=False)
-            bar.update(task, total=progress.budget, completed=progress.done, description=str(progress))
+            bar.update(task, total=progress.budget or None, completed=progress.done, description=str(progress))
 
         yield listen
 
@@ -134,6 +137,8 @@ def _said(event: Event) -> str:
     """An event in words, where it is worth some."""
     if event["event"] == "finished":
         return "every run is finished: nothing is searched again"
+    if event["event"] == "stair":
+        return str(event["said"])
     return _failed(event) if event["event"] == "failed" else ""
 
 

@@ -150,7 +150,7 @@ def fixed(problem: Problem) -> dict[str, Any]:
     return {
         slot.name: {"value": problem.theta[i] / factor(problem.all_units[i]), "unit": problem.all_units[i]}
         for i, slot in enumerate(problem.model.slots)
-        if i not in problem.free
+        if i not in problem.free and i not in problem.linear.columns
     }
 
 

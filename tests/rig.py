@@ -6,6 +6,7 @@ import numpy as np
 
 from pzt_ident.block import Coupling, Modes
 from pzt_ident.model import Model
+from pzt_ident.parameter import Setting
 from pzt_ident.record import Record
 from pzt_ident.registry import blocks
 
@@ -31,13 +32,21 @@ def record(*drives, response=None, dt=1e-3, measured=None, **more):
 
 def model(*chain, axes=None, measured=None):
     """A model of blocks or their words, these as small as is worth a test; two axes where a block couples them."""
-    chain = [small(blocks[item]) if isinstance(item, str) else item for item in chain]
+    chain = [small(block_of(item)) if isinstance(item, str) else item for item in chain]
     axes = axes or (2 if any(issubclass(block, Coupling | Modes) for block in chain) else 1)
     return Model(chain, AXES[:axes], range(axes) if measured is None else measured)
 
 
+def block_of(word):
+    """The block of a word, or one of its forms: `homogenized_energy:free`."""
+    word, _, form = word.partition(":")
+    named = [name for name, item in blocks[word].settings().items() if form in getattr(item, "words", ())]
+    return blocks[word].make(**dict.fromkeys(named, form))
+
+
 def small(block):
-    return block.make(**{word: min(item.value, item.bounds[0] + 1) for word, item in block.settings().items()})
+    numbers = {word: item for word, item in block.settings().items() if isinstance(item, Setting)}
+    return block.make(**{word: min(item.value, item.bounds[0] + 1) for word, item in numbers.items()})
 
 
 def response(chain, parameters, *drives, dt=1e-3, **more):

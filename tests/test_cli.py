@@ -237,6 +237,11 @@ class TestWords:
             shown = call("show", word).stdout
             assert all(f"\n{field.name} " in shown for field in fields(optimizers[word]))
 
+    def test_another_form_is_shown_with_what_it_has_beside(self):
+        shown = call("show", "homogenized_energy").stdout
+        assert "\ndensity " in shown and "lognormal or free" in shown and "\nnodes " in shown
+        assert "Fixed at 0.001 unless the job gives bounds. With `density: free` only." in shown
+
     def test_block(self):
         result = call("show", "bouc_wen", "--json")
         found = json.loads(result.stdout)
@@ -251,6 +256,7 @@ class TestWords:
             "scale": "linear",
             "effect": None,
             "per_record": False,
+            "form": "",
             "doc": "",
         }
 

@@ -110,6 +110,17 @@ class TestDiagnose:
         assert load_job(diagnosed[1] / "job.yaml").model == load_job(lagging).model
         assert read(diagnosed[1] / "environment.json")["job_name"] == "small"
 
+    def test_its_events_are_lines_as_those_of_a_run(self, diagnosed):
+        lines = [json.loads(line) for line in (diagnosed[1] / "events.jsonl").read_text().splitlines()]
+        found = read(diagnosed[1] / "diagnosis.json")
+        scored = [line for line in lines if line["event"] == "scored"]
+        assert {line["effect"] for line in scored} == {item["effect"] for item in found["candidates"]}
+        assert [line["done"] for line in scored] == list(range(1, scored[0]["of"] + 1))
+        refitted = {tuple(line["effects"]): line["identify"] for line in lines if line["event"] == "refitted"}
+        best = found["candidates"][0]
+        assert refitted[(best["effect"],)] == pytest.approx(best["rmse"]["identify"])
+        assert all(line["said"] for line in lines[:-1]) and lines[-1]["event"] == "done"
+
     def test_json_is_all_there_is(self, bent, tmp_path):
         answer = call("diagnose", bent, "--out", tmp_path / "out", "--json")
         assert answer.stderr == ""
@@ -159,6 +170,12 @@ class TestImprove:
     def test_the_terminal_shows_the_staircase(self, improved):
         answer, out = improved
         assert "+ quadratic_gain: RMSE 0.00" in answer.stderr
+        assert [
+            line["added"] for line in map(json.loads, (out / "events.jsonl").open()) if line["event"] == "stair"
+        ] == [
+            None,
+            "quadratic_gain",
+        ]
         lines = answer.stdout.splitlines()
         assert any(line.startswith("as given") for line in lines)
         assert any(line.startswith("+ quadratic_gain") and "100 %" in line for line in lines)

@@ -57,6 +57,15 @@ def test_lines_are_few(clock, capsys):
     assert [line.partition(",")[0] for line in lines] == ["4 %: 40 of 1000 evaluations", "8 %: 80 of 1000 evaluations"]
 
 
+def test_a_diagnosis_says_what_it_is_at(clock, capsys):
+    with terminal.listening(silent=False) as listen:
+        for done in range(1, 101):
+            clock[0] += 0.0625
+            listen({"event": "scored", "said": f"{done} of 100 effects scored"})
+        listen({"event": "stair", "said": "+ creep: RMSE 0.2 µm"})
+    assert capsys.readouterr().err == "80 of 100 effects scored\n+ creep: RMSE 0.2 µm\n"
+
+
 def test_an_end_from_outside_is_an_interrupt(capsys):
     with pytest.raises(KeyboardInterrupt), terminal.listening(silent=False) as listen:
         listen(START | {"folder": "out"})

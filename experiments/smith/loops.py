@@ -6,14 +6,12 @@ python -m experiments.smith.loops
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
-from experiments.tables import number, table
+from experiments.tables import table
 from pzt_ident.model import Model
 from pzt_ident.plan import Plan
 from pzt_ident.record import Record
@@ -27,6 +25,9 @@ ROD = {"mass": 4.21, "damping": 1.52e5, "stiffness": 8.75e7}
 WALL = {"saturation": 3.52e-2 * 0.02 * 0.49, "width": 4.6e5, "coupling": 4.5e5 * 0.49 / 4.6e5}
 WALL |= {"pinning": 1.47e4, "reversible": 0.643}
 PLAIN, THERMAL = {"homogenized_energy": A}, {"thermal_homogenized_energy": T}
+WALLS = {"domain_wall": WALL}
+MINOR = (0, 12000, 4000, 12000, 4000, 12000, 13500, -1000)
+FORMS = ("open", "biased")
 COLD = {word: value for word, value in T.items() if word not in ("thermal", "dwell")}
 HELPED = {"homogenized_energy": COLD | {"coercive": 2930.0, "fluctuation": 52.6}, "thermal_relaxation": {}}
 LINEAR = {"homogenized_energy": COLD, "creep": {"ratio": 0.0211, "tau": 3.16, "decades": 3.0}}
@@ -36,15 +37,17 @@ POINTS = 400
 Chain = dict[str, dict[str, float]]
 
 
-def plan(chain: Chain, field: np.ndarray, dt: float = 1e-3) -> tuple[Plan, np.ndarray]:
-    model = Model([blocks[word] for word in chain], ["x"], [0])
+def plan(chain: Chain, field: np.ndarray, dt: float = 1e-3, **settings: str) -> tuple[Plan, np.ndarray]:
+    """`settings` are those of the first block."""
+    first, *others = chain
+    model = Model([blocks[first].make(**settings), *(blocks[word] for word in others)], ["x"], [0])
     theta = [[(chain[s.block.name] | {"load": 0.0, "extra_damping": 0.0})[s.word] for s in model.slots]]
     record = Record("r", "identify", dt, field[None], np.zeros((1, field.size)), drive_units=("V/m",))
     return Plan(model, record), np.array(theta)
 
 
-def response(chain: Chain, field: np.ndarray, dt: float = 1e-3) -> np.ndarray:
-    made, theta = plan(chain, field, dt)
+def response(chain: Chain, field: np.ndarray, dt: float = 1e-3, **settings: str) -> np.ndarray:
+    made, theta = plan(chain, field, dt, **settings)
     return np.asarray(made.simulate(theta)[0, 0])
 
 
@@ -81,70 +84,13 @@ def crept(chain: Chain, back: float, dt: float = 0.02) -> float:
     return float(100 * (y[75 + 5000] - y[75 + 5]) / (y[55] - y[49]))
 
 
-def relays(field: np.ndarray, coercive: np.ndarray, interaction: np.ndarray) -> Callable[[], np.ndarray]:
-    """The paper's grid, one relay after the other, compiled."""
-    from numba import njit
-
-    @njit(fastmath={"contract"})
-    def run(field: np.ndarray, coercive: np.ndarray, interaction: np.ndarray) -> np.ndarray:
-        up = np.ones((coercive.size, interaction.size))
-        found = np.empty(field.size)
-        for k in range(field.size):
-            total = 0.0
-            for i in range(coercive.size):
-                for j in range(interaction.size):
-                    e = field[k] + interaction[j]
-                    up[i, j] = 1.0 if e >= coercive[i] else -1.0 if e <= -coercive[i] else up[i, j]
-                    total += up[i, j]
-            found[k] = total / up.size
-        return found
-
-    return lambda: run(field, coercive, interaction)
-
-
-def cpu(function: Callable[[], object], rounds: int = 8) -> float:
-    """Least CPU seconds of a call, warm."""
-    function()
-    spent = []
-    for _ in range(rounds):
-        begun = time.process_time()
-        function()
-        spent.append(time.process_time() - begun)
-    return min(spent)
-
-
-def speed() -> str:
-    from statistics import NormalDist
-
-    normal = NormalDist().inv_cdf
-    field = 4000 * (1 - np.cos(2 * np.pi * np.arange(5000) / 1000))
-    lanes, rng = 24, np.random.default_rng(0)
-    rows = []
-    cases = (
-        ("plays, 64 nodes", PLAIN),
-        ("plays that heat helps, 64 nodes", HELPED),
-        ("thermal, 64 x 64 nodes", THERMAL),
-    )
-    for name, chain in cases:
-        made, theta = plan(chain, field)
-        many = theta * np.exp(rng.normal(0, 0.05, (lanes, theta.shape[1])))
-        rows.append((name, number(1e3 * cpu(lambda m=made, t=many: m.squares(t)) / lanes, 3)))
-    share = lambda n: np.array([normal((i + 0.5) / n) for i in range(n)])  # noqa: E731
-    coercive, exact = 2400 * np.exp(0.887 * share(24)), response(PLAIN, field) / (A["gain"] * A["remanence"])
-    grid = relays(field, coercive, 6120 * share(80))
-    error = grid() + field / A["remanence"] - 1 - exact
-    rows.insert(1, ("relays, 24 x 80", number(1e3 * cpu(grid), 3)))
-    said = f"Largest difference of the relays from the plays: {100 * np.abs(error).max():.2g} % of P_R."
-    return table(["5,000 samples, one candidate", "CPU ms"], rows) + "\n\n" + said
-
-
 def figure() -> None:
     import matplotlib
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    fig, axes = plt.subplots(2, 2, figsize=(180 / 25.4, 140 / 25.4), layout="constrained")
+    fig, axes = plt.subplots(3, 2, figsize=(180 / 25.4, 200 / 25.4), layout="constrained")
     for high in (2000, 4000, 6000, 8000):
         field, y = settled(PLAIN, 0, high)
         axes[0, 0].plot(field, y * 1e6, lw=1)
@@ -158,9 +104,15 @@ def figure() -> None:
             axis.plot(field, y * 1e6, lw=1, label=f"{hertz:g} Hz")
         axis.set_title(title, fontsize=9)
         axis.legend(fontsize=7, frameon=False)
-    field, y = settled({"domain_wall": WALL}, -1000, 13500, 3)
+    field, y = settled(WALLS, -1000, 13500, 3)
     axes[1, 1].plot(field, y * 1e6, lw=1)
     axes[1, 1].set_title("domain walls, set DW1", fontsize=9)
+    field = path(*MINOR)
+    for form, axis in zip(FORMS, axes[2], strict=True):
+        y = response(WALLS, field, minor_loops=form)
+        axis.plot(field, y * 1e6, lw=1)
+        axis.plot(field[POINTS::POINTS], y[POINTS::POINTS] * 1e6, ".", ms=4)
+        axis.set_title(f"domain walls, {form} minor loops", fontsize=9)
     for axis in axes.flat:
         axis.set_xlabel("E (V/m)", fontsize=8)
         axis.set_ylabel("u (µm)", fontsize=8)
@@ -179,7 +131,9 @@ def text() -> str:
         behind, alone = sine(PLAIN | {"lumped": ROD}, hertz)[1], sine(THERMAL, hertz)[1]
         over = 1e6 * (behind.max() - behind[POINTS // 2])
         rates.append((f"{hertz:g}", f"{middle(behind):.1f}", f"{over:.2g}", f"{middle(alone):.1f}"))
-    walls = settled({"domain_wall": WALL}, -1000, 13500, 3)[1]
+    walls = settled(WALLS, -1000, 13500, 3)[1]
+    ends = [1e6 * response(WALLS, path(*MINOR), minor_loops=form)[[POINTS, 3 * POINTS, 5 * POINTS]] for form in FORMS]
+    minor = [(form, *(f"{value:.3f}" for value in each)) for form, each in zip(FORMS, ends, strict=True)]
     shares = (0, 0.02, 0.05, 0.1, 0.2, 0.4)
     back = [(f"{100 * s:g}", *(f"{crept(chain, s):+.2f}" for chain in CREEPING.values())) for s in shares]
     return "\n\n".join(
@@ -187,9 +141,9 @@ def text() -> str:
             table(["nested loop, set A", "width [%]"], nested),
             table(["Hz", "set A behind the rod: width [%]", "overshoot [um]", "set T: width [%]"], rates),
             f"Domain walls, set DW1: span {1e6 * np.ptp(walls):.2f} um, width {width(walls):.1f} %.",
+            table(["minor loops of DW1 from 12 to 4 kV/m", "first at 12 kV/m [um]", "second", "third"], minor),
             "Creep from 0.1 to 100 s, percent of the first step:",
             table(["step back [%]", *CREEPING], back),
-            speed(),
         ]
     )
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from pzt_ident.diagnosis.refit import Case, Fit, refit
+from pzt_ident.diagnosis.refit import Case, Fit, elsewhere, refit
 from pzt_ident.diagnosis.score import Scorer, applicable, misfit
-from pzt_ident.diagnosis.verdict import TIED, Candidate, Diagnosis, alike, diagnose, drop, earns, pair
+from pzt_ident.diagnosis.verdict import TIED, Candidate, Diagnosis, adequate, alike, diagnose, drop, earns, pair
 from pzt_ident.registry import blocks
 
 MOST = 5  # steps
 BEAM = 2  # first picks that are followed
-HOPELESS = 4.0  # noise floors: where the first way leaves more, another order of the same effects does not help
+HOPELESS = 5.0  # noise floors: where the first way leaves more, another order of the same effects does not help
 
 
 @dataclass
@@ -56,6 +56,7 @@ def climb(case: Case, first: Fit, found: Diagnosis, pick: Candidate | None, tell
         new = onward(case, first, steps, found, pick)
         if not new:
             break
+        reconsider(case, first, (*steps, *new)[-2].fit, new[-1])
         new += unneeded(case, first, new[-1].fit)
         new += swapped(case, first, new[-1].fit)
         seen = {frozenset(step.fit.effects) for step in steps}
@@ -67,6 +68,13 @@ def climb(case: Case, first: Fit, found: Diagnosis, pick: Candidate | None, tell
         found = diagnose(case, steps[-1].fit, first)
         pick = found.best
     return steps, found
+
+
+def reconsider(case: Case, first: Fit, before: Fit, step: Step) -> None:
+    """Where a stair does not reach the noise, take its fit on from elsewhere before anything else is blamed."""
+    if not adequate(case, first, step.fit):
+        step.fit = elsewhere(step.fit)
+        step.explained = explained(case, before, step.fit)
 
 
 def onward(case: Case, first: Fit, steps: list[Step], found: Diagnosis, pick: Candidate | None) -> list[Step]:

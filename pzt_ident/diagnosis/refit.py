@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -13,21 +13,29 @@ from numpy.typing import NDArray
 
 from pzt_ident.diagnosis.noise import noise_floor, sizes
 from pzt_ident.model import Model
+from pzt_ident.plan import between
 from pzt_ident.problem import Problem
 from pzt_ident.record import Record
 from pzt_ident.registry import Choice, blocks
 
 Array = NDArray[np.float64]
+Tell = Callable[[dict[str, Any]], None]
 
 STARTS = 240  # chance points, of which the best few are refined, so many at a time until two agree
 REFINED, MOST = 4, 24
 AGREE = 0.01  # of the loss, between the two best of them
+FINE = 0.3  # of the misfit or the noise, at most, by which halving the steps of the simulation may change the response
+ELSEWHERE = 2  # chance points of one block that are refined
 EDGE = 1e-4  # of a parameter's range: as near to its end it is on the bound
 DAMPINGS = 10.0 ** np.arange(-5, 4)
 
 
 class Case:
-    """A model, its records and what is free, to which effects can be added that are not ruled out."""
+    """A model, its records and what is free, to which effects can be added that are not ruled out.
+
+    `tell` hears of every start that was fitted, effect that was scored and model that was refitted, as it happens, from
+    any thread; errors are in units of the loss.
+    """
 
     def __init__(
         self,
@@ -37,7 +45,9 @@ class Case:
         wishes: Any,
         ruled_out: Sequence[str] = (),
         shared: Sequence[str] = (),
+        tell: Tell = lambda event: None,
     ) -> None:
+        self.tell = tell
         self.words, self.effects = tuple(words), tuple(effects)
         self.ruled_out, self.shared = tuple(ruled_out), tuple(shared)
         self.records, self.wishes, self.sizes = tuple(records), wishes, sizes(list(records))
@@ -57,14 +67,19 @@ class Case:
 
 @dataclass(frozen=True)
 class Fit:
-    """A model with its effects at its best point; RMSE in SI units, validate None without such records."""
+    """A model with its effects at its best point; RMSE in SI units, validate None without such records. `doubt` is why
+    what it leaves may not be the model's fault."""
 
     effects: tuple[str, ...]
     problem: Problem
     point: Array
     identify: float
     validate: float | None
-    converged: bool = True
+    doubt: str = ""
+
+    @property
+    def converged(self) -> bool:
+        return not self.doubt
 
     @property
     def total(self) -> float:
@@ -84,15 +99,14 @@ class Fit:
         return float(self.problem.physical(self.point)[0][self.problem.names.index(name)])
 
 
-def made(effects: tuple[str, ...], problem: Problem, point: Array, converged: bool = True) -> Fit:
+def made(effects: tuple[str, ...], problem: Problem, point: Array, doubt: str = "") -> Fit:
     validate = float(problem.loss(point, "validate")[0])
-    return Fit(
-        effects, problem, point, float(problem.loss(point)[0]), None if np.isnan(validate) else validate, converged
-    )
+    return Fit(effects, problem, point, float(problem.loss(point)[0]), None if np.isnan(validate) else validate, doubt)
 
 
 def first_fit(case: Case, seed: int) -> Fit:
-    """The job's own model, from chance points; not converged where the two best of their minima differ."""
+    """The job's own model, from chance points; in doubt where the two best of their minima differ, or where the steps
+    of the simulation are too coarse for what is left."""
     problem = case.problem(case.effects)
     rng = np.random.default_rng(seed)
     starts = rng.uniform(size=(STARTS, problem.dimensions))
@@ -101,11 +115,40 @@ def first_fit(case: Case, seed: int) -> Fit:
     while len(ends) < MOST and not agreed:
         own = starts[order[len(ends) : len(ends) + REFINED]]
         with ThreadPoolExecutor(2) as pool:
-            ends = np.vstack([ends, *pool.map(lambda start: descend(problem, start), own)])
+            for end in pool.map(lambda start: descend(problem, start), own):
+                ends = np.vstack([ends, end])
+                case.tell({"event": "fitted", "done": len(ends), "of": len(order)})
         losses = problem.loss(ends)
         best, second = np.sort(losses)[:2]
         agreed = bool(second <= (1 + AGREE) * best + 0.1 * case.floor and np.isfinite(best))
-    return made(case.effects, problem, ends[np.argmin(losses)], agreed)
+    fit = made(case.effects, problem, ends[np.argmin(losses)])
+    return replace(fit, doubt=doubt(case, fit, agreed))
+
+
+def doubt(case: Case, fit: Fit, agreed: bool) -> str:
+    if not agreed:
+        return "Two starts of the fit do not agree: what is left may be the search's fault. Narrow the bounds."
+    left = max(case.floor, float(np.sqrt(max(fit.identify**2 - case.floor**2, 0))))
+    error = step_error(fit.problem, fit.point)
+    if error <= FINE * left:
+        return ""
+    change = f"Halving the steps of the simulation changes the response by {error / left:.0%} of what is left"
+    return f"{change}: the solver may be at fault. Sample faster."
+
+
+def step_error(problem: Problem, point: Array) -> float:
+    """Change of the response of the identify records, root mean square, in units of the loss, when every step of the
+    simulation is halved."""
+    model, theta, squares, count = problem.model, problem.parameters(point), 0.0, 0
+    for record in (record for record in problem.records if record.use == "identify"):
+        smooth = model.oversample > 1
+        drive = np.array([between(row, 2, bool(record.run_in), smooth) for row in record.drive])
+        halved = replace(record, drive=drive, response=np.repeat(record.response, 2, axis=1), dt=record.dt / 2)
+        change = model.simulate(halved, theta)[0, :, ::2] - model.simulate(record, theta)[0]
+        change = change[:, record.settle :] / problem.sizes[:, None]
+        squares += float(np.sum((change - change.mean(axis=1, keepdims=True)) ** 2))
+        count += change.size
+    return float(np.sqrt(squares / count))
 
 
 def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, float]) -> Fit:
@@ -114,7 +157,31 @@ def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, fl
     old = dict(zip(before.problem.names, before.problem.physical(before.point)[0], strict=True))
     middle = problem.physical(np.full(problem.dimensions, 0.5))[0]
     start = {name: guess.get(name, old.get(name, middle[i])) for i, name in enumerate(problem.names)}
-    return made(effects, problem, descend(problem, problem.unit_point(start)))
+    found = made(effects, problem, descend(problem, problem.unit_point(start)))
+    case.tell({"event": "refitted", "effects": effects, "identify": found.identify, "validate": found.validate})
+    return found
+
+
+def elsewhere(fit: Fit) -> Fit:
+    """The fit, or a better one that starts from other values of one block on one axis, the others kept: beside a
+    greater misfit, since explained, a block may have come to rest in a side minimum, such as a resonance far off."""
+    problem = fit.problem
+    slots = [problem.model.slots[column] for column in problem.free]
+    owners = np.array([f"{slot.axis} {slot.block.name}" for slot in slots])
+    rng = np.random.default_rng(0)
+    ends = [fit.point]
+    for owner in dict.fromkeys(owners):
+        starts = np.where(owners == owner, scattered(problem, rng), fit.point)
+        ends += [descend(problem, starts[i]) for i in np.argsort(problem.loss(starts))[:ELSEWHERE]]
+    best = int(np.argmin(problem.loss(np.array(ends))))
+    return made(fit.effects, problem, ends[best], fit.doubt) if best else fit
+
+
+def scattered(problem: Problem, rng: np.random.Generator) -> Array:
+    """Chance points; half of them keep near 0 what may range from there over decades, such as a damping."""
+    points = rng.uniform(size=(STARTS, problem.dimensions))
+    near = (problem.lower == 0) & (rng.random((STARTS, 1)) < 0.5)
+    return np.where(near, points**4, points)
 
 
 def descend(problem: Problem, point: Array, most: int = 30) -> Array:

@@ -26,10 +26,11 @@ TRIALS = 5  # values over the range of a parameter that means nothing at the nul
 
 @dataclass
 class Score:
-    """What the data say of an effect without a refit. `guess` in the user's units; `visibility` is the share of its
+    """What the data say of an effect without a refit. `guess` in the user's `units`; `visibility` is the share of its
     trace that the fitted parameters cannot take up, `power` the largest plausible rms of that, in noise floors."""
 
     effect: str
+    units: dict[str, str] = field(default_factory=dict)
     explained: float = 0.0
     guess: dict[str, float] = field(default_factory=dict)
     visibility: float = 0.0
@@ -87,9 +88,9 @@ class Scorer:
 
     def score(self, effect: str) -> Score:
         problem = self.case.problem((*self.fit.effects, effect))
+        found = Score(effect, dict(zip(problem.names, problem.units, strict=True)))
         if issubclass(blocks[effect], Addition):
-            return self._addition(effect, problem)
-        found = Score(effect)
+            return self._addition(found, problem)
         for trial, columns in self._trials(effect, problem):
             trace = self.project(columns.T)
             left_over, whole = np.linalg.norm(trace, axis=0).max(), np.linalg.norm(columns, axis=1).max()
@@ -149,9 +150,9 @@ class Scorer:
             np.array([problem.unit_point(dict(zip(problem.names, row, strict=True))) for row in physical])
         )
 
-    def _addition(self, effect: str, problem: Problem) -> Score:
+    def _addition(self, found: Score, problem: Problem) -> Score:
         """What a record may add of its own is not in the chain: what it leaves says all."""
-        found, block = Score(effect), blocks[effect]
+        block = blocks[found.effect]
         shapes = [i for i, name in enumerate(problem.names) if name not in self.fit.problem.names]
         old = dict(zip(self.fit.problem.names, self.fit.problem.physical(self.fit.point)[0], strict=True))
         guess = getattr(block, "guess", None)

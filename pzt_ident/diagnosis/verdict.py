@@ -17,6 +17,7 @@ LEAST = 0.02  # of the misfit: what scores less is not refitted
 CLEAR = 0.6  # noise floors: an effect removes at least this much, root mean square
 SHARE = 0.15  # and at least this much of the misfit
 TIED = 0.2  # noise floors between two refits: less than that, these data cannot tell; of look-alikes twice that
+HELD = 3.0  # times as much may be left of the records that the fit never saw
 FORM = 0.03  # of the misfit at first: less is as likely the form of the effects found as another effect
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
 
@@ -66,19 +67,23 @@ def earns(case: Case, first: Fit, before: Fit, after: Fit) -> bool:
 
 
 def adequate(case: Case, first: Fit, fit: Fit) -> bool:
-    return fit.identify <= np.hypot(case.floor, least(case, first))
+    return reaches(case, first, fit) and bool(
+        fit.validate is None or fit.validate <= np.hypot(case.floor, HELD * least(case, first))
+    )
+
+
+def reaches(case: Case, first: Fit, fit: Fit) -> bool:
+    """Whether a fit comes down to the noise of the records that it was fitted to."""
+    return bool(fit.identify <= np.hypot(case.floor, least(case, first)))
 
 
 def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     """Score every effect, refit the short list, judge; `first` as for `least`, by default the model itself."""
     first = first or before
-    if not before.converged and not adequate(case, first, before):
-        reason = "Two starts of the fit do not agree: what is left may be the search's fault. Narrow the bounds."
-        return Diagnosis("refused", reason, before, [], [])
+    if before.doubt and not adequate(case, first, before):
+        return Diagnosis("refused", before.doubt, before, [], [])
     scorer = Scorer(case, before)
-    with ThreadPoolExecutor(2) as pool:
-        scores = list(pool.map(scorer.score, applicable(case, before.effects)))
-    candidates = sorted((Candidate(score) for score in scores), key=lambda item: -item.score.explained)
+    candidates = sorted(map(Candidate, scored(case, before, scorer)), key=lambda item: -item.score.explained)
     if adequate(case, first, before) and not any(_worth(case, first, before, item) for item in candidates):
         settle(case, candidates)
         return nothing(case, first, before, candidates)
@@ -100,6 +105,17 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     verdict = "missing" if len(words) == 1 else "inconclusive"
     rest = sorted((item for item in passing if item not in tied), key=lambda item: item.fit.total)  # type: ignore[union-attr]
     return Diagnosis(verdict, sentence(case, before, best, words), before, candidates, words, [best, *rest])
+
+
+def scored(case: Case, before: Fit, scorer: Scorer) -> list[Score]:
+    """Every effect that the model could have more."""
+    words, found = applicable(case, before.effects), list[Score]()
+    with ThreadPoolExecutor(2) as pool:
+        for score in pool.map(scorer.score, words):
+            found.append(score)
+            facts = {"effect": score.effect, "explained": score.explained}
+            case.tell({"event": "scored", **facts, "done": len(found), "of": len(words)})
+    return found
 
 
 def alike(case: Case, effect: str, fit: Fit, rival: Fit) -> bool:
@@ -136,7 +152,15 @@ def nothing(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) ->
     if adequate(case, first, before):
         said = f"The model is adequate: it leaves {left:.2f} noise floors."
         return Diagnosis("adequate", said, before, candidates, [])
-    said = f"No effect of the catalogue explains the misfit of {left:.1f} noise floors."
+    if before.validate is not None and reaches(case, first, before):
+        unseen = before.validate / case.floor
+        said = (
+            f"The model leaves {left:.2f} noise floors of the records to identify, but {unseen:.1f} of those to"
+            " validate: they show something that the others do not, or do not determine. Give a record of their"
+            " kind `use: identify`."
+        )
+    else:
+        said = f"No effect of the catalogue explains the misfit of {left:.1f} noise floors."
     return Diagnosis("unexplained", said, before, candidates, [])
 
 

@@ -3,8 +3,12 @@
 from math import nan
 
 from pzt_ident.block import Block, Place, expm1
-from pzt_ident.parameter import Parameter
+from pzt_ident.errors import InputError
+from pzt_ident.parameter import Form, Parameter
 from pzt_ident.registry import blocks
+
+ANHYSTERETIC = (1.0, 0.0, 0.0, 0.0)
+"""P_an / P_s = tanh((E + alpha P) / a), the curve of all walls that no reversal has rescaled; see `anhysteretic`."""
 
 
 @blocks.register
@@ -15,58 +19,153 @@ class DomainWall(Block):
     Smith & Salapaka, Model Development for the Positioning Mechanisms in an Atomic Force Microscope, eqs. 3 to 8, u
     for E and P over P_s. P is solved for at each stage of a fourth-order Runge-Kutta step in E. Begins unpolarized at
     no field. Where g comes to k / alpha (against eq. 9) the walls run away; here they then jump, at most onto the
-    anhysteretic curve. A candidate with c alpha P_s >= a, for which P has no single solution, fails. Minor loops do not
-    close, as in all models of this kind.
+    anhysteretic curve, and the result says so. A candidate with c alpha P_s >= a, for which P has no single solution,
+    fails. Minor loops do not close, as in all models of this kind, unless they are biased.
     """
 
     place = Place.OPERATOR
+    broken = (
+        "domain walls run away, against condition (9) of Smith & Salapaka, k > alpha |P_an - P_irr|: there the model "
+        "jumps onto its anhysteretic curve. Raise `domain_wall.pinning`, lower `domain_wall.coupling` (with alpha P_s "
+        "above a they always do), or sample the drive more finely"
+    )
+    minor_loops = Form("open", ("open", "biased"), "`biased` closes minor loops, eq. 5 of the paper.")
     saturation = Parameter("response", (0, 20), "Response at the saturation polarization, b P_s.")
     width = Parameter("drive", (0.05, 100), "Field over which the anhysteretic polarization rises, a.", scale="log")
     coupling = Parameter("1", (0, 1), "Field of the saturated neighbourhood over the width, alpha P_s / a.")
     pinning = Parameter("drive", (1e-3, 10), "Field that the walls are pinned by, k.", scale="log")
     reversible = Parameter("1", (0, 1), "Share of the polarization that bends back, c.")
 
+    def refuse(least, most):
+        if least.reversible * least.coupling >= 1:
+            raise InputError(
+                f"c alpha P_s / a is {least.reversible * least.coupling:.3g} or more: no polarization is stable, the "
+                "walls run away",
+                where="domain_wall.coupling",
+                remedy="keep `domain_wall.reversible` times `domain_wall.coupling` below 1: a smaller alpha or P_s, or "
+                "a larger a",
+            )
+
     def prepare(saturation, width, coupling, pinning, reversible):
         runs_away = reversible * coupling >= 1
         return nan if runs_away else saturation, 1 / width, coupling, pinning / width, reversible
 
     def start(u, saturation, per_width, coupling, pinning, reversible):
-        return pinned(0.0, 0.0, u, per_width, coupling, pinning, reversible), u
+        return pinned(0.0, 0.0, u, ANHYSTERETIC, per_width, coupling, pinning, reversible)[0], u
 
     def step(pin, before, u, saturation, per_width, coupling, pinning, reversible):
-        pin = pinned(pin, before, u, per_width, coupling, pinning, reversible)
-        an = anhysteretic(pin, u, per_width, coupling, reversible)
+        pin, _ = pinned(pin, before, u, ANHYSTERETIC, per_width, coupling, pinning, reversible)
+        an = anhysteretic(pin, u, ANHYSTERETIC, per_width, coupling, reversible)
         return pin, u, saturation * (reversible * an + (1 - reversible) * pin)
 
 
-def pinned(pin, before, u, per_width, coupling, pinning, reversible):
-    """P_irr / P_s at u."""
+class Biased(DomainWall):
+    """P_an rescaled to go through the last reversal that is no end of a minor loop, (E1, P1), and on the way back to it
+    the same reflected through (E0, P0), half-way between that reversal and the one after it:
+    P_an = g Pt(E, P) - (1 - g) P_s after a rise, P_an = 2 P0 - (g Pt(2 E0 - E, 2 P0 - P) - (1 - g) P_s) back,
+    g = (P1 + P_s) / (Pt(E1, P1) + P_s), Pt of eq. 4.
+
+    Eq. 5, its two signs. Since P is continuous, P_irr is P at each reversal. Back at (E1, P1) the loop has closed and
+    is forgotten: the plain curve goes on. A reversal on the way back takes the place of the first, so of loops within
+    loops the innermost one closes. g is at most 1.
+    """
+
+    def start(u, saturation, per_width, coupling, pinning, reversible):
+        pin, _ = pinned(0.0, 0.0, u, ANHYSTERETIC, per_width, coupling, pinning, reversible)
+        an = anhysteretic(pin, u, ANHYSTERETIC, per_width, coupling, reversible)
+        way = 1.0 if u > 0 else -1.0 if u < 0 else 0.0
+        return pin, u, reversible * an + (1 - reversible) * pin, way, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0
+
+    def step(
+        pin, before, p, way, side, end, p_end, share, field, worth, shift,
+        u, saturation, per_width, coupling, pinning, reversible,
+    ):  # fmt: skip
+        loop, curve, _ = turned(
+            pin, before, p, way, side, end, p_end, (share, field, worth, shift),
+            u, per_width, coupling, pinning, reversible,
+        )  # fmt: skip
+        return *loop, *curve, saturation * loop[2]
+
+
+class Room(DomainWall):
+    """What eq. 9 wants above zero, (k - alpha g) / k."""
+
+    def step(pin, before, u, saturation, per_width, coupling, pinning, reversible):
+        pin, room = pinned(pin, before, u, ANHYSTERETIC, per_width, coupling, pinning, reversible)
+        return pin, u, room
+
+
+class BiasedRoom(Biased):
+    def step(
+        pin, before, p, way, side, end, p_end, share, field, worth, shift,
+        u, saturation, per_width, coupling, pinning, reversible,
+    ):  # fmt: skip
+        loop, curve, room = turned(
+            pin, before, p, way, side, end, p_end, (share, field, worth, shift),
+            u, per_width, coupling, pinning, reversible,
+        )  # fmt: skip
+        return *loop, *curve, room
+
+
+DomainWall.forms = {"biased": Biased}
+DomainWall.watch, Biased.watch = Room, BiasedRoom
+
+
+def turned(pin, before, p, way, side, end, p_end, curve, u, per_width, coupling, pinning, reversible):
+    """The state of `Biased` at u, its curve, and the room of eq. 9. side: the way that led to the end of the minor
+    loop, 0 outside of any."""
+    now = 1.0 if u > before else -1.0 if u < before else way
+    turns = now * way < 0
+    away, back = turns and side != -way, turns and side == -way
+    pin = p if turns else pin
+    end, p_end, side = (before, p, way) if away else (end, p_end, side)
+    closed = side == now and side * (u - end) >= 0
+    at = tanh((end if closed else before) * per_width + coupling * (p_end if closed else p))
+    least = min((side * p + 1) / max(side * at + 1, 1e-12), 1.0)
+    share, field, worth, shift = (least, 0.0, 0.0, p - least * at) if away else curve
+    field, worth = ((end + before) * per_width, p_end + p) if back else (field, worth)
+    shift = worth - shift if back else shift
+    share, field, worth, shift = ANHYSTERETIC if closed else (share, field, worth, shift)
+    pin = (p_end - reversible * at) / max(1 - reversible, 1e-12) if closed else pin
+    before, side = (end, 0.0) if closed else (before, side)
+    curve = share, field, worth, shift
+    pin, room = pinned(pin, before, u, curve, per_width, coupling, pinning, reversible)
+    an = anhysteretic(pin, u, curve, per_width, coupling, reversible)
+    return (pin, u, reversible * an + (1 - reversible) * pin, now, side, end, p_end), curve, room
+
+
+def pinned(pin, before, u, curve, per_width, coupling, pinning, reversible):
+    """P_irr / P_s at u, and the least of k - alpha g over k on the way, which eq. 9 wants above zero."""
     move = u - before
-    middle = before + 0.5 * move
-    s1 = slope(pin, before, move, per_width, coupling, pinning, reversible)
-    s2 = slope(pin + 0.5 * move * per_width * s1, middle, move, per_width, coupling, pinning, reversible)
-    s3 = slope(pin + 0.5 * move * per_width * s2, middle, move, per_width, coupling, pinning, reversible)
-    s4 = slope(pin + move * per_width * s3, u, move, per_width, coupling, pinning, reversible)
+    walls = per_width, coupling, pinning, reversible
+    s1, r1 = slope(pin, before, move, curve, *walls)
+    s2, r2 = slope(pin + 0.5 * move * per_width * s1, before + 0.5 * move, move, curve, *walls)
+    s3, r3 = slope(pin + 0.5 * move * per_width * s2, before + 0.5 * move, move, curve, *walls)
+    s4, r4 = slope(pin + move * per_width * s3, u, move, curve, *walls)
     moved = move * per_width * (s1 + 2 * (s2 + s3) + s4) / 6
-    ahead = anhysteretic(pin, u, per_width, coupling, 1.0) - pin
-    return pin + (min(moved, max(ahead, 0 * ahead)) if move >= 0 else max(moved, min(ahead, 0 * ahead)))
+    ahead = anhysteretic(pin, u, curve, per_width, coupling, 1.0) - pin
+    pin = pin + (min(moved, max(ahead, 0 * ahead)) if move >= 0 else max(moved, min(ahead, 0 * ahead)))
+    return pin, min(r1, min(r2, min(r3, r4)))
 
 
-def slope(pin, u, move, per_width, coupling, pinning, reversible):
+def slope(pin, u, move, curve, per_width, coupling, pinning, reversible):
     sign = 1.0 if move >= 0 else -1.0
-    ahead = sign * (anhysteretic(pin, u, per_width, coupling, reversible) - pin)
+    ahead = sign * (anhysteretic(pin, u, curve, per_width, coupling, reversible) - pin)
     ahead = ahead if ahead > 0 else 0 * ahead
-    return ahead / max(pinning - coupling * ahead, 1e-3 * pinning)
+    room = 1 - coupling * ahead / pinning
+    return ahead / (pinning * max(room, 1e-3)), room
 
 
-def anhysteretic(pin, u, per_width, coupling, reversible):
-    """p = tanh((u + alpha P_s (c p + (1 - c) p_irr)) / a) by Newton's method; it contracts, so it has one solution."""
-    at = u * per_width + coupling * (1 - reversible) * pin
+def anhysteretic(pin, u, curve, per_width, coupling, reversible):
+    """p = share tanh((u + alpha P_s (c p + (1 - c) p_irr - worth)) / a - field) + shift by Newton's method; it
+    contracts, so it has one solution."""
+    share, field, worth, shift = curve
+    at = u * per_width + coupling * ((1 - reversible) * pin - worth) - field
     inner = coupling * reversible
-    p = tanh(at)
+    p = share * tanh(at) + shift
     for _ in range(6):
         value = tanh(at + inner * p)
-        p = p - (p - value) / (1 - inner * (1 - value * value))
+        p = p - (p - share * value - shift) / (1 - inner * share * (1 - value * value))
     return p
 
 

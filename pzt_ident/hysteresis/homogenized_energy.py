@@ -5,7 +5,7 @@ from statistics import NormalDist
 
 from pzt_ident.block import Bank, Place, erf
 from pzt_ident.hysteresis._play import play, relaxed, relaxing
-from pzt_ident.parameter import Parameter
+from pzt_ident.parameter import Form, Parameter, Setting
 from pzt_ident.registry import blocks
 
 NODES = 64
@@ -27,6 +27,7 @@ class HomogenizedEnergy(Bank):
     """
 
     place = Place.OPERATOR
+    density = Form("lognormal", ("lognormal", "free"), "Of the coercive fields; `free` weighs nodes that lie evenly.")
     seen = ("coercive",)
     branches = NODES
     gain = Parameter("response/drive", (0, 3), "Response per field of a domain that does not switch, a1 / eta.")
@@ -66,6 +67,56 @@ class HomogenizedEnergy(Bank):
         return (gain + quadratic * field) * field
 
 
+class FreeDensity(Bank):
+    """y = a1 / eta E + sum_i w_i (2 Phi2(F_i[E]) - 1),  F_i the play of half-width Ec_i = reach (i - 1/2) / nodes.
+
+    Smith et al., eqs. 12 and 15, of a1 alone, with the weights w_i = a1 P_R nu1(Ec_i) reach / nodes in the place of a
+    form of nu1. The plays do not depend on them: gain and weights are solved for by non-negative least squares, inside
+    the search over the width of the interaction field, with their squared second differences beside the errors.
+    """
+
+    place = Place.OPERATOR
+    density = HomogenizedEnergy.density
+    nodes = Setting(22, (4, 128), "Coercive fields, evenly from 0 to `reach`.")  # with gain and none one group of lanes
+    seen = ("reach",)
+    gain = Parameter("response/drive", (0, 3), HomogenizedEnergy.gain.doc, linear=True)
+    weight = Parameter(
+        "response", (0, 1), "Response to all domains of one coercive field that turn, half of it.",
+        count="nodes", linear=True, smooth="smoothness",
+    )  # fmt: skip
+    interaction = HomogenizedEnergy.interaction
+    reach = Parameter("drive", (0.05, 1), "Field that the coercive fields lie below.", value=0.5)
+    smoothness = Parameter(
+        "1", (1e-9, 1e3), "Weight of the squared second differences of the weights.", scale="log", value=1e-3
+    )
+    poled, bias = HomogenizedEnergy.poled, HomogenizedEnergy.bias
+
+    def count(nodes):
+        return nodes
+
+    def stands(reach, nodes, branch):
+        return reach * (branch + 0.5) / nodes
+
+    def prepare(gain, weight, interaction, reach, nodes, poled, bias, branch):
+        per_width = 1 / (sqrt(2.0) * interaction)
+        half = reach * (branch + 0.5) / nodes * per_width
+        before = play(0.0, (poled - bias) * per_width, half)
+        return gain, weight, bias, per_width, half, before
+
+    def start(u, gain, weight, bias, per_width, half, before):
+        return (play(before, (u - bias) * per_width, half),)
+
+    def step(p, u, gain, weight, bias, per_width, half, before):
+        p = play(p, (u - bias) * per_width, half)
+        return p, weight * erf(p)
+
+    def rests(p, low, high, gain, weight, bias, per_width, half, before):
+        return (low - bias) * per_width >= p - half and (high - bias) * per_width <= p + half
+
+    def output(u, total, gain, weight, bias, per_width, half, before):
+        return gain * (u - bias) + total
+
+
 class Relaxing(HomogenizedEnergy):
     """The same with plays that heat helps along. Coercive fields are those that are met at the rate of one fluctuation
     field a second; in a hold the domains go on with the logarithm of time."""
@@ -93,4 +144,4 @@ class Relaxing(HomogenizedEnergy):
         return (gain + quadratic * field) * field
 
 
-HomogenizedEnergy.forms = {"thermal_relaxation": Relaxing}
+HomogenizedEnergy.forms = {"free": FreeDensity, "thermal_relaxation": Relaxing}

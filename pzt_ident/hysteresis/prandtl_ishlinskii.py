@@ -21,6 +21,9 @@ class PrandtlIshlinskii(Bank):
     weight = Parameter("response/drive", (-0.5, 1.5), "Weight of the i-th play.", count=PLAYS)
     reach = Parameter("drive", (0.05, 1), "Half-width of the widest play.", value=0.5)
 
+    def stands(reach, branch):
+        return reach * (branch + 1) / PLAYS
+
     def prepare(gain, weight, reach, branch):
         return gain, weight, reach * (branch + 1) / PLAYS
 

@@ -97,15 +97,16 @@ def rests(block: type[Block]) -> bool:
 
 
 def relays_room(block: type[Relays]) -> int:
-    """Shares, weights, coercive fields, sums, the field before, six tables; whether lanes are alike."""
+    """Shares, weights, coercive fields, sums, the weight below each, between where each coercive field's are not at
+    rest, the field before, six tables; whether lanes are alike."""
     tables = 6 * (block.fine + 1) * block.columns
-    return (block.coercives + 2) * block.interactions + block.coercives + 2 + tables
+    return (block.coercives + 3) * block.interactions + 3 * block.coercives + 3 + tables
 
 
 def layout_of(block: type[Block], variant: Variant) -> Layout:
     """Counted by asking the block itself, with parameters in the middle of their bounds."""
     known = {p.name: sum(p.bounds) / 2 for p in block.parameters().values()} | {"dt": 1e-3, "branch": 0}
-    known |= {"span": 1.0, "peak": 1.0} | dict.fromkeys(getattr(block, "solved", ()), 0.5)
+    known |= block.numbers() | {"span": 1.0, "peak": 1.0} | dict.fromkeys(getattr(block, "solved", ()), 0.5)
     prepared = block.prepare(*(known[word] for word in block.arguments()))  # type: ignore[attr-defined]
     operator, stateless = issubclass(block, Operator), issubclass(block, Coupling | Shift | Relays)
     parts = [len(part) for part in prepared] if operator or issubclass(block, Relays) else [0, 0, len(prepared)]

@@ -37,6 +37,12 @@ def table(lines: Sequence[str], wanted: int | str | None, where: str) -> tuple[i
     return first + 1, lines[first:last]
 
 
+def titles(lines: Sequence[str]) -> dict[str, str]:
+    """The number of each table, and its heading with its `SampleName`."""
+    blocks = {number: _names(number, lines[first:last]) for number, (first, last) in _blocks(lines).items()}
+    return {number: ": ".join(rest) for number, *rest in blocks.values()}
+
+
 def _blocks(lines: Sequence[str]) -> dict[int, tuple[int, int]]:
     """First and last line of each table by its number; the ones with `key: value` lines win."""
     found: dict[int, tuple[int, int]] = {}

@@ -10,6 +10,13 @@ from pzt_ident.readers.text import parse
 from pzt_ident.record import Source
 
 
+def parts(path: Path) -> tuple[str, dict[str, str]]:
+    """The sheets of a workbook."""
+    from python_calamine import CalamineWorkbook
+
+    return "sheet", {name: name for name in CalamineWorkbook.from_path(path).sheet_names}
+
+
 def read(path: Path, source: Source) -> Table:
     """The columns of the sheet `source.sheet`, of the first one where the job names none."""
     from python_calamine import CalamineWorkbook

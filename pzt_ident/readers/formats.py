@@ -56,6 +56,19 @@ def open_table(path: Path, source: Source) -> Table:
         ) from error
 
 
+def parts_of(path: Path) -> tuple[str, dict[str, str]]:
+    """The key of a job by which one of several tables or sheets of a file is taken, and what it may be, with its
+    name; nothing where the file has only one. Raises InputError as `open_table` does."""
+    reader = importlib.import_module(f"pzt_ident.readers.{_format(path)}")
+    try:
+        found: tuple[str, dict[str, str]] = reader.parts(path) if hasattr(reader, "parts") else ("", {})
+    except InputError:
+        raise
+    except Exception:  # what is damaged is said when it is opened
+        return "", {}
+    return found if len(found[1]) > 1 else ("", {})
+
+
 def _format(path: Path) -> str:
     """By the suffix; what that calls text, or no suffix that is known, by the first bytes."""
     beginning = _beginning(path)

@@ -108,9 +108,6 @@ def _check_length(part: slice, source: Source, dt: float, where: str) -> None:
     if samples < SHORTEST:
         problem = f"the record has {samples} samples, at least {SHORTEST} are needed"
         raise InputError(problem, where=where, remedy="widen `rows` or `time`, or decimate less")
-    if source.run_in and (part.stop - part.start) % source.decimate:
-        problem = f"decimate {source.decimate} does not divide the {part.stop - part.start} samples of a period"
-        raise InputError(problem, where=where, remedy="cut whole periods with `rows`, or decimate by a divisor")
     if round(source.settle / (dt * source.decimate)) >= samples:
         problem = f"settle {source.settle:g} s leaves nothing of {samples * dt * source.decimate:g} s"
         raise InputError(problem, where=where, remedy="shorten it")
@@ -123,8 +120,10 @@ def _check_moving(response: Signal) -> None:
 
 
 def _sampled(signals: Sequence[Signal | None], part: slice, source: Source) -> NDArray[np.float64]:
-    """(axes, samples); NaN for a signal that is not measured. A record that is run in is periodic."""
-    step, periodic = source.decimate, source.run_in > 0
+    """(axes, samples); NaN for a signal that is not measured. A record that is run in is periodic, and stays so where
+    its samples are a multiple of the step."""
+    step = source.decimate
+    periodic = source.run_in > 0 and (part.stop - part.start) % step == 0
     missing = np.full(len(range(part.start, part.stop, step)), np.nan)
     cut = [item.cut(part).complete().values if item else None for item in signals]
     return np.array([missing if values is None else decimated(values, step, periodic) for values in cut])

@@ -24,9 +24,18 @@ from pzt_ident.record import Source
 
 def read(path: Path, source: Source) -> Table:
     """The columns of a text file, of a file with several tables those of `source.table`."""
-    lines = decode(path.read_bytes(), str(path)).replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    lines = lines_of(path)
     first, chosen = analyser.table(lines, source.table, str(path))
     return Table(path, parse(chosen, str(path), "line", first))
+
+
+def parts(path: Path) -> tuple[str, dict[str, str]]:
+    """The numbers of the tables of an analyser's export, with what they are called."""
+    return "table", analyser.titles(lines_of(path))
+
+
+def lines_of(path: Path) -> list[str]:
+    return decode(path.read_bytes(), str(path)).replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
 def decode(raw: bytes, where: str) -> str:

@@ -10,13 +10,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pzt_ident.files import replaced
+from pzt_ident.report import density_figures, staircase
 from pzt_ident.report import misfit_figures as misfit
 from pzt_ident.report import residual_figures as residual
 from pzt_ident.report import search_figures as search
 from pzt_ident.report import signal_figures as signal
-from pzt_ident.report import staircase
 from pzt_ident.report.results import Results, Trace
 from pzt_ident.report.style import COLUMN, PAGE, saved, style
+from pzt_ident.report.words import standing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -202,6 +203,14 @@ def _search_plates(results: Results) -> Iterator[Plate]:
             "more.",
             partial(search.estimates_height, parameters=len(free)),
             partial(search.draw_estimates, results=results),
+        )
+    for name, entries in standing(results).items():
+        yield Plate(
+            f"density-{slug(name)}",
+            "parameters",
+            f"{name} of the best run over the drive that each stands for.",
+            density_figures.height,
+            partial(density_figures.draw, name=name, entries=entries),
         )
     names, _ = search.correlation(results)
     if names:

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from markupsafe import Markup
 
 _NUMBER = re.compile(r"-?\d+\.\d+")
+_UNTURNED = re.compile(r"rotate\(-?0 ")
 _LINK = re.compile(r"(?<=url\(#)|(?<=^#)")
 
 
@@ -27,11 +28,19 @@ def inline(svg: bytes, name: str) -> Markup:
         element.attrib = {
             _local(key): _attribute(_local(key), value, name)
             for key, value in element.attrib.items()
-            if not (key == "id" and element.tag == "g")
+            if not ((key == "id" and element.tag == "g") or _UNTURNED.match(value))
         }
         element.text, element.tail = (text and (text.strip() or None) for text in (element.text, element.tail))
+    _unwrap(root)
     root.attrib = {"viewBox": root.attrib["viewBox"], "role": "img", "aria-labelledby": f"{name}-caption"}
     return Markup(ElementTree.tostring(root, encoding="unicode"))
+
+
+def _unwrap(parent: ElementTree.Element) -> None:
+    """Put the content of groups that say nothing in their place."""
+    for child in parent:
+        _unwrap(child)
+    parent[:] = [item for child in parent for item in (child if child.tag == "g" and not child.attrib else [child])]
 
 
 def relative(path: str) -> str:
@@ -67,7 +76,7 @@ def _attribute(key: str, value: str, name: str) -> str:
     if key == "id":
         return f"{name}-{value}"
     if key == "style":
-        value = re.sub(r"font-family:[^;]*;\s*", "", value)
+        value = re.sub(r"font-family:[^;]*;\s*|(?<=[:;]) ", "", value)
     elif key in ("x", "y", "width", "height", "transform"):
         value = _NUMBER.sub(lambda match: f"{round(float(match[0]), 1):g}", value)
     return _LINK.sub(f"{name}-", value)

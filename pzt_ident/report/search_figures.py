@@ -29,7 +29,6 @@ from pzt_ident.report.style import (
 
 if TYPE_CHECKING:
     import pandas as pd
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _COSTS = (("evaluations", "evaluations of the model", ""), ("seconds", "wall time", "s"))
@@ -86,7 +85,8 @@ def descent(history: pd.DataFrame, cost: str, points: int = 60) -> tuple[Floats,
 
 
 def free_parameters(results: Results) -> list[str]:
-    return [name for name, entry in results.best["parameters"].items() if entry["verdict"] != "fixed"]
+    """Those that are searched for or stand alone."""
+    return [name for name, entry in results.best["parameters"].items() if not entry.get("at")]
 
 
 def estimates_height(width: float, parameters: int) -> float:
@@ -101,18 +101,19 @@ def draw_estimates(figure: Figure, results: Results) -> None:
     keys = [key(name, linestyle="", **look) for name, look in looks.items()]
     ring = {"marker": "o", "markersize": 5.5, "markerfacecolor": "none", "markeredgecolor": INK, "markeredgewidth": 0.7}
     top = heading(figure, "Estimates of all runs within their bounds", [*keys, key("best run", linestyle="", **ring)])
-    frame = Frame(top + 1, left=_names_width(max(map(len, names))), right=22)
+    best = [results.best["parameters"][name] for name in names]
+    room = 3 + max(len(_bounds(entry)) for entry in best)  # mm, one a letter
+    frame = Frame(top + 1, left=_names_width(max(map(len, names))), right=room)
     axes = panels(figure, 1, 1, frame)[0, 0]
     for place, (optimizer, look) in enumerate(looks.items()):
         own = [run["parameters"] for run in results.result["runs"] if run["optimizer"] == optimizer]
         shift = 0.36 * (place / max(len(looks) - 1, 1) - 0.5)
         xs = [within(parameters[name]) for name in names for parameters in own]
         axes.plot(xs, np.repeat(np.arange(len(names)) + shift, len(own)), linestyle="", clip_on=False, **look)
-    best = [results.best["parameters"][name] for name in names]
     axes.plot([within(entry) for entry in best], range(len(names)), linestyle="", clip_on=False, **ring)
     for row, entry in enumerate(best):
         axes.axhline(row, color=SHADE, linewidth=0.5, zorder=0)
-        _bounds(axes, row, entry)
+        axes.annotate(_bounds(entry), (1.02, row), (6, 0), textcoords="offset points", va="center", size=5.5)
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.set_yticks(range(len(names)), names)
     axes.set_xlim(-0.02, 1.02)
@@ -198,8 +199,6 @@ def _levels(results: Results) -> list[tuple[str, float, dict[str, Any]]]:
     return [("best, polished", best, _BEST)] * (best > 0) + noise
 
 
-def _bounds(axes: Axes, row: int, entry: Mapping[str, Any]) -> None:
+def _bounds(entry: Mapping[str, Any]) -> str:
     text = f"{bounds(entry['lower'], entry['upper'])} {unit(entry['unit'])}".strip()
-    axes.annotate(
-        text + " (log)" * spans_decades(entry), (1.02, row), (6, 0), textcoords="offset points", va="center", size=5.5
-    )
+    return text + " (log)" * spans_decades(entry)

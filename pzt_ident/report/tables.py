@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pzt_ident.files import write_text
-from pzt_ident.report.numbers import bounds, count, number, percent, short, unit, with_error
+from pzt_ident.report.numbers import bounds, count, number, percent, quantity, short, unit, with_error
 from pzt_ident.report.results import Results
 from pzt_ident.report.words import step_name
 
@@ -158,7 +158,7 @@ def candidates(results: Results) -> Table:
     rows = [
         {
             **{key: item[key] for key in ("effect", "decision", "explained", "visibility", "physics", "remedy")},
-            "expected": expected(item["expected"]),
+            "expected": expected(item["expected"], item.get("units", {})),
             "alike": ", ".join(word for word in item["class"] if word != item["effect"]),
             **(item["rmse"] or dict.fromkeys(("identify", "validate"))),
         }
@@ -180,10 +180,16 @@ def candidates(results: Results) -> Table:
     return table("candidates", rows, cells, words, _units(results, "identify", "validate"))
 
 
-def expected(values: Mapping[str, float], most: int = 3) -> str:
+def expected(values: Mapping[str, float], units: Mapping[str, str], most: int = 3) -> str:
     """The first parameters of an effect and the values that they would take."""
-    said = [f"{name.partition('.')[2]} {number(value, 3)}" for name, value in values.items()]
+    said = [f"{short_name(name)} {quantity(value, units.get(name, '1'), 3)}" for name, value in values.items()]
     return ", ".join([*said[:most], "…"] if len(said) > most else said)
+
+
+def short_name(name: str) -> str:
+    """A parameter without its block: `x.creep.tau` is `x.tau`."""
+    *axis, _, last = name.split(".")
+    return ".".join([*axis, last])
 
 
 def steps(results: Results) -> Table:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from pzt_ident.report.numbers import count, number, quantity
+from pzt_ident.report.numbers import count, number, percent, quantity
 from pzt_ident.report.results import Results
 
 
@@ -76,12 +76,45 @@ def _parameters(results: Results) -> list[str]:
         found.setdefault(entry["verdict"], []).append(name)
     said = []
     if names := found.get("not determined"):
-        said.append(f"These data do not determine {listed(names)}: other values would fit as well.")
+        said.append(f"These data do not determine {listed(ranges(names))}: other values would fit as well.")
+    said += _unmoved(results)
     for bound in ("lower", "upper"):
         if names := found.get(f"on its {bound} bound"):
             place = f"sits on its {bound} bound" if len(names) == 1 else f"sit on their {bound} bounds"
             said.append(f"{listed(names)} {place}: what fits best may lie beyond.")
     return said
+
+
+def _unmoved(results: Results) -> Iterator[str]:
+    """Of what stands for a drive each, that which no record moves."""
+    for name, entries in standing(results).items():
+        still = [entry["at"] for entry in entries if entry["verdict"] == "not moved"]
+        if still:
+            (low, unit), (high, _) = still[0], still[-1]
+            these = f"the {len(still)} of {number(low)} to" if len(still) > 1 else "the one of"
+            yield f"No record moves {these} {quantity(high, unit)} of {name}: these data say nothing of them."
+
+
+def standing(results: Results) -> dict[str, list[Any]]:
+    """The best run's parameters that stand for a drive each, by the name that they share."""
+    found: dict[str, list[Any]] = {}
+    for name, entry in results.best["parameters"].items():
+        if entry.get("at"):
+            found.setdefault(name.rpartition("_")[0], []).append(entry)
+    return found
+
+
+def ranges(names: Iterable[str]) -> list[str]:
+    """`weight_3 to weight_9` in the place of three and more that follow each other."""
+    runs: list[list[str]] = []
+    for name in names:
+        head, _, digits = name.rpartition("_")
+        before, _, last = runs[-1][-1].rpartition("_") if runs else ("", "", "")
+        if before == head and digits.isdigit() and last.isdigit() and int(digits) == int(last) + 1:
+            runs[-1].append(name)
+        else:
+            runs.append([name])
+    return [said for run in runs for said in ([f"{run[0]} to {run[-1]}"] if len(run) > 2 else run)]
 
 
 def _notes(results: Results) -> list[str]:
@@ -100,6 +133,19 @@ def _failures(results: Results) -> list[str]:
     return said
 
 
+def happening(event: Mapping[str, Any], unit: str) -> str:
+    """What a diagnosis is at, from one of its events."""
+    if event["event"] == "fitted":
+        return f"fitted from {event['done']} of {event['of']} starts"
+    if event["event"] == "scored":
+        part = f"{event['effect']} would explain {percent(event['explained'])}"
+        return f"{event['done']} of {event['of']} effects scored; {part}"
+    if event["event"] == "refitted":
+        chosen = f"with {listed(event['effects'])}" if event["effects"] else "without an effect"
+        return f"refitted {chosen}: RMSE {quantity(event['identify'], unit)}"
+    return f"{step_name(event)}: RMSE {quantity(event['rmse']['identify'], unit)}"
+
+
 def listed(names: Iterable[str]) -> str:
     """a, b and c."""
     *most, last = names
@@ -107,6 +153,6 @@ def listed(names: Iterable[str]) -> str:
 
 
 def step_name(step: Mapping[str, Any]) -> str:
-    """`as given`, `+ effect`, `- effect`, or both where one takes the place of another."""
+    """`as given`, `+ effect`, `- effect`, or both where one takes the place of another; what the step itself says."""
     words = [f"{sign} {step[key]}" for sign, key in (("+", "added"), ("-", "removed")) if step[key]]
-    return " ".join(words) or "as given"
+    return step.get("change") or " ".join(words) or "as given"

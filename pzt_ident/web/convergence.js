@@ -50,9 +50,10 @@ export class Convergence {
     return {
       ...this.size(),
       legend: { live: false },
+      padding: [null, 30, null, null],
       cursor: { drag: { x: false, y: false } },
       scales: { x: { time: false }, y: { distr: 3 } },
-      axes: [axis("evaluations of the model"), axis(`RMSE [${this.unit.replace(/^u/, "µ")}]`, { size: 62, values: (_, values) => values.map((value) => (value === null ? "" : tick(value))) })],
+      axes: [axis("evaluations of the model", { size: 32 }), axis(`RMSE [${this.unit}]`, { size: 62, values: (_, values) => values.map((value) => (value === null ? "" : tick(value))) })],
       series: [{}, ...names.map((label, place) => ({
         label, stroke: () => colour(COLOURS[place % 5]), width: 1.5, spanGaps: true, paths: uPlot.paths.stepped({ align: 1 }), points: { show: false },
       }))],

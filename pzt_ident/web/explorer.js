@@ -3,6 +3,7 @@ import { errorOf, extent, lowerBound, marksInBox, marksInTime, number, opened, t
 
 const MODELS = ["--model", "--before", "--third", "--fourth"];
 const DASHES = [[], [6, 3], [2, 2], [8, 2, 2, 2]];
+const LONG = 20000; // points: in longer records dashes run together, and a line of one pixel is drawn five times as fast
 
 /** Model beside measurement: in time, as a loop and as a map of the residual. What is marked in one is seen in all. */
 export class Explorer {
@@ -23,8 +24,7 @@ export class Explorer {
     const redraw = () => this.record && this.draw();
     new ResizeObserver(() => this.root.clientWidth !== this.drawnAt && redraw()).observe(root);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
-    addEventListener("beforeprint", () => { document.documentElement.dataset.theme = "light"; redraw(); });
-    addEventListener("afterprint", () => { delete document.documentElement.dataset.theme; redraw(); });
+    printed(redraw);
     this.choose(0);
   }
 
@@ -77,7 +77,7 @@ export class Explorer {
     if (written) [this.from.value, this.to.value] = ends.map((value) => (value === "" ? "" : Number(value.toPrecision(7))));
     this.say();
     for (const plot of this.plots) plot.redraw(false);
-    for (const plane of [this.loop, this.map]) { plane.scene.marks = marks; plane.overlay(); }
+    for (const plane of [this.loop, this.map]) plane.mark(marks);
   }
 
   /** The stretch that is written in the fields, an empty one being the end of the record. */
@@ -118,28 +118,29 @@ export class Explorer {
 
   draw() {
     this.drawnAt = this.root.clientWidth;
+    this.fine = document.documentElement.hasAttribute("data-print") ? 2 : 1; // pixels a pixel
     this.curves.replaceChildren();
     const { record } = this;
     const named = record.models.length > 1;
     this.plots = [
       this.plot(`response [${record.unit}]`, 0.26, 0, [record.response, ...record.models.map((model) => sum(record.response, model.residual))], [
-        { label: "measured", stroke: () => colour("--measured"), width: 3 },
-        ...record.models.map((model, place) => line(named ? model.name : "model", place)),
+        { label: "measured", stroke: () => colour("--measured"), width: 3 * this.fine },
+        ...record.models.map((model, place) => this.line(named ? model.name : "model", place)),
       ]),
       this.plot(`residual [${record.unit}]`, 0.18, this.floors[record.axis] ?? 0, record.models.map((model) => model.residual),
-        record.models.map((model, place) => line(named ? `residual, ${model.name}` : "residual: model less measured", place))),
+        record.models.map((model, place) => this.line(named ? `residual, ${model.name}` : "residual: model less measured", place))),
     ];
     this.loop.show(this.scene(record.response, `response [${record.unit}]`, {
       curves: [
         { xs: record.drive, ys: record.response, colour: "--measured", width: 3 },
         ...record.models.map((model, place) => ({
-          xs: record.drive, ys: sum(record.response, model.residual), colour: MODELS[place % 4], width: 1.1, dash: DASHES[place % 4],
+          xs: record.drive, ys: sum(record.response, model.residual), colour: MODELS[place % 4], width: 1, dash: this.dash(place),
         })).reverse(),
       ],
     }));
     const cells = gridded(record.drive, this.open, record.models[0].residual, this.scored);
     this.map.caption.textContent = `Residual map: mean residual along the loop, its slope taken out. Violet: the model is ${number(cells.largest, 2)} ${record.unit} or more below the measurement; orange: above.`;
-    this.map.show(this.scene(this.open, `response less a straight line [${record.unit}]`, { cells }));
+    this.map.show(this.scene(this.open, `off a straight line [${record.unit}]`, { cells }));
     this.mark(this.marks);
   }
 
@@ -149,16 +150,19 @@ export class Explorer {
   }
 
   plot(label, share, floor, arrays, series) {
-    const { record } = this;
+    const { record, fine } = this;
     const width = Math.max(280, this.curves.clientWidth - 4);
-    const font = `${Math.round(0.78 * parseFloat(getComputedStyle(this.curves).fontSize))}px system-ui, sans-serif`;
-    const axis = (more) => ({ font, labelFont: font, stroke: () => colour("--quiet"), grid: { stroke: () => colour("--rule"), width: 1 }, ticks: { show: false }, ...more });
+    const font = `${Math.round(0.78 * fine * parseFloat(getComputedStyle(this.curves).fontSize))}px system-ui, sans-serif`;
+    const axis = (label, labelSize, size, more) => ({
+      label, labelSize: fine * labelSize, size: fine * size, gap: 5 * fine, space: (self, axis) => fine * (axis ? 30 : 50), font, labelFont: font,
+      stroke: () => colour("--quiet"), grid: { stroke: () => colour("--rule"), width: fine }, ticks: { show: false }, ...more,
+    });
     const plot = new uPlot({
-      width, height: Math.round(Math.min(Math.max(width * share, 130), 420)),
+      width: fine * width, height: fine * Math.round(Math.min(Math.max(width * share, 130), 420)),
       legend: { live: false },
       cursor: { sync: { key: this.record.name }, drag: { x: true, y: false, setScale: false }, points: { show: false } },
       scales: { x: { time: false }, y: { range: () => this.range(arrays, floor) } },
-      axes: [axis({ label: "time [s]", labelSize: 18, size: 32 }), axis({ label, labelSize: 20, size: 58, values: (_, values) => values.map(tick) })],
+      axes: [axis("time [s]", 18, 32), axis(label, 20, 58, { values: (_, values) => values.map(tick) })],
       series: [{ label: "time" }, ...series],
       hooks: {
         setSelect: [(self) => this.dragged(self)],
@@ -183,6 +187,13 @@ export class Explorer {
     const [low, high] = [Math.min(-floor || Infinity, ...ends.map(([low]) => low)), Math.max(floor || -Infinity, ...ends.map(([, high]) => high))];
     return [low - 0.06 * (high - low), high + 0.06 * (high - low)];
   }
+
+  line(label, place) {
+    const width = (this.record.index.length > LONG ? 1 : 1.2) * this.fine;
+    return { label, stroke: () => colour(MODELS[place % 4]), width, dash: this.dash(place) };
+  }
+
+  dash(place) { return this.record.index.length > LONG ? [] : DASHES[place % 4]; }
 
   dragged(plot) {
     if (plot.select.width < 3) return;
@@ -258,12 +269,17 @@ export class Explorer {
   }
 }
 
-function line(label, place) {
-  return { label, stroke: () => colour(MODELS[place % 4]), width: 1.2, dash: DASHES[place % 4] };
-}
-
 function sum(a, b) {
   return a.map((value, i) => value + b[i]);
+}
+
+/** Draw as wide as a sheet of paper and in its colours while it is printed. */
+export function printed(redraw) {
+  for (const [name, on] of [["beforeprint", true], ["afterprint", false]])
+    addEventListener(name, () => {
+      document.documentElement.toggleAttribute("data-print", on);
+      redraw();
+    });
 }
 
 /** A new element inside another. */

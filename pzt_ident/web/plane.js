@@ -1,6 +1,7 @@
 import { extent, number, thinned, ticks } from "./signals.js";
 
 const EDGE = { left: 62, right: 14, top: 10, bottom: 42 };
+const NEAR = 0.7; // px: a shorter step of a curve is not seen
 const DRAWN = 4000; // bins of a curve: more cannot be told apart on a screen
 
 /** A colour of the page's style sheet, such as "--model". */
@@ -18,7 +19,7 @@ export class Plane {
     this.canvas = this.figure.appendChild(document.createElement("canvas"));
     this.canvas.setAttribute("role", "img");
     this.canvas.setAttribute("aria-label", title);
-    this.layer = document.createElement("canvas");
+    [this.layer, this.marked] = ["canvas", "canvas"].map((tag) => document.createElement(tag));
     this.onBox = onBox;
     this.listen();
   }
@@ -45,7 +46,7 @@ export class Plane {
   draw() {
     [this.width, this.height] = this.size();
     const scale = Math.max(window.devicePixelRatio || 1, 2); // fine enough for print
-    for (const canvas of [this.canvas, this.layer]) {
+    for (const canvas of [this.canvas, this.layer, this.marked]) {
       canvas.width = this.width * scale;
       canvas.height = this.height * scale;
     }
@@ -60,7 +61,27 @@ export class Plane {
     if (this.scene.cells) this.cells(pen);
     for (const curve of this.scene.curves ?? []) this.curve(pen, curve, [[0, curve.xs.length]]);
     pen.restore();
+    this.mark(this.scene.marks);
+  }
+
+  /** The drawing with stretches marked on it. */
+  mark(marks = []) {
+    this.scene.marks = marks;
+    const { xs, ys, cells } = this.scene;
+    const pen = this.over(this.marked, this.layer);
+    if (marks.length) this.curve(pen, { xs, ys, colour: "--mark", width: cells ? 1 : 2.5 }, marks);
     this.overlay();
+  }
+
+  /** A pen for a canvas that shows another one, in pixels of the page. */
+  over(canvas, below) {
+    const pen = canvas.getContext("2d");
+    const scale = canvas.width / this.width;
+    pen.setTransform(1, 0, 0, 1, 0, 0);
+    pen.clearRect(0, 0, canvas.width, canvas.height);
+    pen.drawImage(below, 0, 0);
+    pen.setTransform(scale, 0, 0, scale, 0, 0);
+    return pen;
   }
 
   axes(pen) {
@@ -98,8 +119,15 @@ export class Plane {
     pen.beginPath();
     for (const [first, end] of stretches) {
       const shown = thinned([xs, ys], first, end, DRAWN);
-      pen.moveTo(this.toX(xs[shown[0]]), this.toY(ys[shown[0]]));
-      for (const i of shown.length > 1 ? shown : [first, first]) pen.lineTo(this.toX(xs[i]) + 0.01, this.toY(ys[i]));
+      let [left, top] = [this.toX(xs[shown[0]]), this.toY(ys[shown[0]])];
+      pen.moveTo(left, top);
+      if (shown.length === 1) pen.lineTo(left + 0.01, top);
+      for (const i of shown) {
+        const [x, y] = [this.toX(xs[i]), this.toY(ys[i])];
+        if (Math.abs(x - left) + Math.abs(y - top) < NEAR && i !== end - 1) continue;
+        pen.lineTo(x, y);
+        [left, top] = [x, y];
+      }
     }
     pen.stroke();
     pen.setLineDash([]);
@@ -122,16 +150,10 @@ export class Plane {
     });
   }
 
-  /** The drawing, and on it what is marked and where the cursor is. */
+  /** On it all where the cursor is, or the box that is being drawn. */
   overlay(point = null, box = null) {
-    const pen = this.canvas.getContext("2d");
-    const scale = this.canvas.width / this.width;
-    pen.setTransform(1, 0, 0, 1, 0, 0);
-    pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
-    pen.drawImage(this.layer, 0, 0);
-    pen.setTransform(scale, 0, 0, scale, 0, 0);
-    const { xs, ys, marks } = this.scene;
-    if (marks?.length) this.curve(pen, { xs, ys, colour: "--mark", width: this.scene.cells ? 1 : 2.5 }, marks);
+    const pen = this.over(this.canvas, this.marked);
+    const { xs, ys } = this.scene;
     pen.strokeStyle = colour("--ink");
     if (point !== null) {
       pen.beginPath();
@@ -179,8 +201,9 @@ export function gridded(xs, ys, values, first, columns = 110, rows = 72) {
 }
 
 export function tick(value) {
-  const text = number(value, 6);
-  return text.includes(".") && !text.includes("×") ? text.replace(/\.?0+$/, "") : text;
+  const [mantissa, power] = number(value, 6).split(" × ");
+  const short = mantissa.includes(".") ? mantissa.replace(/\.?0+$/, "") : mantissa;
+  return power ? `${short} × ${power}`.replace(/^(−?)1 × /, "$1") : short;
 }
 
 function rgb(hex) {

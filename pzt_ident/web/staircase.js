@@ -1,4 +1,4 @@
-import { element } from "./explorer.js";
+import { element, printed } from "./explorer.js";
 import { number, ticks } from "./signals.js";
 
 const SVG = "http://www.w3.org/2000/svg";
@@ -10,6 +10,7 @@ export class Staircase {
     this.root = root;
     root.classList.add("staircase");
     new ResizeObserver(() => root.clientWidth !== this.drawnAt && this.show(this.content)).observe(root);
+    printed(() => this.show(this.content));
     this.show(content);
   }
 
@@ -71,7 +72,8 @@ function said({ steps, unit }) {
   return "RMSE by step: " + steps.map((step) => `${step.name} ${USES.filter((use) => Number.isFinite(step[use])).map((use) => `${use} ${number(step[use])} ${unit}`).join(", ")}`).join("; ");
 }
 
-function put(parent, tag, attributes, text = "") {
+/** A new element of a drawing inside another. */
+export function put(parent, tag, attributes, text = "") {
   const made = document.createElementNS(SVG, tag);
   for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
   made.textContent = text;

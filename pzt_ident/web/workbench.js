@@ -1,3 +1,4 @@
+import { Asking } from "./asking.js";
 import { Columns, row, select } from "./columns.js";
 import { Convergence } from "./convergence.js";
 import { element, Explorer } from "./explorer.js";
@@ -8,8 +9,9 @@ import { Staircase } from "./staircase.js";
 const STAGES = { run: "Identifying", compare: "Looking where it fails", diagnose: "Asking what is missing" };
 const at = (id) => document.getElementById(id);
 const convergence = new Convergence(at("convergence"));
-const columns = new Columns(at("columns"), (form) => act("job", form, "run"));
-let state = null, stairs = null, explorer = null, shown = "", away = false;
+const columns = new Columns(at("columns"), at("begin"), look, begin);
+const asking = new Asking(() => { if (state?.stage === "diagnose") { status(); candidates(); } });
+let state = null, stairs = null, explorer = null, shown = "", away = false, draft = ["bouc_wen"];
 
 /** Do something on the server and show what became of it; an error is said, and nothing is lost. */
 async function act(name, body = {}, then = null) {
@@ -24,6 +26,13 @@ async function act(name, body = {}, then = null) {
   }
 }
 
+/** A job from the columns as they are confirmed, and run it. */
+function begin(form) {
+  try {
+    act("job", { ...form(), model: draft }, "run");
+  } catch (error) { fail(error); }
+}
+
 function fail(error) {
   at("error").textContent = error.message;
   at("error").hidden = false;
@@ -35,15 +44,17 @@ function show(found) {
   at("name").textContent = begun ? state.job.name : "pzt-ident workbench";
   at("where").textContent = begun ? state.job.folder : state.folder;
   at("measurement").hidden = begun;
-  for (const id of ["chain", "fall"]) at(id).hidden = !begun;
+  for (const id of ["fall", "fit", "where-it-fails", "candidates"]) at(id).hidden = !begun;
   at("terminal").hidden = !state.commands.length;
   at("commands").textContent = state.commands.join("\n");
   if (state.failure) fail({ message: state.failure });
   else at("error").hidden = true;
   buttons(begun);
   words(begun);
+  chain(begun);
+  others();
+  at("begin").hidden = begun;
   if (!begun) return files();
-  chain();
   fall();
   misfit();
   candidates();
@@ -55,28 +66,30 @@ function buttons(begun) {
   at("run").hidden = !begun || busy || Boolean(state.diagnosis);
   at("run").textContent = state.failure ? "Run on" : "Run";
   at("stop").hidden = !busy;
-  at("undo").hidden = state.steps.length < 2;
+  at("undo").hidden = !begun;
+  at("undo").textContent = state.steps.length > 1 ? "Undo" : "Change the measurement";
   at("save").hidden = !begun;
   at("drive").hidden = !state.diagnosis?.next_experiment;
-  at("report").hidden = !state.result;
+  at("report").hidden = !begun || !state.result;
   status();
 }
 
 function status() {
   const seconds = state?.stage ? Math.max(0, Math.round(Date.now() / 1000 - state.since)) : 0;
-  const share = state?.stage === "run" && convergence.budget ? `, ${Math.round((100 * convergence.done) / convergence.budget)} %, best RMSE ${number(convergence.best)}` : "";
-  at("status").textContent = state?.stage ? `${STAGES[state.stage]}: ${seconds} s${share}` : "";
+  const share = state?.stage === "run" && Number.isFinite(convergence.best) ? `, ${Math.round((100 * convergence.done) / convergence.budget)} %, best RMSE ${number(convergence.best)}${convergence.done < convergence.budget ? "" : ", finishing"}` : "";
+  const said = state?.stage === "diagnose" && asking.said ? `; ${asking.said}` : "";
+  at("status").textContent = state?.stage ? `${STAGES[state.stage]}: ${seconds} s${share}${said}` : "";
 }
 
 function words(begun) {
   const { diagnosis, result } = state;
   at("advice").replaceChildren();
-  if (!begun) at("verdict").textContent = "Drop a measurement: voltage in, displacement out.";
+  if (!begun) at("verdict").textContent = columns.files.length ? "Is this what was measured?" : "Drop a measurement: voltage in, displacement out.";
   else if (diagnosis) at("verdict").textContent = diagnosis.reason;
   else if (result) at("verdict").textContent = `The model leaves ${number(result.best.rmse.validate ?? result.best.rmse.identify)} ${result.unit} RMS${result.best.rmse.validate === null ? "" : " on records the fit never saw"}.`;
-  else at("verdict").textContent = state.stage ? "Identifying the model." : "Ready to run.";
+  else at("verdict").textContent = state.stage ? "Identifying the model." : state.failure ? "Not finished." : "Ready to run.";
   for (const { run, reason } of result?.failed_runs ?? []) element(at("advice"), "span", { class: "warn" }, `${run} failed: ${reason}. `);
-  if (result?.best.rmse.validate === null) at("advice").append("No record is kept back to judge the model on: drop a second one to see whether it holds. ");
+  if (result?.best.rmse.validate === null) at("advice").append("No record is kept back to judge the model on: a second one, dropped beside the first, would show whether it holds. ");
   if (!diagnosis) return;
   const missing = diagnosis.candidates.filter((item) => item.decision === "missing");
   for (const item of missing) addButton(at("advice"), item.effect, "strong");
@@ -84,46 +97,66 @@ function words(begun) {
   if (diagnosis.next_experiment) at("advice").append(` To tell them apart: ${diagnosis.next_experiment.why}.`);
 }
 
-function addButton(parent, effect, kind = "") {
-  const made = element(parent, "button", { type: "button", class: kind, "data-effect": effect }, `Add ${effect}`);
+function addButton(parent, effect, kind = "", text = `Add ${effect}`) {
+  const made = element(parent, "button", { type: "button", class: kind, "data-effect": effect, "aria-label": `Add ${effect}` }, text);
   made.addEventListener("click", () => act("add", { effect }));
   parent.append(" ");
 }
 
 function files() {
   at("here").replaceChildren();
-  if (!state.files.length) return;
+  const free = state.files.filter((name) => !columns.files.some(({ file }) => file === name));
+  if (!free.length) return;
   at("here").append("Or take one of this folder: ");
-  for (const name of state.files)
-    element(at("here"), "button", { type: "button" }, name).addEventListener("click", () => look(name)), at("here").append(" ");
+  for (const name of free)
+    element(at("here"), "button", { type: "button" }, name).addEventListener("click", () => look(name).catch(() => {})), at("here").append(" ");
 }
 
-async function look(name) {
-  try { columns.add(await ask("look", { file: name })); } catch (error) { fail(error); }
+/** See what is in a file of the folder, or in a part of one. */
+async function look(file, part = null, place = undefined) {
+  at("error").hidden = true;
+  try {
+    columns.add(await ask("look", { file, part }), place);
+    measured();
+  } catch (error) {
+    fail(error);
+    throw error;
+  }
+}
+
+function measured() {
+  if (!state) return;
+  words(false);
+  files();
 }
 
 async function upload(list) {
   at("error").hidden = true;
+  const said = [];
   for (const file of list)
     try {
       columns.add(await (await call(`upload?name=${encodeURIComponent(file.name)}`, file, true)).json());
-    } catch (error) { fail(error); }
+      measured();
+    } catch (error) { said.push(error.message); }
+  if (said.length) fail({ message: said.join("\n") });
 }
 
-function chain() {
-  const { model, effects } = state.job;
+/** The chain of blocks: that of the job, or what it will be made with. */
+function chain(begun) {
+  const { model, effects } = begun ? state.job : { model: draft, effects: [] };
+  const choose = (words) => { if (begun) act("model", { model: words }); else { draft = words; chain(false); } };
   const docs = Object.fromEntries([...state.blocks, ...state.effects].map((block) => [block.name, block.doc]));
   at("blocks").replaceChildren();
   element(at("blocks"), "li", { class: "end" }, "drive");
   for (const word of model) {
     const item = element(at("blocks"), "li", { title: docs[word] ?? "" }, word);
-    if (model.length > 1) takeOff(item, word, () => act("model", { model: model.filter((other) => other !== word) }));
+    if (model.length > 1) takeOff(item, word, () => choose(model.filter((other) => other !== word)));
   }
   for (const word of effects) takeOff(element(at("blocks"), "li", { class: "effect", title: docs[word] ?? "" }, word), word, () => act("remove", { effect: word }));
   element(at("blocks"), "li", { class: "end" }, "response");
   at("more").replaceChildren();
-  more("Add a block", state.blocks.filter((block) => !model.includes(block.name)), (word) => act("model", { model: [...model, word] }));
-  more("Add an effect", state.effects.filter((block) => !effects.includes(block.name)), (word) => act("add", { effect: word }));
+  more("Add a block", state.blocks.filter((block) => !model.includes(block.name)), (word) => choose([...model, word]));
+  if (begun) more("Add an effect", state.effects.filter((block) => !effects.includes(block.name)), (word) => act("add", { effect: word }));
 }
 
 function takeOff(item, word, act) {
@@ -139,15 +172,27 @@ function more(name, choices, act) {
 function fall() {
   const floors = Object.values(state.result?.noise_floor ?? state.diagnosis?.noise_floor ?? {});
   if (floors.length) fall.floor = Math.max(...floors);
-  const steps = state.steps.map(({ change, identify, validate }) => ({ name: change, identify, validate }));
+  const steps = state.steps.map(({ change, identify, validate }) => ({ name: change, identify, validate, note: identify === null ? "not run" : "" }));
   const last = steps.at(-1);
   if (state.stage === "run" && last.identify === null && Number.isFinite(convergence.best))
-    Object.assign(last, { identify: convergence.best, validate: convergence.validate, live: true });
-  fall.unit = state.result?.unit ?? (convergence.unit.replace(/^u/, "µ") || fall.unit);
-  const content = { steps, floor: fall.floor, unit: fall.unit ?? "" };
+    Object.assign(last, { identify: convergence.best, validate: convergence.validate, live: true, note: "so far" });
+  else if (state.stage === "run") last.note = "begins";
+  const content = { steps, floor: fall.floor, unit: state.unit };
   if (stairs) stairs.show(content);
   else stairs = new Staircase(at("stairs"), content);
   at("converging").hidden = !convergence.runs.size;
+}
+
+/** Steps that were made and left: each can be gone back to. */
+function others() {
+  at("others").replaceChildren();
+  for (const { number: step, change, identify } of state.others) {
+    const left = identify === null ? "not run" : `leaves ${number(identify)} ${state.unit}`;
+    const made = element(at("others"), "button", { type: "button" }, `${step}: ${change} (${left})`);
+    made.addEventListener("click", () => act("back", { step }));
+    at("others").append(" ");
+  }
+  if (state.others.length) at("others").prepend("Tried before: ");
 }
 
 function misfit() {
@@ -155,10 +200,11 @@ function misfit() {
   at("where-it-fails").hidden = !axes.length;
   at("misfit").replaceChildren();
   for (const axis of axes) {
-    for (const sentence of axis.sentences) element(at("misfit"), "li", {}, sentence);
+    const name = axes.length > 1 ? `${axis.axis}: ` : "";
+    for (const sentence of axis.sentences) element(at("misfit"), "li", {}, name + sentence);
     for (const one of axis.worst) {
       const item = element(at("misfit"), "li");
-      element(item, "button", { type: "button" }, `${one.record}, ${number(one.start, 4)} to ${number(one.end, 4)} s: ${number(100 * one.share, 2)} % of the misfit`)
+      element(item, "button", { type: "button" }, `${name}${one.record}, ${number(one.start, 4)} to ${number(one.end, 4)} s: ${share(one.share)} of the misfit`)
         .addEventListener("click", () => explorer?.reveal(one.record, axis.axis, one.start, one.end));
     }
   }
@@ -166,30 +212,42 @@ function misfit() {
 
 function candidates() {
   const { diagnosis } = state;
-  at("candidates").hidden = !diagnosis?.candidates.length;
+  const scoring = !diagnosis && state.stage === "diagnose" && asking.scored.length > 0;
+  at("candidates").hidden = !diagnosis?.candidates.length && !scoring;
   at("effects").replaceChildren();
-  if (!diagnosis) return;
-  row(at("effects"), "th", ["effect", "", "decision", "explains", "would be", "visible", `RMSE after it [${diagnosis.unit}]`, "what it is", "cannot be told from"]);
-  for (const item of diagnosis.candidates) {
-    const values = Object.entries(item.expected).slice(0, 3).map(([name, value]) => `${name.split(".").at(-1)} ${number(value)}`).join(", ");
-    const rmse = item.rmse ? `${number(item.rmse.identify)} / ${number(item.rmse.validate)}` : "";
-    const alike = item.class.filter((word) => word !== item.effect).join(", ");
-    const cells = row(at("effects"), "td", [item.effect, "", item.decision, `${number(100 * item.explained, 2)} %`, values, number(item.visibility, 2), rmse, item.physics, alike]);
-    cells[7].classList.add("note");
-    if (item.decision === "missing") cells[0].parentElement.classList.add("missing");
-    addButton(cells[1], item.effect);
+  if (scoring) {
+    row(at("effects"), "th", ["effect", "would explain"]);
+    for (const { effect, explained } of asking.scored.toSorted((a, b) => b.explained - a.explained))
+      row(at("effects"), "td", [effect, share(explained)]);
   }
+  if (!diagnosis) return;
+  row(at("effects"), "th", ["effect", "", "decision", "explains", "would be", "visible", `identify after it [${diagnosis.unit}]`, "validate", "cannot be told from", "what it is"]);
+  for (const item of diagnosis.candidates) {
+    const rmse = ["identify", "validate"].map((use) => (item.rmse ? number(item.rmse[use]) : ""));
+    const alike = item.class.filter((word) => word !== item.effect).join(", ");
+    const cells = row(at("effects"), "td", [item.effect, "", item.decision, share(item.explained), item.would_be, number(item.visibility, 2), ...rmse, alike, item.physics]);
+    cells[4].classList.add("expected");
+    cells[9].classList.add("note");
+    if (item.decision === "missing") cells[0].parentElement.classList.add("missing");
+    addButton(cells[1], item.effect, "", "Add");
+  }
+}
+
+function share(part) {
+  return `${Math.round(100 * part)} %`;
 }
 
 /** Fetch and draw the signals where a step has new ones. */
 async function signals() {
   const key = state.steps.map((step) => `${step.number}:${step.identify}`).join(" ");
-  at("fit").hidden = !state.steps.some((step) => step.identify !== null);
-  if (at("fit").hidden || key === shown || !state.result) return;
+  const none = !state.steps.some((step) => step.identify !== null);
+  at("fit").hidden = none || !explorer;
+  if (none || key === shown || !state.result) return;
   shown = key;
   const found = await ask("signals");
   const records = await Promise.all(found.records.map(decode));
   if (!records.length) return;
+  at("fit").hidden = false;
   if (explorer) Object.assign(explorer, { floors: found.floors }).update(records);
   else explorer = new Explorer(at("explorer"), records, { floors: found.floors });
 }
@@ -224,13 +282,14 @@ addEventListener("drop", (event) => event.preventDefault());
 setInterval(status, 500);
 
 await refresh();
-if (opening && !state?.steps.length) await look(opening);
+if (opening && !state?.steps.length) await look(opening).catch(() => {});
 follow((event) => {
   if (away) [away, at("error").hidden] = [false, true];
-  if (event.event === "step") convergence.clear();
+  if (event.event === "step") [convergence, asking].forEach((part) => part.clear());
   else if (event.event === "changed") { if (event.version !== state?.version || state?.stage) refresh(); }
   else {
     convergence.take(event);
+    asking.take(event);
     if (state?.stage === "run" && event.event === "generation") { fall(); status(); }
   }
 }, (error) => { away = true; fail(error); });

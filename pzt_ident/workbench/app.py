@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import os
 import re
 import secrets
 from collections.abc import AsyncIterator, Awaitable, Callable
@@ -17,10 +18,12 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response, StreamingResponse
 from starlette.routing import Route
 
+from pzt_ident.amend import with_effects
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.workbench import view
 from pzt_ident.workbench.bench import Bench
 from pzt_ident.workbench.columns import columns_of
+from pzt_ident.workbench.gather import gathered
 from pzt_ident.workbench.guard import Guard, inside
 
 LARGEST_UPLOAD = 256 << 20
@@ -46,7 +49,7 @@ def make_app(bench: Bench, hosts: set[str], token: str) -> Guard:
             try:
                 return await handler(bench, request)
             except (InputError, RunError) as error:
-                return JSONResponse({"error": str(error)}, status_code=400)
+                return JSONResponse({"error": str(error).replace(f"{bench.root}{os.sep}", "")}, status_code=400)
             except (KeyError, TypeError, ValueError) as error:
                 return JSONResponse({"error": f"not a form of the workbench: {error!r}"}, status_code=400)
 
@@ -56,7 +59,7 @@ def make_app(bench: Bench, hosts: set[str], token: str) -> Guard:
         """Write the report of the step shown; where it can be read, by who has the address only."""
         from pzt_ident.report.page import write_report
 
-        made, key = await asyncio.to_thread(write_report, bench.step() / "run"), secrets.token_urlsafe(24)
+        made, key = await asyncio.to_thread(lambda: write_report(gathered(bench))), secrets.token_urlsafe(24)
         tickets[key] = made
         return JSONResponse({"url": f"/report/{key}", "file": bench.relative(made)})
 
@@ -65,7 +68,7 @@ def make_app(bench: Bench, hosts: set[str], token: str) -> Guard:
         return FileResponse(path, media_type="text/html") if path else PlainTextResponse("not found", 404)
 
     posts = {"upload": upload, "look": look, "job": begin, "run": run, "stop": stop, "model": choose, "report": ticket}
-    posts |= {"add": change, "remove": change, "undo": undo}
+    posts |= {"add": change, "remove": change, "undo": undo, "back": back}
     gets = {"state": state, "signals": signals, "events": events, "job": job_file, "drive": drive_file}
     routes = [
         route("/", page),
@@ -132,6 +135,7 @@ async def upload(bench: Bench, request: Request) -> Response:
         return too_large()
     bench.data.mkdir(parents=True, exist_ok=True)
     path, part = bench.data / name, bench.data / f".{secrets.token_hex(8)}.part"
+    new = not path.exists()
     try:
         size = 0
         with part.open("wb") as file:
@@ -143,9 +147,13 @@ async def upload(bench: Bench, request: Request) -> Response:
         if path.exists() and path.read_bytes() != part.read_bytes():
             raise InputError(f"another {name!r} was dropped before", remedy="give it another name")
         part.replace(path)
+        return await looked_at(bench, path)
+    except InputError:
+        if new:  # it may be dropped again once it is mended
+            path.unlink(missing_ok=True)
+        raise
     finally:
         part.unlink(missing_ok=True)
-    return await looked_at(bench, path)
 
 
 def too_large() -> Response:
@@ -154,12 +162,13 @@ def too_large() -> Response:
 
 
 async def look(bench: Bench, request: Request) -> Response:
-    """What is in a file of the folder that the workbench was started in."""
-    return await looked_at(bench, inside(bench.root, (await form(request))["file"]))
+    """What is in a file of the folder that the workbench was started in, or in one of its tables or sheets."""
+    wanted = await form(request)
+    return await looked_at(bench, inside(bench.root, wanted["file"]), wanted.get("part"))
 
 
-async def looked_at(bench: Bench, path: Path) -> Response:
-    found = await asyncio.to_thread(columns_of, path)
+async def looked_at(bench: Bench, path: Path, part: str | None = None) -> Response:
+    found = await asyncio.to_thread(columns_of, path, part)
     return JSONResponse(found | {"file": bench.relative(path)})
 
 
@@ -205,8 +214,17 @@ async def undo(bench: Bench, request: Request) -> Response:
     return await state(bench, request)
 
 
+async def back(bench: Bench, request: Request) -> Response:
+    number = int((await form(request))["step"])
+    await bench.stop()
+    bench.go(number)
+    return await state(bench, request)
+
+
 async def job_file(bench: Bench, request: Request) -> Response:
-    return PlainTextResponse(bench.job().text)
+    """The job, for the folder that the workbench was started in."""
+    job = bench.job()
+    return PlainTextResponse(with_effects(job, job.effects, bench.root))
 
 
 async def drive_file(bench: Bench, request: Request) -> Response:
@@ -217,27 +235,35 @@ async def drive_file(bench: Bench, request: Request) -> Response:
 
 
 async def events(bench: Bench, request: Request) -> Response:
-    """Server-sent events: the lines of `events.jsonl` of the step shown, and `changed` when the state has."""
+    """Server-sent events: the lines of the `events.jsonl` of the step shown, and `changed` when the state has."""
     return StreamingResponse(following(bench, request), media_type="text/event-stream")
 
 
 async def following(bench: Bench, request: Request) -> AsyncIterator[str]:
-    shown, version, told = -1, -1, 0
+    shown, version, told = -1, -1, dict[Path, int]()
     while not bench.closing() and not await request.is_disconnected():
         if bench.at != shown:
-            shown, told = bench.at, 0
+            shown, told = bench.at, {}
             yield event({"event": "step", "step": shown})
-        if bench.at:
-            with suppress(FileNotFoundError), (bench.step() / "run" / "events.jsonl").open("rb") as file:
-                file.seek(told)
-                lines = file.read().rpartition(b"\n")[0]
-                told += len(lines) + bool(lines)
-                for line in lines.splitlines():
-                    yield event(json.loads(line))
+        for path in bench.logs():
+            for line in news(path, told):
+                yield event(view.printed(json.loads(line)))
         if bench.version != version:
             version = bench.version
             yield event({"event": "changed", "version": version})
         await asyncio.sleep(SECONDS_BETWEEN_LOOKS)
+
+
+def news(path: Path, told: dict[Path, int]) -> list[bytes]:
+    """The whole lines of a log that were not told yet; all of them where it began anew."""
+    with suppress(FileNotFoundError), path.open("rb") as file:
+        if told.get(path, 0) > path.stat().st_size:
+            told[path] = 0
+        file.seek(told.get(path, 0))
+        lines = file.read().rpartition(b"\n")[0]
+        told[path] = told.get(path, 0) + len(lines) + bool(lines)
+        return lines.splitlines()
+    return []
 
 
 def event(content: dict[str, Any]) -> str:

@@ -26,6 +26,7 @@ from pzt_ident.job import Job, load_job
 from pzt_ident.workbench.form import job_text, with_model
 
 SECONDS_TO_STOP = 8.0
+CUT_OFF = "This was ended before it was finished. Run goes on from here."
 
 
 class Bench:
@@ -41,6 +42,8 @@ class Bench:
         known = json.loads(stored.read_text(encoding="utf-8")) if stored.exists() else {}
         self.steps: list[dict[str, Any]] = known.get("steps", [])
         self.at: int = known.get("at", 0)
+        if self.at and 0 < sum(last.exists() for last in self._traces()) < len(self._traces()):
+            self.failure = CUT_OFF
 
     @property
     def data(self) -> Path:
@@ -52,7 +55,7 @@ class Bench:
 
     def step(self, number: int | None = None) -> Path:
         """The folder of a step, of the one shown if none is named. Raises InputError before there is one."""
-        if not self.steps:
+        if not (number or self.at):
             raise InputError("there is no job yet", remedy="drop a measurement and confirm its columns")
         return self.folder / "steps" / str(number or self.at)
 
@@ -83,6 +86,8 @@ class Bench:
         elif (first / "job.yaml").read_text(encoding="utf-8") != text:
             problem = f"the session in {self.relative(self.folder)} began with another job"
             raise InputError(problem, where=str(path), remedy="give another folder with --out")
+        else:
+            self.at = self.at or 1
 
     def add(self, effect: str) -> None:
         job = self.job()
@@ -114,14 +119,24 @@ class Bench:
         self.log(f"# {paths[0]} is {paths[1]} with the model {', '.join(words)}")
 
     def undo(self) -> None:
-        """Back to the step before; what was made stays in its folder."""
-        if parent := self.chain()[-1]["parent"] if self.at else 0:
-            self.at = parent
-            self._store()
+        """Back to the step before, from the first one to the measurement; what was made stays in its folder."""
+        if self.at:
+            self.go(self.steps[self.at - 1]["parent"])
 
     @property
     def _next(self) -> int:
         return len(self.steps) + 1
+
+    def go(self, number: int) -> None:
+        """To any step that was made, 0 for the measurement."""
+        if not 0 <= number <= len(self.steps):
+            raise InputError(f"there is no step {number}")
+        self.at = number
+        self._store()
+
+    def logs(self) -> list[Path]:
+        """Where the commands that fill the step shown write their events."""
+        return [self.step() / name / "events.jsonl" for name in ("run", "diagnosis")] if self.at else []
 
     def _add(self, text: str, parent: int, change: str) -> None:
         """A new step, once its job and data are found in order."""
@@ -154,6 +169,11 @@ class Bench:
             ("diagnose", step / "diagnosis" / "diagnosis.json", ["diagnose", job, "--out", diagnosis, "--no-report"]),
         ]
 
+    def _traces(self) -> list[Path]:
+        """What a step has of its own in the course of being filled, from the first to the last."""
+        step = self.step()
+        return [step / "run" / "environment.json", *(last for _, last, _ in self.commands(step))]
+
     def log(self, line: str) -> None:
         """Keep a line of what it takes to repeat the session in a terminal."""
         with (self.folder / "commands.txt").open("a", encoding="utf-8") as log:
@@ -185,15 +205,16 @@ class Bench:
         self.version += 1
         self.log(join(["pzt-ident", *arguments]))
         self.process = await asyncio.create_subprocess_exec(
-            *(sys.executable, "-m", "pzt_ident", *arguments, "--quiet"),
+            *(sys.executable, "-m", "pzt_ident.attended", *arguments, "--quiet"),
             cwd=self.root,
-            stdin=asyncio.subprocess.DEVNULL,
+            stdin=asyncio.subprocess.PIPE,  # open as long as this process lives
             stdout=asyncio.subprocess.DEVNULL,
             stderr=asyncio.subprocess.PIPE,
             start_new_session=True,
         )
-        _, said = await self.process.communicate()
-        code = self.process.returncode or 0
+        assert self.process.stderr
+        said = await self.process.stderr.read()
+        code = await self.process.wait()
         if code == 130 or code == -signal.SIGTERM:
             raise RunError("Stopped. Run goes on from here.")
         if code < 0:

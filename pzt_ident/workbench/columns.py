@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +12,14 @@ import numpy as np
 
 from pzt_ident.errors import InputError
 from pzt_ident.readers.column import Column
-from pzt_ident.readers.formats import open_table
+from pzt_ident.readers.formats import open_table, parts_of
 from pzt_ident.record import Source
 from pzt_ident.units import TIME, dimension, is_unit
 
 SHOWN = 5  # values of each column
-_LENGTH, _VOLTAGE, _FIELD = (dimension(unit) for unit in ("m", "V", "V/m"))
+BINS = 60  # of its shape
+AXES = "xyz"
+_LENGTH, _VOLTAGE, _FIELD, _CHARGE, _POLARIZATION = map(dimension, ("m", "V", "V/m", "C", "C/m2"))
 _NAMES = {
     "time": r"t|time|zeit|timestamp|sec(onds?)?",
     "drive": r"u|v|e|volt.*|drive|input|command|cmd|field|.*voltage",
@@ -24,19 +27,31 @@ _NAMES = {
 }
 
 
-def columns_of(path: Path) -> dict[str, Any]:
-    """The numeric columns of a file with their first values, range, unit and guessed role.
+def columns_of(path: Path, part: str | None = None) -> dict[str, Any]:
+    """The numeric columns of a file with their first values, range, unit and guessed role: of its table or sheet
+    `part`, of the first that holds any if none is named.
 
     Raises InputError where the file cannot be read or has fewer than two such columns.
     """
-    table = open_table(path, Source(str(path)))
+    kind, parts = parts_of(path)
+    about = {"file": path.name, "kind": kind, "parts": parts}
+    *others, last = [part] if part or not parts else parts
+    for tried in others:
+        with suppress(InputError):
+            return about | {"part": tried} | _of_part(path, {kind: tried})
+    return about | {"part": last} | _of_part(path, {kind: last} if kind else {})
+
+
+def _of_part(path: Path, part: dict[str, Any]) -> dict[str, Any]:
+    table = open_table(path, Source(str(path), **part))
     found = [item for number, column in enumerate(table.columns, 1) if (item := _column(number, column))]
     rows = max((item["rows"] for item in found), default=0)
     found = [item for item in found if item["rows"] == rows]
     if len(found) < 2:
-        raise InputError("holds no two columns of numbers", where=path.name, remedy="drop a table of signals")
+        remedy = "drop a table of signals; signals in separate files need a job file, see `pzt-ident init`"
+        raise InputError("holds no two columns of numbers", where=path.name, remedy=remedy)
     _guess(found)
-    return {"file": path.name, "rows": rows, "columns": found}
+    return {"rows": rows, "columns": found}
 
 
 def _column(number: int, column: Column) -> dict[str, Any] | None:
@@ -46,19 +61,29 @@ def _column(number: int, column: Column) -> dict[str, Any] | None:
         return None
     if values.ndim != 1 or values.size < 3 or not np.isfinite(values).any():
         return None
-    unit = column.unit if column.unit and is_unit(column.unit) else None
     return {
         "number": number,
         "header": column.header,
         "name": column.name,
-        "unit": unit,
+        "unit": _unit(column),
         "rows": values.size,
         "first": values[:SHOWN].tolist(),
         "low": float(np.nanmin(values)),
         "high": float(np.nanmax(values)),
         "regular": _regular(values),
+        "shape": _shape(values),
+        "rough": _rough(values),
         "role": "",
     }
+
+
+def _unit(column: Column) -> str | None:
+    """As the header says, or as its name ends: `disp_nm`."""
+    if column.unit:
+        return column.unit if is_unit(column.unit) else None
+    end = column.name.rpartition("_")[2]
+    named = end != column.name and is_unit(end) and dimension(end) in (TIME, _LENGTH, _VOLTAGE)
+    return end if named else None
 
 
 def _regular(values: np.ndarray) -> bool:
@@ -66,18 +91,46 @@ def _regular(values: np.ndarray) -> bool:
     return bool((steps > 0).all() and np.ptp(steps) < 0.01 * np.median(steps))
 
 
+def _shape(values: np.ndarray) -> list[float]:
+    """Lowest and highest value of each of some bins, from 0 to 1: what a small picture is drawn from."""
+    low, span = np.nanmin(values), np.nanmax(values) - np.nanmin(values)
+    bins = np.array_split(np.nan_to_num((values - low) / (span or 1)), min(BINS, values.size))
+    return [round(float(end), 3) for part in bins for end in (part.min(), part.max())]
+
+
+def _rough(values: np.ndarray) -> float:
+    """Third difference over the span: a sensor's noise stands out."""
+    span = np.nanmax(values) - np.nanmin(values)
+    return float(np.nanmedian(np.abs(np.diff(values, 3))) / (span or 1)) if values.size > 3 else 0.0
+
+
 def _guess(columns: list[dict[str, Any]]) -> None:
-    """One column a role: by its unit or its name, and where no column says so by its place."""
-    for role, fits in (("time", _is_time), ("drive", _is_drive), ("response", _is_response)):
+    """One column a role: by its unit or its name, and where no column says so by its place, of two without a name the
+    smoother one being the drive. Another axis where one letter tells both its signals from those of the first."""
+    by_sign = (("time", _is_time), ("x.drive", _is_drive), ("x.response", _is_length), ("x.response", _is_charge))
+    for role, fits in by_sign:
         _take(columns, role, fits)
-    for role in ("drive", "response"):
-        if role not in [item["role"] for item in columns]:
-            _take(columns, role, lambda item: True)
+    for role in ("x.drive", "x.response"):
+        _take(columns, role, lambda item: True)
+    first = [item for role in ("x.drive", "x.response") for item in columns if item["role"] == role]
+    if len(first) == 2 and not first[0]["name"] and first[0]["rough"] > 2 * first[1]["rough"]:
+        first[0]["role"], first[1]["role"] = "x.response", "x.drive"
+    for axis in AXES[1:]:
+        pair = [next((item for item in columns if _beside(item, one)), None) for one in first]
+        if len(pair) == 2 and pair[0] and pair[1]:
+            pair[0]["role"], pair[1]["role"] = f"{axis}.drive", f"{axis}.response"
+
+
+def _beside(item: dict[str, Any], first: dict[str, Any]) -> bool:
+    """Whether a column without a role is called as another one, but for one letter, and moves."""
+    a, b = item["name"], first["name"]
+    alike = len(a) == len(b) and sum(one != other for one, other in zip(a, b, strict=True)) == 1
+    return not item["role"] and alike and item["unit"] == first["unit"] and item["high"] > item["low"]
 
 
 def _take(columns: list[dict[str, Any]], role: str, fits: Callable[[dict[str, Any]], bool]) -> None:
-    """Give a role to the first column that is free, moves and fits."""
-    for item in columns:
+    """Give a role that none has to the first column that is free, moves and fits."""
+    for item in columns if role not in [item["role"] for item in columns] else ():
         if not item["role"] and item["high"] > item["low"] and fits(item):
             item["role"] = role
             return
@@ -92,11 +145,15 @@ def _is_drive(item: dict[str, Any]) -> bool:
     return _by_unit(item, "drive", (_VOLTAGE, _FIELD))
 
 
-def _is_response(item: dict[str, Any]) -> bool:
+def _is_length(item: dict[str, Any]) -> bool:
     return _by_unit(item, "response", (_LENGTH,))
 
 
-def _by_unit(item: dict[str, Any], role: str, kinds: tuple[Any, ...]) -> bool:
+def _is_charge(item: dict[str, Any]) -> bool:
+    return bool(item["unit"]) and dimension(item["unit"]) in (_CHARGE, _POLARIZATION)
+
+
+def _by_unit(item: dict[str, Any], role: str, kinds: Sequence[Any]) -> bool:
     return dimension(item["unit"]) in kinds if item["unit"] else _named(item, role)
 
 

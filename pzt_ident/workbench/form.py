@@ -24,12 +24,13 @@ seed: 7
 
 
 def job_text(form: dict[str, Any]) -> str:
-    """The job of a form: name, records (file, use), time or sample_rate, axes (drive and response as columns) and
-    model. What is wrong with its words is found when the job is read."""
+    """The job of a form: name, records (file, use, and which table or sheet), time or sample_rate, axes (drive and
+    response as columns) and model. What is wrong with its words is found when the job is read."""
     lines = [f"name: {_text(form['name'])}", "records:"]
-    rate = f", sample_rate: {_text(form['sample_rate'])}" if form.get("sample_rate") else ""
+    rate = {"sample_rate": form["sample_rate"]} if form.get("sample_rate") else {}
     for record in form["records"]:
-        lines.append(f"  - {{file: {_text(record['file'])}, use: {_text(record['use'])}{rate}}}")
+        facts = {key: record[key] for key in ("file", "use", "table", "sheet") if record.get(key)} | rate
+        lines.append(f"  - {{{', '.join(f'{key}: {_text(value)}' for key, value in facts.items())}}}")
     lines.append("channels:")
     if form.get("time"):
         lines.append(f"  time: {_channel(form['time'])}")

@@ -79,7 +79,7 @@ def inside(root: Path, name: str) -> Path:
     """The file of that name below a folder. Raises InputError where it leads out of it, or through a link."""
     path = Path(name)
     steps = [root.joinpath(*path.parts[: place + 1]) for place in range(len(path.parts))]
-    if not path.parts or path.is_absolute() or ".." in path.parts or "\0" in name or "\\" in name:
+    if not path.parts or path.is_absolute() or ".." in path.parts or any(sign in name for sign in "\0\\$"):
         raise InputError(f"{name!r} is not in the workbench's folder", remedy="drop the file onto the page")
     if any(step.is_symlink() for step in steps):
         raise InputError(f"{name!r} is a link", remedy="copy the file into the folder")

@@ -8,13 +8,15 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from pzt_ident.readers.formats import READERS
 from pzt_ident.registry import blocks
 from pzt_ident.report.numbers import unit
 from pzt_ident.report.results import Trace, read_results
+from pzt_ident.report.tables import expected
 from pzt_ident.report.traces import packed
 from pzt_ident.workbench.bench import Bench
 
-DATA = (".csv", ".tsv", ".txt", ".dat", ".mat", ".h5", ".hdf5", ".npy", ".tdms", ".parquet", ".xlsx", ".ods")
+DATA = tuple(READERS)
 
 
 def state(bench: Bench) -> dict[str, Any]:
@@ -27,15 +29,17 @@ def state(bench: Bench) -> dict[str, Any]:
         "folder": bench.relative(bench.folder),
         "blocks": chainable(),
         "effects": effects(),
-        "files": files_in(bench.root),
+        "files": [*files_in(bench.root), *(bench.relative(bench.data / name) for name in files_in(bench.data))],
         "steps": [about(bench, entry) for entry in chain],
+        "others": [about(bench, entry) for entry in bench.steps if entry not in chain],
         "stage": bench.stage,
         "since": bench.since,
         "failure": bench.failure,
+        "unit": unit_of(bench),
         "job": job_of(bench) if step else None,
         "result": read(step / "run" / "result.json") if step else None,
         "misfit": read(step / "run" / "residuals.json") if step else None,
-        "diagnosis": read(step / "diagnosis" / "diagnosis.json") if step else None,
+        "diagnosis": diagnosis_of(step) if step else None,
         "commands": commands.read_text(encoding="utf-8").splitlines() if commands.exists() else [],
     }
 
@@ -45,6 +49,20 @@ def about(bench: Bench, entry: dict[str, Any]) -> dict[str, Any]:
     found = read(bench.step(entry["number"]) / "run" / "result.json")
     rmse = found["best"]["rmse"] if found and found.get("best") else {"identify": None, "validate": None}
     return entry | rmse
+
+
+def unit_of(bench: Bench) -> str:
+    """That of the errors, from the newest step that has a result."""
+    found = (read(bench.step(entry["number"]) / "run" / "result.json") for entry in reversed(bench.steps))
+    return next((result["unit"] for result in found if result), "")
+
+
+def diagnosis_of(step: Path) -> dict[str, Any] | None:
+    """The diagnosis, with what each effect would be as it is printed."""
+    found = read(step / "diagnosis" / "diagnosis.json")
+    for item in found["candidates"] if found else ():
+        item["would_be"] = expected(item["expected"], item["units"])
+    return found
 
 
 def job_of(bench: Bench) -> dict[str, Any]:
@@ -65,16 +83,20 @@ def signals(bench: Bench) -> dict[str, Any]:
 
 
 def read(path: Path) -> Any:
-    """A JSON file; None where there is none, with its units as they are printed."""
+    """A JSON file; None where there is none, with its unit as it is printed."""
     if not path.exists():
         return None
-    found = json.loads(path.read_text(encoding="utf-8"))
+    return printed(json.loads(path.read_text(encoding="utf-8")))
+
+
+def printed(found: dict[str, Any]) -> dict[str, Any]:
     return found | {"unit": unit(found["unit"])} if "unit" in found else found
 
 
 def files_in(root: Path) -> list[str]:
-    """Data files right in the folder that the workbench was started in."""
-    return sorted(path.name for path in root.iterdir() if path.suffix.lower() in DATA and not path.is_symlink())
+    """Data files right in a folder, if there is one."""
+    found = root.iterdir() if root.is_dir() else ()
+    return sorted(path.name for path in found if path.suffix.lower() in DATA and not path.is_symlink())
 
 
 @cache

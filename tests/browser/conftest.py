@@ -7,6 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -31,18 +32,29 @@ def chromium():
         browser.close()
 
 
-@pytest.fixture(params=["light"])
-def page(chromium, request):
-    """A page that fails the test with any error on its console and any request to another place."""
-    context = chromium.new_context(color_scheme=request.param, viewport={"width": 1280, "height": 900})
-    page, faults = context.new_page(), []
-    page.set_default_timeout(1000 * SECONDS)
-    page.on("console", lambda message: faults.append(message.text) if message.type in ("error", "warning") else None)
-    page.on("pageerror", lambda error: faults.append(str(error)))
-    page.on("request", lambda asked: faults.append(asked.url) if outside(asked.url) else None)
-    yield page
-    context.close()
-    assert faults == []
+@pytest.fixture(scope="session")
+def browsing(chromium):
+    """Opens a page that fails the test with any error on its console and any request to another place."""
+
+    @contextmanager
+    def browse():
+        context = chromium.new_context(color_scheme="light", viewport={"width": 1280, "height": 900})
+        page, faults = context.new_page(), []
+        page.set_default_timeout(1000 * SECONDS)
+        page.on("console", lambda said: faults.append(said.text) if said.type in ("error", "warning") else None)
+        page.on("pageerror", lambda error: faults.append(str(error)))
+        page.on("request", lambda asked: faults.append(asked.url) if outside(asked.url) else None)
+        yield page
+        context.close()
+        assert faults == []
+
+    return browse
+
+
+@pytest.fixture
+def page(browsing):
+    with browsing() as page:
+        yield page
 
 
 def outside(url: str) -> bool:

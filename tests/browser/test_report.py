@@ -18,11 +18,19 @@ def folder(tmp_path_factory):
     return made
 
 
+@pytest.fixture(scope="module")
+def loaded(browsing, folder):
+    with browsing() as page:
+        page.goto((folder / "report.html").as_uri())
+        yield page
+
+
 @pytest.fixture
-def opened(page, folder):
-    page.goto((folder / "report.html").as_uri())
-    expect(page.locator(".readout")).to_contain_text("Whole record")
-    return page
+def opened(loaded):
+    """The report as it opens: nothing marked."""
+    loaded.click("text=Clear")
+    expect(loaded.locator(".readout")).to_contain_text("Whole record")
+    return loaded
 
 
 def rmse_said(page):
@@ -35,10 +43,17 @@ def rmse_of(folder, start=0.0, end=np.inf):
     return np.sqrt(np.mean(trace.residual[chosen] ** 2))
 
 
-@pytest.mark.parametrize("page", ["light", "dark"], indirect=True)
 def test_it_opens_without_a_network_or_an_error(opened, folder):
     assert rmse_said(opened) == pytest.approx(rmse_of(folder), rel=0.006)
     assert opened.locator(".curves canvas").count() == 2 and opened.locator(".plane canvas").count() == 2
+
+
+def test_in_the_dark_the_paper_is(opened):
+    paper = "getComputedStyle(document.body).backgroundColor"
+    assert opened.evaluate(paper) == "rgb(255, 255, 255)"
+    opened.emulate_media(color_scheme="dark")
+    assert opened.evaluate(paper) == "rgb(20, 20, 20)"
+    opened.emulate_media(color_scheme="light")
 
 
 def test_a_stretch_by_its_times(opened, folder):
@@ -84,5 +99,11 @@ def test_the_keyboard_reaches_the_mark(opened):
 
 
 def test_it_prints(opened, tmp_path):
+    opened.emulate_media(media="print")
+    opened.evaluate("dispatchEvent(new Event('beforeprint'))")
+    width = "[...document.querySelectorAll('.explorer canvas')].map((one) => one.getBoundingClientRect().right)"
+    assert max(opened.evaluate(width)) < 180 / 25.4 * 96
+    opened.evaluate("dispatchEvent(new Event('afterprint'))")
+    opened.emulate_media(media="screen")
     opened.pdf(path=tmp_path / "report.pdf", format="A4")
     assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")

@@ -5,6 +5,7 @@ import os
 import re
 import signal
 import sys
+import time
 from importlib.resources import files
 from pathlib import Path
 
@@ -12,6 +13,7 @@ import pytest
 from playwright.sync_api import expect
 
 from pzt_ident.job import load_job
+from sheets import write_sheets
 
 SAMPLE = files("pzt_ident").joinpath("sample")
 LONG = """\
@@ -36,6 +38,10 @@ def text(name):
     return SAMPLE.joinpath(name).read_text(encoding="utf-8")
 
 
+def roles(page):
+    return [box.input_value() for box in page.locator("table.guessed select").all()]
+
+
 def state_of(folder):
     return json.loads((folder / "workbench" / "state.json").read_text())
 
@@ -50,11 +56,7 @@ def test_from_the_file_drop_to_the_fallen_error(workbench, page, tmp_path):
     names = ["identify.csv", "validate.csv"]
     page.evaluate(DROP, [names, [text(name) for name in names]])
     expect(page.locator("table.files tr")).to_have_count(3)
-    assert [page.locator("table.guessed select").nth(i).input_value() for i in range(3)] == [
-        "time",
-        "drive",
-        "response",
-    ]
+    assert roles(page) == ["time", "x.drive", "x.response"]
     page.click("#confirm")
     expect(page.locator("#convergence canvas")).to_have_count(1)
     expect(page.locator("#verdict")).to_contain_text("Missing: quadratic_gain")
@@ -63,10 +65,10 @@ def test_from_the_file_drop_to_the_fallen_error(workbench, page, tmp_path):
 
     page.click("#advice button[data-effect=quadratic_gain]")
     expect(page.locator(".staircase text.name")).to_have_text(["as given", "+ quadratic_gain"])
-    expect(page.locator("#verdict")).to_contain_text("Missing: creep")
+    expect(page.locator(".readout")).to_contain_text(re.compile(r"now: RMSE 0\.0.*before: RMSE 0\.0"))
+    expect(page.locator(".staircase rect.validate:not(.live)")).to_have_count(2)
     second = read(tmp_path / "workbench/steps/2/run/result.json")["best"]["rmse"]
     assert second["identify"] < 0.6 * first["identify"] and second["validate"] < 0.4 * first["validate"]
-    expect(page.locator(".readout")).to_contain_text(re.compile(r"now: RMSE 0\.0.*before: RMSE 0\.0"))
     assert "pzt-ident add workbench/steps/1/job.yaml quadratic_gain" in page.text_content("#commands")
 
     with page.expect_download() as download:
@@ -77,6 +79,7 @@ def test_from_the_file_drop_to_the_fallen_error(workbench, page, tmp_path):
     expect(page.locator(".staircase text.name")).to_have_text(["as given"])
     expect(page.locator("#verdict")).to_contain_text("Missing: quadratic_gain")
     assert state_of(tmp_path)["at"] == 1
+    expect(page.locator("#others button")).to_have_text(re.compile(r"2: \+ quadratic_gain \(leaves 0\.0\d+ µm\)"))
 
     with page.context.expect_page() as opened:
         page.click("#report")
@@ -85,55 +88,57 @@ def test_from_the_file_drop_to_the_fallen_error(workbench, page, tmp_path):
     assert (tmp_path / "workbench/steps/1/run/report.html").exists()
 
 
-@pytest.fixture
-def searching(workbench, page, tmp_path):
-    """A page that looks at a search without end."""
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_a_reload_a_killed_worker_and_a_killed_workbench_lose_nothing(workbench, page, tmp_path):
     for name in ("identify.csv", "validate.csv"):
         (tmp_path / name).write_text(text(name), encoding="utf-8")
     (tmp_path / "job.yaml").write_text(LONG, encoding="utf-8")
     page.goto(workbench("job.yaml"))
     page.click("#run")
     expect(page.locator("#status")).to_contain_text("best RMSE 0.0")
-    return page
 
+    page.reload()
+    expect(page.locator("#status")).to_contain_text(re.compile(r"Identifying: \d+ s, \d+ %, best RMSE 0\.0"))
+    expect(page.locator("#convergence canvas")).to_have_count(1)
 
-def test_a_reload_in_the_middle_of_a_run_loses_nothing(searching, tmp_path):
-    searching.reload()
-    expect(searching.locator("#status")).to_contain_text(re.compile(r"Identifying: \d+ s, \d+ %, best RMSE 0\.0"))
-    expect(searching.locator("#convergence canvas")).to_have_count(1)
-    searching.click("#stop")
-    expect(searching.locator("#error")).to_contain_text("Stopped. Run goes on from here.")
-    expect(searching.locator("#run")).to_have_text("Run on")
-    assert load_job(tmp_path / "workbench/steps/1/job.yaml").text.startswith("# a search that does not end")
-    assert not worker_pids(tmp_path)
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
-def test_a_killed_worker_is_named_and_the_page_lives_on(searching, tmp_path):
-    for pid in worker_pids(tmp_path):
-        os.kill(pid, signal.SIGKILL)
-    expect(searching.locator("#error")).to_contain_text("killed by signal 9")
-    expect(searching.locator("#run")).to_be_visible()
-    searching.click("#run")
-    expect(searching.locator("#status")).to_contain_text("best RMSE 0.0")
+    for pid, parents in [(pid, running(tmp_path)) for pid in running(tmp_path)]:
+        if depth(pid, parents) == 3:
+            os.kill(pid, signal.SIGKILL)
+    expect(page.locator("#error")).to_contain_text("killed by signal 9")
+    page.click("#run")
+    expect(page.locator("#status")).to_contain_text("best RMSE 0.0")
     assert (tmp_path / "workbench" / "commands.txt").read_text().splitlines()[-1].startswith("pzt-ident resume")
-    searching.click("#stop")
-    expect(searching.locator("#error")).to_contain_text("Stopped")
+
+    page.goto("about:blank")  # or it would complain
+    os.kill(next(pid for pid in running(tmp_path) if depth(pid, running(tmp_path)) == 0), signal.SIGKILL)
+    assert ended(tmp_path)  # the command and its workers, too, by themselves
+    page.goto(workbench("job.yaml"))
+    expect(page.locator("#error")).to_contain_text("ended before it was finished. Run goes on from here.")
+    expect(page.locator("#run")).to_have_text("Run on")
+    page.click("#run")
+    expect(page.locator("#status")).to_contain_text("best RMSE 0.0")
+
+    page.click("#stop")
+    expect(page.locator("#error")).to_contain_text("Stopped. Run goes on from here.")
+    assert load_job(tmp_path / "workbench/steps/1/job.yaml").text.startswith("# a search that does not end")
+    assert [depth(pid, running(tmp_path)) for pid in running(tmp_path)] == [0]
 
 
-def worker_pids(folder):
-    """The processes that search, by their place below the workbench of this folder."""
-    if sys.platform != "linux":
-        return []
+def running(folder):
+    """The processes in a folder, and the parent of each."""
     parents = {}
     for entry in Path("/proc").iterdir():
         try:
             if entry.name.isdigit() and Path(os.readlink(entry / "cwd")) == folder:
-                stat = (entry / "stat").read_text().rpartition(")")[2].split()
-                parents[int(entry.name)] = int(stat[1])
+                parents[int(entry.name)] = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
         except OSError:
             continue
-    return [pid for pid in parents if depth(pid, parents) == 3]
+    return parents
+
+
+def ended(folder):
+    """Whether all processes in a folder come to their end."""
+    return any(not running(folder) or time.sleep(0.05) for _ in range(400))
 
 
 def depth(pid, parents):
@@ -149,3 +154,33 @@ def test_a_file_of_markup_is_shown_as_text(workbench, page):
     expect(page.locator("table.guessed td").first).to_contain_text("<img src=x")
     assert page.title() == "pzt-ident workbench"
     assert page.locator("#columns img, #columns script").count() == 0
+
+
+def test_sheets_axes_and_what_is_left_open(workbench, page, tmp_path):
+    rows = [
+        ["t [s]", "u1 [V]", "u2 [V]", "p1 [nm]", "p2 [nm]"],
+        *([i / 9, i % 5, i % 7, i % 3, i % 4] for i in range(90)),
+    ]
+    write_sheets(tmp_path / "rig.xlsx", Notes=[["Rig 3"]], Loops=rows, Check=rows)
+    page.goto(workbench())
+    page.click("#here button")
+    expect(page.locator("table.guessed tr")).to_have_count(6)
+    assert roles(page) == ["time", "x.drive", "y.drive", "x.response", "y.response"]
+    page.click("text=And another")
+    expect(page.locator("table.files tr")).to_have_count(3)
+    page.select_option("[aria-label='Role of p1 [nm]']", "y.response")
+    assert roles(page) == ["time", "x.drive", "y.drive", "y.response", ""]
+    page.select_option("[aria-label='Role of u2 [V]']", "")
+    page.click("#confirm")
+    expect(page.locator("#error")).to_have_text("Which column is the drive of y?")
+    page.select_option("[aria-label='Role of p1 [nm]']", "x.response")
+    page.select_option("#more select", "lumped")
+    page.click("#confirm")
+    expect(page.locator("#stop")).to_be_visible()
+    page.click("#stop")
+    expect(page.locator("#run")).to_be_visible()
+    job = load_job(tmp_path / "workbench/steps/1/job.yaml")
+    assert [(record.sheet, record.use) for record in job.records] == [("Loops", "identify"), ("Check", "validate")]
+    assert (list(job.channels.axes), job.model) == (["x"], ("bouc_wen", "lumped"))
+    page.click("#undo")
+    expect(page.locator("#verdict")).to_have_text("Is this what was measured?")

@@ -12,7 +12,7 @@ from pzt_ident.block import Addition, Bank, Beside, Coupling, Modes, Operator, P
 from pzt_ident.plan import Plan
 from pzt_ident.registry import blocks
 from pzt_ident.units import is_unit
-from rig import assert_close, candidates, model, path, record, rounding
+from rig import assert_close, block_of, candidates, model, path, record, rounding
 from twins import plain
 from twins.blocks import Identity
 
@@ -30,13 +30,20 @@ HOSTS = [
 ]
 
 
+def words_of(item):
+    """Those of a form that is not the block itself."""
+    return [each for each in getattr(item, "words", ()) if each != item.value]
+
+
 def at(place):
     return [word for word in IN_CHAIN if blocks[word].place == place]
 
 
 BESIDE = [word for word in WORDS if issubclass(blocks[word], Beside)]
+FORMS = [f"{word}:{each}" for word in IN_CHAIN for item in blocks[word].settings().values() for each in words_of(item)]
 CHAINS = [
     *IN_CHAIN,
+    *FORMS,
     *map(" ".join, HOSTS),
     *map(" ".join, product(at(Place.READOUT), at(Place.OPERATOR))),
     *map(" ".join, product(at(Place.MECHANICS), BESIDE)),
@@ -174,7 +181,7 @@ def test_term_at_its_null_is_not_there(host, term, drive, seed):
 @quick
 @given(drive=drives, seed=seeds)
 def test_compiled_is_what_the_author_wrote(words, drive, seed):
-    slow = any(issubclass(blocks[word], Relays) for word in words.split())
+    slow = any(issubclass(block_of(word), Relays) for word in words.split())
     drive = drive[:: model(*words.split()).oversample][: 30 if slow else None]
     if drive.size > 1:
         chain, measured, theta = made(words, drive, 1 if slow else 3, seed)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import stage
 from pzt_ident.block import Block, Place
 from pzt_ident.diagnosis import refit
-from pzt_ident.diagnosis.refit import descend, first_fit, stepped
+from pzt_ident.diagnosis.refit import descend, elsewhere, first_fit, made, stepped
 from pzt_ident.improve import bounded
 from pzt_ident.parameter import Parameter
 from pzt_ident.registry import blocks
@@ -59,6 +59,18 @@ def test_more_starts_are_refined_until_two_agree(plain, monkeypatch):
     monkeypatch.setattr(refit, "descend", lame)
     assert first_fit(plain, 0).converged
     assert len(seen) == 24
+
+
+def test_a_block_is_found_elsewhere_and_a_fit_at_the_noise_stays(plain):
+    soft = {"lumped.mass": 1.0, "lumped.stiffness": 1e5, "lumped.damping": 100.0}  # 50 Hz, 16 %
+    ringing = stage.case(soft, model=("bouc_wen", "lumped"), noise=1e-9)
+    problem = ringing.problem(())
+    stiff = stage.STAGE | {"bouc_wen.gain": 0.082, "lumped.mass": 0.01, "lumped.stiffness": 9e8, "lumped.damping": 50.0}
+    stuck = made((), problem, problem.unit_point(stiff))
+    assert stuck.identify > 3e-9
+    assert elsewhere(stuck).identify == pytest.approx(1e-9, rel=0.1)
+    fit = first_fit(plain, 0)
+    assert elsewhere(fit).identify == pytest.approx(fit.identify, rel=1e-3)
 
 
 def test_without_records_to_validate_there_is_no_error_of_them(plain):
@@ -139,6 +151,41 @@ def test_a_descent_from_where_the_simulation_fails_is_no_success(plain, monkeypa
         inside = descend(problem, np.array([0.5, 0.5, 0.5, 0.5, 0.49]))
     assert np.isfinite(problem.loss(inside)[0])
     assert inside[4] < 0.5
+
+
+class Coarse(Block):
+    """A lag of two samples by Euler's step, which is of first order only."""
+
+    name = "coarse"
+    place = Place.SENSOR
+    tau = Parameter("s", (0.008, 0.012), "Two samples of the stage.")
+
+    def prepare(tau, dt):
+        return (dt / tau,)
+
+    def start(u, share):
+        return (u,)
+
+    def step(x, u, share):
+        x = x + share * (u - x)
+        return x, x
+
+
+def test_halving_the_step_changes_nothing_of_what_is_exact(plain):
+    fit = first_fit(plain, 0)
+    assert refit.step_error(fit.problem, fit.point) < 1e-9 * plain.floor
+
+
+def test_a_solver_too_coarse_for_what_is_left_is_blamed_on_no_effect(plain, monkeypatch):
+    monkeypatch.setitem(blocks._items, "coarse", Coarse)
+    made = refit.Case((*plain.words, "coarse"), (), plain.records, {})
+    fit = first_fit(made, 0)
+    problem = fit.problem
+    response = problem.model.simulate(problem.records[0], problem.parameters(fit.point))[0, 0]
+    half_a_step = np.gradient(response) / 2  # by which Euler's lag is too short
+    assert refit.step_error(problem, fit.point) == pytest.approx(np.std(half_a_step), rel=0.1)
+    assert "Halving the steps" in fit.doubt and "Sample faster" in fit.doubt
+    assert not fit.converged
 
 
 def test_a_parameter_on_a_bound_is_told_unless_it_is_its_null(creeping):

@@ -56,6 +56,18 @@ def test_look_alikes_that_fit_hardly_worse_are_in_its_class():
         assert drop(of(found, word).fit.total, found.best.fit.total) < 0.4 * made.floor
 
 
+def test_what_is_at_the_noise_of_its_own_records_alone_is_not_adequate():
+    plain = stage.case()
+    wrong = stage.with_response(
+        plain, lambda record: 4 * stage.NOISE * np.sin(np.arange(record.samples)) * (record.use == "validate")
+    )
+    fit = first_fit(wrong, 0)
+    assert fit.identify == pytest.approx(stage.NOISE, rel=0.1)
+    found = diagnose(wrong, fit)
+    assert found.verdict == "unexplained"
+    assert "of those to validate" in found.reason
+
+
 def test_candidates_stand_best_first_and_each_once():
     _, found = missing("creep")
     rmse = [item.fit.total if item.fit else np.inf for item in found.candidates]
@@ -105,7 +117,7 @@ def test_a_fit_that_has_not_converged_is_blamed_on_no_effect(monkeypatch):
 
 def test_where_one_start_reaches_the_noise_nothing_is_left_to_blame_on_the_search():
     made = stage.case()
-    found = diagnose(made, replace(first_fit(made, 0), converged=False))
+    found = diagnose(made, replace(first_fit(made, 0), doubt="Two starts do not agree."))
     assert found.verdict == "adequate"
 
 
@@ -123,9 +135,9 @@ def test_lags_before_and_behind_a_linear_stage_are_the_same_to_these_data():
 
 def test_what_leaves_less_than_the_noise_at_its_strongest_cannot_be_seen():
     unseen, none, small = (
-        Score("delay", 0.5, power=0.1),
-        Score("creep", 0.001, power=3.0),
-        Score("drift", 0.1, power=3.0),
+        Score("delay", explained=0.5, power=0.1),
+        Score("creep", explained=0.001, power=3.0),
+        Score("drift", explained=0.1, power=3.0),
     )
     items = [Candidate(score) for score in (unseen, none, small)]
     settle(stage.case(), items)

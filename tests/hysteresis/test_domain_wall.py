@@ -1,15 +1,30 @@
 """The domain wall model against its differential equation and the numbers of Smith and Salapaka."""
 
+import json
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import smith
-from rig import path, response
+from pzt_ident.diagnosis.refit import Case, first_fit
+from pzt_ident.errors import InputError
+from pzt_ident.improve import broken
+from pzt_ident.job import Job
+from pzt_ident.model import Model
+from pzt_ident.plan import Plan
+from pzt_ident.problem import Problem
+from pzt_ident.run import read, run
+from rig import block_of, path, record, response
 from twins import domain_wall_twin as twin
 
 
-def displacement(field, **known):
-    return response(["domain_wall"], smith.domain_wall(**known), np.asarray(field, float))
+def displacement(field, word="domain_wall", **known):
+    return response([block_of(word)], smith.domain_wall(**known), np.asarray(field, float))
+
+
+def biased(field, **known):
+    return displacement(field, "domain_wall:biased", **known)
 
 
 @pytest.mark.parametrize("known", [smith.DW1, smith.DW2, {"alpha": 0.0, "k": 1e4, "c": 0.0}])
@@ -48,9 +63,112 @@ def test_single_solution_is_the_anhysteretic_curve_without_pinning():
     np.testing.assert_allclose(found, smith.STRAIN * np.array(expected), rtol=0, atol=1e-15)
 
 
-def test_mirrored():
+@pytest.mark.parametrize("word", ["domain_wall", "domain_wall:biased"])
+def test_mirrored(word):
     field = path(0, 13500, -4000, 2000, points=60)
-    np.testing.assert_allclose(displacement(-field, **smith.DW1), -displacement(field, **smith.DW1), rtol=1e-12)
+    found = displacement(field, word, **smith.DW1)
+    np.testing.assert_allclose(displacement(-field, word, **smith.DW1), -found, rtol=1e-12)
+
+
+@pytest.mark.parametrize("known", [smith.DW1, smith.DW2, {"alpha": 0.0, "k": 1e4, "c": 0.0}])
+def test_biased_minor_loops_solve_their_equations(known):
+    """Eq. 5 between reversals, P continuous at them."""
+    rise, fall, back = np.linspace(0, 8000, 11)[1:], np.linspace(8000, 2000, 11)[1:], np.linspace(2000, 7000, 11)[1:]
+    expected = smith.STRAIN * twin.minor_loop(rise, fall, back, a=4.6e5, p_s=0.49, **known)
+    field = np.concatenate([path(0, 8000, 2000, points=1000), np.linspace(2000, 7000, 1001)[1:]])
+    np.testing.assert_allclose(biased(field, **known)[100::100], expected, rtol=0, atol=1e-6 * np.ptp(expected))
+
+
+def test_a_rescaled_curve_goes_through_the_reversal_and_its_reflection():
+    """Eq. 5 for any reversal and bias; without pinning P is that curve."""
+    given = {"a": 4.6e5, "alpha": 4.5e5, "p_s": 0.49}
+    for top in ((8000.0, 0.004), (3e5, 0.2), (-2e4, -0.3)):
+        assert twin.biased(top, (0.0, 0.0), -1, **given)(*top) == pytest.approx(top[1], abs=1e-15)
+        assert twin.biased(top, top, 1, **given)(*top) == pytest.approx(top[1], abs=1e-15)
+        e0, p0 = 0.3 * top[0], 0.2 * top[1]
+        there = 2 * e0 - top[0], 2 * p0 - top[1]
+        assert twin.biased(top, (e0, p0), 1, **given)(*there) == pytest.approx(there[1], abs=1e-15)
+    field = path(0, 4e5, -2e5, points=50)
+    found = biased(field, alpha=4.5e5, k=1.47e4, c=1.0) / smith.STRAIN
+    curve = twin.biased((4e5, found[50]), (0.0, 0.0), -1, **given)
+    np.testing.assert_allclose(found[50:], curve(field[50:], found[50:]), rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("known", [smith.DW1, smith.DW2])
+def test_biased_minor_loops_close_and_are_forgotten(known):
+    """To rounding, whichever way the first leg went; the open ones of the same walls do not."""
+    legs, points = [0, 8000, 3000, 8000, 3000, 12000], 100
+    for sign in (1, -1):
+        found = biased(sign * path(*legs, points=points), **known)
+        ends = found[points::points]
+        assert ends[2] == pytest.approx(ends[0], rel=1e-12) and ends[3] == pytest.approx(ends[1], rel=1e-12)
+        outer = biased(sign * path(0, 8000, 12000, points=points), **known)
+        assert ends[-1] == pytest.approx(outer[-1], rel=1e-4)
+    open_ends = displacement(path(*legs, points=points), **known)[points::points]
+    assert abs(open_ends[2] - open_ends[0]) > 0.02 * open_ends[0]
+
+
+@pytest.mark.parametrize("word", ["domain_wall", "domain_wall:biased"])
+def test_walls_that_break_condition_9_are_said_to(word):
+    """alpha P_s > a has walls run away that start to move, those of DW1 never do."""
+    model, field = Model([block_of(word)], "x", [0]), record(path(0, 13500, -1000, 4000, points=100))
+
+    def broken(**known):
+        values = smith.domain_wall(**known)
+        return Plan(model, field).broken(np.array([[values[name] for name in model.names]]))
+
+    assert broken(**smith.DW1) == ()
+    (said,) = broken(alpha=4.5e6, k=2e3, c=0.1)
+    assert "condition (9)" in said and "% of its samples" in said and "`domain_wall.pinning`" in said
+
+
+JOB = """\
+name: walls
+records: [{file: loop.csv, use: identify}]
+channels:
+  time: "time [s]"
+  axes:
+    x: {drive: "E [V/m]", response: "x [um]"}
+model: [{name: domain_wall, minor_loops: biased}]
+parameters:
+  domain_wall.coupling: {value: 4.79}
+  domain_wall.reversible: {value: 0.1}
+  domain_wall.pinning: {value: 2000}
+  domain_wall.width: {value: 4.6e+5}
+optimizers: [{name: least_squares, budget: 20}]
+polish: false
+"""
+
+
+def test_a_job_says_that_its_walls_run_away(tmp_path):
+    """In its result, its report and its diagnosis."""
+    field = path(0, 13500, -1000, 4000, points=60)
+    rows = np.column_stack([np.arange(field.size) / 1e3, field, 1e6 * displacement(field, **smith.DW1)])
+    np.savetxt(tmp_path / "loop.csv", rows, "%.9g", ",", header="time [s],E [V/m],x [um]", comments="")
+    job = Job.from_text(JOB, tmp_path)
+    folder = run(job, tmp_path / "out", workers=1)
+    (note,) = json.loads((folder / "result.json").read_text())["records"][0]["notes"]
+    assert "condition (9)" in note
+    assert "Record loop: at" in (folder / "report.html").read_text()
+    case = Case(job.model, (), read(job), job.parameters)
+    assert "Record loop: at" in broken(first_fit(case, 0))
+
+
+def test_another_form_is_unknown():
+    with pytest.raises(InputError, match=r"minor_loops: 'bised' is no such form") as error:
+        Job.from_text(JOB.replace("minor_loops: biased", "minor_loops: bised"))
+    assert "did you mean 'biased'?" in str(error.value)
+
+
+def test_a_set_that_can_only_run_away_is_refused():
+    """As printed: c alpha P_s / a = 3.9."""
+    model, field = Model([block_of("domain_wall")], "x", [0]), record(path(0, 13500, points=100))
+    values = {
+        name: SimpleNamespace(bounds=None, value=value) for name, value in smith.domain_wall(**smith.PRINTED).items()
+    }
+    with pytest.raises(InputError, match=r"c alpha P_s / a is 3.88 or more: no polarization is stable") as error:
+        Problem(model, [field], values)
+    assert error.value.where == "domain_wall.coupling" and "smaller alpha" in error.value.remedy
 
 
 def test_set_as_printed_runs_away():

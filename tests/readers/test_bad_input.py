@@ -187,15 +187,6 @@ def test_settle_leaves_something(tmp_path, read, problem):
     assert "settle 6 s leaves nothing of 6 s" in problem(path, settle=6.0).message
 
 
-def test_a_period_is_decimated_whole(tmp_path, read, problem):
-    path = write(tmp_path, *ROWS)
-    assert read(path, run_in=1, decimate=2).samples == 3
-    assert (
-        "decimate 2 does not divide the 5 samples of a period"
-        in problem(path, run_in=1, rows=(0, 5), decimate=2).message
-    )
-
-
 @pytest.mark.parametrize("rows", [(0, 7), (4, 2), (3, 3), (-1, 3), (6, None)])
 def test_rows_out_of_range(tmp_path, problem, rows):
     error = problem(write(tmp_path, *ROWS), rows=rows)

@@ -82,7 +82,7 @@ def fine(drive, times, periodic):
 def parameters(model, block, record, axis, other, theta):
     """Values by name; an axis that is not measured takes those of the first that is, and nothing from another axis."""
     found = {"dt": [record.dt / model.oversample], "span": [np.ptp(record.drive[axis])]}
-    found |= {"peak": [np.abs(record.drive[axis]).max()]}
+    found |= {"peak": [np.abs(record.drive[axis]).max()]} | {word: [n] for word, n in block.numbers().items()}
     found |= {declared.name: [declared.null] for declared in block.parameters().values() if declared.effect}
     if axis not in model.measured:
         if other != axis or issubclass(block, Modes):
@@ -121,7 +121,6 @@ def act(block, values, signal, aside, terms):
 def solved(block, values):
     if not block.solved:
         return {}
-    values = values | {word: [block.setting(word)] for word in block.settings()}
     own = SimpleNamespace(**{word: each if len(each) > 1 else each[0] for word, each in values.items()})
     return dict(zip(block.solved, map(list, block.solve(own)), strict=True))
 

@@ -2,11 +2,13 @@
 
 import asyncio
 import json
+import subprocess
+import sys
 
 import pytest
 
 from pzt_ident.errors import InputError
-from pzt_ident.job import load_job
+from pzt_ident.job import Job, load_job
 from pzt_ident.workbench.bench import Bench
 
 from .conftest import alone, form, measured
@@ -36,9 +38,19 @@ def test_add_take_off_and_undo(begun):
     assert begun.job().effects == ("creep", "drift")
     begun.add("saturation")
     assert [step["change"] for step in begun.chain()] == ["as given", "+ creep", "+ drift", "+ saturation"]
+    begun.go(4)
+    assert begun.job().effects == ("drift",)
     for _ in range(9):
         begun.undo()
-    assert begun.job().effects == ()
+    assert begun.at == 0 and begun.chain() == [] and begun.logs() == []
+    with pytest.raises(InputError, match="no step 6"):
+        begun.go(6)
+
+
+def test_from_the_measurement_begins_another_chain(begun):
+    begun.undo()
+    begun.begin(form(name="other"))
+    assert [step["number"] for step in begun.chain()] == [2] and begun.job().name == "other"
 
 
 @pytest.mark.parametrize("act", [lambda b: b.add("crep"), lambda b: b.remove("creep"), lambda b: b.choose(["nothing"])])
@@ -121,7 +133,8 @@ def test_the_page_is_told_of_every_change(client, bench):
     assert {"bouc_wen", "lumped"} <= {block["name"] for block in found["blocks"]}
     assert "creep" in {effect["name"] for effect in found["effects"]}
     assert found["files"] == ["data.csv"]
-    assert client.get("/api/job").text == (bench.step() / "job.yaml").read_text()
+    saved = Job.from_text(client.get("/api/job").text, bench.root)
+    assert saved.text.startswith("# Made in the workbench.") and saved.records[0].file == "data.csv"
     assert client.get("/api/drive").status_code == 400
 
 
@@ -147,3 +160,45 @@ def test_events_are_the_lines_of_the_run(bench, monkeypatch):
 
     found = alone(first(4))
     assert found == [{"event": "step", "step": 1}, *lines, {"event": "changed", "version": bench.version}]
+
+
+def test_a_log_that_begins_anew_is_told_from_its_first_line(tmp_path):
+    from pzt_ident.workbench.app import news
+
+    log, told = tmp_path / "events.jsonl", {}
+    assert news(log, told) == []
+    log.write_bytes(b"one\ntwo\nthr")
+    assert news(log, told) == [b"one", b"two"]
+    log.write_bytes(b"one\ntwo\nthree\n")
+    assert news(log, told) == [b"three"] and news(log, told) == []
+    log.write_bytes(b"new\n")
+    assert news(log, told) == [b"new"]
+
+
+def test_a_session_that_was_cut_off_says_so(begun):
+    assert Bench(begun.root, begun.folder).failure == ""
+    (begun.step() / "run").mkdir()
+    (begun.step() / "run" / "environment.json").write_text("{}")
+    assert "Run goes on from here" in Bench(begun.root, begun.folder).failure
+    for _, last, _ in begun.commands(begun.step()):
+        last.parent.mkdir(exist_ok=True)
+        last.write_text("{}")
+    assert Bench(begun.root, begun.folder).failure == ""
+
+
+def test_a_command_ends_with_what_started_it(tmp_path):
+    command = [sys.executable, "-m", "pzt_ident.attended", "workbench", "--no-browser"]
+    process = subprocess.Popen(command, cwd=tmp_path, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    assert process.stdout.readline().startswith(b"workbench: ")
+    process.stdin.close()
+    assert process.wait(20) != 0
+
+
+def test_a_file_that_cannot_be_read_may_be_dropped_again(client, bench):
+    assert client.post("/api/upload?name=a.csv", content=b"no numbers").status_code == 400
+    assert not list(bench.data.iterdir())
+    measured(bench.root / "data.csv")
+    content = (bench.root / "data.csv").read_bytes()
+    assert client.post("/api/upload?name=a.csv", content=content).json()["rows"] == 400
+    assert "dropped before" in client.post("/api/upload?name=a.csv", content=b"other").json()["error"]
+    assert client.get("/api/state").json()["files"] == ["data.csv", "workbench/data/a.csv"]

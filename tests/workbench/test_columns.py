@@ -7,6 +7,7 @@ from pzt_ident.errors import InputError
 from pzt_ident.job import Job
 from pzt_ident.workbench.columns import columns_of
 from pzt_ident.workbench.form import job_text, with_model
+from sheets import write_sheets
 
 from .conftest import form
 
@@ -22,14 +23,14 @@ def roles(path):
 @pytest.mark.parametrize(
     ("header", "order", "expected"),
     [
-        ("time [s],u_x [V],x [um]", "tur", ["time", "drive", "response"]),
-        ("x [um],t [ms],voltage [V]", "rtu", ["response", "time", "drive"]),
-        ("Displacement (nm),Command (V)", "ru", ["response", "drive"]),
-        ("zeit,spannung,sensor", "tur", ["time", "drive", "response"]),
-        (None, "tur", ["time", "drive", "response"]),
-        (None, "ur", ["drive", "response"]),
-        ("E [V/m],x [um]", "ur", ["drive", "response"]),
-        ("displacement,amplifier", "ru", ["response", "drive"]),
+        ("time [s],u_x [V],x [um]", "tur", ["time", "x.drive", "x.response"]),
+        ("x [um],t [ms],voltage [V]", "rtu", ["x.response", "time", "x.drive"]),
+        ("Displacement (nm),Command (V)", "ru", ["x.response", "x.drive"]),
+        ("zeit,spannung,sensor", "tur", ["time", "x.drive", "x.response"]),
+        (None, "tur", ["time", "x.drive", "x.response"]),
+        (None, "ur", ["x.drive", "x.response"]),
+        ("E [V/m],x [um]", "ur", ["x.drive", "x.response"]),
+        ("displacement,amplifier", "ru", ["x.response", "x.drive"]),
     ],
 )
 def test_roles_by_unit_name_or_place(tmp_path, header, order, expected):
@@ -39,18 +40,66 @@ def test_roles_by_unit_name_or_place(tmp_path, header, order, expected):
     assert roles(path) == expected
 
 
+@pytest.mark.parametrize(
+    ("header", "expected"),
+    [
+        ("t_s,HV1 / V,HV2 / V,pos1 / um,pos2 / um", ["time", "x.drive", "y.drive", "x.response", "y.response"]),
+        ("t [s],u_x [V],u_mon [V],x [um],T [K]", ["time", "x.drive", "", "x.response", ""]),
+        ("t [s],U1 [V],U2 [V],x [um],target [um]", ["time", "x.drive", "", "x.response", ""]),
+    ],
+)
+def test_another_axis_where_both_its_signals_are_called_alike(tmp_path, header, expected):
+    columns = np.column_stack([TIME, DRIVE, 2 * DRIVE, RESPONSE, 3 * RESPONSE])
+    np.savetxt(tmp_path / "data.csv", columns, delimiter=",", header=header, comments="")
+    assert roles(tmp_path / "data.csv") == expected
+
+
+def test_of_two_columns_without_a_name_the_smoother_is_the_drive(tmp_path):
+    noisy = RESPONSE + np.random.default_rng(1).normal(0, 0.05, TIME.size)
+    np.savetxt(tmp_path / "data.csv", np.column_stack([TIME, noisy, DRIVE]), delimiter=",")
+    found = columns_of(tmp_path / "data.csv")["columns"]
+    assert [column["role"] for column in found] == ["time", "x.response", "x.drive"]
+    assert all(0 <= value <= 1 for column in found for value in column["shape"])
+
+
+def test_a_unit_at_the_end_of_a_name(tmp_path):
+    columns = np.column_stack([TIME, DRIVE, RESPONSE])
+    np.savetxt(tmp_path / "data.csv", columns, delimiter=",", header="t_ms,gain_x,disp_nm", comments="")
+    assert [column["unit"] for column in columns_of(tmp_path / "data.csv")["columns"]] == ["ms", None, "nm"]
+
+
+def test_sheets_and_tables(tmp_path):
+    rows = [["t [s]", "u [V]", "x [um]"], *np.column_stack([TIME, DRIVE, RESPONSE]).tolist()]
+    write_sheets(tmp_path / "rig.xlsx", Sheet=[["Rig 3"]], Loops=rows, Check=rows)
+    found = columns_of(tmp_path / "rig.xlsx")
+    assert (found["kind"], found["part"], list(found["parts"])) == ("sheet", "Loops", ["Sheet", "Loops", "Check"])
+    assert columns_of(tmp_path / "rig.xlsx", "Check")["part"] == "Check"
+    with pytest.raises(InputError, match="no table of numbers"):
+        columns_of(tmp_path / "rig.xlsx", "Sheet")
+    lines = "\n".join(f"{t},{u},{x}" for t, u, x in zip(TIME, DRIVE, RESPONSE, strict=True))
+    tables = (f"Table {n}\nSampleName: run {n}\nt [s],u [V],x [um]\n{lines}\n\n" for n in (1, 2))
+    (tmp_path / "rig.dat").write_text("".join(tables))
+    found = columns_of(tmp_path / "rig.dat", "2")
+    assert (found["kind"], found["parts"]) == ("table", {"1": "Table 1: run 1", "2": "Table 2: run 2"})
+    records = [
+        {"file": "rig.dat", "use": use, found["kind"]: part} for use, part in (("identify", "1"), ("validate", "2"))
+    ]
+    job = Job.from_text(job_text(form(records=records)), tmp_path)
+    assert [(record.table, record.use) for record in job.records] == [("1", "identify"), ("2", "validate")]
+
+
 def test_a_constant_column_is_neither_drive_nor_response(tmp_path):
     path = tmp_path / "data.csv"
     still = np.full(60, 20.0)
     np.savetxt(path, np.column_stack([still, TIME, DRIVE, RESPONSE]), delimiter=",", header="T,time,u,x", comments="")
-    assert roles(path) == ["", "time", "drive", "response"]
+    assert roles(path) == ["", "time", "x.drive", "x.response"]
 
 
 def test_matlab_vectors_are_columns(tmp_path):
     from scipy.io import savemat
 
     savemat(tmp_path / "data.mat", {"t": TIME, "u": DRIVE, "x": RESPONSE, "gain": 3.0, "note": "rig 2"})
-    assert sorted(roles(tmp_path / "data.mat")) == ["drive", "response", "time"]
+    assert sorted(roles(tmp_path / "data.mat")) == ["time", "x.drive", "x.response"]
 
 
 def test_a_file_without_signals_is_an_error(tmp_path):
