@@ -1,5 +1,5 @@
-"""Markdown tables out of the result.json or improvement.json of finished jobs; `python -m experiments.NAME.table
-FOLDER` prints those of the jobs in FOLDER, one folder each."""
+"""Markdown tables out of the result.json, improvement.json or diagnosis.json of finished jobs;
+`python -m experiments.NAME.table FOLDER` prints those of the jobs in FOLDER, one folder each."""
 
 from __future__ import annotations
 
@@ -31,7 +31,9 @@ def command(text: Callable[[Mapping[str, Result]], str]) -> None:
 
 
 def finished(folder: Path) -> list[Path]:
-    return sorted(path for kind in ("result", "improvement") for path in folder.glob(f"*/{kind}.json"))
+    """Of a folder with several of them the last in the alphabet counts: an improvement's diagnosis is of its end."""
+    kinds = ("diagnosis", "improvement", "result")
+    return sorted(path for kind in kinds for path in folder.glob(f"*/{kind}.json"))
 
 
 def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:

@@ -123,7 +123,7 @@ def _rule_out(document: Document, words: tuple[str, ...], earlier: Earlier) -> N
 
 
 def _effects(document: Document, words: tuple[str, ...], earlier: Earlier) -> None:
-    chosen = [blocks[word] for word in map(word_of, earlier.get("model", ())) if word in blocks]
+    chosen = blocks.formed(earlier.get("model", ()))
     terms = {declared.effect for block in chosen for declared in block.parameters().values() if declared.effect}
     known = terms | set(blocks.effects())
     for i, word in enumerate(words):

@@ -156,6 +156,10 @@ def errors_of(case: Case, fit: Fit) -> dict[str, float | None]:
     return {"identify": fit.identify / size, "validate": None if fit.validate is None else fit.validate / size}
 
 
+def by_record(case: Case, fit: Fit) -> list[dict[str, Any]]:
+    return [errors_in(record, fit.problem, fit.point) for record in case.records]
+
+
 def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
     problem, point = step.fit.problem, step.fit.point
     values = problem.physical(point)[0]
@@ -165,7 +169,7 @@ def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
         "removed": step.removed,
         "class": list(step.tied),
         "rmse": errors_of(case, step.fit),
-        "records": [errors_in(record, problem, point) for record in case.records],
+        "records": by_record(case, step.fit),
         "explained": step.explained,
         "expected": step.expected,
         "parameters": {name: {"value": float(value), "unit": unit} for name, value, unit in units},
@@ -181,6 +185,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
         "unit": unit_of(list(case.records)),
         "noise_floor": floors(case),
         "rmse": errors_of(case, found.before),
+        "records": by_record(case, found.before),
         "candidates": [
             {
                 "effect": item.score.effect,
@@ -191,6 +196,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
                 "visibility": item.score.visibility,
                 "power": item.score.power if np.isfinite(item.score.power) else None,
                 "rmse": errors_of(case, item.fit) if item.fit else None,
+                "records": by_record(case, item.fit) if item.fit else None,
                 "decision": item.decision,
                 "physics": (blocks[item.score.effect].__doc__ or "").splitlines()[0],
                 "looks_like": list(blocks[item.score.effect].looks_like),

@@ -124,6 +124,11 @@ class Blocks(Registry[Any]):
         known = [item for item in items if word_of(item) in self]
         return [self[item] if isinstance(item, str) else self[item.name].make(**item.settings) for item in known]
 
+    def formed(self, items: Iterable[str | Choice]) -> list[Any]:
+        """The blocks of a job's items in the forms that these choose, whether or not their settings fit."""
+        known = [item for item in items if word_of(item) in self]
+        return [self[word_of(item)].formed({} if isinstance(item, str) else item.settings) for item in known]
+
     def effects(self) -> list[str]:
         """The words of what may be missing from a model: each says what to do about it on the rig."""
         return [word for word in self.words() if self[word].remedy]

@@ -249,6 +249,7 @@ class TestWords:
         assert found["doc"].startswith("y = ")
         assert found["parameters"][0] | {"doc": ""} == {
             "name": "gain",
+            "form": "",
             "unit": "response/drive",
             "bounds": list(blocks["bouc_wen"].gain.bounds),
             "null": None,
@@ -256,7 +257,6 @@ class TestWords:
             "scale": "linear",
             "effect": None,
             "per_record": False,
-            "form": "",
             "doc": "",
         }
 

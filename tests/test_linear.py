@@ -173,5 +173,12 @@ def test_from_a_job_to_the_report_and_back(measured, tmp_path):
     assert rmse == pytest.approx(found["rmse"]["identify"], rel=1e-9)
 
 
+def test_an_effect_that_the_form_has_no_term_for_is_refused():
+    text = JOB.format(parameters="{}") + "effects: [thermal_relaxation]\n"
+    Job.from_text(text.replace(", density: free, nodes: 24", ""))
+    with pytest.raises(InputError, match="no block of this model has a term for 'thermal_relaxation'"):
+        Job.from_text(text)
+
+
 def test_counted_names_in_a_row_are_said_in_one():
     assert ranges(["a.w_1", "a.w_2", "a.w_3", "b.w_4", "a.w_9", "c"]) == ["a.w_1 to a.w_3", "b.w_4", "a.w_9", "c"]

@@ -1,4 +1,4 @@
-"""What Bouc-Wen and what eight plays reach on the stack, and what is missing in Bouc-Wen."""
+"""What Bouc-Wen, eight plays and the homogenized energy model reach on the stack, and what is missing in Bouc-Wen."""
 
 from __future__ import annotations
 
@@ -12,6 +12,8 @@ def text(results: Mapping[str, Result]) -> str:
     for job, model in (("bouc_wen", "Bouc-Wen"), ("plays", "eight plays")):
         result = results[job]
         parts += [f"**{model}**", records(result), league(result), parameters(result)]
+    for job, start in (("homogenized_energy", "as it is"), ("homogenized_energy_late", "the sensor one sample late")):
+        parts += [f"**Homogenized energy, {start}**", records(results[job]), parameters(results[job])]
     for job, start in (("missing", "as identified above"), ("one_sample_late", "the sensor one sample late")):
         parts += [f"**What is missing, {start}**", staircase(results[job])]
     return "\n\n".join(parts)

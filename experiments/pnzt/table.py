@@ -8,22 +8,26 @@ from experiments.tables import Result, command, number, parameters, staircase, t
 from pzt_ident.report.words import step_name
 
 JOBS = {"homogenized_energy": "without activation", "thermal_homogenized_energy": "with activation"}
-STAIRS = {"missing": "loops of four amplitudes and two rates", "holds": "holds at constant field"}
 UNITS = {"p": "uC/cm2", "d": "nm"}
 
 
 def text(results: Mapping[str, Result]) -> str:
+    parts = [by_model(results)]
+    for job, said in JOBS.items():
+        parts += [f"**{said}**", parameters(results[job])]
+    missing = results["missing"]
+    parts += ["**What is missing, loops of four amplitudes and two rates**", staircase(missing), by_record(missing)]
+    parts += ["**What is missing, holds**", results["holds"]["reason"], refitted(results["holds"])]
+    return "\n\n".join(parts)
+
+
+def by_model(results: Mapping[str, Result]) -> str:
     rows = [
         [f"{record['name']} ({record['use']})", said, *(number(record["rmse"][axis], 3) for axis in UNITS)]
         for job, said in JOBS.items()
         for record in results[job]["records"]
     ]
-    parts = [table(["record", "model", *(f"RMSE {axis} [{unit}]" for axis, unit in UNITS.items())], rows)]
-    for job, said in JOBS.items():
-        parts += [f"**{said}**", parameters(results[job])]
-    for job, said in STAIRS.items():
-        parts += [f"**What is missing, {said}**", staircase(results[job]), by_record(results[job])]
-    return "\n\n".join(parts)
+    return table(["record", "model", *(f"RMSE {axis} [{unit}]" for axis, unit in UNITS.items())], rows)
 
 
 def by_record(improvement: Result) -> str:
@@ -36,6 +40,25 @@ def by_record(improvement: Result) -> str:
             *(number(step["records"][i]["rmse"][axis], 3) for axis in UNITS for step in steps),
         ]
         for i, record in enumerate(steps[0]["records"])
+    ]
+    return table(header, rows)
+
+
+def refitted(diagnosis: Result) -> str:
+    """What the model as given and each effect of the short list leave of each record."""
+    models = {"as given": diagnosis} | {f"+ {item['effect']}": item for item in diagnosis["candidates"] if item["rmse"]}
+    header = [
+        "model",
+        "validate [1]",
+        *(f"{r['name']} ({r['use']}): {axis} [{UNITS[axis]}]" for r in diagnosis["records"] for axis in UNITS),
+    ]
+    rows = [
+        [
+            said,
+            number(item["rmse"]["validate"], 3),
+            *(number(r["rmse"][axis], 3) for r in item["records"] for axis in UNITS),
+        ]
+        for said, item in models.items()
     ]
     return table(header, rows)
 
