@@ -39,7 +39,7 @@ from pzt_ident.units import factor
 
 
 @contextmanager
-def begun(job: Job, out: Path | None, listen: Listen) -> Iterator[tuple[Case, Path]]:
+def begun(job: Job, out: Path | None, listen: Listen = lambda event: None) -> Iterator[tuple[Case, Path]]:
     """The case, and a folder that holds the job, what it runs on and, in `events.jsonl`, what happens as it does.
 
     Raises InputError where job or data are wrong.

@@ -69,15 +69,15 @@ def test_it_is_identified_like_any_other(folder):
 def test_it_joins_the_diagnosis(folder):
     plain = folder / "plain.yaml"
     plain.write_text(JOB.replace("effects: [cubic_gain]", "effects: []"))
-    case, _ = begun(load_job(plain, plugins=True), folder / "out")
-    assert "cubic_gain" in applicable(case, ())
+    with begun(load_job(plain, plugins=True), folder / "out") as (case, _):
+        assert "cubic_gain" in applicable(case, ())
 
 
 def test_what_the_user_rules_out_does_not(folder):
     ruled = folder / "ruled.yaml"
     ruled.write_text(JOB.replace("effects: [cubic_gain]", "rule_out: [cubic_gain, creep]"))
-    case, _ = begun(load_job(ruled, plugins=True), folder / "out")
-    assert not {"cubic_gain", "creep"} & set(applicable(case, ()))
+    with begun(load_job(ruled, plugins=True), folder / "out") as (case, _):
+        assert not {"cubic_gain", "creep"} & set(applicable(case, ()))
 
 
 def test_a_job_elsewhere_still_finds_its_files(folder):
