@@ -14,7 +14,7 @@ from pzt_ident.registry import blocks, optimizers, word_of
 if TYPE_CHECKING:
     from pzt_ident.model import Model, Slot
     from pzt_ident.record import Axis, Channel, Source
-    from pzt_ident.sections import Channels, Choice, Setting, Stopping
+    from pzt_ident.sections import Channels, Choice, Limits, Setting, Stopping
 
 Earlier = Mapping[str, Any]
 """The sections before this one, less those with a fault in their own form."""
@@ -52,6 +52,7 @@ def _stretch(document: Document, at: Loc, stretch: tuple[float | None, float | N
 def _channels(document: Document, channels: Channels, earlier: Earlier) -> None:
     alone = not any(source.channels for source in earlier.get("records", ()))
     places: list[tuple[Loc, Channel | None]] = [(("channels", "time"), channels.time)]
+    seen: dict[str, Channel | None] = {}
     for name, axis in channels.axes.items():
         at: Loc = ("channels", "axes", name)
         if not name.isidentifier() or name in blocks.words():
@@ -59,6 +60,10 @@ def _channels(document: Document, channels: Channels, earlier: Earlier) -> None:
         places += [((*at, "drive"), axis.drive), ((*at, "response"), axis.response)]
         if alone and axis.drive == axis.response:
             document.fault((*at, "response"), "is the same channel as the drive", "name the measured displacement")
+        twin = next((other for other in seen if alone and axis.response and seen[other] == axis.response), None)
+        if twin:
+            document.fault((*at, "response"), f"is the same channel as that of axis {twin}", "give each axis its own")
+        seen[name] = axis.response
     for at, channel in places:
         if channel is not None:
             _channel(document, at, channel, alone)
@@ -286,6 +291,12 @@ def _stop(document: Document, stop: Stopping, earlier: Earlier) -> None:
         _unit(document, ("stop", "target"), stop.target.unit)
 
 
+def _limits(document: Document, limits: Limits, earlier: Earlier) -> None:
+    if limits.drive and limits.drive[0] >= limits.drive[1]:
+        low, high = limits.drive
+        document.fault(("limits", "drive"), f"[{low:g}, {high:g}] are no limits", "write [lowest, highest]")
+
+
 SECTIONS: Mapping[str, Callable[[Document, Any, Earlier], None]] = {
     "plugins": _plugins,
     "records": _records,
@@ -297,4 +308,5 @@ SECTIONS: Mapping[str, Callable[[Document, Any, Earlier], None]] = {
     "parameters": _parameters,
     "optimizers": _optimizers,
     "stop": _stop,
+    "limits": _limits,
 }

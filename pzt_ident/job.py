@@ -17,7 +17,7 @@ from pzt_ident import checks
 from pzt_ident.document import Document, Fault, Loc, reject
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.record import Source
-from pzt_ident.sections import Channels, Choice, Count, Item, Limits, Setting, Stopping
+from pzt_ident.sections import Channels, Choice, Item, Limits, Repeats, Setting, Stopping
 from pzt_ident.shorthand import written_out
 
 
@@ -39,7 +39,7 @@ class Job(BaseModel):
     shared: tuple[str, ...] = ()
     parameters: dict[str, Setting] = {}
     optimizers: tuple[Choice, ...] = (Choice("pso"),)
-    repeats: Count = 1
+    repeats: Repeats = 1
     seed: Annotated[int, Field(ge=0)] = 0
     polish: bool = True
     stop: Stopping = Stopping()
@@ -144,6 +144,7 @@ _EXPECTED = {
     "dataclass_type": ("a mapping", "write it as {{key: value}}"),
     "greater_than": ("above {gt:g}", "give a value above {gt:g}"),
     "greater_than_equal": ("at least {ge:g}", "give at least {ge:g}"),
+    "less_than_equal": ("at most {le:g}", "give at most {le:g}"),
     "too_long": ("a list of {max_length}", "give {max_length} values"),
     "missing": ("[first, second]", "write both"),
 }

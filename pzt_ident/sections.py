@@ -11,6 +11,7 @@ from pzt_ident.record import Axis, Channel
 
 Positive = Annotated[float, Field(gt=0)]
 Count = Annotated[int, Field(ge=1)]
+Repeats = Annotated[int, Field(ge=1, le=1000)]
 
 
 @dataclass(frozen=True)

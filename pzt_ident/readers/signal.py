@@ -37,7 +37,8 @@ class Signal:
             runs = np.split(gaps, np.flatnonzero(np.diff(gaps) > 1) + 1)
             named = [self.place(run[0]) + (f" to {self.place(run[-1])}" if len(run) > 1 else "") for run in runs[:3]]
             count = "1 value is" if gaps.size == 1 else f"{gaps.size} values are"
-            problem = f"{count} missing: {', '.join(named)}{', ...' if len(runs) > 3 else ''}"
+            which = "infinite" if np.isinf(self.values[gaps]).all() else "missing"
+            problem = f"{count} {which}: {', '.join(named)}{', ...' if len(runs) > 3 else ''}"
             raise InputError(problem, where=self.where, remedy="fill the gap, or take a stretch without with `rows`")
         return self
 
@@ -71,10 +72,9 @@ def _bounds(rows: tuple[int | None, int | None] | None, total: int, where: str) 
 
 
 def _numbers(column: Column, values: NDArray[Any], first: int, where: str) -> NDArray[np.float64]:
-    try:
+    if values.dtype.kind in "biuf" or all(map(_is_number, values)):
         return np.asarray(values, dtype=float)
-    except (TypeError, ValueError):
-        row = next(i for i, value in enumerate(values) if not _is_number(value))
+    row = next(i for i, value in enumerate(values) if not _is_number(value))
     problem = f"{column.place(first + row)} holds {str(values[row])!r} instead of a number"
     remedy = "correct the value, or leave the row out with `rows`"
     if re.search(r"\d[:-]\d", str(values[row])):
@@ -83,8 +83,9 @@ def _numbers(column: Column, values: NDArray[Any], first: int, where: str) -> ND
 
 
 def _is_number(value: Any) -> bool:
+    """Python reads 1_0 as 10, a table does not."""
     try:
         float(value)
     except (TypeError, ValueError):
         return False
-    return True
+    return "_" not in str(value)

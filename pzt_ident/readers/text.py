@@ -83,6 +83,8 @@ def _numbers(cells: Sequence[str], decimal: str) -> NDArray[Any]:
     if decimal != ".":
         cells = [cell.replace(decimal, ".") for cell in cells]
     try:
-        return np.array(list(map(float, cells)))
+        if "_" not in "".join(cells):
+            return np.array(list(map(float, cells)))
     except ValueError:
-        return np.array(["nan" if cell.strip().lower() in GAPS else cell.strip() for cell in cells], dtype=object)
+        pass
+    return np.array(["nan" if cell.strip().lower() in GAPS else cell.strip() for cell in cells], dtype=object)

@@ -63,6 +63,18 @@ def test_a_leg_in_parts_is_the_leg_in_one(beta, share, start, parts):
     assert 0.08 * in_parts == pytest.approx(0.08 * in_one, rel=1e-13, abs=1e-14)
 
 
+@given(start=st.floats(-14, 14), parts=st.lists(st.floats(0.01, 50), min_size=2, max_size=6))
+@quick
+def test_a_leg_of_lin_and_lin_in_parts_is_the_leg_in_one_to_a_hundredth_of_a_picometre(start, parts):
+    """In um, h = 0.082 * 0.559 q below 0.65 um."""
+    along, against = regime(0.0148 + 0.0552), regime(0.0148 - 0.0552)
+    in_parts = start
+    for part in parts:
+        in_parts = BoucWen.exact(in_parts, part, along, against)
+    change = in_parts - BoucWen.exact(start, sum(parts), along, against)
+    assert abs(0.082 * 0.559 * change) < 1e-14
+
+
 @pytest.mark.parametrize("points", [2, 3, 7, 50, 1000])
 def test_sampling_does_not_matter(points):
     found = displacement(path(*NESTED, points=points))[::points]

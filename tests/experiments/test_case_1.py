@@ -1,0 +1,21 @@
+"""What the search of Case I finds on the shipped records of the virtual stage."""
+
+from pathlib import Path
+
+import pytest
+
+from pzt_ident.job import load_job
+from pzt_ident.registry import optimizers
+from pzt_ident.run import problem_of, read
+from pzt_ident.search import Stop, drive
+
+QUANTISED = 0.02887e-6  # m, 0.1 um / sqrt(12)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_swarm_with_constriction_comes_down_to_the_encoder(seed):
+    job = load_job(Path(__file__).parents[2] / "configs" / "lin_lin_x.yaml")
+    problem = problem_of(job, read(job))
+    swarm = next(each for each in job.optimizers if each.name == "pso")
+    found = drive(optimizers["pso"].make(**swarm.settings), problem.dimensions, problem.loss, seed, Stop(17_500))
+    assert found.loss == pytest.approx(QUANTISED, rel=0.01)
