@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.diagnosis.noise import noise_floor, sizes
 from pzt_ident.model import Model
+from pzt_ident.plan import Plan
 from pzt_ident.problem import Problem
 from pzt_ident.record import Record
 from pzt_ident.registry import Choice, blocks
@@ -113,6 +114,28 @@ def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, fl
     middle = problem.physical(np.full(problem.dimensions, 0.5))[0]
     start = {name: guess.get(name, old.get(name, middle[i])) for i, name in enumerate(problem.names)}
     return made(effects, problem, descend(problem, problem.unit_point(start)))
+
+
+def step_error(fit: Fit) -> float:
+    """What halving the step of the simulation changes, root mean square, in units of the loss.
+
+    The drive is linear between samples, and so is what each block hands on to the next: the error of that.
+    """
+    problem, changes = fit.problem, []
+    theta = problem.parameters(fit.point)
+    for plan in problem.plans["identify"]:
+        finer = Plan(problem.model, halved(plan.record)).simulate(theta)[0, :, ::2]
+        change = (finer - plan.simulate(theta)[0])[:, plan.record.settle :]
+        changes.append((change - change.mean(axis=1, keepdims=True)) / problem.sizes[:, None])
+    return float(np.sqrt(np.mean(np.square(np.hstack(changes)))))
+
+
+def halved(record: Record) -> Record:
+    """A record at half the step, its drive linear between samples; without responses."""
+    after = record.drive[:, :1] if record.run_in else record.drive[:, -1:]
+    ahead = np.hstack([record.drive[:, 1:], after])
+    drive = np.stack([record.drive, (record.drive + ahead) / 2], axis=2).reshape(len(record.drive), -1)
+    return replace(record, dt=record.dt / 2, drive=drive, response=np.zeros_like(drive), settle=2 * record.settle)
 
 
 def elsewhere(fit: Fit) -> Fit:

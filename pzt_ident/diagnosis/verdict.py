@@ -8,7 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
-from pzt_ident.diagnosis.refit import Case, Fit, refit
+from pzt_ident.diagnosis.refit import Case, Fit, refit, step_error
 from pzt_ident.diagnosis.score import Score, Scorer, applicable, misfit
 from pzt_ident.registry import blocks
 
@@ -19,6 +19,7 @@ SHARE = 0.15  # and at least this much of the misfit
 TIED = 0.2  # noise floors between two refits: less than that, these data cannot tell; of look-alikes twice that
 HELD = 3.0  # times as much may be left of the records that the fit never saw
 FORM = 0.03  # of the misfit at first: less is as likely the form of the effects found as another effect
+COARSE = 0.5  # of what is left: if halving the step of the simulation changes more, it may be the step's fault
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
 
 
@@ -83,6 +84,13 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     if not before.converged:
         reason = "Two starts of the fit do not agree: what is left may be the search's fault. Narrow the bounds."
         return Diagnosis("refused", reason, before, [], [])
+    coarse = step_error(before)
+    if not adequate(case, first, before) and coarse > COARSE * misfit(case, before) ** 0.5:
+        reason = (
+            f"What is left, an RMSE of {before.identify / case.floor:.1f} noise floors, may be the simulation's fault:"
+            f" halving its step changes the response by {coarse / case.floor:.1f}. Sample faster, or drive slower."
+        )
+        return Diagnosis("refused", reason, before, [], [])
     scorer = Scorer(case, before)
     with ThreadPoolExecutor(2) as pool:
         scores = list(pool.map(scorer.score, applicable(case, before.effects)))
@@ -135,7 +143,7 @@ def settle(case: Case, candidates: list[Candidate]) -> None:
         if item.score.power < VISIBLE:
             item.decision = "cannot be seen"
         elif item.fit is None:
-            item.decision = "not missing" if item.score.explained <= LEAST else "too small"
+            item.decision = "too small" if LEAST < item.score.explained < SHARE else "not missing"
 
 
 def nothing(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> Diagnosis:
@@ -152,7 +160,7 @@ def nothing(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) ->
             " kind `use: identify`."
         )
     else:
-        said = f"No effect of the catalogue explains the misfit of {left:.1f} noise floors."
+        said = f"No effect of the catalogue explains what is left, an RMSE of {left:.1f} noise floors."
     return Diagnosis("unexplained", said, before, candidates, [])
 
 

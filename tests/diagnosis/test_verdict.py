@@ -101,8 +101,24 @@ def test_what_no_effect_explains_is_given_no_name():
 
     found = judged(stage.with_response(stage.case(), strange))
     assert found.verdict == "unexplained"
-    assert "No effect of the catalogue explains the misfit" in found.reason
+    assert "No effect of the catalogue explains what is left" in found.reason
     assert found.best is None
+
+
+def test_what_a_shorter_step_would_change_is_blamed_on_no_effect():
+    soft = {"lumped.mass": 1.0, "lumped.stiffness": 1e5, "lumped.damping": 30.0}  # 50 Hz, sampled at 200 Hz
+    known = stage.STAGE | stage.EFFECTS["amplifier_lag"] | soft
+    made = stage.case(fixed=soft, effects=["amplifier_lag"], model=("bouc_wen", "lumped"), noise=0)
+
+    def between(record):
+        fine = np.interp(np.arange(8 * record.samples) / 8, np.arange(record.samples), record.drive[0])
+        true = rig.response(("amplifier_lag", "bouc_wen", "lumped"), known, fine, dt=record.dt / 8)[::8]
+        return true - record.response[0] + np.random.default_rng(2).normal(0, 1e-10, record.samples)
+
+    found = judged(stage.with_response(made, between))
+    assert found.before.identify > 2e-10
+    assert found.verdict == "refused"
+    assert "halving its step" in found.reason
 
 
 def test_a_fit_that_has_not_converged_is_blamed_on_no_effect(monkeypatch):
@@ -127,14 +143,15 @@ def test_lags_before_and_behind_a_linear_stage_are_the_same_to_these_data():
 
 
 def test_what_leaves_less_than_the_noise_at_its_strongest_cannot_be_seen():
-    unseen, none, small = (
+    scores = (
         Score("delay", 0.5, power=0.1),
         Score("creep", 0.001, power=3.0),
         Score("drift", 0.1, power=3.0),
+        Score("saturation", 0.3, power=3.0),
     )
-    items = [Candidate(score) for score in (unseen, none, small)]
+    items = [Candidate(score) for score in scores]
     settle(stage.case(), items)
-    assert [item.decision for item in items] == ["cannot be seen", "not missing", "too small"]
+    assert [item.decision for item in items] == ["cannot be seen", "not missing", "too small", "not missing"]
 
 
 def test_an_effect_that_helps_only_the_records_that_were_fitted_earns_nothing():
