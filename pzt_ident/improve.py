@@ -63,11 +63,12 @@ def improve(job: Job, out: Path | None = None, tell: Tell = lambda event: None) 
             write_signals(folder / name, step.fit.problem, step.fit.point)
     verdict, reason = last.verdict, last.reason
     if verdict in ("missing", "inconclusive"):
-        verdict, reason = "unexplained", f"The next step was tried and taken back, or is one too many. {reason}"
+        tried = "Another effect scores, but was tried and taken back, or the staircase has all its steps."
+        verdict, reason = "unexplained", f"{tried} {reason}"
     effects = list(steps[-1].fit.effects)
     added = [word for word in effects if word not in job.effects]
-    if verdict == "unexplained" and added:
-        reason += f" {', '.join(added)}: taken up on the way, and not proven, since something else is at work."
+    if verdict != "adequate" and added:
+        reason += f" Added on the way, and not proven while that is open: {', '.join(added)}."
     reason += bounded(steps[-1].fit)
     content = {
         "name": job.name,
@@ -92,7 +93,8 @@ def bounded(fit: Fit) -> str:
     for name in fit.on_bounds:
         unit = problem.units[problem.names.index(name)]
         value = f"{fit.value(name):.3g} {unit}".removesuffix(" 1")
-        said += f" {name} ended on its bound of {value}: its name is doubtful, or its bounds are too narrow."
+        why = "these data do not determine it, its bounds are too narrow, or it stands in for something else"
+        said += f" {name} ended on its bound of {value}: {why}."
     return said
 
 
@@ -143,6 +145,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
                 "class": found.tied if item.score.effect in found.tied else [item.score.effect],
                 "explained": item.score.explained,
                 "expected": item.score.guess,
+                "units": item.score.units,
                 "visibility": item.score.visibility,
                 "power": item.score.power if np.isfinite(item.score.power) else None,
                 "rmse": errors_of(case, item.fit) if item.fit else None,

@@ -31,7 +31,7 @@ def show_diagnosis(found: Facts, folder: Path) -> None:
         (
             item["effect"],
             f"{100 * item['explained']:.0f} %",
-            ", ".join(f"{name.split('.')[-1]} {number(value)}" for name, value in list(item["expected"].items())[:3]),
+            ", ".join(map(quantity(item["units"]), list(item["expected"].items())[:3])),
             f"{item['visibility']:.2f}",
             number(item["rmse"]["identify"]) if item["rmse"] else "",
             number(item["rmse"]["validate"]) if item["rmse"] else "",
@@ -46,6 +46,11 @@ def show_diagnosis(found: Facts, folder: Path) -> None:
     click.echo(found["reason"])
     _advise(found, folder)
     click.echo(f"diagnosis: {folder / 'diagnosis.json'}")
+
+
+def quantity(units: dict[str, str]) -> Callable[[tuple[str, float]], str]:
+    """How a parameter and its value are said: `tau 0.62 s`."""
+    return lambda item: f"{item[0].split('.')[-1]} {number(item[1])} {units[item[0]]}".removesuffix(" 1")
 
 
 def _advise(found: Facts, folder: Path) -> None:
@@ -80,4 +85,6 @@ def show_improvement(found: Facts, folder: Path) -> None:
     )
     click.echo(f"noise floor [{unit}]: {number(floor)}")
     click.echo(f"{found['verdict']}: {found['reason']}")
-    click.echo(f"improved job: {folder / 'improved.yaml'}\nreport: {folder / 'report.html'}")
+    click.echo(f"improved job: {folder / 'improved.yaml'}")
+    if (folder / "report.html").exists():
+        click.echo(f"report: {folder / 'report.html'}")

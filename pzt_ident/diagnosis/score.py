@@ -7,7 +7,7 @@ For each effect the change of the response as it leaves its null, less what the 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
@@ -26,12 +26,13 @@ TRIALS = 5  # values over the range of a parameter that means nothing at the nul
 
 @dataclass
 class Score:
-    """What the data say of an effect without a refit. `guess` in the user's units; `visibility` is the share of its
+    """What the data say of an effect without a refit. `guess` in the user's `units`; `visibility` is the share of its
     trace that the fitted parameters cannot take up, `power` the largest plausible rms of that, in noise floors."""
 
     effect: str
     explained: float = 0.0
     guess: dict[str, float] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
     visibility: float = 0.0
     power: float = 0.0
     trace: Array = field(default_factory=lambda: np.zeros(0), repr=False)
@@ -87,8 +88,12 @@ class Scorer:
 
     def score(self, effect: str) -> Score:
         problem = self.case.problem((*self.fit.effects, effect))
-        if issubclass(blocks[effect], Addition):
-            return self._addition(effect, problem)
+        found = (self._addition if issubclass(blocks[effect], Addition) else self._growth)(effect, problem)
+        units = zip(problem.names, problem.units, strict=True)
+        return replace(found, units={name: unit for name, unit in units if name in found.guess})
+
+    def _growth(self, effect: str, problem: Problem) -> Score:
+        """What the response does as the effect leaves its null."""
         found = Score(effect)
         for trial, columns in self._trials(effect, problem):
             trace = self.project(columns.T)
