@@ -49,8 +49,13 @@ def show_diagnosis(found: Facts, folder: Path) -> None:
 
 
 def quantity(units: dict[str, str]) -> Callable[[tuple[str, float]], str]:
-    """How a parameter and its value are said: `tau 0.62 s`."""
-    return lambda item: f"{item[0].split('.')[-1]} {number(item[1])} {units[item[0]]}".removesuffix(" 1")
+    """How a parameter and its value are said, the axis where there are several: `tau 0.62 s`, `x.tau 0.62 s`."""
+
+    def said(item: tuple[str, float]) -> str:
+        *axis, _, word = item[0].split(".")
+        return f"{'.'.join([*axis, word])} {number(item[1])} {units[item[0]]}".removesuffix(" 1")
+
+    return said
 
 
 def _advise(found: Facts, folder: Path) -> None:

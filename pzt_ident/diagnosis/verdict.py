@@ -19,7 +19,7 @@ SHARE = 0.15  # and at least this much of the misfit
 TIED = 0.2  # noise floors between two refits: less than that, these data cannot tell; of look-alikes twice that
 HELD = 3.0  # times as much may be left of the records that the fit never saw
 FORM = 0.03  # of the misfit at first: less is as likely the form of the effects found as another effect
-COARSE = 0.5  # of what is left: if halving the step of the simulation changes more, it may be the step's fault
+COARSE = 0.6  # of what is left: if halving the step of the simulation changes more, it is mostly the step's fault
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
 
 
@@ -86,9 +86,10 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
         return Diagnosis("refused", reason, before, [], [])
     coarse = step_error(before)
     if not adequate(case, first, before) and coarse > COARSE * misfit(case, before) ** 0.5:
+        left, change = before.identify / case.floor, coarse / case.floor
         reason = (
-            f"What is left, an RMSE of {before.identify / case.floor:.1f} noise floors, may be the simulation's fault:"
-            f" halving its step changes the response by {coarse / case.floor:.1f}. Sample faster, or drive slower."
+            f"What is left, an RMSE of {left:.1f} noise floors, may be the simulation's fault: halving its step changes"
+            f" the response by {change:.1f} of them. Sample faster, or drive slower."
         )
         return Diagnosis("refused", reason, before, [], [])
     scorer = Scorer(case, before)
@@ -168,10 +169,10 @@ def sentence(case: Case, before: Fit, best: Candidate, words: list[str]) -> str:
     assert best.fit is not None
     share = drop(before.identify, best.fit.identify) ** 2 / misfit(case, before)
     floors = f"{before.identify / case.floor:.1f} to {best.fit.identify / case.floor:.1f} noise floors"
-    said = f"it explains {min(share, 1):.0%} of the misfit; the RMSE falls from {floors}."
+    said = f"it explains {100 * min(share, 1):.0f} % of the misfit; the RMSE falls from {floors}."
     if len(words) == 1:
         return f"Missing: {words[0]}. {said[0].upper()}{said[1:]}"
-    return f"{' or '.join(words)}: these data cannot tell them apart. {words[0]} is the simplest of them: {said}"
+    return f"{' or '.join(words)}: these data cannot tell them apart. Take {words[0]}: {said}"
 
 
 def pair(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> Fit | None:
