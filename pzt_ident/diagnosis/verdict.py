@@ -81,17 +81,8 @@ def reaches(case: Case, first: Fit, fit: Fit) -> bool:
 def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     """Score every effect, refit the short list, judge; `first` as for `least`, by default the model itself."""
     first = first or before
-    if not before.converged:
-        reason = "Two starts of the fit do not agree: what is left may be the search's fault. Narrow the bounds."
-        return Diagnosis("refused", reason, before, [], [])
-    coarse = step_error(before)
-    if not adequate(case, first, before) and coarse > COARSE * misfit(case, before) ** 0.5:
-        left, change = before.identify / case.floor, coarse / case.floor
-        reason = (
-            f"What is left, an RMSE of {left:.1f} noise floors, may be the simulation's fault: halving its step changes"
-            f" the response by {change:.1f} of them. Sample faster, or drive slower."
-        )
-        return Diagnosis("refused", reason, before, [], [])
+    if refusal := faulty(case, first, before):
+        return Diagnosis("refused", refusal, before, [], [])
     scorer = Scorer(case, before)
     with ThreadPoolExecutor(2) as pool:
         scores = list(pool.map(scorer.score, applicable(case, before.effects)))
@@ -117,6 +108,19 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     verdict = "missing" if len(words) == 1 else "inconclusive"
     rest = sorted((item for item in passing if item not in tied), key=lambda item: item.fit.total)  # type: ignore[union-attr]
     return Diagnosis(verdict, sentence(case, before, best, words), before, candidates, words, [best, *rest])
+
+
+def faulty(case: Case, first: Fit, fit: Fit) -> str:
+    """Why what a fit leaves may not be blamed on the model; empty where it may."""
+    if not fit.converged:
+        return "Two starts of the fit do not agree: what is left may be the search's fault. Narrow the bounds."
+    coarse = step_error(fit)
+    if adequate(case, first, fit) or coarse <= COARSE * misfit(case, fit) ** 0.5:
+        return ""
+    return (
+        f"What is left, an RMSE of {fit.identify / case.floor:.1f} noise floors, may be the simulation's fault: halving"
+        f" its step changes the response by {coarse / case.floor:.1f} of them. Sample faster, or drive slower."
+    )
 
 
 def alike(case: Case, effect: str, fit: Fit, rival: Fit) -> bool:
