@@ -101,23 +101,25 @@ class Scorer:
             found.visibility = max(found.visibility, float(left_over / max(whole, 1e-300)))
             if trial.size == max(blocks[effect].sizes):
                 found.power = max(found.power, float(left_over / trial.size / self.case.floor))
-            for amounts in self._amounts(trace):
-                left = self.residual + trace @ amounts
-                explained = (self.residual @ self.residual - left @ left) / self.misfit
-                if explained > found.explained and self._possible(problem, trial, amounts):
-                    found.explained, found.trace = float(explained), trace @ amounts
-                    found.guess = self._scaled(problem, trial, amounts)
+            amounts = self._amounts(trace, problem.lower[trial.growing] >= trial.start[trial.growing])
+            left = self.residual + trace @ amounts
+            explained = (self.residual @ self.residual - left @ left) / self.misfit
+            if explained > found.explained:
+                found.explained, found.trace = float(explained), trace @ amounts
+                found.guess = self._scaled(problem, trial, amounts)
         return found
 
-    def _amounts(self, trace: Array) -> list[Array]:
-        """The trace times what fits best, as if the effect were linear; and the trace as it is."""
-        best = np.linalg.lstsq(trace, -self.residual, rcond=1e-8)[0].astype(float)
-        return [best, np.ones(1)] if len(best) == 1 else [best]
-
-    def _possible(self, problem: Problem, trial: Trial, amounts: Array) -> bool:
-        """Whether the amounts go the way that the bounds allow."""
-        one_sided = [problem.lower[i] >= trial.start[i] for i in trial.growing]
-        return all(amount >= 0 or not bounded for amount, bounded in zip(amounts, one_sided, strict=True))
+    def _amounts(self, trace: Array, one_sided: NDArray[np.bool_]) -> Array:
+        """How much of each trace fits best, as if the effect were linear; none where the bounds allow no way back, as
+        for a damping of one axis where that of another is missing."""
+        amounts, free = np.zeros(trace.shape[1]), np.ones(trace.shape[1], dtype=bool)
+        while free.any():
+            amounts[~free] = 0
+            amounts[free] = np.linalg.lstsq(trace[:, free], -self.residual, rcond=1e-8)[0]
+            if not (one_sided & (amounts < 0)).any():
+                return amounts
+            free &= ~(one_sided & (amounts < 0))
+        return np.zeros(trace.shape[1])
 
     def _scaled(self, problem: Problem, trial: Trial, amounts: Array) -> dict[str, float]:
         values = trial.start.copy()
