@@ -90,11 +90,11 @@ def improve(job: Job, out: Path | None = None, tell: Tell = lambda event: None) 
 def bounded(fit: Fit) -> str:
     """A sentence about each parameter that ended on a bound."""
     problem, said = fit.problem, ""
+    why = "these data do not determine it, its bounds are too narrow, or it stands in for something else"
     for name in fit.on_bounds:
-        unit = problem.units[problem.names.index(name)]
-        value = f"{fit.value(name):.3g} {unit}".removesuffix(" 1")
-        why = "these data do not determine it, its bounds are too narrow, or it stands in for something else"
-        said += f" {name} ended on its bound of {value}: {why}."
+        i = problem.names.index(name)
+        bound = (problem.lower if fit.point[i] < 0.5 else problem.upper)[i]
+        said += f" {name} ended on its bound of {f'{bound:.3g} {problem.units[i]}'.removesuffix(' 1')}: {why}."
     return said
 
 
