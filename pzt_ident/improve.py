@@ -10,6 +10,7 @@ import numpy as np
 
 from pzt_ident.amend import with_effects
 from pzt_ident.diagnosis import improve as stairs
+from pzt_ident.diagnosis.locate import locate
 from pzt_ident.diagnosis.next_experiment import LEAST, Proposal, Reach, propose
 from pzt_ident.diagnosis.noise import noise_floor
 from pzt_ident.diagnosis.refit import Case, Fit, first_fit
@@ -61,7 +62,7 @@ def improve(job: Job, out: Path | None = None, tell: Tell = lambda event: None) 
         diagnosis = diagnosis_of(job, case, last, folder)
         for name, step in (("signals_as_given.nc", steps[0]), ("signals.nc", steps[-1])):
             write_signals(folder / name, step.fit.problem, step.fit.point)
-    verdict, reason = last.verdict, last.reason
+    verdict, reason = last.verdict, diagnosis["reason"]
     if verdict in ("missing", "inconclusive"):
         tried = "Another effect scores, but was tried and taken back, or the staircase has all its steps."
         verdict, reason = "unexplained", f"{tried} {reason}"
@@ -135,7 +136,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
     proposal = propose(case, rivals, reach_of(job, case)) if len(rivals) > 1 else None
     return {
         "verdict": found.verdict,
-        "reason": found.reason,
+        "reason": f"{found.reason} {rest(case, found.before)}" if found.verdict == "unexplained" else found.reason,
         "unit": unit_of(list(case.records)),
         "noise_floor": floors(case),
         "rmse": errors_of(case, found.before),
@@ -159,6 +160,16 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
         ],
         "next_experiment": written(case, proposal, folder) if proposal else None,
     }
+
+
+def rest(case: Case, fit: Fit) -> str:
+    """What that which a fit leaves depends on most, a sentence for each axis."""
+    plans = [plan for plans in fit.problem.plans.values() for plan in plans]
+    records, theta = [plan.record for plan in plans], fit.problem.parameters(fit.point)
+    noise = [noise_floor(list(case.records), axis) for axis in records[0].measured]
+    found = [axis for axis in locate(records, [plan.errors(theta)[0] for plan in plans], noise) if axis.misfit]
+    names = [f"{axis.axis}: " if len(records[0].measured) > 1 else "" for axis in found]
+    return " ".join(f"{name}{axis.sentences[0]}" for name, axis in zip(names, found, strict=True))
 
 
 def reach_of(job: Job, case: Case) -> Reach:

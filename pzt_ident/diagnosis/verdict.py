@@ -107,7 +107,7 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     words = [best.score.effect, *(item.score.effect for item in tied if item is not best)]
     verdict = "missing" if len(words) == 1 else "inconclusive"
     rest = sorted((item for item in passing if item not in tied), key=lambda item: item.fit.total)  # type: ignore[union-attr]
-    return Diagnosis(verdict, sentence(case, before, best, words), before, candidates, words, [best, *rest])
+    return Diagnosis(verdict, sentence(case, first, before, best, words), before, candidates, words, [best, *rest])
 
 
 def faulty(case: Case, first: Fit, fit: Fit) -> str:
@@ -169,11 +169,13 @@ def nothing(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) ->
     return Diagnosis("unexplained", said, before, candidates, [])
 
 
-def sentence(case: Case, before: Fit, best: Candidate, words: list[str]) -> str:
+def sentence(case: Case, first: Fit, before: Fit, best: Candidate, words: list[str]) -> str:
     assert best.fit is not None
     share = drop(before.identify, best.fit.identify) ** 2 / misfit(case, before)
     floors = f"{before.identify / case.floor:.1f} to {best.fit.identify / case.floor:.1f} noise floors"
     said = f"it explains {100 * min(share, 1):.0f} % of the misfit; the RMSE falls from {floors}."
+    if not adequate(case, first, best.fit):
+        said += " More than that is missing, or it stands in for something else: `pzt-ident improve` follows it up."
     if len(words) == 1:
         return f"Missing: {words[0]}. {said[0].upper()}{said[1:]}"
     return f"{' or '.join(words)}: these data cannot tell them apart. Take {words[0]}: {said}"

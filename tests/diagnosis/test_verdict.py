@@ -55,6 +55,12 @@ def test_look_alikes_that_fit_hardly_worse_are_in_its_class():
         assert drop(of(found, word).fit.total, found.best.fit.total) < 0.4 * made.floor
 
 
+def test_an_effect_that_leaves_much_may_stand_in_for_something_else():
+    both = stage.case(stage.EFFECTS["quadratic_gain"] | stage.EFFECTS["creep"])
+    assert "stands in for something else" in judged(both).reason
+    assert "stands in" not in missing("quadratic_gain")[1].reason
+
+
 def test_what_is_at_the_noise_of_its_own_records_alone_is_not_adequate():
     plain = stage.case()
     wrong = stage.with_response(
