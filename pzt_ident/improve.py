@@ -13,6 +13,7 @@ import numpy as np
 from pzt_ident.amend import with_effects
 from pzt_ident.compare import compare
 from pzt_ident.diagnosis import improve as stairs
+from pzt_ident.diagnosis.locate import locate
 from pzt_ident.diagnosis.next_experiment import LEAST, Proposal, Reach, propose
 from pzt_ident.diagnosis.noise import noise_floor
 from pzt_ident.diagnosis.refit import Case, Fit, first_fit
@@ -93,7 +94,7 @@ def improve(job: Job, out: Path | None = None, listen: Listen = lambda event: No
         diagnosis = diagnosis_of(job, case, last, folder)
         for name, step in (("signals_as_given.nc", steps[0]), ("signals.nc", steps[-1])):
             write_signals(folder / name, step.fit.problem, step.fit.point)
-        content = improvement_of(job, case, steps, last) | {"next_experiment": diagnosis["next_experiment"]}
+        content = improvement_of(job, case, steps, diagnosis) | {"next_experiment": diagnosis["next_experiment"]}
         write_text(folder / "improved.yaml", with_effects(job, steps[-1].fit.effects, folder))
         write_json(folder / "diagnosis.json", diagnosis)
         write_json(folder / "improvement.json", content)
@@ -101,15 +102,16 @@ def improve(job: Job, out: Path | None = None, listen: Listen = lambda event: No
     return folder
 
 
-def improvement_of(job: Job, case: Case, steps: list[stairs.Step], last: Diagnosis) -> dict[str, Any]:
+def improvement_of(job: Job, case: Case, steps: list[stairs.Step], last: dict[str, Any]) -> dict[str, Any]:
     """The content of `improvement.json`, less the next experiment."""
-    verdict, reason = last.verdict, last.reason
+    verdict, reason = last["verdict"], last["reason"]
     if verdict in ("missing", "inconclusive"):
-        verdict, reason = "unexplained", f"The next step was tried and taken back, or is one too many. {reason}"
+        tried = "Another effect scores, but was tried and taken back, or the staircase has all its steps."
+        verdict, reason = "unexplained", f"{tried} {reason}"
     added = [word for word in steps[-1].fit.effects if word not in job.effects]
-    if verdict == "unexplained" and added:
-        reason += f" {', '.join(added)}: taken up on the way, and not proven, since something else is at work."
-    reason += bounded(steps[-1].fit) + broken(steps[-1].fit)
+    if verdict != "adequate" and added:
+        reason += f" Added on the way, and not proven while that is open: {', '.join(added)}."
+    reason += bounded(steps[-1].fit)
     return {
         "name": job.name,
         "steps": [stair(case, step) for step in steps],
@@ -125,10 +127,11 @@ def improvement_of(job: Job, case: Case, steps: list[stairs.Step], last: Diagnos
 def bounded(fit: Fit) -> str:
     """A sentence about each parameter that ended on a bound."""
     problem, said = fit.problem, ""
+    why = "these data do not determine it, its bounds are too narrow, or it stands in for something else"
     for name in fit.on_bounds:
-        unit = problem.units[problem.names.index(name)]
-        value = f"{fit.value(name):.3g} {unit}".removesuffix(" 1")
-        said += f" {name} ended on its bound of {value}: its name is doubtful, or its bounds are too narrow."
+        i = problem.names.index(name)
+        bound = (problem.lower if fit.point[i] < 0.5 else problem.upper)[i]
+        said += f" {name} ended on its bound of {f'{bound:.3g} {problem.units[i]}'.removesuffix(' 1')}: {why}."
     return said
 
 
@@ -179,9 +182,10 @@ def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
 def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[str, Any]:
     rivals = {item.score.effect: item.fit for item in found.candidates if item.fit and item.score.effect in found.tied}
     proposal = propose(case, rivals, reach_of(job, case)) if len(rivals) > 1 else None
+    reason = f"{found.reason} {rest(case, found.before)}" if found.verdict == "unexplained" else found.reason
     return {
         "verdict": found.verdict,
-        "reason": found.reason + broken(found.before),
+        "reason": reason + broken(found.before),
         "unit": unit_of(list(case.records)),
         "noise_floor": floors(case),
         "rmse": errors_of(case, found.before),
@@ -192,7 +196,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
                 "class": found.tied if item.score.effect in found.tied else [item.score.effect],
                 "explained": item.score.explained,
                 "expected": item.score.guess,
-                "units": {name: item.score.units[name] for name in item.score.guess},
+                "units": item.score.units,
                 "visibility": item.score.visibility,
                 "power": item.score.power if np.isfinite(item.score.power) else None,
                 "rmse": errors_of(case, item.fit) if item.fit else None,
@@ -207,6 +211,16 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
         ],
         "next_experiment": written(case, proposal, folder) if proposal else None,
     }
+
+
+def rest(case: Case, fit: Fit) -> str:
+    """What that which a fit leaves depends on most, a sentence for each axis."""
+    plans = [plan for plans in fit.problem.plans.values() for plan in plans]
+    records, theta = [plan.record for plan in plans], fit.problem.parameters(fit.point)
+    noise = [noise_floor(list(case.records), axis) for axis in records[0].measured]
+    found = [axis for axis in locate(records, [plan.errors(theta)[0] for plan in plans], noise) if axis.misfit]
+    names = [f"{axis.axis}: " if len(records[0].measured) > 1 else "" for axis in found]
+    return " ".join(f"{name}{axis.sentences[0]}" for name, axis in zip(names, found, strict=True))
 
 
 def reach_of(job: Job, case: Case) -> Reach:

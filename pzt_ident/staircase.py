@@ -70,4 +70,6 @@ def show_improvement(found: Facts, folder: Path) -> None:
     )
     click.echo(f"noise floor [{unit}]: {number(floor)}")
     click.echo(f"{found['verdict']}: {found['reason']}")
-    click.echo(f"improved job: {folder / 'improved.yaml'}\nreport: {folder / 'report.html'}")
+    click.echo(f"improved job: {folder / 'improved.yaml'}")
+    if (folder / "report.html").exists():
+        click.echo(f"report: {folder / 'report.html'}")

@@ -132,6 +132,17 @@ class TestDiagnose:
             "quadratic_gain.curvature": pytest.approx(3e-4, rel=0.1)
         }
 
+    def test_what_nothing_explains_is_said_to_lie_somewhere(self, tmp_path):
+        def knocked(record):
+            moving = (np.gradient(record.drive[0]) != 0) & (record.time > record.time[-1] / 2)
+            return 30 * stage.NOISE * np.sin(np.arange(record.samples) ** 1.5) * moving
+
+        made = stage.with_response(stage.case(), knocked)
+        assert call("diagnose", stage.write(tmp_path, made.records), "--out", tmp_path / "out").exit_code == 0
+        found = read(tmp_path / "out" / "diagnosis.json")
+        assert found["verdict"] == "unexplained"
+        assert re.search(r"what is left, an RMSE of .* noise floors\. \d+ % of the misfit lies ", found["reason"])
+
 
 class TestImprove:
     def test_the_file_has_what_was_agreed(self, improved):

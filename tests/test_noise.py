@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from pzt_ident.diagnosis.noise import noise_floor, period_of, quantiser, sizes
+from pzt_ident.diagnosis.noise import noise_floor, period_of, quantiser, resting, sizes
 from pzt_ident.record import Record
 
 SIGMA = 30e-9
@@ -67,6 +67,14 @@ def test_never_below_the_quantiser():
 def test_quantiser_needs_a_grid(noise):
     assert quantiser(noise) == 0
     assert quantiser(np.round(noise / 1e-8) * 1e-8) == pytest.approx(1e-8)
+
+
+@pytest.mark.parametrize("cycles", [6.3, 10.6, 50.2])
+def test_rest_segments_give_the_noise_despite_hum_far_above_it(cycles):
+    t = np.arange(2000.0) / 2000
+    hum = 20 * np.sin(2 * np.pi * cycles * t + 1)
+    found = resting(np.zeros((1, 2000)), hum + np.random.default_rng(3).normal(size=2000))
+    assert found[0][0] == pytest.approx(1, rel=0.1)
 
 
 @pytest.mark.parametrize("period", [64, 333, 1000])

@@ -96,7 +96,7 @@ def resting(drive: Array, response: Array, least: int = 100) -> list[tuple[float
     for first, last in zip(edges[::2], edges[1::2], strict=True):
         first += (last - first) // 5
         if last - first >= least:
-            found.append((float(np.std(without_lines(about(response[first:last], 4)))), last - first))
+            found.append((float(np.std(without_lines(response[first:last], 4))), last - first))
     return found
 
 
@@ -129,16 +129,23 @@ def about(signal: Array, degree: int) -> Array:
     return np.asarray(signal - np.polynomial.Polynomial.fit(x, signal, degree)(x))
 
 
-def without_lines(noise: Array, most: int = 5, near: int = 25) -> Array:
-    """Sinusoids taken out whose power stands LINE times above that of the frequencies around them."""
+def without_lines(signal: Array, degree: int, most: int = 5, near: int = 25) -> Array:
+    """What is left of a polynomial and, fitted together with it, of the sinusoids whose power stands LINE times above
+    that of the frequencies around them."""
     from scipy.optimize import minimize_scalar
 
-    t = np.arange(noise.size)
+    t = np.arange(signal.size)
+    basis = np.linalg.qr(np.polynomial.legendre.legvander(np.linspace(-1, 1, signal.size), degree))[0]
 
-    def left(frequency: float) -> Array:
-        waves = np.column_stack([np.cos(2 * np.pi * frequency * t), np.sin(2 * np.pi * frequency * t)])
-        return np.asarray(noise - waves @ np.linalg.lstsq(waves, noise, rcond=None)[0])
+    def waves(frequency: float) -> Array:
+        """Orthonormal, beside what is fitted already."""
+        both = np.column_stack([np.cos(2 * np.pi * frequency * t), np.sin(2 * np.pi * frequency * t)])
+        return np.asarray(np.linalg.qr(both - basis @ (basis.T @ both))[0])
 
+    def unexplained(frequency: float) -> float:
+        return -float(np.square(waves(frequency).T @ signal).sum())
+
+    noise = signal - basis @ (basis.T @ signal)
     for _ in range(most):
         power = np.abs(np.fft.rfft(noise * np.hanning(noise.size))) ** 2
         peak = int(np.argmax(power[3:])) + 3 if power.size > 2 * near else 0
@@ -146,9 +153,10 @@ def without_lines(noise: Array, most: int = 5, near: int = 25) -> Array:
         if not peak or power[peak] <= LINE * around.mean():
             break
         ends = ((peak - 1) / noise.size, (peak + 1) / noise.size)
-        best = minimize_scalar(lambda f: float(np.var(left(f))), bounds=ends, method="bounded", options={"xatol": 1e-9})
-        noise = left(float(best.x))
-    return noise
+        best = minimize_scalar(unexplained, bounds=ends, method="bounded", options={"xatol": 1e-9})
+        basis = np.hstack([basis, waves(float(best.x))])
+        noise = signal - basis @ (basis.T @ signal)
+    return np.asarray(noise)
 
 
 def period_of(drive: Array, tolerance: float = 2e-3) -> int:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.diagnosis.noise import noise_floor, sizes
 from pzt_ident.model import Model
-from pzt_ident.plan import between
+from pzt_ident.plan import Plan, between
 from pzt_ident.problem import Problem
 from pzt_ident.record import Record
 from pzt_ident.registry import Choice, blocks
@@ -24,7 +24,6 @@ Tell = Callable[[dict[str, Any]], None]
 STARTS = 240  # chance points, of which the best few are refined, so many at a time until two agree
 REFINED, MOST = 4, 24
 AGREE = 0.01  # of the loss, between the two best of them
-FINE = 0.3  # of the misfit or the noise, at most, by which halving the steps of the simulation may change the response
 ELSEWHERE = 2  # chance points of one block that are refined
 EDGE = 1e-4  # of a parameter's range: as near to its end it is on the bound
 DAMPINGS = 10.0 ** np.arange(-5, 4)
@@ -67,19 +66,14 @@ class Case:
 
 @dataclass(frozen=True)
 class Fit:
-    """A model with its effects at its best point; RMSE in SI units, validate None without such records. `doubt` is why
-    what it leaves may not be the model's fault."""
+    """A model with its effects at its best point; RMSE in SI units, validate None without such records."""
 
     effects: tuple[str, ...]
     problem: Problem
     point: Array
     identify: float
     validate: float | None
-    doubt: str = ""
-
-    @property
-    def converged(self) -> bool:
-        return not self.doubt
+    converged: bool = True
 
     @property
     def total(self) -> float:
@@ -99,14 +93,14 @@ class Fit:
         return float(self.problem.physical(self.point)[0][self.problem.names.index(name)])
 
 
-def made(effects: tuple[str, ...], problem: Problem, point: Array, doubt: str = "") -> Fit:
+def made(effects: tuple[str, ...], problem: Problem, point: Array, converged: bool = True) -> Fit:
     validate = float(problem.loss(point, "validate")[0])
-    return Fit(effects, problem, point, float(problem.loss(point)[0]), None if np.isnan(validate) else validate, doubt)
+    unseen = None if np.isnan(validate) else validate
+    return Fit(effects, problem, point, float(problem.loss(point)[0]), unseen, converged)
 
 
 def first_fit(case: Case, seed: int) -> Fit:
-    """The job's own model, from chance points; in doubt where the two best of their minima differ, or where the steps
-    of the simulation are too coarse for what is left."""
+    """The job's own model, from chance points; not converged where the two best of their minima differ."""
     problem = case.problem(case.effects)
     rng = np.random.default_rng(seed)
     starts = rng.uniform(size=(STARTS, problem.dimensions))
@@ -121,34 +115,7 @@ def first_fit(case: Case, seed: int) -> Fit:
         losses = problem.loss(ends)
         best, second = np.sort(losses)[:2]
         agreed = bool(second <= (1 + AGREE) * best + 0.1 * case.floor and np.isfinite(best))
-    fit = made(case.effects, problem, ends[np.argmin(losses)])
-    return replace(fit, doubt=doubt(case, fit, agreed))
-
-
-def doubt(case: Case, fit: Fit, agreed: bool) -> str:
-    if not agreed:
-        return "Two starts of the fit do not agree: what is left may be the search's fault. Narrow the bounds."
-    left = max(case.floor, float(np.sqrt(max(fit.identify**2 - case.floor**2, 0))))
-    error = step_error(fit.problem, fit.point)
-    if error <= FINE * left:
-        return ""
-    change = f"Halving the steps of the simulation changes the response by {error / left:.0%} of what is left"
-    return f"{change}: the solver may be at fault. Sample faster."
-
-
-def step_error(problem: Problem, point: Array) -> float:
-    """Change of the response of the identify records, root mean square, in units of the loss, when every step of the
-    simulation is halved."""
-    model, theta, squares, count = problem.model, problem.parameters(point), 0.0, 0
-    for record in (record for record in problem.records if record.use == "identify"):
-        smooth = model.oversample > 1
-        drive = np.array([between(row, 2, bool(record.run_in), smooth) for row in record.drive])
-        halved = replace(record, drive=drive, response=np.repeat(record.response, 2, axis=1), dt=record.dt / 2)
-        change = model.simulate(halved, theta)[0, :, ::2] - model.simulate(record, theta)[0]
-        change = change[:, record.settle :] / problem.sizes[:, None]
-        squares += float(np.sum((change - change.mean(axis=1, keepdims=True)) ** 2))
-        count += change.size
-    return float(np.sqrt(squares / count))
+    return made(case.effects, problem, ends[np.argmin(losses)], agreed)
 
 
 def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, float]) -> Fit:
@@ -160,6 +127,26 @@ def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, fl
     found = made(effects, problem, descend(problem, problem.unit_point(start)))
     case.tell({"event": "refitted", "effects": effects, "identify": found.identify, "validate": found.validate})
     return found
+
+
+def step_error(fit: Fit) -> float:
+    """What halving the step of the simulation changes, root mean square, in units of the loss.
+
+    Where the drive is linear between samples, so is what each block hands on to the next: the error of that.
+    """
+    problem, changes = fit.problem, []
+    theta = problem.parameters(fit.point)
+    for plan in problem.plans["identify"]:
+        finer = Plan(problem.model, halved(plan.record, problem.model.oversample > 1)).simulate(theta)[0, :, ::2]
+        change = (finer - plan.simulate(theta)[0])[:, plan.record.settle :]
+        changes.append((change - change.mean(axis=1, keepdims=True)) / problem.sizes[:, None])
+    return float(np.sqrt(np.mean(np.square(np.hstack(changes)))))
+
+
+def halved(record: Record, smooth: bool) -> Record:
+    """A record at half the step, without responses."""
+    drive = np.array([between(row, 2, bool(record.run_in), smooth) for row in record.drive])
+    return replace(record, dt=record.dt / 2, drive=drive, response=np.zeros_like(drive), settle=2 * record.settle)
 
 
 def elsewhere(fit: Fit) -> Fit:
@@ -174,7 +161,7 @@ def elsewhere(fit: Fit) -> Fit:
         starts = np.where(owners == owner, scattered(problem, rng), fit.point)
         ends += [descend(problem, starts[i]) for i in np.argsort(problem.loss(starts))[:ELSEWHERE]]
     best = int(np.argmin(problem.loss(np.array(ends))))
-    return made(fit.effects, problem, ends[best], fit.doubt) if best else fit
+    return made(fit.effects, problem, ends[best], fit.converged) if best else fit
 
 
 def scattered(problem: Problem, rng: np.random.Generator) -> Array:

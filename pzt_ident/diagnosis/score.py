@@ -7,7 +7,7 @@ For each effect the change of the response as it leaves its null, less what the 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
@@ -32,10 +32,10 @@ class Score:
     effect: str
     explained: float = 0.0
     guess: dict[str, float] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
     visibility: float = 0.0
     power: float = 0.0
     trace: Array = field(default_factory=lambda: np.zeros(0), repr=False)
-    units: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -88,32 +88,38 @@ class Scorer:
 
     def score(self, effect: str) -> Score:
         problem = self.case.problem((*self.fit.effects, effect))
-        found = Score(effect, units=dict(zip(problem.names, problem.units, strict=True)))
-        if issubclass(blocks[effect], Addition):
-            return self._addition(found, problem)
+        found = (self._addition if issubclass(blocks[effect], Addition) else self._growth)(effect, problem)
+        units = zip(problem.names, problem.units, strict=True)
+        return replace(found, units={name: unit for name, unit in units if name in found.guess})
+
+    def _growth(self, effect: str, problem: Problem) -> Score:
+        """What the response does as the effect leaves its null."""
+        found = Score(effect)
         for trial, columns in self._trials(effect, problem):
             trace = self.project(columns.T)
             left_over, whole = np.linalg.norm(trace, axis=0).max(), np.linalg.norm(columns, axis=1).max()
             found.visibility = max(found.visibility, float(left_over / max(whole, 1e-300)))
             if trial.size == max(blocks[effect].sizes):
                 found.power = max(found.power, float(left_over / trial.size / self.case.floor))
-            for amounts in self._amounts(trace):
-                left = self.residual + trace @ amounts
-                explained = (self.residual @ self.residual - left @ left) / self.misfit
-                if explained > found.explained and self._possible(problem, trial, amounts):
-                    found.explained, found.trace = float(explained), trace @ amounts
-                    found.guess = self._scaled(problem, trial, amounts)
+            amounts = self._amounts(trace, problem.lower[trial.growing] >= trial.start[trial.growing])
+            left = self.residual + trace @ amounts
+            explained = (self.residual @ self.residual - left @ left) / self.misfit
+            if explained > found.explained:
+                found.explained, found.trace = float(explained), trace @ amounts
+                found.guess = self._scaled(problem, trial, amounts)
         return found
 
-    def _amounts(self, trace: Array) -> list[Array]:
-        """The trace times what fits best, as if the effect were linear; and the trace as it is."""
-        best = np.linalg.lstsq(trace, -self.residual, rcond=1e-8)[0].astype(float)
-        return [best, np.ones(1)] if len(best) == 1 else [best]
-
-    def _possible(self, problem: Problem, trial: Trial, amounts: Array) -> bool:
-        """Whether the amounts go the way that the bounds allow."""
-        one_sided = [problem.lower[i] >= trial.start[i] for i in trial.growing]
-        return all(amount >= 0 or not bounded for amount, bounded in zip(amounts, one_sided, strict=True))
+    def _amounts(self, trace: Array, one_sided: NDArray[np.bool_]) -> Array:
+        """How much of each trace fits best, as if the effect were linear; none where the bounds allow no way back, as
+        for a damping of one axis where that of another is missing."""
+        amounts, free = np.zeros(trace.shape[1]), np.ones(trace.shape[1], dtype=bool)
+        while free.any():
+            amounts[~free] = 0
+            amounts[free] = np.linalg.lstsq(trace[:, free], -self.residual, rcond=1e-8)[0]
+            if not (one_sided & (amounts < 0)).any():
+                return amounts
+            free &= ~(one_sided & (amounts < 0))
+        return np.zeros(trace.shape[1])
 
     def _scaled(self, problem: Problem, trial: Trial, amounts: Array) -> dict[str, float]:
         values = trial.start.copy()
@@ -150,9 +156,9 @@ class Scorer:
             np.array([problem.unit_point(dict(zip(problem.names, row, strict=True))) for row in physical])
         )
 
-    def _addition(self, found: Score, problem: Problem) -> Score:
+    def _addition(self, effect: str, problem: Problem) -> Score:
         """What a record may add of its own is not in the chain: what it leaves says all."""
-        block = blocks[found.effect]
+        found, block = Score(effect), blocks[effect]
         shapes = [i for i, name in enumerate(problem.names) if name not in self.fit.problem.names]
         old = dict(zip(self.fit.problem.names, self.fit.problem.physical(self.fit.point)[0], strict=True))
         guess = getattr(block, "guess", None)

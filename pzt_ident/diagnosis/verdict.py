@@ -8,7 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
-from pzt_ident.diagnosis.refit import Case, Fit, refit
+from pzt_ident.diagnosis.refit import Case, Fit, refit, step_error
 from pzt_ident.diagnosis.score import Score, Scorer, applicable, misfit
 from pzt_ident.registry import blocks
 
@@ -19,6 +19,7 @@ SHARE = 0.15  # and at least this much of the misfit
 TIED = 0.2  # noise floors between two refits: less than that, these data cannot tell; of look-alikes twice that
 HELD = 3.0  # times as much may be left of the records that the fit never saw
 FORM = 0.03  # of the misfit at first: less is as likely the form of the effects found as another effect
+COARSE = 0.6  # of what is left: if halving the step of the simulation changes more, it is mostly the step's fault
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
 
 
@@ -80,8 +81,8 @@ def reaches(case: Case, first: Fit, fit: Fit) -> bool:
 def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     """Score every effect, refit the short list, judge; `first` as for `least`, by default the model itself."""
     first = first or before
-    if before.doubt and not adequate(case, first, before):
-        return Diagnosis("refused", before.doubt, before, [], [])
+    if refusal := faulty(case, first, before):
+        return Diagnosis("refused", refusal, before, [], [])
     scorer = Scorer(case, before)
     candidates = sorted(map(Candidate, scored(case, before, scorer)), key=lambda item: -item.score.explained)
     if adequate(case, first, before) and not any(_worth(case, first, before, item) for item in candidates):
@@ -104,7 +105,22 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     words = [best.score.effect, *(item.score.effect for item in tied if item is not best)]
     verdict = "missing" if len(words) == 1 else "inconclusive"
     rest = sorted((item for item in passing if item not in tied), key=lambda item: item.fit.total)  # type: ignore[union-attr]
-    return Diagnosis(verdict, sentence(case, before, best, words), before, candidates, words, [best, *rest])
+    return Diagnosis(verdict, sentence(case, first, before, best, words), before, candidates, words, [best, *rest])
+
+
+def faulty(case: Case, first: Fit, fit: Fit) -> str:
+    """Why what a fit leaves may not be blamed on the model; empty where it may."""
+    if adequate(case, first, fit):
+        return ""
+    if not fit.converged:
+        return "Two starts of the fit do not agree: what is left may be the search's fault. Narrow the bounds."
+    coarse = step_error(fit)
+    if coarse <= COARSE * misfit(case, fit) ** 0.5:
+        return ""
+    return (
+        f"What is left, an RMSE of {fit.identify / case.floor:.1f} noise floors, may be the simulation's fault: halving"
+        f" its step changes the response by {coarse / case.floor:.1f} of them. Sample faster, or drive slower."
+    )
 
 
 def scored(case: Case, before: Fit, scorer: Scorer) -> list[Score]:
@@ -143,7 +159,7 @@ def settle(case: Case, candidates: list[Candidate]) -> None:
         if item.score.power < VISIBLE:
             item.decision = "cannot be seen"
         elif item.fit is None:
-            item.decision = "not missing" if item.score.explained <= LEAST else "too small"
+            item.decision = "too small" if LEAST < item.score.explained < SHARE else "not missing"
 
 
 def nothing(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> Diagnosis:
@@ -160,18 +176,20 @@ def nothing(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) ->
             " kind `use: identify`."
         )
     else:
-        said = f"No effect of the catalogue explains the misfit of {left:.1f} noise floors."
+        said = f"No effect of the catalogue explains what is left, an RMSE of {left:.1f} noise floors."
     return Diagnosis("unexplained", said, before, candidates, [])
 
 
-def sentence(case: Case, before: Fit, best: Candidate, words: list[str]) -> str:
+def sentence(case: Case, first: Fit, before: Fit, best: Candidate, words: list[str]) -> str:
     assert best.fit is not None
     share = drop(before.identify, best.fit.identify) ** 2 / misfit(case, before)
     floors = f"{before.identify / case.floor:.1f} to {best.fit.identify / case.floor:.1f} noise floors"
-    said = f"it explains {min(share, 1):.0%} of the misfit; the RMSE falls from {floors}."
+    said = f"it explains {100 * min(share, 1):.0f} % of the misfit; the RMSE falls from {floors}."
+    if not adequate(case, first, best.fit):
+        said += " More than that is missing, or it stands in for something else: `pzt-ident improve` follows it up."
     if len(words) == 1:
         return f"Missing: {words[0]}. {said[0].upper()}{said[1:]}"
-    return f"{' or '.join(words)}: these data cannot tell them apart. {words[0]} is the simplest of them: {said}"
+    return f"{' or '.join(words)}: these data cannot tell them apart. Take {words[0]}: {said}"
 
 
 def pair(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> Fit | None:

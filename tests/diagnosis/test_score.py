@@ -118,6 +118,15 @@ def test_a_drive_that_rests_shows_no_lag():
     assert scored(made, "amplifier_lag").power < 0.3
 
 
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_an_effect_of_one_axis_is_seen_though_the_other_would_have_it_below_its_null(seed):
+    lagging = stage.case({"amplifier_lag.tau": 3e-3}, seed=seed)
+    score = scored(stage.beside(lagging, stage.case(seed=seed + 10)), "amplifier_lag")
+    assert score.explained > 0.9
+    assert score.guess["x.amplifier_lag.tau"] == pytest.approx(3e-3, rel=0.3)
+    assert 0 <= score.guess["y.amplifier_lag.tau"] < 1e-4
+
+
 def test_every_axis_has_its_own_amounts_and_its_own_line():
     def hummed(frequency):
         return stage.with_response(stage.case(), lambda r: 30e-9 * np.sin(2 * np.pi * frequency * r.time))

@@ -56,6 +56,12 @@ def test_look_alikes_that_fit_hardly_worse_are_in_its_class():
         assert drop(of(found, word).fit.total, found.best.fit.total) < 0.4 * made.floor
 
 
+def test_an_effect_that_leaves_much_may_stand_in_for_something_else():
+    both = stage.case(stage.EFFECTS["quadratic_gain"] | stage.EFFECTS["creep"])
+    assert "stands in for something else" in judged(both).reason
+    assert "stands in" not in missing("quadratic_gain")[1].reason
+
+
 def test_what_is_at_the_noise_of_its_own_records_alone_is_not_adequate():
     plain = stage.case()
     wrong = stage.with_response(
@@ -102,8 +108,24 @@ def test_what_no_effect_explains_is_given_no_name():
 
     found = judged(stage.with_response(stage.case(), strange))
     assert found.verdict == "unexplained"
-    assert "No effect of the catalogue explains the misfit" in found.reason
+    assert "No effect of the catalogue explains what is left" in found.reason
     assert found.best is None
+
+
+def test_what_a_shorter_step_would_change_is_blamed_on_no_effect():
+    soft = {"lumped.mass": 1.0, "lumped.stiffness": 1e5, "lumped.damping": 30.0}  # 50 Hz, sampled at 200 Hz
+    known = stage.STAGE | stage.EFFECTS["amplifier_lag"] | soft
+    made = stage.case(fixed=soft, effects=["amplifier_lag"], model=("bouc_wen", "lumped"), noise=0)
+
+    def between(record):
+        fine = np.interp(np.arange(8 * record.samples) / 8, np.arange(record.samples), record.drive[0])
+        true = rig.response(("amplifier_lag", "bouc_wen", "lumped"), known, fine, dt=record.dt / 8)[::8]
+        return true - record.response[0] + np.random.default_rng(2).normal(0, 1e-10, record.samples)
+
+    found = judged(stage.with_response(made, between))
+    assert found.before.identify > 2e-10
+    assert found.verdict == "refused"
+    assert "halving its step" in found.reason
 
 
 def test_a_fit_that_has_not_converged_is_blamed_on_no_effect(monkeypatch):
@@ -117,7 +139,7 @@ def test_a_fit_that_has_not_converged_is_blamed_on_no_effect(monkeypatch):
 
 def test_where_one_start_reaches_the_noise_nothing_is_left_to_blame_on_the_search():
     made = stage.case()
-    found = diagnose(made, replace(first_fit(made, 0), doubt="Two starts do not agree."))
+    found = diagnose(made, replace(first_fit(made, 0), converged=False))
     assert found.verdict == "adequate"
 
 
@@ -134,14 +156,15 @@ def test_lags_before_and_behind_a_linear_stage_are_the_same_to_these_data():
 
 
 def test_what_leaves_less_than_the_noise_at_its_strongest_cannot_be_seen():
-    unseen, none, small = (
+    scores = (
         Score("delay", explained=0.5, power=0.1),
         Score("creep", explained=0.001, power=3.0),
         Score("drift", explained=0.1, power=3.0),
+        Score("saturation", explained=0.3, power=3.0),
     )
-    items = [Candidate(score) for score in (unseen, none, small)]
+    items = [Candidate(score) for score in scores]
     settle(stage.case(), items)
-    assert [item.decision for item in items] == ["cannot be seen", "not missing", "too small"]
+    assert [item.decision for item in items] == ["cannot be seen", "not missing", "too small", "not missing"]
 
 
 def test_an_effect_that_helps_only_the_records_that_were_fitted_earns_nothing():
