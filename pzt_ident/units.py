@@ -14,6 +14,7 @@ Dimension = tuple[int, int, int, int, int]
 _NUMBER: Dimension = (0, 0, 0, 0, 0)
 TIME: Dimension = (0, 0, 1, 0, 0)
 FREQUENCY: Dimension = (0, 0, -1, 0, 0)
+MASS: Dimension = (0, 1, 0, 0, 0)
 
 _PREFIXES = {
     "f": 1e-15,
@@ -29,7 +30,7 @@ _PREFIXES = {
 }
 _PREFIXED: dict[str, tuple[float, Dimension]] = {
     "m": (1, (1, 0, 0, 0, 0)),
-    "g": (1e-3, (0, 1, 0, 0, 0)),
+    "g": (1e-3, MASS),
     "s": (1, TIME),
     "A": (1, (0, 0, 0, 1, 0)),
     "K": (1, (0, 0, 0, 0, 1)),

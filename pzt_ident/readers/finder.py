@@ -19,7 +19,7 @@ from pzt_ident.readers.pick import pick
 from pzt_ident.readers.signal import Signal, signal
 from pzt_ident.readers.timebase import Grid, check_rate, grid_of, rate_of
 from pzt_ident.record import Axis, Channel, Source
-from pzt_ident.units import FREQUENCY, TIME, dimension
+from pzt_ident.units import FREQUENCY, MASS, TIME, dimension
 
 
 @dataclass
@@ -42,7 +42,7 @@ class Finder:
             return None
         column, values, where = self._column(label, channel)
         found = signal(column, values, self.source.rows, channel.unit, where)
-        if dimension(found.unit) in (TIME, FREQUENCY):
+        if dimension(found.unit) in (TIME, FREQUENCY, MASS):
             problem = f"a {label.rpartition('.')[2]} cannot have the unit {found.unit!r}"
             raise InputError(problem, where=where, remedy="is it the right column?")
         return found

@@ -222,6 +222,7 @@ def test_a_unit_of_the_wrong_kind(tmp_path, problem):
     path = write(tmp_path, *ROWS)
     assert problem(path, drive="t [s]").message == "a drive cannot have the unit 's'"
     assert problem(path, response=Channel("x", unit="kHz")).message == "a response cannot have the unit 'kHz'"
+    assert problem(path, response=Channel("x", unit="kg")).message == "a response cannot have the unit 'kg'"
     assert problem(path, clock="u [V]").message == "time cannot have the unit 'V'"
     assert problem(path, clock=Channel("t", unit="Hz")).message == "time cannot have the unit 'Hz'"
 
