@@ -53,6 +53,7 @@ def test_records_measured_again_give_the_noise_of_any_signal(noise):
     assert floor.source == "repeated records"
     assert floor.value == pytest.approx(SIGMA, rel=0.1)
     assert "weak" in noise_floor(again[:1], 0).source
+    assert "weak" in noise_floor([again[0], again[0]], 0).source  # listed twice, measured once
 
 
 def test_never_below_the_quantiser():

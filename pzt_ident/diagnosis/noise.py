@@ -32,7 +32,7 @@ def noise_floor(records: list[Record], axis: int) -> Floor:
     evidence: it takes slow noise for signal and fast signal for noise.
     """
     signals = [(r.drive, r.response[axis], r.settle, r.dt) for r in records]
-    again = [(r, other) for i, r in enumerate(records) for other in records[:i] if same_drive(r, other)]
+    again = [(r, other) for i, r in enumerate(records) for other in records[:i] if measured_again(r, other, axis)]
     step = min((quantiser(y) for _, y, _, _ in signals), default=0.0)
     least = step / np.sqrt(12)
     if again:
@@ -55,9 +55,11 @@ def at_least(value: float, source: str, least: float) -> Floor:
     return Floor(float(value), source) if value > least else Floor(least, "quantiser")
 
 
-def same_drive(one: Record, other: Record, tolerance: float = 2e-3) -> bool:
-    """Whether a record was measured again: all drives differ by no more than a share of their spans."""
+def measured_again(one: Record, other: Record, axis: int, tolerance: float = 2e-3) -> bool:
+    """Whether all drives differ by no more than a share of their spans; the same data listed twice are one measurement."""
     if one.drive.shape != other.drive.shape or one.dt != other.dt:
+        return False
+    if np.array_equal(one.response[axis], other.response[axis]):
         return False
     span = np.ptp(one.drive, axis=1)
     return bool((np.abs(one.drive - other.drive).max(axis=1) <= tolerance * span).all())
