@@ -56,7 +56,7 @@ def at_least(value: float, source: str, least: float) -> Floor:
 
 
 def measured_again(one: Record, other: Record, axis: int, tolerance: float = 2e-3) -> bool:
-    """Whether all drives differ by no more than a share of their spans; the same data listed twice are one measurement."""
+    """Whether all drives differ by no more than a share of their spans; data listed twice are measured once."""
     if one.drive.shape != other.drive.shape or one.dt != other.dt:
         return False
     if np.array_equal(one.response[axis], other.response[axis]):
