@@ -11,11 +11,10 @@ from collections.abc import Callable
 from pathlib import Path
 from statistics import NormalDist
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 
-from experiments.reduced_rod.reduced import measured
+from experiments.reduced_rod.reduced import least, measured
 from experiments.smith.loops import HELPED, PLAIN, THERMAL, A, path, plan, response
 from experiments.tables import number, table
 from pzt_ident.model import Model
@@ -30,17 +29,6 @@ LANES = 24
 NOISE = 1e-8
 TIPS = {"full": (8000, 0, 8000), "nested": (8000, 1000, 6000, 2000), "low": (3000, 0, 5000), "late": (7000, 4000, 8000)}
 SEARCHED = {"coercive": (500, 8000), "spread": (0.3, 1.5)}
-
-
-def least(run: Callable[[], Any], rounds: int = 40) -> float:
-    """CPU seconds of the fastest of some runs, warm: neighbours on the machine only ever add."""
-    run()
-    times = []
-    for _ in range(rounds):
-        begun = time.process_time()
-        run()
-        times.append(time.process_time() - begun)
-    return min(times)
 
 
 def relays(coercive: np.ndarray, interaction: np.ndarray) -> Callable[[], np.ndarray]:

@@ -47,8 +47,8 @@ def system(elements: int) -> tuple[Array, ...]:
     return *matrices(own), end, end
 
 
-def least(run: Callable[[], Any], rounds: int = 15) -> float:
-    """CPU seconds of the fastest of some runs."""
+def least(run: Callable[[], Any], rounds: int = 40) -> float:
+    """CPU seconds of the fastest of some runs: neighbours on the machine only ever add."""
     times = []
     for _ in range(rounds):
         begun = time.process_time()
