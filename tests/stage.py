@@ -33,7 +33,7 @@ def loops():
     return [np.concatenate([np.zeros(100), drive, np.zeros(150)]) for drive in (fitted, unseen)]
 
 
-def records(parameters, drives=None, dt=5e-3, model=("bouc_wen",), noise=NOISE, seed=1, steps=1):
+def records(parameters, drives=None, dt=5e-3, model=("bouc_wen",), noise=NOISE, seed=1, steps=8):
     """One record to identify and one to validate of the stage with the effects that the parameters name; simulated in
     so many steps a sample."""
     rng = np.random.default_rng(seed)
