@@ -12,8 +12,8 @@ class Friction(Block):
 
     Canudas de Wit, Olsson, Astrom & Lischinsky (1995), IEEE Trans. Autom. Control 40, 419, eq. 2 to 5, with no friction
     that grows with speed; without stiction Dahl (1976), AIAA J. 14, 1675. F is the friction over the stiffness, F = 0
-    at the start; v is the speed that the force asks for, which is that of the stage once it slides. A monotone step over
-    |dx| = d turns q = F sgn dx into g - (g - q) exp(-d / r), r = reach g / force, so that d is the root of
+    at the start; v is the speed that the force asks for, which is that of the stage once it slides. A monotone step
+    over |dx| = d turns q = F sgn dx into g - (g - q) exp(-d / r), r = reach g / force, so that d is the root of
     d + (g - q) (1 - exp(-d / r)) = |df|, found by Halley's method.
     """
 

@@ -46,7 +46,7 @@ def test_below_the_reach_it_is_a_spring():
 
 @given(speed=st.floats(0.01, 100), stiction=st.floats(0, 0.5), stribeck=st.floats(0.1, 10))
 def test_sliding_takes_less_force_the_faster_it_is(speed, stiction, stribeck):
-    """The Stribeck curve, eq. 5: some reaches behind the reversal the stage is behind its force by the sliding level."""
+    """The Stribeck curve, eq. 5: some reaches on, the stage is behind its force by the level of its speed."""
     force = np.linspace(0, 20, 501)
     behind = force - rubbed(force, stiction=stiction, stribeck=stribeck, dt=force[1] / speed)
     assert behind[-1] == pytest.approx(0.05 * (1 + stiction * np.exp(-((speed / stribeck) ** 2))), rel=1e-9)
