@@ -98,11 +98,9 @@ class Problem:
         self._any_log = bool(self.log.any())
 
     def _unit(self, slot: Slot, record: Record) -> str:
-        drive = record.drive_units[slot.axis]
-        response = record.response_units[slot.axis]
-        return re.sub(
-            r"drive|response", lambda word: str({"drive": drive, "response": response}[word[0]]), slot.parameter.unit
-        )
+        own = {"drive": str(record.drive_units[slot.axis]), "response": str(record.response_units[slot.axis])}
+        divisor = {f"/{word}": f"/({unit})" if re.search(r"[/* ]", unit) else f"/{unit}" for word, unit in own.items()}
+        return re.sub(r"/?(drive|response)", lambda word: (own | divisor)[word[0]], slot.parameter.unit)
 
     def _bounds(self, slot: Slot, records: list[Record]) -> Array:
         """Declared bounds in SI units; those of a gain also with the other sign, unless the response rises with the

@@ -238,3 +238,18 @@ def test_a_field_far_from_the_drive_is_refused(field, says):
         Problem(model, [record], {"homogenized_energy.coercive": wish(value=field)})
     assert error.value.where == "homogenized_energy.coercive" and "50 V/m" in error.value.remedy
     Problem(model, [record], {"homogenized_energy.coercive": wish(bounds=(1, 2400))})
+
+
+@pytest.mark.parametrize(
+    ("unit", "said", "size"), [("V", "um/V", 1), ("kV/mm", "um/(kV/mm)", 1e6), ("V/m", "um/(V/m)", 1)]
+)
+def test_a_response_per_field_has_the_field_in_brackets(unit, said, size):
+    """And the same bounds in SI units whatever the field is given in."""
+    drive = size * np.abs(np.sin(np.arange(500) / 30))
+    record = Record(
+        "r", "identify", 1e-3, drive[None], drive[None] * 1e-6 / size, drive_units=(unit,), response_units=("um",)
+    )
+    problem = Problem(Model([blocks["homogenized_energy"]], ["x"], [0]), [record])
+    assert problem.units[0] == said
+    assert problem.all_units[5] == f"um/({unit})^2".replace("(V)", "V")
+    assert problem.upper[0] == pytest.approx(3.0, rel=1e-3)
