@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import product
 from types import SimpleNamespace
 from typing import Protocol
@@ -16,7 +17,7 @@ from pzt_ident.linear import Linear
 from pzt_ident.model import Model, Slot
 from pzt_ident.plan import Plan
 from pzt_ident.record import Record
-from pzt_ident.units import factor
+from pzt_ident.units import factor, same_kind
 
 Array = NDArray[np.float64]
 
@@ -66,6 +67,7 @@ class Problem:
     def _settle(self, identify: list[Record], wishes: Mapping[str, Wish]) -> None:
         """Which parameters are free, within which bounds, and what the others are fixed to."""
         count = len(self.model.slots)
+        self._shareable(identify[0])
         self.all_units = [self._unit(slot, identify[0]) for slot in self.model.slots]
         self._factor = np.array([factor(unit) for unit in self.all_units])
         self.theta = np.full(count, np.nan)
@@ -97,10 +99,22 @@ class Problem:
         self.log = scales & (self.lower > 0)
         self._any_log = bool(self.log.any())
 
+    def _shareable(self, record: Record) -> None:
+        """Raises InputError where one number would be of another kind on every axis."""
+        for slot in self.model.slots:
+            units = [self._unit(replace(slot, axis=axis), record) for axis in self.model.measured]
+            if f"{slot.block.name}.{slot.word}" in self.model.shared and not all(same_kind(u, units[0]) for u in units):
+                said = f"{slot.name} is in {' and in '.join(units)}: no one number is both"
+                remedy = "take it out of `shared`; free densities of all responses are one with `density: shared`"
+                raise InputError(said, where="shared", remedy=remedy)
+
     def _unit(self, slot: Slot, record: Record) -> str:
-        own = {"drive": str(record.drive_units[slot.axis]), "response": str(record.response_units[slot.axis])}
-        divisor = {f"/{word}": f"/({unit})" if re.search(r"[/* ]", unit) else f"/{unit}" for word, unit in own.items()}
-        return re.sub(r"/?(drive|response)", lambda word: (own | divisor)[word[0]], slot.parameter.unit)
+        first = record.response_units[self.model.measured[0]]
+        own = {"drive": record.drive_units[slot.axis], "response": record.response_units[slot.axis], "first": first}
+        divisor = {
+            f"/{word}": f"/({unit})" if re.search(r"[/* ]", str(unit)) else f"/{unit}" for word, unit in own.items()
+        }
+        return re.sub(r"/?(drive|response|first)", lambda word: str((own | divisor)[word[0]]), slot.parameter.unit)
 
     def _bounds(self, slot: Slot, records: list[Record]) -> Array:
         """Declared bounds in SI units; those of a gain also with the other sign, unless the response rises with the
@@ -115,8 +129,9 @@ class Problem:
         spans = {
             "drive": max(float(np.ptp(record.drive[slot.axis])) for record in records),
             "response": max(float(np.ptp(record.response[slot.axis])) for record in records),
+            "first": max(float(np.ptp(record.response[self.model.measured[0]])) for record in records),
         }
-        named = re.findall(r"drive|response", slot.parameter.unit)
+        named = re.findall(r"drive|response|first", slot.parameter.unit)
         if not named:
             return factor(slot.parameter.unit)
         if "drive" in named and spans["drive"] == 0:

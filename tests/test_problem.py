@@ -253,3 +253,15 @@ def test_a_response_per_field_has_the_field_in_brackets(unit, said, size):
     assert problem.units[0] == said
     assert problem.all_units[5] == f"um/({unit})^2".replace("(V)", "V")
     assert problem.upper[0] == pytest.approx(3.0, rel=1e-3)
+
+
+def test_a_number_of_two_kinds_cannot_be_shared():
+    drive = np.vstack([np.sin(np.arange(200) / 30)] * 2)
+    record = Record("r", "identify", 1e-3, drive, drive * 1e-6, **TWO)
+    model = Model(
+        [blocks["homogenized_energy"].make(density="free")], TWO["axes"], [0, 1], ["homogenized_energy.weight_3"]
+    )
+    with pytest.raises(
+        InputError, match=r"weight_3 is in um and in uC/cm2: no one number is both.*\n.*density: shared"
+    ):
+        Problem(model, [record])

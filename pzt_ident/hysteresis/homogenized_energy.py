@@ -1,5 +1,6 @@
 """The homogenized energy model without thermal activation, as plays with a nonlinear readout."""
 
+from dataclasses import replace
 from math import exp, sqrt
 from statistics import NormalDist
 
@@ -27,7 +28,11 @@ class HomogenizedEnergy(Bank):
     """
 
     place = Place.OPERATOR
-    density = Form("lognormal", ("lognormal", "free"), "Of the coercive fields; `free` weighs nodes that lie evenly.")
+    density = Form(
+        "lognormal",
+        ("lognormal", "free", "shared"),
+        "Of the coercive fields; `free` weighs nodes that lie evenly, `shared` does so once for all responses.",
+    )
     seen = ("coercive",)
     branches = NODES
     gain = Parameter("response/drive", (0, 3), "Response per field of a domain that does not switch, a1 / eta.")
@@ -117,6 +122,25 @@ class FreeDensity(Bank):
         return gain * (u - bias) + total
 
 
+class SharedDensity(FreeDensity):
+    """The same weights and plays for all responses, such as P itself and a strain a1 (P - P_R):
+    y = a1 / eta E + ratio sum_i w_i (2 Phi2(F_i[E]) - 1), the ratio that of a response to the first one."""
+
+    weight = replace(FreeDensity.weight, each="stage")
+    interaction, reach = replace(FreeDensity.interaction, each="stage"), replace(FreeDensity.reach, each="stage")
+    smoothness = replace(FreeDensity.smoothness, each="stage")
+    poled, bias = replace(FreeDensity.poled, each="stage"), replace(FreeDensity.bias, each="stage")
+    ratio = Parameter(
+        "response/first", (-3, 3), "Response to the domains over that of the first axis.", null=1, each="later axis"
+    )
+
+    def prepare(gain, weight, interaction, reach, nodes, poled, bias, ratio, branch):
+        per_width = 1 / (sqrt(2.0) * interaction)
+        half = reach * (branch + 0.5) / nodes * per_width
+        before = play(0.0, (poled - bias) * per_width, half)
+        return gain, ratio * weight, bias, per_width, half, before
+
+
 class Relaxing(HomogenizedEnergy):
     """The same with plays that heat helps along. Coercive fields are those that are met at the rate of one fluctuation
     field a second; in a hold the domains go on with the logarithm of time."""
@@ -144,4 +168,4 @@ class Relaxing(HomogenizedEnergy):
         return (gain + quadratic * field) * field
 
 
-HomogenizedEnergy.forms = {"free": FreeDensity, "thermal_relaxation": Relaxing}
+HomogenizedEnergy.forms = {"free": FreeDensity, "shared": SharedDensity, "thermal_relaxation": Relaxing}
