@@ -33,8 +33,9 @@ def add(job: Path, effect: str, out: Path, plugins: bool = False) -> Job:
     return made
 
 
-def with_effects(job: Job, effects: Sequence[str], folder: Path) -> str:
-    """The job's text with these effects, its paths as seen from another folder."""
+def with_effects(job: Job, effects: Sequence[str], folder: Path, steps: Sequence[int] = ()) -> str:
+    """The job's text with these effects, its paths as seen from another folder; `steps` a sample of each record, where
+    they are not the job's."""
     from ruamel.yaml import YAML
     from ruamel.yaml.comments import CommentedSeq
 
@@ -50,6 +51,9 @@ def with_effects(job: Job, effects: Sequence[str], folder: Path) -> str:
     for word in [word for word in found if word not in effects]:
         found.remove(word)
     found.extend(word for word in effects if word not in found)
+    for record, source, count in zip(document["records"], job.records, steps, strict=False):
+        if count != source.steps:
+            record["steps"] = count
     if job.folder.resolve() != folder.resolve():
         moved(document, job.folder, folder)
         for i, file in enumerate(document.get("plugins", ())):

@@ -110,11 +110,10 @@ class Problem:
 
     def _unit(self, slot: Slot, record: Record) -> str:
         first = record.response_units[self.model.measured[0]]
-        own = {"drive": record.drive_units[slot.axis], "response": record.response_units[slot.axis], "first": first}
-        divisor = {
-            f"/{word}": f"/({unit})" if re.search(r"[/* ]", str(unit)) else f"/{unit}" for word, unit in own.items()
-        }
-        return re.sub(r"/?(drive|response|first)", lambda word: str((own | divisor)[word[0]]), slot.parameter.unit)
+        response = record.response_units[slot.axis] or first
+        own = {"drive": str(record.drive_units[slot.axis]), "response": str(response), "first": str(first)}
+        divisor = {f"/{word}": f"/({unit})" if re.search(r"[/* ]", unit) else f"/{unit}" for word, unit in own.items()}
+        return re.sub(r"/?(drive|response|first)", lambda word: (own | divisor)[word[0]], slot.parameter.unit)
 
     def _bounds(self, slot: Slot, records: list[Record]) -> Array:
         """Declared bounds in SI units; those of a gain also with the other sign, unless the response rises with the

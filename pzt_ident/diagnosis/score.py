@@ -87,7 +87,7 @@ class Scorer:
         return signals - self.basis @ (self.basis.T @ signals)
 
     def score(self, effect: str) -> Score:
-        problem = self.case.problem((*self.fit.effects, effect))
+        problem = self.case.problem((*self.fit.effects, effect), self.fit.steps)
         found = (self._addition if issubclass(blocks[effect], Addition) else self._growth)(effect, problem)
         units = zip(problem.names, problem.units, strict=True)
         return replace(found, units={name: unit for name, unit in units if name in found.guess})

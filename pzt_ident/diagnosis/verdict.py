@@ -8,7 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
-from pzt_ident.diagnosis.refit import Case, Fit, refit, step_error
+from pzt_ident.diagnosis.refit import Case, Fit, refit, step_errors
 from pzt_ident.diagnosis.score import Score, Scorer, applicable, misfit
 from pzt_ident.registry import blocks
 
@@ -114,7 +114,7 @@ def faulty(case: Case, first: Fit, fit: Fit) -> str:
         return ""
     if not fit.converged:
         return "Two starts of the fit do not agree: what is left may be the search's fault. Narrow the bounds."
-    coarse = step_error(fit)
+    coarse = float(np.sqrt(np.mean(np.square(step_errors(fit)))))
     if coarse <= COARSE * misfit(case, fit) ** 0.5:
         return ""
     return (

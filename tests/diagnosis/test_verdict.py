@@ -49,8 +49,8 @@ def test_what_is_missing_is_named_and_its_refit_is_at_the_noise_on_records_that_
 
 
 def test_look_alikes_that_fit_hardly_worse_are_in_its_class():
-    made, found = missing("amplifier_lag")
-    assert found.best.score.effect == "amplifier_lag"
+    made = stage.case(stage.EFFECTS["amplifier_lag"], noise=1e-8)
+    found = judged(made)
     assert {"amplifier_lag"} < set(found.tied) <= {"amplifier_lag", *blocks["amplifier_lag"].looks_like}
     for word in found.tied[1:]:
         assert drop(of(found, word).fit.total, found.best.fit.total) < 0.4 * made.floor
@@ -112,20 +112,14 @@ def test_what_no_effect_explains_is_given_no_name():
     assert found.best is None
 
 
-def test_what_a_shorter_step_would_change_is_blamed_on_no_effect():
+@pytest.mark.parametrize(("finest", "verdict"), [(8, "adequate"), (1, "refused")])
+def test_what_a_shorter_step_would_change_is_blamed_on_no_effect(monkeypatch, finest, verdict):
     soft = {"lumped.mass": 1.0, "lumped.stiffness": 1e5, "lumped.damping": 30.0}  # 50 Hz, sampled at 200 Hz
-    known = stage.STAGE | stage.EFFECTS["amplifier_lag"] | soft
-    made = stage.case(fixed=soft, effects=["amplifier_lag"], model=("bouc_wen", "lumped"), noise=0)
-
-    def between(record):
-        fine = np.interp(np.arange(8 * record.samples) / 8, np.arange(record.samples), record.drive[0])
-        true = rig.response(("amplifier_lag", "bouc_wen", "lumped"), known, fine, dt=record.dt / 8)[::8]
-        return true - record.response[0] + np.random.default_rng(2).normal(0, 1e-10, record.samples)
-
-    found = judged(stage.with_response(made, between))
-    assert found.before.identify > 2e-10
-    assert found.verdict == "refused"
-    assert "halving its step" in found.reason
+    lag = stage.EFFECTS["amplifier_lag"]
+    monkeypatch.setattr(refit, "FINEST", finest)
+    found = judged(stage.case(lag | soft, soft, ["amplifier_lag"], ("bouc_wen", "lumped"), noise=1e-10))
+    assert found.verdict == verdict
+    assert ("halving its step" in found.reason) == (verdict == "refused")
 
 
 def test_a_fit_that_has_not_converged_is_blamed_on_no_effect(monkeypatch):
