@@ -23,8 +23,8 @@ class ThermalHomogenizedEnergy(Relays):
     over a shell of 0.1 s behind the inflection point. The energy is taken as linear over it: of p+- that neglects the
     share (0.1)^2 / 6 Ec / (eta P_R - Ec). Both are mirrored for p-+ and <P->. Coercive fields, lognormal, are at 64
     nodes of equal probability below eta P_R; beyond it a domain has no inflection point, and its mass is left out.
-    Interaction fields lie an eighth of their deviation apart. Loops and steps of more than that do not see it (3 % of
-    their creep), creep after a step of a thirtieth of the deviation is off by 8 %, of a hundredth by 25 %.
+    Interaction fields lie an eighth of their deviation apart. Loops and steps of more than that do not see it (4 % of
+    their creep); creep after a step of a thirtieth of the deviation is off by some 8 %, of a hundredth by 20 to 30 %.
     """
 
     place = Place.OPERATOR

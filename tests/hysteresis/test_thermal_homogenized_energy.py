@@ -100,13 +100,13 @@ def test_creep_after_small_steps_hangs_on_the_interaction_fields():
     known = {word: SHAPE[word] for word in ("coercive", "spread", "interaction", "dwell", "poled")}
 
     def grown(step, bins):
-        field = np.concatenate([np.zeros(2), np.full(5, 4000.0), np.full(16, 4000.0 + step)])
-        found = twin.thermal(field, 0.2, smith.T_ETA, smith.T_REMANENCE, width=WIDTH, nodes=8, bins=bins, **known)
+        field = np.concatenate([np.zeros(2), np.full(5, 4000.0), np.full(26, 4000.0 + step)])
+        found = twin.thermal(field, 0.2, smith.T_ETA, smith.T_REMANENCE, width=WIDTH, nodes=16, bins=bins, **known)
         return found[-1] - found[7]
 
-    off = {bins: [abs(grown(s, bins) / grown(s, 512) - 1) for s in (50, 200, 1000, 4000)] for bins in (64, 256)}
-    assert np.all(off[64] < np.array([0.25, 0.1, 0.03, 0.03])) and off[64][0] > 0.2
-    assert max(off[256]) < 0.01
+    off = {bins: [abs(grown(s, bins) / grown(s, 512) - 1) for s in (50, 2000)] for bins in (64, 256)}
+    assert off[64][1] < 0.05 < off[64][0] < 0.4
+    assert max(off[256]) < 0.015
 
 
 def test_cold_domains_switch_at_their_coercive_field():
