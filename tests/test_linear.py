@@ -201,5 +201,22 @@ def test_an_effect_that_the_form_has_no_term_for_is_refused():
         Job.from_text(text)
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("density: free, nodes", "nodes", "only its form free or shared has it"),
+        (
+            "parameters: {}",
+            "parameters: {homogenized_energy.spread: {value: 1}}",
+            "is not in the form of 'homogenized_en",
+        ),
+    ],
+)
+def test_what_another_form_has_is_said_to_be_its(old, new, says):
+    with pytest.raises(InputError) as error:
+        Job.from_text(JOB.format(parameters="{}").replace(old, new))
+    assert says in str(error.value)
+
+
 def test_counted_names_in_a_row_are_said_in_one():
     assert ranges(["a.w_1", "a.w_2", "a.w_3", "b.w_4", "a.w_9", "c"]) == ["a.w_1 to a.w_3", "b.w_4", "a.w_9", "c"]

@@ -265,3 +265,19 @@ def test_a_number_of_two_kinds_cannot_be_shared():
         InputError, match=r"weight_3 is in um and in uC/cm2: no one number is both.*\n.*density: shared"
     ):
         Problem(model, [record])
+
+
+@pytest.mark.parametrize(
+    ("block", "word", "bounds", "says"),
+    [
+        ("homogenized_energy", "spread", (-1, 2), "a standard deviation of -1 is below zero"),
+        ("thermal_homogenized_energy", "spread", (-0.5, 2), "a standard deviation of -0.5 is below zero"),
+        ("domain_wall", "reversible", (0.5, 1.5), "a share from 0.5 to 1.5"),
+    ],
+)
+def test_a_density_or_share_that_cannot_be_is_refused(block, word, bounds, says):
+    drive = np.sin(np.arange(200) / 30)
+    record = Record("r", "identify", 1e-3, drive[None], drive[None])
+    with pytest.raises(InputError, match=says) as error:
+        Problem(Model([blocks[block]], ["x"], [0]), [record], {f"{block}.{word}": wish(bounds=bounds)})
+    assert error.value.where == f"{block}.{word}"

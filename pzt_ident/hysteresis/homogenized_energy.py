@@ -5,12 +5,25 @@ from math import exp, sqrt
 from statistics import NormalDist
 
 from pzt_ident.block import Bank, Place, erf
+from pzt_ident.errors import InputError
 from pzt_ident.hysteresis._play import play, relaxed, relaxing
 from pzt_ident.parameter import Form, Parameter, Setting
 from pzt_ident.registry import blocks
 
 NODES = 64
 QUANTILES = tuple(NormalDist().inv_cdf((i + 0.5) / NODES) for i in range(NODES))
+
+
+def spread_of(block):
+    """Refuses a standard deviation below zero."""
+
+    def refuse(least, most):
+        if least.spread < 0:
+            remedy = "give a value or lower bound of zero or more"
+            said = f"a standard deviation of {least.spread:g} is below zero"
+            raise InputError(said, where=f"{block}.spread", remedy=remedy)
+
+    return refuse
 
 
 @blocks.register
@@ -50,6 +63,8 @@ class HomogenizedEnergy(Bank):
         null=0,
         effect="thermal_relaxation",
     )
+
+    refuse = spread_of("homogenized_energy")
 
     def prepare(gain, remanence, coercive, spread, interaction, quadratic, poled, bias, branch):
         per_width = 1 / (sqrt(2.0) * interaction)

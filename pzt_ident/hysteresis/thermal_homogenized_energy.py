@@ -4,7 +4,7 @@ from math import erf, erfc, exp, expm1, log, pi, sqrt
 
 from pzt_ident.block import Place, Relays
 from pzt_ident.hysteresis._play import play
-from pzt_ident.hysteresis.homogenized_energy import HomogenizedEnergy
+from pzt_ident.hysteresis.homogenized_energy import HomogenizedEnergy, spread_of
 from pzt_ident.parameter import Parameter
 from pzt_ident.registry import blocks
 
@@ -36,6 +36,8 @@ class ThermalHomogenizedEnergy(Relays):
     )
     dwell = Parameter("s", (1e-6, 1), "Time constant of a domain without a barrier, T.", scale="log")
     quadratic, poled, bias = HomogenizedEnergy.quadratic, HomogenizedEnergy.poled, HomogenizedEnergy.bias
+
+    refuse = spread_of("thermal_homogenized_energy")
 
     def prepare(gain, remanence, coercive, spread, interaction, thermal, dwell, quadratic, poled, bias, dt, peak):
         least = 2 * (peak + abs(bias) + remanence) / (COLUMNS - INTERACTIONS)
