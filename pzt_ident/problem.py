@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from itertools import product
 from types import SimpleNamespace
 from typing import Protocol
@@ -13,11 +12,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pzt_ident.errors import InputError
+from pzt_ident.kinds import agree
 from pzt_ident.linear import Linear
 from pzt_ident.model import Model, Slot
 from pzt_ident.plan import Plan
 from pzt_ident.record import Record
-from pzt_ident.units import factor, same_kind
+from pzt_ident.units import factor
 
 Array = NDArray[np.float64]
 
@@ -67,7 +67,7 @@ class Problem:
     def _settle(self, identify: list[Record], wishes: Mapping[str, Wish]) -> None:
         """Which parameters are free, within which bounds, and what the others are fixed to."""
         count = len(self.model.slots)
-        self._shareable(identify[0])
+        agree(self.model, identify[0], self._unit)
         self.all_units = [self._unit(slot, identify[0]) for slot in self.model.slots]
         self._factor = np.array([factor(unit) for unit in self.all_units])
         self.theta = np.full(count, np.nan)
@@ -98,15 +98,6 @@ class Problem:
         scales = np.array([self.model.slots[column].parameter.scale == "log" for column in free], dtype=bool)
         self.log = scales & (self.lower > 0)
         self._any_log = bool(self.log.any())
-
-    def _shareable(self, record: Record) -> None:
-        """Raises InputError where one number would be of another kind on every axis."""
-        for slot in self.model.slots:
-            units = [self._unit(replace(slot, axis=axis), record) for axis in self.model.measured]
-            if f"{slot.block.name}.{slot.word}" in self.model.shared and not all(same_kind(u, units[0]) for u in units):
-                said = f"{slot.name} is in {' and in '.join(units)}: no one number is both"
-                remedy = "take it out of `shared`; free densities of all responses are one with `density: shared`"
-                raise InputError(said, where="shared", remedy=remedy)
 
     def _unit(self, slot: Slot, record: Record) -> str:
         first = record.response_units[self.model.measured[0]]

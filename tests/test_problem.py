@@ -281,3 +281,11 @@ def test_a_density_or_share_that_cannot_be_is_refused(block, word, bounds, says)
     with pytest.raises(InputError, match=says) as error:
         Problem(Model([blocks[block]], ["x"], [0]), [record], {f"{block}.{word}": wish(bounds=bounds)})
     assert error.value.where == f"{block}.{word}"
+
+
+def test_no_mechanics_moves_a_charge():
+    drive = np.vstack([np.sin(np.arange(200) / 30)] * 2)
+    record = Record("r", "identify", 1e-3, drive, drive * 1e-6, **TWO)
+    model = Model([blocks["bouc_wen"], blocks["lumped"]], TWO["axes"], [0, 1])
+    with pytest.raises(InputError, match="'lumped' would move the response of axis y, which is in uC/cm2"):
+        Problem(model, [record])
