@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from itertools import product
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from pzt_ident.record import Record
 from pzt_ident.solve import Solve
 
 Array = NDArray[np.float64]
+SIGNALS: WeakKeyDictionary[Record, dict[Any, Array]] = WeakKeyDictionary()
 
 
 class Plan:
@@ -137,8 +139,16 @@ class Plan:
         """Steps of the simulation in a sample."""
         return self.model.oversample * self.record.steps
 
-    @cached_property
+    @property
     def signals(self) -> Array:
+        """What the kernel reads of the record, the same array for every model that takes its steps."""
+        known = SIGNALS.setdefault(self.record, {})
+        key = self.times, self.model.oversample > 1, self.model.measured
+        if key not in known:
+            known[key] = self._signals()
+        return known[key]
+
+    def _signals(self) -> Array:
         """Each drive over the run-in and the record and behind it its runs, then the responses about their means; a
         sample of rest ahead and padding behind."""
         from pzt_ident.kernel import PADDING, runs_of

@@ -51,6 +51,8 @@ class Case:
         self.tell = tell
         self.words, self.effects = tuple(words), tuple(effects)
         self.ruled_out, self.shared = tuple(ruled_out), tuple(shared)
+        self._at: dict[tuple[int, int], Record] = {}
+        self.refits: dict[Any, Fit] = {}  # by effects, steps and start
         self.records, self.wishes, self.sizes = tuple(records), wishes, sizes(list(records))
 
     def problem(self, effects: Sequence[str], steps: Sequence[int] = ()) -> Problem:
@@ -59,8 +61,12 @@ class Case:
         chain = blocks.chain((*self.words, *effects))
         model = Model(chain, first.axes, first.measured, self.shared, self.wishes)
         own = steps or [record.steps for record in self.records]
-        records = [replace(record, steps=count) for record, count in zip(self.records, own, strict=True)]
+        records = [self.at(number, count) for number, count in enumerate(own)]
         return Problem(model, records, self.wishes, self.sizes)
+
+    def at(self, number: int, steps: int) -> Record:
+        """A record, simulated in so many steps a sample; the same one each time, whose signals are made ready once."""
+        return self._at.setdefault((number, steps), replace(self.records[number], steps=steps))
 
     @cached_property
     def floor(self) -> float:
@@ -134,7 +140,11 @@ def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, fl
     old = dict(zip(before.problem.names, before.problem.physical(before.point)[0], strict=True))
     middle = problem.physical(np.full(problem.dimensions, 0.5))[0]
     start = {name: guess.get(name, old.get(name, middle[i])) for i, name in enumerate(problem.names)}
-    found = resolved(case, made(effects, problem, descend(problem, problem.unit_point(start))))
+    point = problem.unit_point(start)
+    key = (effects, before.steps, point.tobytes())
+    if key not in case.refits:
+        case.refits[key] = resolved(case, made(effects, problem, descend(problem, point)))
+    found = case.refits[key]
     case.tell({"event": "refitted", "effects": effects, "identify": found.identify, "validate": found.validate})
     return found
 

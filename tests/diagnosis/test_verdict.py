@@ -11,7 +11,7 @@ import stage
 from pzt_ident.diagnosis import refit
 from pzt_ident.diagnosis.refit import first_fit
 from pzt_ident.diagnosis.score import Score
-from pzt_ident.diagnosis.verdict import Candidate, diagnose, drop, earns, settle
+from pzt_ident.diagnosis.verdict import Candidate, diagnose, drop, earns, sentence, settle
 from pzt_ident.registry import blocks
 
 
@@ -170,6 +170,17 @@ def test_an_effect_that_helps_only_the_records_that_were_fitted_earns_nothing():
     assert not earns(made, before, before, worse)
     alone = refit.Fit(after.effects, after.problem, after.point, after.identify, None)
     assert earns(made, before, before, alone)
+
+
+def test_records_that_show_nothing_of_an_effect_leave_it_to_explain_all():
+    made, found = missing("creep")
+    before = replace(found.before, validate=made.floor)
+    after = replace(before, identify=made.floor)
+    assert earns(made, before, before, after)
+    assert not earns(made, before, before, replace(after, identify=1.5 * made.floor))
+    assert not earns(made, before, before, replace(after, validate=1.5 * made.floor))
+    assert "show nothing of it" in sentence(made, before, before, replace(found.best, fit=after), ["creep"])
+    assert "show nothing of it" not in found.reason
 
 
 def test_a_drop_is_root_mean_square_and_has_a_sign():
