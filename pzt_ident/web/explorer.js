@@ -76,7 +76,7 @@ export class Explorer {
     const ends = marks.length ? [time[marks[0][0]], time[marks.at(-1)[1] - 1]] : ["", ""];
     if (written) [this.from.value, this.to.value] = ends.map((value) => (value === "" ? "" : Number(value.toPrecision(7))));
     this.say();
-    for (const plot of this.plots) plot.redraw(false);
+    for (const plot of this.plots) this.band(plot);
     for (const plane of [this.loop, this.map]) plane.mark(marks);
   }
 
@@ -168,8 +168,10 @@ export class Explorer {
         setSelect: [(self) => this.dragged(self)],
         setCursor: [(self) => this.hover(self)],
         drawAxes: [(self) => this.shade(self, floor)],
+        draw: [(self) => self.bands && this.band(self)],
       },
     }, null, this.curves);
+    plot.bands = element(plot.under, "canvas", { width: plot.bbox.width, height: plot.bbox.height });
     plot.fill = () => {
       const shown = thinned(arrays, ...this.span, Math.max(200, Math.round(width)));
       plot.setData([shown.map((i) => record.time[i]), ...arrays.map((values) => shown.map((i) => values[i]))]);
@@ -210,18 +212,31 @@ export class Explorer {
     this.map.overlay(point);
   }
 
-  /** The marked stretches, what is not scored, and in the residual the noise floor, behind the curves. */
+  /** The marked stretches, on a sheet behind the curves that is wiped without drawing these again. */
+  band(plot) {
+    const { time } = this.record;
+    const { width, height } = plot.bands;
+    const pen = plot.bands.getContext("2d");
+    pen.clearRect(0, 0, width, height);
+    pen.fillStyle = colour("--marked");
+    for (const [first, end] of this.marks) {
+      const [from, to] = [time[first], time[end - 1]].map((value) => plot.valToPos(value, "x", true) - plot.bbox.left);
+      if (to >= 0 && from <= width) pen.fillRect(from, 0, Math.max(to - from, 1), height);
+    }
+  }
+
+  /** What is not scored, and in the residual the noise floor, behind the curves. */
   shade(plot, floor) {
     const { time, settle, start, dt } = this.record;
     const { left, top, width, height } = plot.bbox;
-    const band = (from, to, fill) => {
+    const strip = (from, to, fill) => {
       const [x0, x1] = [from, to].map((value) => Math.min(Math.max(plot.valToPos(value, "x", true), left), left + width));
       plot.ctx.fillStyle = fill;
-      plot.ctx.fillRect(x0, top, Math.max(x1 - x0, x1 > left && x0 < left + width ? 1 : 0), height);
+      plot.ctx.fillRect(x0, top, x1 - x0, height);
     };
     plot.ctx.save();
-    if (settle) band(start, start + settle * dt, colour("--soft"));
-    for (const [first, end] of this.marks) band(time[first], time[end - 1], colour("--marked"));
+    if (settle) strip(start, start + settle * dt, colour("--soft"));
+    if (this.fine > 1) for (const [first, end] of this.marks) strip(time[first], time[end - 1], colour("--marked")); // no sheets on paper
     if (floor) {
       const [y0, y1] = [floor, -floor].map((value) => Math.min(Math.max(plot.valToPos(value, "y", true), top), top + height));
       plot.ctx.fillStyle = colour("--noise");

@@ -18,7 +18,7 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response, StreamingResponse
 from starlette.routing import Route
 
-from pzt_ident.amend import with_effects
+from pzt_ident.amend import amended
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.workbench import view
 from pzt_ident.workbench.bench import Bench
@@ -224,7 +224,7 @@ async def back(bench: Bench, request: Request) -> Response:
 async def job_file(bench: Bench, request: Request) -> Response:
     """The job, for the folder that the workbench was started in."""
     job = bench.job()
-    return PlainTextResponse(with_effects(job, job.effects, bench.root))
+    return PlainTextResponse(amended(job, job.effects, bench.root))
 
 
 async def drive_file(bench: Bench, request: Request) -> Response:

@@ -14,16 +14,16 @@ import shutil
 import signal
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from shlex import join
 from typing import Any
 
-from pzt_ident.amend import with_effects
+from pzt_ident.amend import amended
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.files import write_json, write_text
 from pzt_ident.job import Job, load_job
-from pzt_ident.workbench.form import job_text, with_model
+from pzt_ident.workbench.form import job_text
 
 SECONDS_TO_STOP = 8.0
 CUT_OFF = "This was ended before it was finished. Run goes on from here."
@@ -80,7 +80,7 @@ class Bench:
     def open(self, path: Path) -> None:
         """A first step from a job file of the user's. Raises InputError where the session began with another."""
         job, first = load_job(path), self.folder / "steps" / "1"
-        text = with_effects(job, job.effects, first)
+        text = amended(job, job.effects, first)
         if not self.steps:
             self._add(text, parent=0, change="as given")
         elif (first / "job.yaml").read_text(encoding="utf-8") != text:
@@ -102,21 +102,21 @@ class Bench:
         self._change(tuple(word for word in job.effects if word != effect), f"− {effect}")
 
     def _change(self, effects: tuple[str, ...], change: str) -> None:
-        before, folder = self.step(), self.folder / "steps" / str(self._next)
-        self._add(with_effects(self.job(), effects, folder), self.at, change)
         sign, effect = change.split()
-        paths = [self.relative(place / "job.yaml") for place in (before, folder)]
-        add = ["pzt-ident", "add", paths[0], effect, "-o", paths[1]]
-        self.log(join(add) if sign == "+" else f"# {paths[1]} is {paths[0]} less {effect}")
+        self._amend({"+": "add", "−": "remove"}[sign], [effect], change, effects)
 
     def choose(self, words: list[str]) -> None:
         """Another chain of blocks."""
-        folder = self.folder / "steps" / str(self._next)
-        text = with_effects(self.job(), self.job().effects, folder)
-        before = self.step()
-        self._add(with_model(text, words), self.at, " → ".join(words))
-        paths = [self.relative(place / "job.yaml") for place in (folder, before)]
-        self.log(f"# {paths[0]} is {paths[1]} with the model {', '.join(words)}")
+        self._amend("model", words, " → ".join(words), self.job().effects, words)
+
+    def _amend(
+        self, command: str, said: list[str], change: str, effects: Sequence[str], words: list[str] | None = None
+    ) -> None:
+        """A step from the one shown, as a command makes it."""
+        before, folder = self.step(), self.folder / "steps" / str(self._next)
+        self._add(amended(self.job(), effects, folder, words), self.at, change)
+        paths = [self.relative(place / "job.yaml") for place in (before, folder)]
+        self.log(join(["pzt-ident", command, paths[0], *said, "-o", paths[1]]))
 
     def undo(self) -> None:
         """Back to the step before, from the first one to the measurement; what was made stays in its folder."""

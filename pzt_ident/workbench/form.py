@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from io import StringIO
 from typing import Any
 
 OPENING = """\
@@ -51,17 +50,3 @@ def _channel(column: dict[str, Any]) -> str:
 def _text(value: Any) -> str:
     """As YAML, whatever is in it: JSON is."""
     return json.dumps(str(value), ensure_ascii=False)
-
-
-def with_model(text: str, words: list[str]) -> str:
-    """The text of a job with another chain of blocks, comments kept."""
-    from ruamel.yaml import YAML
-
-    yaml = YAML()
-    yaml.preserve_quotes = True
-    yaml.width = 10_000
-    document: Any = yaml.load(text)
-    document["model"][:] = words
-    written = StringIO()
-    yaml.dump(document, written)
-    return written.getvalue()

@@ -6,7 +6,7 @@ import pytest
 from pzt_ident.errors import InputError
 from pzt_ident.job import Job
 from pzt_ident.workbench.columns import columns_of
-from pzt_ident.workbench.form import job_text, with_model
+from pzt_ident.workbench.form import job_text
 from sheets import write_sheets
 
 from .conftest import form
@@ -120,9 +120,3 @@ def test_a_form_without_headings_counts_columns(tmp_path):
     job = Job.from_text(job_text(form(time=None, sample_rate="200 Hz", axes=axes)), tmp_path)
     assert job.channels.axes["x"].response.column == 5
     assert job.records[0].sample_rate == 200
-
-
-def test_another_model_keeps_the_comments(tmp_path):
-    text = with_model(job_text(form()), ["bouc_wen", "lumped"])
-    assert text.startswith("# Made in the workbench.")
-    assert Job.from_text(text, tmp_path).model == ("bouc_wen", "lumped")
