@@ -84,7 +84,7 @@ function status() {
 function words(begun) {
   const { diagnosis, result } = state;
   at("advice").replaceChildren();
-  if (!begun) at("verdict").textContent = columns.files.length ? "Is this what was measured?" : "Drop a measurement: voltage in, displacement out.";
+  if (!begun) at("verdict").textContent = columns.records.length ? "Is this what was measured?" : "Drop a measurement: voltage in, displacement out.";
   else if (diagnosis) at("verdict").textContent = diagnosis.reason;
   else if (result) at("verdict").textContent = `The model leaves ${number(result.best.rmse.validate ?? result.best.rmse.identify)} ${result.unit} RMS${result.best.rmse.validate === null ? "" : " on records the fit never saw"}.`;
   else at("verdict").textContent = state.stage ? "Identifying the model." : state.failure ? "Not finished." : "Ready to run.";
@@ -105,19 +105,18 @@ function addButton(parent, effect, kind = "", text = `Add ${effect}`) {
 
 function files() {
   at("here").replaceChildren();
-  const free = state.files.filter((name) => !columns.files.some(({ file }) => file === name));
+  const free = state.files.filter((name) => !columns.files.includes(name));
   if (!free.length) return;
   at("here").append("Or take one of this folder: ");
   for (const name of free)
-    element(at("here"), "button", { type: "button" }, name).addEventListener("click", () => look(name).catch(() => {})), at("here").append(" ");
+    element(at("here"), "button", { type: "button" }, name).addEventListener("click", () => take(name)), at("here").append(" ");
 }
 
-/** See what is in a file of the folder, or in a part of one. */
-async function look(file, part = null, place = undefined) {
+/** See what is in files of the folder, or in parts of them, that make a record. */
+async function look(files) {
   at("error").hidden = true;
   try {
-    columns.add(await ask("look", { file, part }), place);
-    measured();
+    return await ask("look", { files });
   } catch (error) {
     fail(error);
     throw error;
@@ -130,12 +129,19 @@ function measured() {
   files();
 }
 
+async function take(file) {
+  try {
+    await columns.add(await look([{ file }]));
+    measured();
+  } catch { /* it is said */ }
+}
+
 async function upload(list) {
   at("error").hidden = true;
   const said = [];
   for (const file of list)
     try {
-      columns.add(await (await call(`upload?name=${encodeURIComponent(file.name)}`, file, true)).json());
+      await columns.add(await (await call(`upload?name=${encodeURIComponent(file.name)}`, file, true)).json());
       measured();
     } catch (error) { said.push(error.message); }
   if (said.length) fail({ message: said.join("\n") });
@@ -282,7 +288,7 @@ addEventListener("drop", (event) => event.preventDefault());
 setInterval(status, 500);
 
 await refresh();
-if (opening && !state?.steps.length) await look(opening).catch(() => {});
+if (opening && !state?.steps.length) await take(opening);
 follow((event) => {
   if (away) [away, at("error").hidden] = [false, true];
   if (event.event === "step") [convergence, asking].forEach((part) => part.clear());

@@ -23,6 +23,7 @@ from pzt_ident.errors import InputError, RunError
 from pzt_ident.workbench import view
 from pzt_ident.workbench.bench import Bench
 from pzt_ident.workbench.columns import columns_of
+from pzt_ident.workbench.form import places
 from pzt_ident.workbench.gather import gathered
 from pzt_ident.workbench.guard import Guard, inside
 
@@ -147,7 +148,7 @@ async def upload(bench: Bench, request: Request) -> Response:
         if path.exists() and path.read_bytes() != part.read_bytes():
             raise InputError(f"another {name!r} was dropped before", remedy="give it another name")
         part.replace(path)
-        return await looked_at(bench, path)
+        return await looked_at(bench, (path, None))
     except InputError:
         if new:  # it may be dropped again once it is mended
             path.unlink(missing_ok=True)
@@ -162,20 +163,22 @@ def too_large() -> Response:
 
 
 async def look(bench: Bench, request: Request) -> Response:
-    """What is in a file of the folder that the workbench was started in, or in one of its tables or sheets."""
-    wanted = await form(request)
-    return await looked_at(bench, inside(bench.root, wanted["file"]), wanted.get("part"))
+    """What is in files of the folder that the workbench was started in, or in one of the tables or sheets of each."""
+    wanted = (await form(request))["files"]
+    return await looked_at(bench, *((inside(bench.root, item["file"]), item.get("part")) for item in wanted))
 
 
-async def looked_at(bench: Bench, path: Path, part: str | None = None) -> Response:
-    found = await asyncio.to_thread(columns_of, path, part)
-    return JSONResponse(found | {"file": bench.relative(path)})
+async def looked_at(bench: Bench, *files: tuple[Path, str | None]) -> Response:
+    found = await asyncio.to_thread(columns_of, *files)
+    for about, (path, _) in zip(found["files"], files, strict=True):
+        about["file"] = bench.relative(path)
+    return JSONResponse(found)
 
 
 async def begin(bench: Bench, request: Request) -> Response:
     wanted = await form(request)
-    for record in wanted["records"]:
-        inside(bench.root, record["file"])
+    for place in places(wanted["records"]):
+        inside(bench.root, place["file"])
     await asyncio.to_thread(bench.begin, wanted)
     return await state(bench, request)
 

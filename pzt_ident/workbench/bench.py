@@ -23,7 +23,7 @@ from pzt_ident.amend import amended
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.files import write_json, write_text
 from pzt_ident.job import Job, load_job
-from pzt_ident.workbench.form import job_text
+from pzt_ident.workbench.form import job_text, places
 
 SECONDS_TO_STOP = 8.0
 CUT_OFF = "This was ended before it was finished. Run goes on from here."
@@ -73,8 +73,8 @@ class Bench:
 
     def begin(self, form: dict[str, Any]) -> None:
         """A first step from what was confirmed on the page. Raises InputError that lists every fault."""
-        for record in form["records"]:
-            record["file"] = os.path.relpath(self.root / record["file"], self.folder / "steps" / str(self._next))
+        for place in places(form["records"]):
+            place["file"] = os.path.relpath(self.root / place["file"], self.folder / "steps" / str(self._next))
         self._add(job_text(form), parent=0, change="as given")
 
     def open(self, path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,41 +18,66 @@ from pzt_ident.record import Source
 from pzt_ident.units import TIME, dimension, is_unit
 
 SHOWN = 5  # values of each column
+MOST = 40  # columns of an array
 BINS = 60  # of its shape
 AXES = "xyz"
 _LENGTH, _VOLTAGE, _FIELD, _CHARGE, _POLARIZATION = map(dimension, ("m", "V", "V/m", "C", "C/m2"))
 _NAMES = {
-    "time": r"t|time|zeit|timestamp|sec(onds?)?",
+    "time": r"t|time|zeit|clock|timestamp|sec(onds?)?",
     "drive": r"u|v|e|volt.*|drive|input|command|cmd|field|.*voltage",
     "response": r"x|y|z|d|pos.*|disp.*|sensor|resp.*|output|strain|.*displacement|.*position",
 }
 
 
-def columns_of(path: Path, part: str | None = None) -> dict[str, Any]:
-    """The numeric columns of a file with their first values, range, unit and guessed role: of its table or sheet
-    `part`, of the first that holds any if none is named.
+def columns_of(*files: tuple[Path, str | None]) -> dict[str, Any]:
+    """The numeric columns of the files of a record with their first values, range, unit and guessed role, and which
+    of the files each is `of`: of a table or sheet where one is named, else of the first that holds any.
 
-    Raises InputError where the file cannot be read or has fewer than two such columns.
+    Raises InputError where a file cannot be read or has no such column, or files differ in length.
     """
+    about, columns = [], list[dict[str, Any]]()
+    for path, part in files:
+        facts, found = _of_file(path, part)
+        columns += [item | {"of": len(about)} for item in found]
+        about.append(facts)
+    rows = {item["rows"] for item in columns}
+    if len(rows) > 1:
+        lengths = ", ".join(
+            f"{name} {next(c['rows'] for c in columns if c['of'] == i)}"
+            for i, name in enumerate(facts["file"] for facts in about)
+        )
+        raise InputError(f"the files of a record differ in rows: {lengths}", remedy="drop files of one measurement")
+    _guess(columns)
+    return {"files": about, "rows": rows.pop(), "columns": columns}
+
+
+def _of_file(path: Path, part: str | None) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     kind, parts = parts_of(path)
     about = {"file": path.name, "kind": kind, "parts": parts}
     *others, last = [part] if part or not parts else parts
     for tried in others:
         with suppress(InputError):
-            return about | {"part": tried} | _of_part(path, {kind: tried})
-    return about | {"part": last} | _of_part(path, {kind: last} if kind else {})
+            return about | {"part": tried}, _of_part(path, {kind: tried})
+    return about | {"part": last}, _of_part(path, {kind: last} if kind else {})
 
 
-def _of_part(path: Path, part: dict[str, Any]) -> dict[str, Any]:
+def _of_part(path: Path, part: dict[str, Any]) -> list[dict[str, Any]]:
     table = open_table(path, Source(str(path), **part))
-    found = [item for number, column in enumerate(table.columns, 1) if (item := _column(number, column))]
+    found = [item for number, column in enumerate(_apart(table.columns), 1) if (item := _column(number, column))]
     rows = max((item["rows"] for item in found), default=0)
-    found = [item for item in found if item["rows"] == rows]
-    if len(found) < 2:
-        remedy = "drop a table of signals; signals in separate files need a job file, see `pzt-ident init`"
-        raise InputError("holds no two columns of numbers", where=path.name, remedy=remedy)
-    _guess(found)
-    return {"rows": rows, "columns": found}
+    if not rows:
+        raise InputError("holds no column of numbers", where=path.name, remedy="drop a table of signals")
+    return [item for item in found if item["rows"] == rows]
+
+
+def _apart(columns: Sequence[Column]) -> Sequence[Column]:
+    """The columns of the array, where a file has nothing but one of two dimensions."""
+    if len(columns) != 1:
+        return columns
+    array = columns[0].load()
+    if np.ndim(array) != 2 or 1 in np.shape(array):
+        return columns
+    return [Column("", partial(array.__getitem__, np.s_[:, i])) for i in range(min(np.shape(array)[1], MOST))]
 
 
 def _column(number: int, column: Column) -> dict[str, Any] | None:
@@ -110,7 +136,7 @@ def _guess(columns: list[dict[str, Any]]) -> None:
     by_sign = (("time", _is_time), ("x.drive", _is_drive), ("x.response", _is_length), ("x.response", _is_charge))
     for role, fits in by_sign:
         _take(columns, role, fits)
-    for role in ("x.drive", "x.response"):
+    for role in ("x.drive", "x.response") if len(columns) > 1 else ():
         _take(columns, role, lambda item: True)
     first = [item for role in ("x.drive", "x.response") for item in columns if item["role"] == role]
     if len(first) == 2 and not first[0]["name"] and first[0]["rough"] > 2 * first[1]["rough"]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from pzt_ident.readers.formats import READERS
-from pzt_ident.registry import blocks
+from pzt_ident.registry import blocks, word_of
 from pzt_ident.report.numbers import unit
 from pzt_ident.report.results import Trace, read_results
 from pzt_ident.report.tables import expected
@@ -68,7 +68,13 @@ def diagnosis_of(step: Path) -> dict[str, Any] | None:
 def job_of(bench: Bench) -> dict[str, Any]:
     job = bench.job()
     folder = bench.relative(bench.step())
-    return {"name": job.name, "model": job.model, "effects": job.effects, "folder": folder, "text": job.text}
+    return {
+        "name": job.name,
+        "model": [word_of(item) for item in job.model],
+        "effects": job.effects,
+        "folder": folder,
+        "text": job.text,
+    }
 
 
 def signals(bench: Bench) -> dict[str, Any]:
@@ -112,4 +118,5 @@ def effects() -> list[dict[str, str]]:
 
 def described(word: str) -> dict[str, str]:
     place = getattr(blocks[word], "place", None)
-    return {"name": word, "doc": (inspect.getdoc(blocks[word]) or "").partition("\n")[0], "place": str(place or "")}
+    doc = (inspect.getdoc(blocks[word]) or "").partition("\n")[0]
+    return {"name": word, "doc": doc, "place": str(place or ""), "kind": blocks.folder(word)}
