@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from pzt_ident.report.numbers import count, number, percent, quantity
+from pzt_ident.report.numbers import count, number, percent, quantity, spelled
 from pzt_ident.report.results import Results
 
 
@@ -13,9 +13,9 @@ def verdict(results: Results) -> str:
     """What is missing or was added, or else what the model leaves, on which records, beside the noise."""
     if found := results.improvement:
         added = f"Added: {listed(found['effects'])}. " if found["effects"] else ""
-        return f"{added}{found['reason']}"
+        return spelled(f"{added}{found['reason']}")
     if results.diagnosis:
-        return str(results.diagnosis["reason"])
+        return spelled(results.diagnosis["reason"])
     return left(results)
 
 
@@ -35,7 +35,7 @@ def findings(results: Results) -> list[str]:
     simulations and runs failed."""
     diagnosed = [*_advice(results)] if results.diagnosis else []
     run = [*_parameters(results), *_notes(results), *_failures(results)] if results.result else []
-    return diagnosed + run
+    return [spelled(sentence) for sentence in diagnosed + run]
 
 
 def _advice(results: Results) -> Iterator[str]:

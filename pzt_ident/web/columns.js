@@ -1,6 +1,5 @@
-import { element } from "./explorer.js";
+import { element, put, row, select } from "./parts.js";
 import { number } from "./signals.js";
-import { put } from "./staircase.js";
 
 const AXES = ["x", "y", "z"];
 const ROLES = [["", "not used"], ["time", "time"], ...AXES.flatMap((axis) => [[`${axis}.drive`, `drive of ${axis}`], [`${axis}.response`, `response of ${axis}`]])];
@@ -45,8 +44,11 @@ export class Columns {
   settle() {
     const first = this.records.length > 1 || this.records[0]?.rows < LONG ? "identify" : "split";
     this.records.forEach((record, place) => { record.use = record.chosen ?? (place ? "validate" : first); });
-    if (this.first !== this.records[0]) this.columns = this.records[0]?.columns.map((column) => ({ ...column, unit: column.unit ?? usual(column.role) }));
-    this.first = this.records[0];
+    if (this.first !== this.records[0]) {
+      this.first = this.records[0];
+      this.columns = this.first?.columns.map((column) => ({ ...column, unit: column.unit ?? usual(column.role) }));
+      this.rate = this.first?.rate || this.rate;
+    }
     this.show();
   }
 
@@ -196,17 +198,4 @@ function pictured(cell, shape, name) {
   const points = shape.map((value, place) => `${place},${(20 * (1 - value)).toFixed(1)}`).join(" ");
   const svg = put(cell, "svg", { viewBox: `0 -1 ${shape.length} 22`, preserveAspectRatio: "none", class: "shape", role: "img", "aria-label": `Course of ${name}` });
   put(svg, "polyline", { points, "vector-effect": "non-scaling-stroke" });
-}
-
-/** A row of a table, its cells. */
-export function row(table, kind, texts) {
-  const line = element(table, "tr");
-  return texts.map((text) => element(line, kind, { class: "word" }, String(text)));
-}
-
-export function select(parent, options, value, label) {
-  const made = element(parent, "select", { "aria-label": label });
-  for (const [word, text] of options) element(made, "option", { value: word }, text);
-  made.value = value;
-  return made;
 }

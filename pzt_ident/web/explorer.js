@@ -1,3 +1,4 @@
+import { element, printed } from "./parts.js";
 import { colour, gridded, Plane, tick } from "./plane.js";
 import { errorOf, extent, lowerBound, marksInBox, marksInTime, number, opened, thinned } from "./signals.js";
 
@@ -121,14 +122,14 @@ export class Explorer {
     this.fine = document.documentElement.hasAttribute("data-print") ? 2 : 1; // pixels a pixel
     this.curves.replaceChildren();
     const { record } = this;
-    const named = record.models.length > 1;
+    const named = record.models.length > 1, models = record.models.toReversed();
     this.plots = [
-      this.plot(`response [${record.unit}]`, 0.26, 0, [record.response, ...record.models.map((model) => sum(record.response, model.residual))], [
+      this.plot(`response [${record.unit}]`, 0.26, 0, [record.response, ...models.map((model) => sum(record.response, model.residual))], [
         { label: "measured", stroke: () => colour("--measured"), width: 3 * this.fine },
-        ...record.models.map((model, place) => this.line(named ? model.name : "model", place)),
+        ...this.lines(named ? (model) => model.name : () => "model"),
       ]),
-      this.plot(`residual [${record.unit}]`, 0.18, this.floors[record.axis] ?? 0, record.models.map((model) => model.residual),
-        record.models.map((model, place) => this.line(named ? `residual, ${model.name}` : "residual: model less measured", place))),
+      this.plot(`residual [${record.unit}]`, 0.18, this.floors[record.axis] ?? 0, models.map((model) => model.residual),
+        this.lines(named ? (model) => `residual, ${model.name}` : () => "residual: model less measured")),
     ];
     this.loop.show(this.scene(record.response, `response [${record.unit}]`, {
       curves: [
@@ -190,9 +191,12 @@ export class Explorer {
     return [low - 0.06 * (high - low), high + 0.06 * (high - low)];
   }
 
-  line(label, place) {
+  /** The curves of the models, the last one on top. */
+  lines(said) {
     const width = (this.record.index.length > LONG ? 1 : 1.2) * this.fine;
-    return { label, stroke: () => colour(MODELS[place % 4]), width, dash: this.dash(place) };
+    return this.record.models.map((model, place) => ({
+      label: said(model), stroke: () => colour(MODELS[place % 4]), width, dash: this.dash(place),
+    })).reverse();
   }
 
   dash(place) { return this.record.index.length > LONG ? [] : DASHES[place % 4]; }
@@ -286,22 +290,4 @@ export class Explorer {
 
 function sum(a, b) {
   return a.map((value, i) => value + b[i]);
-}
-
-/** Draw as wide as a sheet of paper and in its colours while it is printed. */
-export function printed(redraw) {
-  for (const [name, on] of [["beforeprint", true], ["afterprint", false]])
-    addEventListener(name, () => {
-      document.documentElement.toggleAttribute("data-print", on);
-      redraw();
-    });
-}
-
-/** A new element inside another. */
-export function element(parent, tag, attributes = {}, text = "") {
-  const made = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
-  made.textContent = text;
-  parent.append(made);
-  return made;
 }

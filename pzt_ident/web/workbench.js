@@ -1,7 +1,9 @@
 import { Asking } from "./asking.js";
-import { Columns, row, select } from "./columns.js";
+import { Chain } from "./chain.js";
+import { Columns } from "./columns.js";
 import { Convergence } from "./convergence.js";
-import { element, Explorer } from "./explorer.js";
+import { Explorer } from "./explorer.js";
+import { element, row } from "./parts.js";
 import { ask, call, follow, opening, save } from "./session.js";
 import { decode, number } from "./signals.js";
 import { Staircase } from "./staircase.js";
@@ -11,11 +13,12 @@ const at = (id) => document.getElementById(id);
 const convergence = new Convergence(at("convergence"));
 const columns = new Columns(at("columns"), at("begin"), look, begin);
 const asking = new Asking(() => { if (state?.stage === "diagnose") { status(); candidates(); } });
-let state = null, stairs = null, explorer = null, shown = "", away = false, draft = ["bouc_wen"];
+const chain = new Chain(at("blocks"), at("more"), { choose, add: (effect) => act("add", { effect }), remove: (effect) => act("remove", { effect }) });
+let state = null, failure = "", stairs = null, explorer = null, shown = "", away = false, draft = ["bouc_wen"];
 
 /** Do something on the server and show what became of it; an error is said, and nothing is lost. */
 async function act(name, body = {}, then = null) {
-  at("error").hidden = true;
+  [failure, at("error").hidden] = ["", true];
   at("status").textContent = "One moment …";
   try {
     show(await ask(name, body));
@@ -33,6 +36,13 @@ function begin(form) {
   } catch (error) { fail(error); }
 }
 
+/** Another model: that of the job, or what it will be made with. */
+function choose(words) {
+  if (state.steps.length) return act("model", { model: words });
+  draft = words;
+  chain.show({ model: draft, effects: [] }, state, false);
+}
+
 function fail(error) {
   at("error").textContent = error.message;
   at("error").hidden = false;
@@ -47,11 +57,14 @@ function show(found) {
   for (const id of ["fall", "fit", "where-it-fails", "candidates"]) at(id).hidden = !begun;
   at("terminal").hidden = !state.commands.length;
   at("commands").textContent = state.commands.join("\n");
-  if (state.failure) fail({ message: state.failure });
-  else at("error").hidden = true;
+  if (state.failure !== failure) {
+    failure = state.failure;
+    if (failure) fail({ message: failure });
+    else at("error").hidden = true;
+  }
   buttons(begun);
   words(begun);
-  chain(begun);
+  chain.show(begun ? state.job : { model: draft, effects: [] }, state, begun);
   others();
   at("begin").hidden = begun;
   if (!begun) return files();
@@ -147,33 +160,6 @@ async function upload(list) {
   if (said.length) fail({ message: said.join("\n") });
 }
 
-/** The chain of blocks: that of the job, or what it will be made with. */
-function chain(begun) {
-  const { model, effects } = begun ? state.job : { model: draft, effects: [] };
-  const choose = (words) => { if (begun) act("model", { model: words }); else { draft = words; chain(false); } };
-  const docs = Object.fromEntries([...state.blocks, ...state.effects].map((block) => [block.name, block.doc]));
-  at("blocks").replaceChildren();
-  element(at("blocks"), "li", { class: "end" }, "drive");
-  for (const word of model) {
-    const item = element(at("blocks"), "li", { title: docs[word] ?? "" }, word);
-    if (model.length > 1) takeOff(item, word, () => choose(model.filter((other) => other !== word)));
-  }
-  for (const word of effects) takeOff(element(at("blocks"), "li", { class: "effect", title: docs[word] ?? "" }, word), word, () => act("remove", { effect: word }));
-  element(at("blocks"), "li", { class: "end" }, "response");
-  at("more").replaceChildren();
-  more("Add a block", state.blocks.filter((block) => !model.includes(block.name)), (word) => choose([...model, word]));
-  if (begun) more("Add an effect", state.effects.filter((block) => !effects.includes(block.name)), (word) => act("add", { effect: word }));
-}
-
-function takeOff(item, word, act) {
-  element(item, "button", { type: "button", "aria-label": `Take off ${word}`, title: `Take off ${word}` }, "×").addEventListener("click", act);
-}
-
-function more(name, choices, act) {
-  const list = select(at("more"), [["", `${name} …`], ...choices.map(({ name: word, doc }) => [word, `${word}: ${doc}`.slice(0, 110)])], "", name);
-  list.addEventListener("change", () => list.value && act(list.value));
-}
-
 /** The staircase, its last stair live while the search runs. */
 function fall() {
   const floors = Object.values(state.result?.noise_floor ?? state.diagnosis?.noise_floor ?? {});
@@ -183,7 +169,7 @@ function fall() {
   if (state.stage === "run" && last.identify === null && Number.isFinite(convergence.best))
     Object.assign(last, { identify: convergence.best, validate: convergence.validate, live: true, note: "so far" });
   else if (state.stage === "run") last.note = "begins";
-  const content = { steps, floor: fall.floor, unit: state.unit };
+  const content = { steps, floor: fall.floor, unit: state.unit || convergence.unit };
   if (stairs) stairs.show(content);
   else stairs = new Staircase(at("stairs"), content);
   at("converging").hidden = !convergence.runs.size;

@@ -30,7 +30,7 @@ from pzt_ident.workbench.guard import Guard, inside
 LARGEST_UPLOAD = 256 << 20
 LARGEST_FORM = 1 << 20
 SECONDS_BETWEEN_LOOKS = 0.1
-NAME = re.compile(r"\w[\w .+()-]{0,120}")
+NAME = re.compile(r"\w[\w .,;+=@#%&'()\[\]-]{0,120}")
 SERVED = {".js": "text/javascript", ".css": "text/css", ".html": "text/html"}
 
 Handler = Callable[[Bench, Request], Awaitable[Response]]
@@ -131,7 +131,7 @@ async def upload(bench: Bench, request: Request) -> Response:
     """Keep a dropped file in the session's folder and say what is in it. It is read as numbers, never run."""
     name = request.query_params.get("name", "")
     if not NAME.fullmatch(name):
-        raise InputError(f"{name!r} cannot be the name of a file", remedy="use letters, digits, blanks and . _ + -")
+        raise InputError(f"{name!r} cannot be the name of a file", remedy="use letters, digits, blanks and . , _ + -")
     if int(request.headers.get("content-length", 0)) > LARGEST_UPLOAD:
         return too_large()
     bench.data.mkdir(parents=True, exist_ok=True)

@@ -10,13 +10,14 @@ from typing import Any
 
 from pzt_ident.readers.formats import READERS
 from pzt_ident.registry import blocks, word_of
-from pzt_ident.report.numbers import unit
+from pzt_ident.report.numbers import spelled, unit
 from pzt_ident.report.results import Trace, read_results
 from pzt_ident.report.tables import expected
 from pzt_ident.report.traces import packed
 from pzt_ident.workbench.bench import Bench
 
 DATA = tuple(READERS)
+SPELLED = {"unit": unit} | dict.fromkeys(("reason", "why", "said", "sentences"), spelled)
 
 
 def state(bench: Bench) -> dict[str, Any]:
@@ -89,14 +90,19 @@ def signals(bench: Bench) -> dict[str, Any]:
 
 
 def read(path: Path) -> Any:
-    """A JSON file; None where there is none, with its unit as it is printed."""
+    """A JSON file; None where there is none, with its units as they are printed."""
     if not path.exists():
         return None
     return printed(json.loads(path.read_text(encoding="utf-8")))
 
 
-def printed(found: dict[str, Any]) -> dict[str, Any]:
-    return found | {"unit": unit(found["unit"])} if "unit" in found else found
+def printed(found: Any, key: str = "") -> Any:
+    """The units in it, and those in its sentences, as they are printed."""
+    if isinstance(found, dict):
+        return {word: printed(item, word) for word, item in found.items()}
+    if isinstance(found, list):
+        return [printed(item, key) for item in found]
+    return SPELLED[key](found) if key in SPELLED and isinstance(found, str) else found
 
 
 def files_in(root: Path) -> list[str]:
@@ -106,17 +112,17 @@ def files_in(root: Path) -> list[str]:
 
 
 @cache
-def chainable() -> list[dict[str, str]]:
+def chainable() -> list[dict[str, Any]]:
     """Blocks that a model may be made of."""
     return [described(word) for word in blocks.words() if blocks.folder(word) != "effects"]
 
 
 @cache
-def effects() -> list[dict[str, str]]:
+def effects() -> list[dict[str, Any]]:
     return [described(word) for word in blocks.effects()]
 
 
-def described(word: str) -> dict[str, str]:
+def described(word: str) -> dict[str, Any]:
     place = getattr(blocks[word], "place", None)
     doc = (inspect.getdoc(blocks[word]) or "").partition("\n")[0]
-    return {"name": word, "doc": doc, "place": str(place or ""), "kind": blocks.folder(word)}
+    return {"name": word, "doc": doc, "place": None if place is None else int(place), "kind": blocks.folder(word)}

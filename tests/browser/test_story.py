@@ -174,7 +174,7 @@ def test_sheets_axes_and_what_is_left_open(workbench, page, tmp_path):
     page.click("#confirm")
     expect(page.locator("#error")).to_have_text("Which column is the drive of y?")
     page.select_option("[aria-label='Role of p1 [nm]']", "x.response")
-    page.select_option("#more select", "lumped")
+    page.click(".chip:text-is('lumped')")
     page.click("#confirm")
     expect(page.locator("#stop")).to_be_visible()
     page.click("#stop")
