@@ -14,6 +14,7 @@ from pzt_ident.report.numbers import spelled, unit
 from pzt_ident.report.results import Trace, read_results
 from pzt_ident.report.tables import expected
 from pzt_ident.report.traces import packed
+from pzt_ident.report.words import reason
 from pzt_ident.workbench.bench import Bench
 
 DATA = tuple(READERS)
@@ -61,9 +62,11 @@ def unit_of(bench: Bench) -> str:
 def diagnosis_of(step: Path) -> dict[str, Any] | None:
     """The diagnosis, with what each effect would be as it is printed."""
     found = read(step / "diagnosis" / "diagnosis.json")
-    for item in found["candidates"] if found else ():
+    if not found:
+        return None
+    for item in found["candidates"]:
         item["would_be"] = expected(item["expected"], item["units"])
-    return found
+    return found | {"reason": reason(found["reason"], read_results(step / "run"))}
 
 
 def job_of(bench: Bench) -> dict[str, Any]:
