@@ -38,48 +38,50 @@ Handler = Callable[[Bench, Request], Awaitable[Response]]
 
 def make_app(bench: Bench, hosts: set[str], token: str) -> Guard:
     """The application; `hosts` are the values that a request's Host may have."""
-    tickets: dict[str, Path] = {}
 
     @asynccontextmanager
     async def life(app: Starlette) -> AsyncIterator[None]:
         yield
         await bench.stop()
 
-    def route(path: str, handler: Handler, method: str = "GET") -> Route:
-        async def answer(request: Request) -> Response:
-            try:
-                return await handler(bench, request)
-            except (InputError, RunError) as error:
-                return JSONResponse({"error": str(error).replace(f"{bench.root}{os.sep}", "")}, status_code=400)
-            except (KeyError, TypeError, ValueError) as error:
-                return JSONResponse({"error": f"not a form of the workbench: {error!r}"}, status_code=400)
-
-        return Route(path, answer, methods=[method])
-
-    async def ticket(bench: Bench, request: Request) -> Response:
-        """Write the report of the step shown; where it can be read, by who has the address only."""
-        from pzt_ident.report.page import write_report
-
-        made, key = await asyncio.to_thread(lambda: write_report(gathered(bench))), secrets.token_urlsafe(24)
-        tickets[key] = made
-        return JSONResponse({"url": f"/report/{key}", "file": bench.relative(made)})
-
-    async def report(bench: Bench, request: Request) -> Response:
-        path = tickets.get(request.path_params["key"])
-        return FileResponse(path, media_type="text/html") if path else PlainTextResponse("not found", 404)
-
     posts = {"upload": upload, "look": look, "job": begin, "run": run, "stop": stop, "model": choose, "report": ticket}
     posts |= {"add": change, "remove": change, "undo": undo, "back": back}
     gets = {"state": state, "signals": signals, "events": events, "job": job_file, "drive": drive_file}
-    routes = [
-        route("/", page),
-        route("/favicon.ico", nothing),
-        route("/web/{name:path}", web),
-        route("/report/{key}", report),
-    ]
-    routes += [route(f"/api/{name}", handler) for name, handler in gets.items()]
-    routes += [route(f"/api/{name}", handler, "POST") for name, handler in posts.items()]
-    return Guard(Starlette(routes=routes, lifespan=life), hosts, token)
+    pages = {"/": page, "/favicon.ico": nothing, "/web/{name:path}": web, "/report/{key}": report}
+    routes = [route(bench, path, handler) for path, handler in pages.items()]
+    routes += [route(bench, f"/api/{name}", handler) for name, handler in gets.items()]
+    routes += [route(bench, f"/api/{name}", handler, "POST") for name, handler in posts.items()]
+    app = Starlette(routes=routes, lifespan=life)
+    app.state.reports = dict[str, Path]()
+    return Guard(app, hosts, token)
+
+
+def route(bench: Bench, path: str, handler: Handler, method: str = "GET") -> Route:
+    """A handler at a path; what it raises of bad input is said."""
+
+    async def answer(request: Request) -> Response:
+        try:
+            return await handler(bench, request)
+        except (InputError, RunError) as error:
+            return JSONResponse({"error": str(error).replace(f"{bench.root}{os.sep}", "")}, status_code=400)
+        except (KeyError, TypeError, ValueError) as error:
+            return JSONResponse({"error": f"not a form of the workbench: {error!r}"}, status_code=400)
+
+    return Route(path, answer, methods=[method])
+
+
+async def ticket(bench: Bench, request: Request) -> Response:
+    """Write the report of the step shown; where it can be read, by who has the address only."""
+    from pzt_ident.report.page import write_report
+
+    made, key = await asyncio.to_thread(lambda: write_report(gathered(bench))), secrets.token_urlsafe(24)
+    request.app.state.reports[key] = made
+    return JSONResponse({"url": f"/report/{key}", "file": bench.relative(made)})
+
+
+async def report(bench: Bench, request: Request) -> Response:
+    path = request.app.state.reports.get(request.path_params["key"])
+    return FileResponse(path, media_type="text/html") if path else PlainTextResponse("not found", 404)
 
 
 async def page(bench: Bench, request: Request) -> Response:
