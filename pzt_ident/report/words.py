@@ -9,6 +9,7 @@ from typing import Any
 from pzt_ident.report.numbers import count, number, percent, quantity, spelled
 from pzt_ident.report.results import Results
 
+BETTER = 0.95  # of the run's RMSE: less than that is worth a word
 NOISELESS = 1e-6  # of the span of a response: no sensor has less noise
 FLOORS = re.compile(r"(?:([\d.]+) to )?([\d.]+) noise floors")
 
@@ -28,7 +29,18 @@ def reason(said: str, results: Results) -> str:
     if results.share_of_noise < NOISELESS and len(results.floors) == 1:
         (floor,) = results.floors.values()
         said = FLOORS.sub(lambda found: _in_unit(found, floor or 0.0, results.unit), said)
-    return spelled(said)
+    return spelled(said + _better(results))
+
+
+def _better(results: Results) -> str:
+    """That the diagnosis, which fits the model again from several starts, came to less than the run."""
+    if not (results.result and results.diagnosis):
+        return ""
+    found, run = results.diagnosis["rmse"]["identify"], results.best["rmse"]["identify"]
+    if found > BETTER * run:
+        return ""
+    here, there = (quantity(value, results.unit, 3) for value in (found, run))
+    return f" Fitted again from other starts it leaves {here}, not the run's {there}: search longer."
 
 
 def _in_unit(found: re.Match[str], floor: float, unit: str) -> str:

@@ -22,7 +22,7 @@ export class Columns {
   async add(found, place = -1) {
     const mate = place < 0 ? this.records.findIndex((record) => mates(record, found)) : -1;
     if (mate >= 0) return this.join(mate, found);
-    const same = this.records.findIndex((record) => said(record) === said(found));
+    const same = this.records.findIndex((record) => key(record) === key(found));
     this.put(found, place < 0 ? same : place);
   }
 
@@ -184,13 +184,18 @@ export class Columns {
 function mates(record, found) {
   const [here, there] = [record, found].map(({ columns }) => columns.map(({ role }) => role).filter(Boolean));
   const whole = (roles) => ["x.drive", "x.response"].every((role) => roles.includes(role));
-  const apart = record.rows === found.rows && !record.files[0].kind && !found.files[0].kind && said(record) !== said(found);
+  const apart = record.rows === found.rows && !record.files[0].kind && !found.files[0].kind && key(record) !== key(found);
   return apart && !here.some((role) => there.includes(role)) && !(whole(here) && whole(there)) && !(whole(here) && !there.length);
 }
 
 /** A record by its files. */
 function said({ files }) {
   return files.map(({ file }) => last(file)).join(" + ");
+}
+
+/** What tells one record from another. */
+function key({ files }) {
+  return JSON.stringify(files.map(({ file, part }) => [file, part]));
 }
 
 /** The course of a column, small. */

@@ -175,9 +175,15 @@ class Bench:
         return [step / "run" / "environment.json", *(last for _, last, _ in self.commands(step))]
 
     def log(self, line: str) -> None:
-        """Keep a line of what it takes to repeat the session in a terminal."""
-        with (self.folder / "commands.txt").open("a", encoding="utf-8") as log:
-            log.write(line + "\n")
+        """Keep a line of what it takes to repeat the session in a terminal, once."""
+        if line not in self.said():
+            with (self.folder / "commands.txt").open("a", encoding="utf-8") as log:
+                log.write(line + "\n")
+
+    def said(self) -> list[str]:
+        """The lines kept."""
+        path = self.folder / "commands.txt"
+        return path.read_text(encoding="utf-8").splitlines() if path.exists() else []
 
     def start(self) -> None:
         """Fill the step that is shown. Raises InputError while another is being filled."""

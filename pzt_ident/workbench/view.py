@@ -25,7 +25,6 @@ def state(bench: Bench) -> dict[str, Any]:
     """Everything but the signals; empty parts where there is nothing yet."""
     chain = bench.chain()
     step = bench.step() if chain else None
-    commands = bench.folder / "commands.txt"
     return {
         "version": bench.version,
         "folder": bench.relative(bench.folder),
@@ -42,7 +41,7 @@ def state(bench: Bench) -> dict[str, Any]:
         "result": read(step / "run" / "result.json") if step else None,
         "misfit": read(step / "run" / "residuals.json") if step else None,
         "diagnosis": diagnosis_of(step) if step else None,
-        "commands": commands.read_text(encoding="utf-8").splitlines() if commands.exists() else [],
+        "commands": bench.said(),
     }
 
 

@@ -3,6 +3,7 @@ import hashlib
 import json
 import re
 import shutil
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import pytest
@@ -197,3 +198,11 @@ def test_of_a_response_without_noise_errors_are_not_counted_in_floors(tmp_path):
         "The RMSE falls from 0.00300 µm to 1.17 × 10⁻⁶ µm. It leaves 2.00 × 10⁻⁶ µm.".replace(" µm", "\u00a0µm")
     )
     assert reason(said, read_results(make_run(tmp_path / "noisy"))) == said
+
+
+def test_a_better_fit_than_the_runs_is_told(plain):
+    results = read_results(plain)
+    run = results.best["rmse"]["identify"]
+    for share, told in ((0.5, True), (0.99, False)):
+        found = replace(results, diagnosis={"rmse": {"identify": share * run}})
+        assert ("search longer" in reason("The model is adequate.", found)) is told

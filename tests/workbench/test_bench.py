@@ -102,6 +102,12 @@ def test_the_log_repeats_the_session(begun):
     ]
 
 
+def test_what_is_done_again_is_logged_once(begun):
+    for _ in range(2):
+        begun.log("pzt-ident run here/job.yaml")
+    assert begun.said() == ["pzt-ident run here/job.yaml"]
+
+
 def test_in_a_terminal_the_log_makes_the_same_jobs(begun):
     begun.add("creep")
     begun.choose(["bouc_wen", "lumped"])
