@@ -33,7 +33,7 @@ class Finder:
 
     @property
     def where(self) -> str:
-        return os.path.normpath(self.folder / self.source.file)
+        return str(self.folder / self.source.file)
 
     def signal(self, label: str, channel: Channel | None) -> Signal | None:
         """The drive or response `x.drive`, `x.response`; None where it is in no file."""
@@ -102,7 +102,7 @@ class Finder:
         if key not in self.tables:
             self.tables[key] = open_table(path, self.source)
         self.used[path] = None
-        where = f"{os.path.normpath(path)}: {label}"
+        where = f"{path}: {label}"
         return *pick(self.tables[key], self.source, channel, where), where
 
 

@@ -108,6 +108,7 @@ function words(begun) {
   for (const item of missing) addButton(at("advice"), item.effect, "strong");
   if (missing.length) at("advice").append(` ${missing[0].physics} On the rig: ${missing[0].remedy}`);
   if (diagnosis.next_experiment) at("advice").append(` To tell them apart: ${diagnosis.next_experiment.why}.`);
+  else if (diagnosis.verdict === "inconclusive") at("advice").append(` No drive within the limits tells them apart. On the rig: ${missing[0].separate_by}`);
 }
 
 function addButton(parent, effect, kind = "", text = `Add ${effect}`) {
@@ -154,6 +155,7 @@ async function upload(list) {
   const said = [];
   for (const file of list)
     try {
+      if (file.size > state.largest) throw new Error(`${file.name} is larger than ${state.largest >> 20} MiB: put it into the folder that the workbench was started in, and take it from there.`);
       await columns.add(await (await call(`upload?name=${encodeURIComponent(file.name)}`, file, true)).json());
       measured();
     } catch (error) { said.push(error.message); }

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import os
 import re
 import secrets
 from collections.abc import AsyncIterator, Awaitable, Callable
@@ -25,9 +24,8 @@ from pzt_ident.workbench.bench import Bench
 from pzt_ident.workbench.columns import columns_of
 from pzt_ident.workbench.form import places
 from pzt_ident.workbench.gather import gathered
-from pzt_ident.workbench.guard import Guard, inside
+from pzt_ident.workbench.guard import LARGEST_UPLOAD, Guard, inside
 
-LARGEST_UPLOAD = 256 << 20
 LARGEST_FORM = 1 << 20
 SECONDS_BETWEEN_LOOKS = 0.1
 NAME = re.compile(r"\w[\w .,;+=@#%&'()\[\]-]{0,120}")
@@ -63,7 +61,7 @@ def route(bench: Bench, path: str, handler: Handler, method: str = "GET") -> Rou
         try:
             return await handler(bench, request)
         except (InputError, RunError) as error:
-            return JSONResponse({"error": str(error).replace(f"{bench.root}{os.sep}", "")}, status_code=400)
+            return JSONResponse({"error": bench.readable(str(error))}, status_code=400)
         except (KeyError, TypeError, ValueError) as error:
             return JSONResponse({"error": f"not a form of the workbench: {error!r}"}, status_code=400)
 
@@ -160,8 +158,9 @@ async def upload(bench: Bench, request: Request) -> Response:
 
 
 def too_large() -> Response:
-    said = f"larger than {LARGEST_UPLOAD >> 20} MiB: put it into the folder and name it in a job"
-    return JSONResponse({"error": said}, status_code=413, headers={"connection": "close"})
+    return JSONResponse(
+        {"error": f"larger than {LARGEST_UPLOAD >> 20} MiB"}, status_code=413, headers={"connection": "close"}
+    )
 
 
 async def look(bench: Bench, request: Request) -> Response:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+import re
 import shutil
 import signal
 import sys
@@ -155,6 +156,11 @@ class Bench:
         self.failure = ""
         self.version += 1
 
+    def readable(self, text: str) -> str:
+        """What was said, with paths from the root, and none that leads up and down again."""
+        within = text.replace(f"{self.root}{os.sep}", "")
+        return re.sub(r"\S+/\.\./\S+", lambda found: os.path.normpath(found[0]), within)
+
     def relative(self, path: Path) -> str:
         return os.path.relpath(path, self.root)
 
@@ -227,7 +233,9 @@ class Bench:
             raise RunError(f"`pzt-ident {name}` was killed by signal {-code}. Run goes on from here.")
         if code:
             lines = said.decode(errors="replace").strip().splitlines()
-            raise RunError("\n".join(lines[-12:]).removeprefix("Error: ") or f"`pzt-ident {name}` failed")
+            raise RunError(
+                self.readable("\n".join(lines[-12:])).removeprefix("Error: ") or f"`pzt-ident {name}` failed"
+            )
 
     async def stop(self) -> None:
         """End what is running, with its workers; returns when it has ended."""

@@ -16,6 +16,7 @@ from pzt_ident.report.tables import expected
 from pzt_ident.report.traces import packed
 from pzt_ident.report.words import reason
 from pzt_ident.workbench.bench import Bench
+from pzt_ident.workbench.guard import LARGEST_UPLOAD
 
 DATA = tuple(READERS)
 SPELLED = {"unit": unit} | dict.fromkeys(("reason", "why", "said", "sentences"), spelled)
@@ -28,6 +29,7 @@ def state(bench: Bench) -> dict[str, Any]:
     return {
         "version": bench.version,
         "folder": bench.relative(bench.folder),
+        "largest": LARGEST_UPLOAD,
         "blocks": chainable(),
         "effects": effects(),
         "files": [*files_in(bench.root), *(bench.relative(bench.data / name) for name in files_in(bench.data))],
