@@ -101,7 +101,10 @@ def module() -> str:
     """The page's modules as one: without what they import from each other and export, comments and indents."""
     whole = "\n".join(web(name) for name in MODULES)
     return re.sub(
-        r"^import .*;\n|^export (?=async|function|class|const)|^ *(//|/\*\*).*\n|^ +", "", whole, flags=re.MULTILINE
+        r"^import .*;\n|^export (?=async|function|class|const)|^ *(//.*|/\*\*[^/]*\*/)\n|^ +",
+        "",
+        whole,
+        flags=re.MULTILINE,
     )
 
 

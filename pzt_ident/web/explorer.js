@@ -1,4 +1,4 @@
-import { element, printed } from "./parts.js";
+import { element, onPaper, printed } from "./parts.js";
 import { colour, gridded, Plane, tick } from "./plane.js";
 import { errorOf, extent, lowerBound, marksInBox, marksInTime, number, opened, thinned } from "./signals.js";
 
@@ -119,7 +119,7 @@ export class Explorer {
 
   draw() {
     this.drawnAt = this.root.clientWidth;
-    this.fine = document.documentElement.hasAttribute("data-print") ? 2 : 1; // pixels a pixel
+    this.fine = onPaper() ? 2 : 1; // pixels a pixel
     this.curves.replaceChildren();
     const { record } = this;
     const named = record.models.length > 1, models = record.models.toReversed();
@@ -155,7 +155,7 @@ export class Explorer {
     const width = Math.max(280, this.curves.clientWidth - 4);
     const font = `${Math.round(0.78 * fine * parseFloat(getComputedStyle(this.curves).fontSize))}px system-ui, sans-serif`;
     const axis = (label, labelSize, size, more) => ({
-      label, labelSize: fine * labelSize, size: fine * size, gap: 5 * fine, space: (self, axis) => fine * (axis ? 30 : 50), font, labelFont: font,
+      label, labelSize: fine * labelSize, size: fine * size, gap: 5 * fine, space: (self, axis) => fine * (axis ? 24 : 50), font, labelFont: font,
       stroke: () => colour("--quiet"), grid: { stroke: () => colour("--rule"), width: fine }, ticks: { show: false }, ...more,
     });
     const plot = new uPlot({
@@ -172,7 +172,7 @@ export class Explorer {
         draw: [(self) => self.bands && this.band(self)],
       },
     }, null, this.curves);
-    plot.bands = element(plot.under, "canvas", { width: plot.bbox.width, height: plot.bbox.height });
+    plot.bands = element(plot.under, "canvas");
     plot.fill = () => {
       const shown = thinned(arrays, ...this.span, Math.max(200, Math.round(width)));
       plot.setData([shown.map((i) => record.time[i]), ...arrays.map((values) => shown.map((i) => values[i]))]);
@@ -219,9 +219,9 @@ export class Explorer {
   /** The marked stretches, on a sheet behind the curves that is wiped without drawing these again. */
   band(plot) {
     const { time } = this.record;
-    const { width, height } = plot.bands;
+    const { width, height } = plot.bbox;
+    Object.assign(plot.bands, { width, height }); // which wipes it
     const pen = plot.bands.getContext("2d");
-    pen.clearRect(0, 0, width, height);
     pen.fillStyle = colour("--marked");
     for (const [first, end] of this.marks) {
       const [from, to] = [time[first], time[end - 1]].map((value) => plot.valToPos(value, "x", true) - plot.bbox.left);
@@ -240,7 +240,7 @@ export class Explorer {
     };
     plot.ctx.save();
     if (settle) strip(start, start + settle * dt, colour("--soft"));
-    if (this.fine > 1) for (const [first, end] of this.marks) strip(time[first], time[end - 1], colour("--marked")); // no sheets on paper
+    if (onPaper()) for (const [first, end] of this.marks) strip(time[first], time[end - 1], colour("--marked"));
     if (floor) {
       const [y0, y1] = [floor, -floor].map((value) => Math.min(Math.max(plot.valToPos(value, "y", true), top), top + height));
       plot.ctx.fillStyle = colour("--noise");

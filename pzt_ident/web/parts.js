@@ -31,6 +31,11 @@ export function select(parent, options, value, label) {
   return made;
 }
 
+/** Whether it is drawn to be printed. A printer has no sheets: each cuts what is below out of the page. */
+export function onPaper() {
+  return document.documentElement.hasAttribute("data-print");
+}
+
 /** Draw as wide as a sheet of paper and in its colours while it is printed. */
 export function printed(redraw) {
   for (const [name, on] of [["beforeprint", true], ["afterprint", false]])

@@ -1,3 +1,4 @@
+import { onPaper } from "./parts.js";
 import { extent, number, thinned, ticks } from "./signals.js";
 
 const EDGE = { left: 62, right: 14, top: 10, bottom: 42 };
@@ -50,11 +51,6 @@ export class Plane {
 
   draw() {
     [this.width, this.height] = this.size();
-    const scale = Math.max(window.devicePixelRatio || 1, 2); // fine enough for print
-    for (const canvas of this.layers) {
-      canvas.width = this.width * scale;
-      canvas.height = this.height * scale;
-    }
     this.stack.style.height = `${this.height}px`;
     const pen = this.pen(0);
     this.axes(pen);
@@ -66,24 +62,29 @@ export class Plane {
     for (const curve of this.scene.curves ?? []) this.curve(pen, curve, [[0, curve.xs.length]]);
     pen.restore();
     this.mark(this.scene.marks);
+    if (onPaper()) this.trace(pen);
   }
 
   /** Mark stretches, on a sheet above the drawing. */
   mark(marks = []) {
     this.scene.marks = marks;
-    const { xs, ys, cells } = this.scene;
-    const bins = Math.ceil(MARKED / Math.max(marks.length, 1));
-    this.curve(this.pen(1), { xs, ys, colour: "--mark", width: cells ? 1 : 2.5, bins }, marks);
+    this.trace(this.pen(1));
     this.overlay();
   }
 
-  /** A pen for a sheet, wiped, in pixels of the page. */
+  trace(pen) {
+    const { xs, ys, cells, marks } = this.scene;
+    const bins = Math.ceil(MARKED / Math.max(marks.length, 1));
+    this.curve(pen, { xs, ys, colour: "--mark", width: cells ? 1 : 2.5, bins }, marks);
+  }
+
+  /** A pen for a sheet, in pixels of the page. The sheet is wiped by its size. */
   pen(sheet) {
     const { [sheet]: canvas } = this.layers;
+    const scale = Math.max(window.devicePixelRatio || 1, 2); // fine enough for print
+    Object.assign(canvas, { width: this.width * scale, height: this.height * scale });
     const pen = canvas.getContext("2d");
-    const scale = canvas.width / this.width;
-    pen.setTransform(scale, 0, 0, scale, 0, 0);
-    pen.clearRect(0, 0, this.width, this.height);
+    pen.scale(scale, scale);
     return pen;
   }
 

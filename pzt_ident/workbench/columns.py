@@ -39,7 +39,7 @@ def columns_of(*files: tuple[Path, str | None]) -> dict[str, Any]:
 
     Raises InputError where a file cannot be read or has no such column, or files differ in length.
     """
-    about, columns, rate = [], list[dict[str, Any]](), ""
+    about, columns, rate = list[dict[str, Any]](), list[dict[str, Any]](), ""
     for path, part in files:
         facts, table = _of_file(path, part)
         columns += [item | {"of": len(about)} for item in _columns(table)]

@@ -103,6 +103,7 @@ def test_it_prints(opened, tmp_path):
     opened.evaluate("dispatchEvent(new Event('beforeprint'))")
     width = "[...document.querySelectorAll('.explorer canvas')].map((one) => one.getBoundingClientRect().right)"
     assert max(opened.evaluate(width)) < 180 / 25.4 * 96
+    assert not opened.locator(".plane .marked").first.is_visible()  # it would cut out what is below
     opened.evaluate("dispatchEvent(new Event('afterprint'))")
     opened.emulate_media(media="screen")
     opened.pdf(path=tmp_path / "report.pdf", format="A4")
