@@ -1,4 +1,4 @@
-import { element, put, row, select } from "./parts.js";
+import { element, keepingFocus, put, row, select } from "./parts.js";
 import { number } from "./signals.js";
 
 const AXES = ["x", "y", "z"];
@@ -52,7 +52,9 @@ export class Columns {
     this.show();
   }
 
-  show() {
+  show() { keepingFocus(() => this.draw()); }
+
+  draw() {
     this.root.replaceChildren();
     this.bar.replaceChildren();
     if (!this.records.length) return;

@@ -31,6 +31,18 @@ export function select(parent, options, value, label) {
   return made;
 }
 
+/** Draw parts of a page again; who is at one of them by the keyboard stays there, or goes to `fallback` where it is gone. */
+export function keepingFocus(redraw, fallback = null) {
+  const name = (item) => `${item.tagName} ${item.getAttribute("aria-label") ?? (item.id || item.textContent)}`;
+  const seen = (item) => item && item.isConnected && item.offsetParent !== null;
+  const held = document.activeElement;
+  const known = name(held);
+  redraw();
+  if (held === document.body || seen(held)) return;
+  const again = [...document.querySelectorAll("button, select, input, summary")].find((item) => name(item) === known && seen(item));
+  (again ?? fallback?.())?.focus({ preventScroll: true });
+}
+
 /** Whether it is drawn to be printed. A printer has no sheets: each cuts what is below out of the page. */
 export function onPaper() {
   return document.documentElement.hasAttribute("data-print");

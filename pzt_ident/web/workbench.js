@@ -3,7 +3,7 @@ import { Chain } from "./chain.js";
 import { Columns } from "./columns.js";
 import { Convergence } from "./convergence.js";
 import { Explorer } from "./explorer.js";
-import { element, row } from "./parts.js";
+import { element, keepingFocus, row } from "./parts.js";
 import { ask, call, follow, opening, save } from "./session.js";
 import { decode, number } from "./signals.js";
 import { Staircase } from "./staircase.js";
@@ -40,7 +40,7 @@ function begin(form) {
 function choose(words) {
   if (state.steps.length) return act("model", { model: words });
   draft = words;
-  chain.show({ model: draft, effects: [] }, state, false);
+  keepingFocus(() => chain.show({ model: draft, effects: [] }, state, false));
 }
 
 function fail(error) {
@@ -49,6 +49,10 @@ function fail(error) {
 }
 
 function show(found) {
+  keepingFocus(() => draw(found), () => at("actions").querySelector("button:not([hidden])"));
+}
+
+function draw(found) {
   state = found;
   const begun = state.steps.length > 0;
   at("name").textContent = begun ? state.job.name : "pzt-ident workbench";
