@@ -61,9 +61,11 @@ def _write(before: Job, effects: Sequence[str], words: Sequence[str] | None, out
     return made
 
 
-def amended(job: Job, effects: Sequence[str], folder: Path, words: Sequence[str] | None = None) -> str:
-    """The job's text with these effects, and these blocks where `words` are given, its paths as seen from another
-    folder."""
+def amended(
+    job: Job, effects: Sequence[str], folder: Path, words: Sequence[str] | None = None, steps: Sequence[int] = ()
+) -> str:
+    """The job's text with these effects, its paths as seen from another folder; with these blocks where `words` are
+    given, and `steps` a sample of each record, where they are not the job's."""
     from ruamel.yaml import YAML
     from ruamel.yaml.comments import CommentedSeq
 
@@ -81,6 +83,9 @@ def amended(job: Job, effects: Sequence[str], folder: Path, words: Sequence[str]
     found.extend(word for word in effects if word not in found)
     if words is not None:
         document["model"][:] = _items(document["model"], words)
+    for record, source, count in zip(document["records"], job.records, steps, strict=False):
+        if count != source.steps:
+            record["steps"] = count
     if job.folder.resolve() != folder.resolve():
         moved(document, job.folder, folder)
         for i, file in enumerate(document.get("plugins", ())):

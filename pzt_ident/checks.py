@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from pzt_ident.record import Axis, Channel, Source
     from pzt_ident.sections import Channels, Choice, Limits, Setting, Stopping
 
+MOST_STEPS = 100  # of the simulation in a sample
 Earlier = Mapping[str, Any]
 """The sections before this one, less those with a fault in their own form."""
 
@@ -26,11 +27,13 @@ def _records(document: Document, sources: tuple[Source, ...], earlier: Earlier) 
     names: set[str] = set()
     for i, source in enumerate(sources):
         at: Loc = ("records", i)
-        for word, least in (("settle", 0), ("decimate", 1), ("run_in", 0)):
+        for word, least in (("settle", 0), ("decimate", 1), ("run_in", 0), ("steps", 1)):
             if getattr(source, word) < least:
                 document.fault((*at, word), f"{document.source((*at, word))} is too small", f"give at least {least}")
         if source.sample_rate is not None and source.sample_rate <= 0:
             document.fault((*at, "sample_rate"), f"{source.sample_rate:g} Hz", "give a rate above 0 Hz")
+        if source.steps > MOST_STEPS:
+            document.fault((*at, "steps"), f"{source.steps} steps a sample", f"give at most {MOST_STEPS}")
         for word, stretch in (("rows", source.rows), ("time", source.time)):
             _stretch(document, (*at, word), stretch)
         if source.name is not None and source.name in names:
@@ -173,10 +176,11 @@ def _parameters(document: Document, settings: dict[str, Setting], earlier: Earli
     if all(axis.response is None for axis in axes.values()):
         return
     try:
-        model = _chain((*earlier["model"], *earlier["effects"]), axes, earlier.get("shared", ()))
+        model = _chain((*earlier["model"], *earlier["effects"]), axes, earlier.get("shared", ()), settings)
     except InputError:
         return  # a setting of a block, noted where it stands
     spelled = {name: slot for slot in model.slots for name in model.spellings(slot)}
+    unseen = {slot.name for slot in model.slots if slot.axis not in model.measured}
     if spelled and not any(_free(model, slot, settings) for slot in model.slots):
         document.fault(("parameters",), "every parameter is fixed", "free at least one: give it `bounds`")
     for name, setting in settings.items():
@@ -185,6 +189,8 @@ def _parameters(document: Document, settings: dict[str, Setting], earlier: Earli
             _stranger(document, name, earlier, spelled)
             continue
         declared = spelled[name].parameter
+        if setting.bounds and name in unseen:
+            document.fault(at, "its axis has no response to fit it to", "give it a `value`")
         least = setting.bounds[0] if setting.bounds else setting.value
         if declared.scale == "log" and least is not None and least <= 0:
             document.fault(at, f"{least:g} is not above 0", "give a value or lower bound above 0")
@@ -198,12 +204,17 @@ def _free(model: Model, slot: Slot, settings: Mapping[str, Setting]) -> bool:
     return slot.parameter.value is None and not slot.parameter.linear
 
 
-def _chain(items: Iterable[str | Choice], axes: Mapping[str, Axis], shared: Sequence[str] = ()) -> Model:
+def _chain(
+    items: Iterable[str | Choice],
+    axes: Mapping[str, Axis],
+    shared: Sequence[str] = (),
+    given: Collection[str] = (),
+) -> Model:
     """The model of the known words."""
     from pzt_ident.model import Model
 
     measured = [i for i, axis in enumerate(axes.values()) if axis.response is not None]
-    return Model(list(dict.fromkeys(blocks.chain(items))), list(axes), measured, shared)
+    return Model(list(dict.fromkeys(blocks.chain(items))), list(axes), measured, shared, given)
 
 
 def _setting(document: Document, at: Loc, setting: Setting) -> None:
@@ -227,7 +238,7 @@ def _stranger(document: Document, name: str, earlier: Earlier, spelled: Mapping[
     if len(axis) == 2 and axis[1] not in axes:
         said = f"there is no axis {axis[1]!r}", nearest(axis[1], axes)
     elif len(axis) == 2 and axes[axis[1]].response is None:
-        said = f"axis {axis[1]!r} has no response, so it has no parameters", "take it out"
+        said = f"axis {axis[1]!r} has no response, so it has no such parameter", "take it out"
     elif block not in chosen and block in blocks:
         if any(word not in blocks for word in words):
             return  # one of the unknown words may well stand for this block

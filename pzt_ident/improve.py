@@ -95,7 +95,8 @@ def improve(job: Job, out: Path | None = None, listen: Listen = lambda event: No
         for name, step in (("signals_as_given.nc", steps[0]), ("signals.nc", steps[-1])):
             write_signals(folder / name, step.fit.problem, step.fit.point)
         content = improvement_of(job, case, steps, diagnosis) | {"next_experiment": diagnosis["next_experiment"]}
-        write_text(folder / "improved.yaml", amended(job, steps[-1].fit.effects, folder))
+        end = steps[-1].fit
+        write_text(folder / "improved.yaml", amended(job, end.effects, folder, steps=end.steps))
         write_json(folder / "diagnosis.json", diagnosis)
         write_json(folder / "improvement.json", content)
         compare(folder, folder)
@@ -160,7 +161,7 @@ def errors_of(case: Case, fit: Fit) -> dict[str, float | None]:
 
 
 def by_record(case: Case, fit: Fit) -> list[dict[str, Any]]:
-    return [errors_in(record, fit.problem, fit.point) for record in case.records]
+    return [errors_in(record, fit.problem, fit.point) for record in fit.problem.records]
 
 
 def stair(case: Case, step: stairs.Step) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 
@@ -33,20 +33,25 @@ class Model:
 
     theta is (candidates, parameters) in SI units, in the order of `slots`; a simulation is (candidates, measured axes,
     samples). An axis without a response is simulated as far as the last coupling, with the parameters of the first
-    measured axis. Parameter names carry the axis where more than one is measured. A parameter that belongs to an effect
-    is there only where the effect is among the blocks. One in `shared`, such as `bouc_wen.alpha`, is the same on every
-    axis.
+    measured axis but for those that it is `given`, such as `y.lumped.mass`. Parameter names carry the axis where more
+    than one is measured. A parameter that belongs to an effect is there only where the effect is among the blocks. One
+    in `shared`, such as `bouc_wen.alpha`, is the same on every axis.
     """
 
     def __init__(
-        self, blocks: Sequence[type[Block]], axes: Sequence[str], measured: Sequence[int], shared: Sequence[str] = ()
+        self,
+        blocks: Sequence[type[Block]],
+        axes: Sequence[str],
+        measured: Sequence[int],
+        shared: Sequence[str] = (),
+        given: Collection[str] = (),
     ) -> None:
         chain = [block for block in blocks if not issubclass(block, Term | Addition)]
         self.blocks = tuple(sorted(chain, key=lambda block: block.place))
         self.additions = tuple(block for block in blocks if issubclass(block, Addition))
         self._listed = {block.name for block in blocks if issubclass(block, Term)}
         self.axes, self.measured, self.shared = tuple(axes), tuple(measured), frozenset(shared)
-        self.slots = tuple(slot for block in (*self.blocks, *self.additions) for slot in self._slots(block))
+        self.slots = tuple(slot for block in (*self.blocks, *self.additions) for slot in self._slots(block, given))
 
     def terms(self, block: type[Block]) -> set[str]:
         """The effects that act inside a block's equation."""
@@ -61,10 +66,11 @@ class Model:
         """Whether the prompt response of an operator is driven by another signal than its memory."""
         return {Place.READOUT, Place.OPERATOR} <= {block.place for block in self.blocks}
 
-    def _slots(self, block: type[Block]) -> list[Slot]:
+    def _slots(self, block: type[Block], given: Collection[str]) -> list[Slot]:
         found = []
-        for axis in self.measured:
-            prefix = f"{self.axes[axis]}." if len(self.measured) > 1 else ""
+        for axis in range(len(self.axes)):
+            measured = axis in self.measured
+            prefix = f"{self.axes[axis]}." if not measured or len(self.measured) > 1 else ""
             others = [b for b in range(len(self.axes)) if b != axis] if issubclass(block, Coupling) else [axis]
             for other in others:
                 suffix = f"_from_{self.axes[other]}" if len(others) > 1 else ""
@@ -72,10 +78,15 @@ class Model:
                     plain, each = f"{block.name}.{word}", self._each(block, word, parameter)
                     if parameter.per_record or (parameter.effect and parameter.effect not in self._listed):
                         continue
-                    if each == "axis" or (each == "stage") == (axis == self.measured[0]):
-                        name = plain if each == "stage" else f"{prefix}{plain}{suffix}"
+                    name = plain if each == "stage" else f"{prefix}{plain}{suffix}"
+                    own = measured or (name in given and self._alone(block, parameter))
+                    if own and (each == "axis" or (each == "stage") == (axis == self.measured[0])):
                         found.append(Slot(name, block, word, axis, other, parameter))
         return found
+
+    def _alone(self, block: type[Block], parameter: Parameter) -> bool:
+        """Whether an axis can have the parameter without a response of its own."""
+        return not issubclass(block, Coupling | Modes | Addition) and parameter.count is None
 
     def _each(self, block: type[Block], word: str, parameter: Parameter) -> str:
         """Who has one of its own, as the block declares it or the job shares it."""
@@ -118,11 +129,11 @@ class Model:
 
     def columns(self, block: type[Block], axis: int, other: int) -> dict[str, int | list[int]] | None:
         """Columns of theta that hold a block's parameters; None for a pair onto an axis that is not measured."""
+        found: dict[str, int | list[int]] = {}
         if axis not in self.measured:
             if issubclass(block, Coupling | Modes):
                 return None
-            axis = other = self.measured[0]
-        found: dict[str, int | list[int]] = {}
+            found = self.columns(block, self.measured[0], self.measured[0]) or {}
         for column, slot in enumerate(self.slots):
             stage = self._each(slot.block, slot.word, slot.parameter) == "stage"
             if slot.block is block and (stage or (slot.axis, slot.other) == (axis, other)):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from itertools import product
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from pzt_ident.record import Record
 from pzt_ident.solve import Solve
 
 Array = NDArray[np.float64]
+SIGNALS: WeakKeyDictionary[Record, dict[Any, Array]] = WeakKeyDictionary()
 
 
 class Plan:
@@ -100,7 +102,7 @@ class Plan:
                 nulls
                 | block.numbers()
                 | {
-                    "dt": self.record.dt / self.model.oversample,
+                    "dt": self.record.dt / self.times,
                     "span": float(np.ptp(self.record.drive[axis])),
                     "peak": float(np.abs(self.record.drive[axis]).max()),
                 }
@@ -132,8 +134,21 @@ class Plan:
             row += 1
         return row
 
-    @cached_property
+    @property
+    def times(self) -> int:
+        """Steps of the simulation in a sample."""
+        return self.model.oversample * self.record.steps
+
+    @property
     def signals(self) -> Array:
+        """What the kernel reads of the record, the same array for every model that takes its steps."""
+        known = SIGNALS.setdefault(self.record, {})
+        key = self.times, self.model.oversample > 1, self.model.measured
+        if key not in known:
+            known[key] = self._signals()
+        return known[key]
+
+    def _signals(self) -> Array:
         """Each drive over the run-in and the record and behind it its runs, then the responses about their means; a
         sample of rest ahead and padding behind."""
         from pzt_ident.kernel import PADDING, runs_of
@@ -145,15 +160,14 @@ class Plan:
             rows += [drive, runs_of(drive)]
         for axis in model.measured:
             response = np.zeros(rows[0].size)
-            if model.oversample == 1:
+            if self.times == 1:
                 response[-record.samples :] = record.response[axis] - record.response[axis].mean()
             rows.append(response)
         table = np.array(rows)
         return np.hstack([table[:, :1], table, np.repeat(table[:, -1:], PADDING, axis=1)])
 
     def _fine(self, drive: Array) -> Array:
-        """The drive at `oversample` steps a sample."""
-        return between(drive, self.model.oversample, bool(self.record.run_in), smooth=True)
+        return between(drive, self.times, bool(self.record.run_in), smooth=self.model.oversample > 1)
 
     def _scratch(self, theta: Array) -> Array:
         """What every block's `prepare` is given, in lanes: (groups, rows * WIDTH)."""
@@ -193,10 +207,9 @@ class Plan:
         from pzt_ident.kernel import run
 
         scratch = self._scratch(theta)
-        times = self.model.oversample
-        since = self.record.run_in * self.record.samples * times
-        samples = since + self.record.samples * times
-        run(program, self.signals, scratch, len(self.model.axes), samples, since, times, output, self._measured)
+        since = self.record.run_in * self.record.samples * self.times
+        samples = since + self.record.samples * self.times
+        run(program, self.signals, scratch, len(self.model.axes), samples, since, self.times, output, self._measured)
         return scratch
 
     def simulate(self, theta: Array) -> Array:
@@ -218,7 +231,7 @@ class Plan:
         from pzt_ident import kernel
 
         theta = np.atleast_2d(theta)
-        if self.model.oversample > 1 or self.model.additions:
+        if self.times > 1 or self.model.additions:
             error = self.residuals(theta)
             return np.einsum("mas,mas->ma", error, error)
         scratch = self._run(theta, self._scoring, np.empty((0, 0, 0)))

@@ -99,7 +99,7 @@ class Problem:
 
     def _unit(self, slot: Slot, record: Record) -> str:
         drive = record.drive_units[slot.axis]
-        response = record.response_units[slot.axis]
+        response = record.response_units[slot.axis] or record.response_units[self.model.measured[0]]
         return re.sub(
             r"drive|response", lambda word: str({"drive": drive, "response": response}[word[0]]), slot.parameter.unit
         )

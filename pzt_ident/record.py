@@ -50,6 +50,7 @@ class Source:
     settle: float = 0.0
     decimate: int = 1
     run_in: int = 0
+    steps: int = 1
     dataset: str | None = None
     table: int | str | None = None
     index: tuple[int | str, ...] | None = None
@@ -64,6 +65,7 @@ class Record:
     drive, response: (axes, samples); the response of an axis that is not measured is NaN throughout.
     dt, start: sample time and first time stamp, s. settle: samples simulated but not scored at the start.
     run_in: how often the drive is simulated before the first sample (a periodic record in steady state).
+    steps: of the simulation in a sample.
     sha256: of the file as read. rows: the first row of the file that the record holds, and the first behind it.
     """
 
@@ -75,6 +77,7 @@ class Record:
     start: float = 0.0
     settle: int = 0
     run_in: int = 0
+    steps: int = 1
     file: str = ""
     sha256: str = ""
     rows: tuple[int, int] = (0, 0)

@@ -53,7 +53,7 @@ class Task:
 def problem_of(job: Any, records: list[Record]) -> Problem:
     """The problem that a job states about its records."""
     axes = records[0].axes
-    model = Model(blocks.chain((*job.model, *job.effects)), axes, records[0].measured, job.shared)
+    model = Model(blocks.chain((*job.model, *job.effects)), axes, records[0].measured, job.shared, job.parameters)
     return Problem(model, records, job.parameters, sizes(records))
 
 

@@ -33,15 +33,16 @@ def loops():
     return [np.concatenate([np.zeros(100), drive, np.zeros(150)]) for drive in (fitted, unseen)]
 
 
-def records(parameters, drives=None, dt=5e-3, model=("bouc_wen",), noise=NOISE, seed=1):
-    """One record to identify and one to validate of the stage with the effects that the parameters name."""
+def records(parameters, drives=None, dt=5e-3, model=("bouc_wen",), noise=NOISE, seed=1, steps=8):
+    """One record to identify and one to validate of the stage with the effects that the parameters name; simulated in
+    so many steps a sample."""
     rng = np.random.default_rng(seed)
     words = {name.split(".")[0] for name in parameters}
     chain = [*model, *sorted(words & set(EFFECTS) - set(model))]
     stage = {name: value for name, value in STAGE.items() if name.split(".")[0] in model}
     made = []
     for drive, use in zip(drives or loops(), ("identify", "validate"), strict=True):
-        response = rig.response(chain, stage | parameters, drive, dt=dt) + rng.normal(0, noise, drive.size)
+        response = rig.response(chain, stage | parameters, drive, dt=dt, steps=steps) + rng.normal(0, noise, drive.size)
         blank = rig.record(drive, response=[response], dt=dt)
         made.append(replace(blank, use=use, name=use, response_units=("um",)))
     return made

@@ -48,6 +48,14 @@ def job(tmp_path):
     return write
 
 
+def test_finer_steps_are_noted_where_they_are_not_the_jobs(job):
+    text = JOB.replace("use: validate\n", "use: validate\n    steps: 2\n")
+    before = load_job(job(text))
+    gone, new = changed(text, amended(before, ["drift"], before.folder, steps=(4, 2, 1)))
+    assert gone == ["  - {file: data/slow.csv, use: identify}  # loops"]
+    assert new == ["  - {file: data/slow.csv, use: identify, steps: 4} # loops"]
+
+
 def call(*arguments):
     return CliRunner().invoke(main, [*map(str, arguments)])
 

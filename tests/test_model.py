@@ -24,7 +24,7 @@ def noise(axes, samples=150, seed=0):
 
 
 measured_axes = st.sampled_from([(1, (0,)), (2, (0,)), (2, (1,)), (2, (0, 1)), (3, (0, 2)), (3, (0, 1, 2))])
-seeds, periods = st.integers(0, 1000), st.sampled_from([{}, {"run_in": 1}])
+seeds, periods = st.integers(0, 1000), st.sampled_from([{}, {"run_in": 1}, {"steps": 3}, {"run_in": 1, "steps": 2}])
 
 
 def kind(item):
@@ -95,6 +95,22 @@ def test_names_carry_the_axis_only_where_there_are_several():
     assert model("prandtl_ishlinskii").names[:3] == tuple(
         f"prandtl_ishlinskii.{word}" for word in ("gain", "weight_1", "weight_2")
     )
+
+
+def test_an_axis_that_is_not_measured_may_have_parameters_of_its_own():
+    """y rings as its own mass lets it: what x reads of it is what y alone would read."""
+    drive, known = triangle(50), lin_lin.X | {"lumped.damping": 30.0}
+    alone = response(AXIS, known | {"lumped.mass": 9.0}, drive, dt=1e-4)
+    chain = [blocks[word] for word in (*AXIS, "kinematic_coupling")]
+    given = Model(chain, "xy", (0,), given=("y.lumped.mass", "y.kinematic_coupling.ratio"))
+    assert [name for name in given.names if name.startswith("y.")] == ["y.lumped.mass"]
+    values = known | {"y.lumped.mass": 9.0, "kinematic_coupling.ratio": 0.1}
+    made = record(0 * drive, drive, measured=[0], dt=1e-4)
+    theta = np.array([values[name] for name in given.names])
+    found = given.simulate(made, theta)[0, 0]
+    assert_close(found, 0.1 * alone)
+    assert_close(found, plain.simulate(given, made, theta)[0])
+    assert np.abs(found - 0.1 * response(AXIS, known, drive, dt=1e-4)).max() > 0.01 * np.ptp(found)
 
 
 def test_shared_parameters_are_one_for_every_axis():

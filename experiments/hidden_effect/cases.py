@@ -216,7 +216,8 @@ def job(case: Case, records: list[str]) -> str:
     lines += ['    x: {drive: "u_x [V]", response: "x [um]"}', '    y: {drive: "u_y [V]"}']
     lines += ["model: [bouc_wen, lumped]", "effects: []", "parameters:  # mechanics from the data sheet"]
     for word, unit in (("mass", "kg"), ("damping", "N s/m"), ("stiffness", "N/m")):
-        lines.append(f"  lumped.{word}: {{value: {getattr(case.stage.x, word):.9g}}}  # {unit}")
+        for name, axis in (("", case.stage.x), ("y.", case.stage.y)):
+            lines.append(f"  {name}lumped.{word}: {{value: {getattr(axis, word):.9g}}}  # {unit}")
     lines += ["optimizers:", "  - {name: least_squares, budget: 2000}", "repeats: 1", "seed: 7"]
     return "\n".join(lines) + "\n"
 

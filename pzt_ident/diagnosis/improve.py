@@ -7,11 +7,12 @@ from dataclasses import dataclass
 
 from pzt_ident.diagnosis.refit import Case, Fit, elsewhere, refit
 from pzt_ident.diagnosis.score import Scorer, applicable, misfit
-from pzt_ident.diagnosis.verdict import TIED, Candidate, Diagnosis, adequate, alike, diagnose, drop, earns, pair
+from pzt_ident.diagnosis.verdict import Candidate, Diagnosis, adequate, alike, diagnose, drop, earns, pair
 from pzt_ident.registry import blocks
 
 MOST = 5  # steps
 BEAM = 2  # first picks that are followed
+SURE = 0.05  # noise floors by which one effect fits better than another in its place: less may be the simulation's
 HOPELESS = 5.0  # noise floors: where the first way leaves more, another order of the same effects does not help
 
 
@@ -167,7 +168,7 @@ def others(fit: Fit, effect: str) -> tuple[str, ...]:
 
 
 def better(case: Case, now: Fit, best: Fit) -> bool:
-    return drop(now.total, best.total) > TIED * case.floor and drop(now.validate, best.validate) > 0
+    return drop(now.total, best.total) > SURE * case.floor and drop(now.validate, best.validate) > 0
 
 
 def exchange(case: Case, now: Fit, best: Fit, effect: str) -> Step:

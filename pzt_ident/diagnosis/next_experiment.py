@@ -16,6 +16,7 @@ from pzt_ident.record import Record
 Array = NDArray[np.float64]
 
 CHIRP = (20.0, 2000.0)  # Hz
+BEYOND = 6000.0  # Hz, beyond the resonances of a stage
 HOLD = 20.0  # s
 LEAST, AMPLE = 0.3, 3.0  # noise floors between two rivals: less does not tell them apart, more is no better
 
@@ -78,7 +79,7 @@ def respond(case: Case, fit: Fit, dt: float, drive: Array) -> Array:
 
 def protocols(reach: Reach, axes: int, axis: int) -> Iterator[tuple[str, str, float, Array]]:
     """Name, what it shows, sample time and drives of each protocol."""
-    span, middle = reach.high - reach.low, (reach.low + reach.high) / 2
+    span = reach.high - reach.low
     quick = min(reach.rate / (2 * span), 50.0)  # cycles a second that the rate allows
     own = [
         ("slow triangles", "rate and creep play no part", 1e-3, turns(reach, [1, 0] * 3, min(0.5, quick), 1e-3)),
@@ -90,7 +91,7 @@ def protocols(reach: Reach, axes: int, axis: int) -> Iterator[tuple[str, str, fl
          turns(reach, [1, 0.2, 0.8, 0.3, 0.7, 0.4, 0.7, 0.3, 0.8, 0.2, 1, 0], min(0.5, quick), 1e-3)),
         ("two amplitudes", "a gain that grows with the amplitude, or bends", 1e-3,
          turns(reach, [0.4, 0, 0.4, 0, 1, 0, 1, 0], min(0.5, quick), 1e-3)),
-        ("small chirp", "phase against frequency: delay, lag and modes part", 5e-5, chirp(reach, middle, 5e-5)),
+        ("small chirp", "phase against frequency: delay, lag and modes part", 5e-5, chirp(reach, CHIRP, 2.0, 5e-5)),
     ]  # fmt: skip
     for name, why, dt, u in own:
         yield from bounded(reach, name, why, dt, u, axes, axis)
@@ -98,9 +99,9 @@ def protocols(reach: Reach, axes: int, axis: int) -> Iterator[tuple[str, str, fl
         for other in (a for a in range(axes) if a != axis):
             slow = turns(reach, [1, 0] * 2, min(0.5, quick), 1e-3)
             yield from bounded(reach, "the other axis alone", "what comes through a coupling", 1e-3, slow, axes, other)
-            fast = chirp(reach, middle, 5e-5)
+            fast = chirp(reach, (CHIRP[0], BEYOND), 1.0, 2e-5)
             why = "couplings ring at different modes"
-            yield from bounded(reach, "chirp of the other axis", why, 5e-5, fast, axes, other)
+            yield from bounded(reach, "chirp of the other axis", why, 2e-5, fast, axes, other)
 
 
 def bounded(
@@ -134,12 +135,12 @@ def holds(reach: Reach, levels: list[float], dt: float) -> Array:
     return np.interp(np.arange(0, min(times[-1], reach.duration), dt), times, corners)
 
 
-def chirp(reach: Reach, middle: float, dt: float) -> Array:
-    """A few percent of the range about its middle, logarithmic in frequency, slower where the rate asks for it."""
-    seconds = min(2.0, reach.duration / 2)
+def chirp(reach: Reach, band: tuple[float, float], longest: float, dt: float) -> Array:
+    """A few percent of the range about its middle, logarithmic in frequency, less where the rate asks for it."""
+    seconds, middle = min(longest, reach.duration / 2), (reach.low + reach.high) / 2
     t = np.arange(0, seconds, dt)
-    growth = np.log(CHIRP[1] / CHIRP[0]) / seconds
-    frequency = CHIRP[0] * np.exp(growth * t)
+    growth = np.log(band[1] / band[0]) / seconds
+    frequency = band[0] * np.exp(growth * t)
     size = np.minimum(0.03 * (reach.high - reach.low), 0.9 * reach.rate / (2 * np.pi * frequency))
     ramp = np.arange(reach.low, middle, reach.rate * dt)
-    return np.concatenate([ramp, middle + size * np.sin(2 * np.pi * (frequency - CHIRP[0]) / growth)])
+    return np.concatenate([ramp, middle + size * np.sin(2 * np.pi * (frequency - band[0]) / growth)])

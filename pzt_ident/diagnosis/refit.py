@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.diagnosis.noise import noise_floor, sizes
 from pzt_ident.model import Model
-from pzt_ident.plan import Plan, between
+from pzt_ident.plan import Plan
 from pzt_ident.problem import Problem
 from pzt_ident.record import Record
 from pzt_ident.registry import Choice, blocks
@@ -26,6 +26,8 @@ REFINED, MOST = 4, 24
 AGREE = 0.01  # of the loss, between the two best of them
 ELSEWHERE = 2  # chance points of one block that are refined
 EDGE = 1e-4  # of a parameter's range: as near to its end it is on the bound
+COARSE = 0.05  # noise floors of a record: what halving the step may change before the simulation takes finer steps
+FINEST = 8  # steps a sample
 DAMPINGS = 10.0 ** np.arange(-5, 4)
 
 
@@ -49,13 +51,22 @@ class Case:
         self.tell = tell
         self.words, self.effects = tuple(words), tuple(effects)
         self.ruled_out, self.shared = tuple(ruled_out), tuple(shared)
+        self._at: dict[tuple[int, int], Record] = {}
+        self.refits: dict[Any, Fit] = {}  # by effects, steps and start
         self.records, self.wishes, self.sizes = tuple(records), wishes, sizes(list(records))
 
-    def problem(self, effects: Sequence[str]) -> Problem:
+    def problem(self, effects: Sequence[str], steps: Sequence[int] = ()) -> Problem:
+        """`steps` a sample of each record, by default those of the job."""
         first = self.records[0]
         chain = blocks.chain((*self.words, *effects))
-        model = Model(chain, first.axes, first.measured, self.shared)
-        return Problem(model, self.records, self.wishes, self.sizes)
+        model = Model(chain, first.axes, first.measured, self.shared, self.wishes)
+        own = steps or [record.steps for record in self.records]
+        records = [self.at(number, count) for number, count in enumerate(own)]
+        return Problem(model, records, self.wishes, self.sizes)
+
+    def at(self, number: int, steps: int) -> Record:
+        """A record, simulated in so many steps a sample; the same one each time, whose signals are made ready once."""
+        return self._at.setdefault((number, steps), replace(self.records[number], steps=steps))
 
     @cached_property
     def floor(self) -> float:
@@ -89,6 +100,11 @@ class Fit:
         found = zip(problem.names, ends, values, nulls, strict=True)
         return tuple(name for name, end, value, null in found if end and (null is None or not np.isclose(value, null)))
 
+    @property
+    def steps(self) -> tuple[int, ...]:
+        """Of the simulation in a sample of each record."""
+        return tuple(record.steps for record in self.problem.records)
+
     def value(self, name: str) -> float:
         return float(self.problem.physical(self.point)[0][self.problem.names.index(name)])
 
@@ -115,38 +131,46 @@ def first_fit(case: Case, seed: int) -> Fit:
         losses = problem.loss(ends)
         best, second = np.sort(losses)[:2]
         agreed = bool(second <= (1 + AGREE) * best + 0.1 * case.floor and np.isfinite(best))
-    return made(case.effects, problem, ends[np.argmin(losses)], agreed)
+    return resolved(case, made(case.effects, problem, ends[np.argmin(losses)], agreed))
 
 
 def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, float]) -> Fit:
     """The model with other effects, from the parameters it had and a guess (user's units) of the new ones."""
-    problem = case.problem(effects)
+    problem = case.problem(effects, before.steps)
     old = dict(zip(before.problem.names, before.problem.physical(before.point)[0], strict=True))
     middle = problem.physical(np.full(problem.dimensions, 0.5))[0]
     start = {name: guess.get(name, old.get(name, middle[i])) for i, name in enumerate(problem.names)}
-    found = made(effects, problem, descend(problem, problem.unit_point(start)))
+    point = problem.unit_point(start)
+    key = (effects, before.steps, point.tobytes())
+    if key not in case.refits:
+        case.refits[key] = resolved(case, made(effects, problem, descend(problem, point)))
+    found = case.refits[key]
     case.tell({"event": "refitted", "effects": effects, "identify": found.identify, "validate": found.validate})
     return found
 
 
-def step_error(fit: Fit) -> float:
-    """What halving the step of the simulation changes, root mean square, in units of the loss.
+def resolved(case: Case, fit: Fit) -> Fit:
+    """The fit, gone on with at finer steps of the records where halving the step would show.
 
-    Where the drive is linear between samples, so is what each block hands on to the next: the error of that.
+    Where the drive is linear between samples, what each block hands on to the next is taken for linear too.
     """
-    problem, changes = fit.problem, []
+    coarse = step_errors(fit) > COARSE * case.floor
+    if not coarse.any() or max(fit.steps) >= FINEST:
+        return fit
+    steps = [count * (2 if more else 1) for count, more in zip(fit.steps, coarse, strict=True)]
+    problem = case.problem(fit.effects, steps)
+    return resolved(case, made(fit.effects, problem, descend(problem, fit.point), fit.converged))
+
+
+def step_errors(fit: Fit) -> Array:
+    """What halving the step of the simulation changes in each record, root mean square, in units of the loss."""
+    problem, found = fit.problem, []
     theta = problem.parameters(fit.point)
-    for plan in problem.plans["identify"]:
-        finer = Plan(problem.model, halved(plan.record, problem.model.oversample > 1)).simulate(theta)[0, :, ::2]
-        change = (finer - plan.simulate(theta)[0])[:, plan.record.settle :]
-        changes.append((change - change.mean(axis=1, keepdims=True)) / problem.sizes[:, None])
-    return float(np.sqrt(np.mean(np.square(np.hstack(changes)))))
-
-
-def halved(record: Record, smooth: bool) -> Record:
-    """A record at half the step, without responses."""
-    drive = np.array([between(row, 2, bool(record.run_in), smooth) for row in record.drive])
-    return replace(record, dt=record.dt / 2, drive=drive, response=np.zeros_like(drive), settle=2 * record.settle)
+    for record in problem.records:
+        one, two = (Plan(problem.model, replace(record, steps=record.steps * n)).simulate(theta)[0] for n in (1, 2))
+        change = (two - one)[:, record.settle :] / problem.sizes[:, None]
+        found.append(np.sqrt(np.mean(np.var(change, axis=1))))
+    return np.array(found)
 
 
 def elsewhere(fit: Fit) -> Fit:

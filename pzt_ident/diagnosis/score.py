@@ -27,7 +27,8 @@ TRIALS = 5  # values over the range of a parameter that means nothing at the nul
 @dataclass
 class Score:
     """What the data say of an effect without a refit. `guess` in the user's `units`; `visibility` is the share of its
-    trace that the fitted parameters cannot take up, `power` the largest plausible rms of that, in noise floors."""
+    trace, where it explains most, that the fitted parameters cannot take up, `power` the largest plausible rms of what
+    they cannot, in noise floors."""
 
     effect: str
     explained: float = 0.0
@@ -87,27 +88,28 @@ class Scorer:
         return signals - self.basis @ (self.basis.T @ signals)
 
     def score(self, effect: str) -> Score:
-        problem = self.case.problem((*self.fit.effects, effect))
+        problem = self.case.problem((*self.fit.effects, effect), self.fit.steps)
         found = (self._addition if issubclass(blocks[effect], Addition) else self._growth)(effect, problem)
         units = zip(problem.names, problem.units, strict=True)
         return replace(found, units={name: unit for name, unit in units if name in found.guess})
 
     def _growth(self, effect: str, problem: Problem) -> Score:
         """What the response does as the effect leaves its null."""
-        found = Score(effect)
+        found, most = Score(effect), 0.0
         for trial, columns in self._trials(effect, problem):
             trace = self.project(columns.T)
             left_over, whole = np.linalg.norm(trace, axis=0).max(), np.linalg.norm(columns, axis=1).max()
-            found.visibility = max(found.visibility, float(left_over / max(whole, 1e-300)))
+            seen = float(left_over / max(whole, 1e-300))
+            most = max(most, seen)
             if trial.size == max(blocks[effect].sizes):
                 found.power = max(found.power, float(left_over / trial.size / self.case.floor))
             amounts = self._amounts(trace, problem.lower[trial.growing] >= trial.start[trial.growing])
             left = self.residual + trace @ amounts
             explained = (self.residual @ self.residual - left @ left) / self.misfit
             if explained > found.explained:
-                found.explained, found.trace = float(explained), trace @ amounts
+                found.explained, found.trace, found.visibility = float(explained), trace @ amounts, seen
                 found.guess = self._scaled(problem, trial, amounts)
-        return found
+        return found if found.guess else replace(found, visibility=most)
 
     def _amounts(self, trace: Array, one_sided: NDArray[np.bool_]) -> Array:
         """How much of each trace fits best, as if the effect were linear; none where the bounds allow no way back, as

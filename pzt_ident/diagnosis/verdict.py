@@ -8,7 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
-from pzt_ident.diagnosis.refit import Case, Fit, refit, step_error
+from pzt_ident.diagnosis.refit import Case, Fit, refit, step_errors
 from pzt_ident.diagnosis.score import Score, Scorer, applicable, misfit
 from pzt_ident.registry import blocks
 
@@ -60,11 +60,19 @@ def least(case: Case, first: Fit) -> float:
 
 
 def earns(case: Case, first: Fit, before: Fit, after: Fit) -> bool:
-    """Whether an effect removes enough, of the identify records and of those that the fit never saw."""
+    """Whether an effect removes enough, of the identify records and of those that the fit never saw; where these show
+    nothing of it, it must explain all."""
     gone = drop(before.identify, after.identify)
-    own = drop(before.validate, after.validate)
     enough = least(case, first)
-    return gone > enough and gone**2 > SHARE * misfit(case, before) and own > enough / 2
+    seen = drop(before.validate, after.validate) > enough / 2 or unseen(case, first, before, after)
+    return gone > enough and gone**2 > SHARE * misfit(case, before) and seen
+
+
+def unseen(case: Case, first: Fit, before: Fit, after: Fit) -> bool:
+    """Whether an effect explains all that is left, and the records that the fit never saw are at the noise with it and
+    without."""
+    noise = np.hypot(case.floor, least(case, first))
+    return all(error is not None and error <= noise for error in (before.validate, after.validate, after.identify))
 
 
 def adequate(case: Case, first: Fit, fit: Fit) -> bool:
@@ -114,7 +122,7 @@ def faulty(case: Case, first: Fit, fit: Fit) -> str:
         return ""
     if not fit.converged:
         return "Two starts of the fit do not agree: what is left may be the search's fault. Narrow the bounds."
-    coarse = step_error(fit)
+    coarse = float(np.sqrt(np.mean(np.square(step_errors(fit)))))
     if coarse <= COARSE * misfit(case, fit) ** 0.5:
         return ""
     return (
@@ -185,6 +193,8 @@ def sentence(case: Case, first: Fit, before: Fit, best: Candidate, words: list[s
     share = drop(before.identify, best.fit.identify) ** 2 / misfit(case, before)
     floors = f"{before.identify / case.floor:.1f} to {best.fit.identify / case.floor:.1f} noise floors"
     said = f"it explains {100 * min(share, 1):.0f} % of the misfit; the RMSE falls from {floors}."
+    if unseen(case, first, before, best.fit):
+        said += " The records to validate show nothing of it, so only those that it was fitted to speak for it."
     if not adequate(case, first, best.fit):
         said += " More than that is missing, or it stands in for something else: `pzt-ident improve` follows it up."
     if len(words) == 1:

@@ -16,8 +16,8 @@ class EncoderCyclicError(Block):
 
     place = Place.SENSOR
     trials = {"pitch": 60}
-    sine = Parameter("response", (-0.02, 0.02), "Error of the first harmonic, odd about x = 0.", null=0)
-    cosine = Parameter("response", (-0.02, 0.02), "Error of the first harmonic, even about x = 0.", null=0)
+    sine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, odd about x = 0.", null=0)
+    cosine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, even about x = 0.", null=0)
     pitch = Parameter("response", (0.01, 2), "Period of the grating's signal.", scale="log")
     looks_like = ("quadratic_gain", "cubic_stiffness", "saturation")
     separate_by = "Shift the encoder head by half a pitch and repeat: this error changes its sign, all others stay."

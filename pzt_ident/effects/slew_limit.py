@@ -16,7 +16,7 @@ class SlewLimit(Block):
     """
 
     place = Place.SLEW
-    sizes = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0)
+    sizes = tuple(1.25**-k for k in range(32))
     slowness = Parameter("s/drive", (0, 0.1), "Capacitance over the greatest current.", null=0)
     looks_like = ("amplifier_lag", "sensor_lag")
     separate_by = "Sweep the amplitude at one frequency: this sets in where frequency times amplitude is too much."

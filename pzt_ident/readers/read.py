@@ -91,6 +91,7 @@ def _record(finder: Finder, axes: Mapping[str, Axis], time: Channel | None) -> R
         start=grid.start + grid.dt * part.start,
         settle=round(source.settle / (grid.dt * source.decimate)),
         run_in=source.run_in,
+        steps=source.steps,
         file=source.file,
         sha256=finder.hash(),
         rows=(first + part.start, first + part.stop),

@@ -173,7 +173,8 @@ class Coarse(Block):
 
 def test_halving_the_step_changes_nothing_of_what_is_exact(plain):
     fit = first_fit(plain, 0)
-    assert refit.step_error(fit) < 1e-9 * plain.floor
+    assert refit.step_errors(fit).max() < 1e-9 * plain.floor
+    assert fit.steps == (1, 1)
 
 
 def test_a_solver_too_coarse_for_what_is_left_is_blamed_on_no_effect(plain, monkeypatch):
@@ -182,8 +183,24 @@ def test_a_solver_too_coarse_for_what_is_left_is_blamed_on_no_effect(plain, monk
     fit = first_fit(made, 0)
     problem = fit.problem
     response = problem.model.simulate(problem.records[0], problem.parameters(fit.point))[0, 0]
-    half_a_step = np.gradient(response) / 2  # by which Euler's lag is too short
-    assert refit.step_error(fit) == pytest.approx(np.std(half_a_step), rel=0.1)
+    half_a_step = np.gradient(response) / 2 / refit.FINEST  # by which Euler's lag is too short
+    assert fit.steps == (refit.FINEST, refit.FINEST)
+    assert refit.step_errors(fit)[0] == pytest.approx(np.std(half_a_step), rel=0.1)
+
+
+def test_a_lag_within_the_sample_is_told_from_a_delay_by_finer_steps():
+    """The voltage between samples, which the mechanics ring with: a lag rounds it, a delay does not."""
+    time = 1e-4 * np.arange(2500)
+    drives = [50 * (1 - np.cos(2 * np.pi * start * time)) + 3 * np.sin(5e4 * time**2) for start in (10, 13)]
+    known = {name: value for name, value in stage.STAGE.items() if name.startswith("lumped")}
+    model = ("bouc_wen", "lumped")
+    made = stage.case({"amplifier_lag.tau": 2e-5}, known, model=model, drives=drives, dt=1e-4, noise=2e-9, steps=32)
+    first = first_fit(made, 0)
+    lag, delay = (refit.refit(made, first, (word,), {}) for word in ("amplifier_lag", "delay"))
+    assert min(lag.steps) > 1
+    assert lag.identify == pytest.approx(2e-9, rel=0.1)
+    assert lag.value("amplifier_lag.tau") == pytest.approx(2e-5, rel=0.02)
+    assert delay.total > 1.5 * lag.total
 
 
 def test_a_parameter_on_a_bound_is_told_unless_it_is_its_null(creeping):

@@ -11,7 +11,7 @@ import stage
 from pzt_ident.diagnosis import refit
 from pzt_ident.diagnosis.refit import first_fit
 from pzt_ident.diagnosis.score import Score
-from pzt_ident.diagnosis.verdict import Candidate, diagnose, drop, earns, settle
+from pzt_ident.diagnosis.verdict import Candidate, diagnose, drop, earns, sentence, settle
 from pzt_ident.registry import blocks
 
 
@@ -49,8 +49,8 @@ def test_what_is_missing_is_named_and_its_refit_is_at_the_noise_on_records_that_
 
 
 def test_look_alikes_that_fit_hardly_worse_are_in_its_class():
-    made, found = missing("amplifier_lag")
-    assert found.best.score.effect == "amplifier_lag"
+    made = stage.case(stage.EFFECTS["amplifier_lag"], noise=1e-8)
+    found = judged(made)
     assert {"amplifier_lag"} < set(found.tied) <= {"amplifier_lag", *blocks["amplifier_lag"].looks_like}
     for word in found.tied[1:]:
         assert drop(of(found, word).fit.total, found.best.fit.total) < 0.4 * made.floor
@@ -112,20 +112,14 @@ def test_what_no_effect_explains_is_given_no_name():
     assert found.best is None
 
 
-def test_what_a_shorter_step_would_change_is_blamed_on_no_effect():
+@pytest.mark.parametrize(("finest", "verdict"), [(8, "adequate"), (1, "refused")])
+def test_what_a_shorter_step_would_change_is_blamed_on_no_effect(monkeypatch, finest, verdict):
     soft = {"lumped.mass": 1.0, "lumped.stiffness": 1e5, "lumped.damping": 30.0}  # 50 Hz, sampled at 200 Hz
-    known = stage.STAGE | stage.EFFECTS["amplifier_lag"] | soft
-    made = stage.case(fixed=soft, effects=["amplifier_lag"], model=("bouc_wen", "lumped"), noise=0)
-
-    def between(record):
-        fine = np.interp(np.arange(8 * record.samples) / 8, np.arange(record.samples), record.drive[0])
-        true = rig.response(("amplifier_lag", "bouc_wen", "lumped"), known, fine, dt=record.dt / 8)[::8]
-        return true - record.response[0] + np.random.default_rng(2).normal(0, 1e-10, record.samples)
-
-    found = judged(stage.with_response(made, between))
-    assert found.before.identify > 2e-10
-    assert found.verdict == "refused"
-    assert "halving its step" in found.reason
+    lag = stage.EFFECTS["amplifier_lag"]
+    monkeypatch.setattr(refit, "FINEST", finest)
+    found = judged(stage.case(lag | soft, soft, ["amplifier_lag"], ("bouc_wen", "lumped"), noise=1e-10))
+    assert found.verdict == verdict
+    assert ("halving its step" in found.reason) == (verdict == "refused")
 
 
 def test_a_fit_that_has_not_converged_is_blamed_on_no_effect(monkeypatch):
@@ -176,6 +170,17 @@ def test_an_effect_that_helps_only_the_records_that_were_fitted_earns_nothing():
     assert not earns(made, before, before, worse)
     alone = refit.Fit(after.effects, after.problem, after.point, after.identify, None)
     assert earns(made, before, before, alone)
+
+
+def test_records_that_show_nothing_of_an_effect_leave_it_to_explain_all():
+    made, found = missing("creep")
+    before = replace(found.before, validate=made.floor)
+    after = replace(before, identify=made.floor)
+    assert earns(made, before, before, after)
+    assert not earns(made, before, before, replace(after, identify=1.5 * made.floor))
+    assert not earns(made, before, before, replace(after, validate=1.5 * made.floor))
+    assert "show nothing of it" in sentence(made, before, before, replace(found.best, fit=after), ["creep"])
+    assert "show nothing of it" not in found.reason
 
 
 def test_a_drop_is_root_mean_square_and_has_a_sign():

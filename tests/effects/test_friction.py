@@ -1,15 +1,18 @@
-"""Dahl friction against its closed form in the displacement."""
+"""Friction against its closed forms: Dahl's in the displacement, and Stribeck's in the speed of sliding."""
 
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from rig import path, response
 
 
-def rubbed(force, sliding=0.05, reach=0.3):
-    return response(["friction"], {"friction.force": sliding, "friction.reach": reach}, force)
+def rubbed(force, sliding=0.05, reach=0.3, stiction=0.0, stribeck=1.0, dt=1e-3):
+    words = {"force": sliding, "reach": reach, "stiction": stiction, "stribeck": stribeck}
+    return response(["friction"], {f"friction.{word}": value for word, value in words.items()}, force, dt=dt)
 
 
 def driving(x, sliding, reach):
@@ -39,3 +42,20 @@ def test_below_the_reach_it_is_a_spring():
     """sliding / reach times the stiffness."""
     small = path(0, 1e-6, -1e-6, 0)
     np.testing.assert_allclose(rubbed(small), small / (1 + 0.05 / 0.3), rtol=1e-5, atol=1e-11)
+
+
+@given(speed=st.floats(0.01, 100), stiction=st.floats(0, 0.5), stribeck=st.floats(0.1, 10))
+def test_sliding_takes_less_force_the_faster_it_is(speed, stiction, stribeck):
+    """The Stribeck curve, eq. 5: some reaches on, the stage is behind its force by the level of its speed."""
+    force = np.linspace(0, 20, 501)
+    behind = force - rubbed(force, stiction=stiction, stribeck=stribeck, dt=force[1] / speed)
+    assert behind[-1] == pytest.approx(0.05 * (1 + stiction * np.exp(-((speed / stribeck) ** 2))), rel=1e-9)
+
+
+def test_breaking_away_overshoots_the_sliding_friction():
+    """A stage that speeds up is left behind by what stiction was, within the reach."""
+    force = np.concatenate([np.linspace(0, 7, 7001), 7 + np.linspace(0, 10, 101)[1:]])  # 1/s, then 100/s
+    behind = force - rubbed(force, stiction=0.2, stribeck=10.0)
+    assert behind[7000] == pytest.approx(0.05 * (1 + 0.2 * np.exp(-0.01)), rel=1e-6)
+    assert behind[-1] == pytest.approx(0.05, rel=1e-6)
+    assert np.all(np.diff(behind[7001:]) <= 1e-15)

@@ -10,13 +10,15 @@ from scipy.signal import resample
 
 from pzt_ident.block import Bank, Beside, Coupling, Modes, Operator, Place, Relays, Shift, asked
 
+SIZES = ("span", "peak")  # of the drive of the axis itself
+
 
 def simulate(model, record, theta):
     """What `Model.simulate` gives for one candidate: (measured axes, samples). Once a number overflows, NaN.
 
     The prompt response of an operator is driven by what the readouts make of the drive, its memory by the drive.
     """
-    drives = [np.tile(fine(row, model.oversample, record.run_in), record.run_in + 1) for row in record.drive]
+    drives = [np.tile(fine(row, model, record), record.run_in + 1) for row in record.drive]
     early = [block for block in model.blocks if block.place < Place.READOUT]
     readouts = [block for block in model.blocks if block.place == Place.READOUT]
     middle = [block for block in model.blocks if Place.READOUT < block.place < Place.GUIDE]
@@ -27,8 +29,8 @@ def simulate(model, record, theta):
     operated = any(block.place == Place.OPERATOR for block in middle)
     forces = through(middle, model, record, theta, entering if operated else prompt, prompt)
     signals = through(late, model, record, theta, forces, forces)
-    since = record.run_in * record.samples * model.oversample
-    return np.array([signals[axis][since :: model.oversample] for axis in model.measured])
+    times = model.oversample * record.steps
+    return np.array([signals[axis][record.run_in * record.samples * times :: times] for axis in model.measured])
 
 
 def through(chain, model, record, theta, signals, aside=None):
@@ -70,24 +72,29 @@ def together(block, given, first, signals):
     return moved
 
 
-def fine(drive, times, periodic):
-    if times == 1:
-        return drive
-    if periodic:
-        return resample(drive, times * len(drive))
-    after_the_last = np.minimum(np.arange(times * len(drive)) / times, len(drive) - 1)
-    return CubicSpline(np.arange(len(drive)), drive)(after_the_last)
+def fine(drive, model, record):
+    """A line between samples, the last one held, or a smooth curve for a block that asks for it."""
+    count, times = len(drive), model.oversample * record.steps
+    grid = np.arange(times * count) / times
+    if model.oversample == 1:
+        return np.interp(grid, np.arange(count), drive, period=count if record.run_in else None)
+    if record.run_in:
+        return resample(drive, times * count)
+    return CubicSpline(np.arange(count), drive)(np.minimum(grid, count - 1))
 
 
 def parameters(model, block, record, axis, other, theta):
-    """Values by name; an axis that is not measured takes those of the first that is, and nothing from another axis."""
-    found = {"dt": [record.dt / model.oversample], "span": [np.ptp(record.drive[axis])]}
+    """Values by name; an axis that is not measured takes nothing from another axis, and the values of the first that is
+    where it is not given its own."""
+    found = {"dt": [record.dt / model.oversample / record.steps], "span": [np.ptp(record.drive[axis])]}
     found |= {"peak": [np.abs(record.drive[axis]).max()]} | {word: [n] for word, n in block.numbers().items()}
     found |= {declared.name: [declared.null] for declared in block.parameters().values() if declared.effect}
     if axis not in model.measured:
         if other != axis or issubclass(block, Modes):
             return None
-        axis = other = model.measured[0]
+        given = {s.word: [v] for s, v in zip(model.slots, theta, strict=True) if s.block is block and s.axis == axis}
+        first = model.measured[0]
+        return parameters(model, block, record, first, first, theta) | {word: found[word] for word in SIZES} | given
     own = {}
     for slot, value in zip(model.slots, theta, strict=True):
         if slot.block is block and ((slot.axis, slot.other) == (axis, other) or slot.name in model.shared):
