@@ -159,7 +159,7 @@ async function upload(list) {
   const said = [];
   for (const file of list)
     try {
-      if (file.size > state.largest) throw new Error(`${file.name} is larger than ${state.largest >> 20} MiB: put it into the folder that the workbench was started in, and take it from there.`);
+      if (file.size > state?.largest) throw new Error(`${file.name} is larger than ${state.largest >> 20} MiB: put it into the folder that the workbench was started in, and take it from there.`);
       await columns.add(await (await call(`upload?name=${encodeURIComponent(file.name)}`, file, true)).json());
       measured();
     } catch (error) { said.push(error.message); }
