@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.block import TILES, Bank, Beside, Block, Coupling, Modes, Operator, Place, Shift, asked
 from pzt_ident.model import Model
-from pzt_ident.record import Record
+from pzt_ident.record import Record, between
 from pzt_ident.solve import Solve
 
 Array = NDArray[np.float64]
@@ -288,21 +288,3 @@ class Plan:
             columns = self.model.columns(block, axis, axis) or {}
             signals += block.basis(time, *(theta[columns[word]] for word in asked(block.basis)[1:]))  # type: ignore[attr-defined]
         return np.array(signals).T
-
-
-def between(drive: Array, times: int, periodic: bool, smooth: bool) -> Array:
-    """A drive at so many steps a sample, the last sample held: linear between samples, or smooth, which is band-limited
-    where it is periodic and else a cubic spline. (samples,) -> (times * samples,)."""
-    if times == 1:
-        return drive
-    if smooth and periodic:
-        from scipy.signal import resample
-
-        return np.asarray(resample(drive, times * drive.size))
-    ahead = np.append(drive, drive[0] if periodic else drive[-1])
-    grid = np.arange(times * drive.size) / times
-    if not smooth:
-        return np.interp(grid, np.arange(ahead.size), ahead)
-    from scipy.interpolate import CubicSpline
-
-    return np.asarray(CubicSpline(np.arange(drive.size), drive)(np.minimum(grid, drive.size - 1)))

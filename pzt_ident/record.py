@@ -98,3 +98,21 @@ class Record:
     @property
     def time(self) -> NDArray[np.float64]:
         return self.start + self.dt * np.arange(self.samples, dtype=np.float64)
+
+
+def between(drive: NDArray[np.float64], times: int, periodic: bool, smooth: bool) -> NDArray[np.float64]:
+    """A drive at so many steps a sample, the last sample held: linear between samples, or smooth, which is band-limited
+    where it is periodic and else a cubic spline. (samples,) -> (times * samples,)."""
+    if times == 1:
+        return drive
+    if smooth and periodic:
+        from scipy.signal import resample
+
+        return np.asarray(resample(drive, times * drive.size))
+    ahead = np.append(drive, drive[0] if periodic else drive[-1])
+    grid = np.arange(times * drive.size) / times
+    if not smooth:
+        return np.interp(grid, np.arange(ahead.size), ahead)
+    from scipy.interpolate import CubicSpline
+
+    return np.asarray(CubicSpline(np.arange(drive.size), drive)(np.minimum(grid, drive.size - 1)))
