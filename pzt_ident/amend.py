@@ -1,4 +1,4 @@
-"""A job file with other effects in it: comments, order and layout kept."""
+"""A job file with other effects or another model in it: comments, order and layout kept."""
 
 from __future__ import annotations
 
@@ -18,24 +18,54 @@ def add(job: Path, effect: str, out: Path, plugins: bool = False) -> Job:
 
     Raises InputError where the effect is unknown, there already, or does not fit the model, and where `out` exists.
     """
-    from pzt_ident.files import write_text
-
     before = load_job(job, plugins)
-    if out.exists():
-        raise InputError("exists already", where=str(out), remedy="give another file with -o")
     if effect in before.effects:
         raise InputError(f"{effect!r} is in its effects already", where=str(job), remedy="add another effect")
     if effect not in blocks:
         raise InputError(f"unknown effect {effect!r}", remedy=nearest(effect, blocks.effects()))
-    text = with_effects(before, (*before.effects, effect), out.parent)
+    return _write(before, (*before.effects, effect), None, out, plugins)
+
+
+def remove(job: Path, effect: str, out: Path, plugins: bool = False) -> Job:
+    """Write the job of a file without one of its effects into another; the new job.
+
+    Raises InputError where it is not among them, and where `out` exists.
+    """
+    before = load_job(job, plugins)
+    if effect not in before.effects:
+        raise InputError(f"{effect!r} is not in its effects", where=str(job), remedy=_there(before.effects))
+    return _write(before, [word for word in before.effects if word != effect], None, out, plugins)
+
+
+def model(job: Path, words: Sequence[str], out: Path, plugins: bool = False) -> Job:
+    """Write the job of a file with these blocks as its model into another; the new job. A block keeps its settings.
+
+    Raises InputError where the blocks are no model, and where `out` exists.
+    """
+    before = load_job(job, plugins)
+    return _write(before, before.effects, words, out, plugins)
+
+
+def _there(effects: Sequence[str]) -> str:
+    return f"it has {', '.join(effects)}" if effects else "it has none"
+
+
+def _write(before: Job, effects: Sequence[str], words: Sequence[str] | None, out: Path, plugins: bool) -> Job:
+    from pzt_ident.files import write_text
+
+    if out.exists():
+        raise InputError("exists already", where=str(out), remedy="give another file with -o")
+    text = amended(before, effects, out.parent, words)
     made = Job.from_text(text, out.parent, str(out), plugins)
     write_text(out, text)
     return made
 
 
-def with_effects(job: Job, effects: Sequence[str], folder: Path, steps: Sequence[int] = ()) -> str:
-    """The job's text with these effects, its paths as seen from another folder; `steps` a sample of each record, where
-    they are not the job's."""
+def amended(
+    job: Job, effects: Sequence[str], folder: Path, words: Sequence[str] | None = None, steps: Sequence[int] = ()
+) -> str:
+    """The job's text with these effects, its paths as seen from another folder; with these blocks where `words` are
+    given, and `steps` a sample of each record, where they are not the job's."""
     from ruamel.yaml import YAML
     from ruamel.yaml.comments import CommentedSeq
 
@@ -51,6 +81,8 @@ def with_effects(job: Job, effects: Sequence[str], folder: Path, steps: Sequence
     for word in [word for word in found if word not in effects]:
         found.remove(word)
     found.extend(word for word in effects if word not in found)
+    if words is not None:
+        document["model"][:] = _items(document["model"], words)
     for record, source, count in zip(document["records"], job.records, steps, strict=False):
         if count != source.steps:
             record["steps"] = count
@@ -62,6 +94,12 @@ def with_effects(job: Job, effects: Sequence[str], folder: Path, steps: Sequence
     written = StringIO()
     yaml.dump(document, written)
     return written.getvalue()
+
+
+def _items(items: Sequence[Any], words: Sequence[str]) -> list[Any]:
+    """The blocks of these words, as they stand in the model where they are in it."""
+    known = {item if isinstance(item, str) else item["name"]: item for item in items}
+    return [known.get(word, word) for word in words]
 
 
 def indents(document: Any) -> dict[str, int]:

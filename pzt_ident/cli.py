@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pzt_ident.shell import EXISTING, Commands, answer, diagnosing, output, reporting, searching, trusting
+from pzt_ident.shell import EXISTING, Group, amend, amending, answer, diagnosing, output, reporting, searching, trusting
 
 if TYPE_CHECKING:
     from pzt_ident.terminal import Listener
 
 
-@click.group(cls=Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(package_name="pzt-ident", prog_name="pzt-ident")
 @click.option("--debug", is_flag=True, help="Show where an unexpected error came from.")
 def main(debug: bool) -> None:
@@ -112,18 +112,24 @@ def diagnose(job: Path, **options: Any) -> None:
 
 
 @main.command()
-@click.argument("job", type=EXISTING)
-@click.argument("effect")
-@click.option("-o", "--out", type=EXISTING, required=True, help="The new job file.")
-@trusting
-@output
-def add(job: Path, effect: str, out: Path, plugins: bool, as_json: bool, quiet: bool) -> None:
+@amending("EFFECT")
+def add(**options: Any) -> None:
     """Write the job file JOB with an EFFECT more, comments kept."""
-    from pzt_ident.amend import add
+    amend("add", **options)
 
-    made = add(job, effect, out, plugins)
-    said = f"wrote {out}: effects {', '.join(made.effects)}\nnext: pzt-ident run {quote(str(out))}"
-    answer({"job": str(out), "effects": list(made.effects)}, lambda: click.echo(said), as_json, quiet)
+
+@main.command()
+@amending("EFFECT")
+def remove(**options: Any) -> None:
+    """Write the job file JOB with one EFFECT less, comments kept."""
+    amend("remove", **options)
+
+
+@main.command()
+@amending("BLOCK...", nargs=-1, required=True)
+def model(**options: Any) -> None:
+    """Write the job file JOB with a model of these blocks, comments kept."""
+    amend("model", **options)
 
 
 @main.command()

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from pzt_ident.amend import with_effects
+from pzt_ident.amend import amended
 from pzt_ident.compare import compare
 from pzt_ident.diagnosis import improve as stairs
 from pzt_ident.diagnosis.locate import locate
@@ -49,7 +49,7 @@ def begun(job: Job, out: Path | None, listen: Listen = lambda event: None) -> It
     problem_of(job, records)
     folder = folder_for(job, out)
     make_empty(folder)
-    write_text(folder / "job.yaml", with_effects(job, job.effects, folder))
+    write_text(folder / "job.yaml", amended(job, job.effects, folder))
     write_json(folder / "environment.json", environment(job, records))
     case = Case(job.model, job.effects, records, job.parameters, job.rule_out, job.shared)
     with recorded(folder, listen) as tell, np.errstate(all="ignore"):
@@ -96,7 +96,7 @@ def improve(job: Job, out: Path | None = None, listen: Listen = lambda event: No
             write_signals(folder / name, step.fit.problem, step.fit.point)
         content = improvement_of(job, case, steps, diagnosis) | {"next_experiment": diagnosis["next_experiment"]}
         end = steps[-1].fit
-        write_text(folder / "improved.yaml", with_effects(job, end.effects, folder, end.steps))
+        write_text(folder / "improved.yaml", amended(job, end.effects, folder, steps=end.steps))
         write_json(folder / "diagnosis.json", diagnosis)
         write_json(folder / "improvement.json", content)
         compare(folder, folder)

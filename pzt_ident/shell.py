@@ -6,6 +6,7 @@ import errno
 import json
 from collections.abc import Callable
 from pathlib import Path
+from shlex import quote
 from typing import Any
 
 import click
@@ -29,7 +30,7 @@ class Interrupted(click.ClickException):
     exit_code = 130
 
 
-class Commands(click.Group):
+class Group(click.Group):
     """Turns errors into one clear line: exit code 2 for bad input, 1 for a failure, 130 for an interrupt."""
 
     def invoke(self, ctx: click.Context) -> Any:
@@ -82,6 +83,29 @@ def diagnosing(command: Command) -> Command:
     said = "Folder for the results; results/<name>/<time>-<hash> if not given."
     command = reporting(trusting(output(command)))
     return click.argument("job", type=EXISTING)(click.option("--out", type=EXISTING, help=said)(command))
+
+
+def amending(metavar: str, **more: Any) -> Callable[[Command], Command]:
+    """JOB, the words of its change, -o and the options of a command that writes another job file."""
+
+    def decorate(command: Command) -> Command:
+        new = click.option("-o", "--out", type=EXISTING, required=True, help="The new job file.")
+        words = click.argument("words", metavar=metavar, **more)
+        return click.argument("job", type=EXISTING)(words(new(trusting(output(command)))))
+
+    return decorate
+
+
+def amend(name: str, job: Path, words: Any, out: Path, plugins: bool, as_json: bool, quiet: bool) -> None:
+    """Write another job file by the function of `amend` with this name, and say what is in it."""
+    from pzt_ident import amend
+    from pzt_ident.registry import word_of
+
+    made = getattr(amend, name)(job, words, out, plugins)
+    facts = {"model": [word_of(item) for item in made.model], "effects": list(made.effects)}
+    held = "; ".join(f"{key} {', '.join(named) or 'none'}" for key, named in facts.items())
+    said = f"wrote {out}: {held}\nnext: pzt-ident run {quote(str(out))}"
+    answer({"job": str(out)} | facts, lambda: click.echo(said), as_json, quiet)
 
 
 def answer(found: dict[str, Any], say: Callable[[], None], as_json: bool, quiet: bool) -> None:

@@ -12,7 +12,7 @@ from pzt_ident.errors import InputError
 
 Change = Callable[[Document, Loc, Any], Any]
 
-_QUANTITY = re.compile(r"^([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\d].*)$")
+QUANTITY = re.compile(r"^([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\d].*)$")
 
 
 def written_out(document: Document) -> dict[str, Any]:
@@ -77,7 +77,7 @@ def _target(document: Document, loc: Loc, value: Any) -> Any:
 
 def _split(document: Document, loc: Loc, text: str, example: str) -> tuple[float, str | None]:
     """Number and unit; a harmless number where the text is no quantity, which is noted."""
-    if found := _QUANTITY.match(text.strip()):
+    if found := QUANTITY.match(text.strip()):
         return float(found[1]), found[2]
     document.fault(loc, f"{text!r} is not a number with a unit", f"write a number with its unit, such as `{example}`")
     return 1.0, None

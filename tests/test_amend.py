@@ -7,7 +7,7 @@ import os
 import pytest
 from click.testing import CliRunner
 
-from pzt_ident.amend import with_effects
+from pzt_ident.amend import amended
 from pzt_ident.cli import main
 from pzt_ident.job import load_job
 
@@ -51,13 +51,17 @@ def job(tmp_path):
 def test_finer_steps_are_noted_where_they_are_not_the_jobs(job):
     text = JOB.replace("use: validate\n", "use: validate\n    steps: 2\n")
     before = load_job(job(text))
-    gone, new = changed(text, with_effects(before, ["drift"], before.folder, (4, 2, 1)))
+    gone, new = changed(text, amended(before, ["drift"], before.folder, steps=(4, 2, 1)))
     assert gone == ["  - {file: data/slow.csv, use: identify}  # loops"]
     assert new == ["  - {file: data/slow.csv, use: identify, steps: 4} # loops"]
 
 
+def call(*arguments):
+    return CliRunner().invoke(main, [*map(str, arguments)])
+
+
 def add(*arguments):
-    return CliRunner().invoke(main, ["add", *map(str, arguments)])
+    return call("add", *arguments)
 
 
 def changed(before, after):
@@ -71,7 +75,7 @@ def test_one_line_changes(job):
     out = path.with_name("new.yaml")
     answer = add(path, "creep", "-o", out)
     assert answer.exit_code == 0
-    assert f"wrote {out}: effects drift, creep" in answer.stdout
+    assert f"wrote {out}: model bouc_wen, lumped; effects drift, creep" in answer.stdout
     gone, new = changed(JOB, out.read_text(encoding="utf-8"))
     assert gone == [EFFECTS.rstrip()]
     assert [line.split() for line in new] == [["effects:", "[drift,", "creep]", "#", "found", "last", "week"]]
@@ -100,6 +104,29 @@ def test_wherever_effects_stand(job, before, after):
     assert load_job(out).effects[-1] == "creep"
 
 
+def test_what_is_removed_was_never_there(job):
+    path = job()
+    more, less = path.with_name("more.yaml"), path.with_name("less.yaml")
+    add(path, "creep", "-o", more)
+    assert call("remove", more, "creep", "-o", less).exit_code == 0
+    assert load_job(less).hash == load_job(path).hash and load_job(less).effects == ("drift",)
+    answer = call("remove", less, "creep", "-o", path.with_name("other.yaml"))
+    assert answer.exit_code == 2 and "'creep' is not in its effects\n  it has drift" in answer.stderr
+
+
+def test_another_model_keeps_comments_and_settings(job):
+    path = job(JOB.replace("lumped]", "{name: rod, elements: 12}]  # long"))
+    out = path.with_name("new.yaml")
+    answer = call("model", path, "prandtl_ishlinskii", "rod", "-o", out)
+    assert answer.exit_code == 2 and "bouc_wen.alpha" in answer.stderr  # its bounds are still there
+    bare = job(JOB[: JOB.index("# narrower")].replace("lumped]", "{name: rod, elements: 12}]  # long"))
+    answer = call("model", bare, "prandtl_ishlinskii", "rod", "-o", out)
+    assert answer.stdout.startswith(f"wrote {out}: model prandtl_ishlinskii, rod; effects drift\n")
+    assert "model: [prandtl_ishlinskii, {name: rod, elements: 12}]" in out.read_text() and "# long" in out.read_text()
+    answer = call("model", bare, "bouc_wen", "bouc_wenn", "-o", path.with_name("other.yaml"))
+    assert answer.exit_code == 2 and "unknown block 'bouc_wenn'" in answer.stderr
+
+
 def test_a_layout_of_their_own_is_kept(job):
     wide = JOB.replace("    x: {", "        x: {").replace("  axes:", "    axes:").replace("  time:", "    time:")
     wide = wide.replace("  bouc_wen", "    bouc_wen").replace("      x.response: ", "        x.response: ")
@@ -107,14 +134,14 @@ def test_a_layout_of_their_own_is_kept(job):
         wide,
         JOB.replace("  - ", "- ").replace("    use", "  use").replace("    channels:\n  ", "  channels:\n"),
     ):
-        assert changed(text, with_effects(load_job(job(text)), ["drift", "creep"], job().parent))[1] == [
+        assert changed(text, amended(load_job(job(text)), ["drift", "creep"], job().parent))[1] == [
             "effects: [drift, creep] # found last week"
         ]
 
 
 def test_comments_of_what_stays_stay(job):
     text = JOB.replace(EFFECTS, "effects:\n  - drift  # in the hall\n  - delay  # one sample\n  - creep\n")
-    written = with_effects(load_job(job(text)), ("drift", "creep"), job().parent)
+    written = amended(load_job(job(text)), ("drift", "creep"), job().parent)
     assert "  - drift  # in the hall\n" in written
     assert "delay" not in written
 
@@ -136,7 +163,7 @@ def test_json_and_quiet(job):
     path = job()
     first, second = path.with_name("a.yaml"), path.with_name("b.yaml")
     found = json.loads(add(path, "creep", "-o", first, "--json").stdout)
-    assert found == {"job": str(first), "effects": ["drift", "creep"]}
+    assert found == {"job": str(first), "model": ["bouc_wen", "lumped"], "effects": ["drift", "creep"]}
     answer = add(path, "creep", "-o", second, "--quiet")
     assert (answer.exit_code, answer.output, second.exists()) == (0, "", True)
 

@@ -53,15 +53,21 @@ def _named(records: Sequence[Record]) -> list[Record]:
 
 
 def _leaks(record: Record, fitted: Sequence[Record]) -> tuple[str, ...]:
-    """A note for each of the fitted records that holds some of the same samples of the same file."""
+    """A note for each of the fitted records that holds some of the same scored samples of the same file."""
     notes = []
     for other in fitted:
-        first, last = max(record.rows[0], other.rows[0]), min(record.rows[1], other.rows[1])
+        first, last = max(_scored(record), _scored(other)), min(record.rows[1], other.rows[1])
         if record.sha256 == other.sha256 and first < last:
             here, there = (r.response[:, first - r.rows[0] : last - r.rows[0]] for r in (record, other))
             if np.array_equal(here, there, equal_nan=True):
                 notes.append(f"rows {first} to {last} are fitted in {other.name!r}, so they validate nothing")
     return tuple(notes)
+
+
+def _scored(record: Record) -> int:
+    """The first row that is scored."""
+    first, last = record.rows
+    return first + record.settle * (last - first) // record.samples
 
 
 def _record(finder: Finder, axes: Mapping[str, Axis], time: Channel | None) -> Record:

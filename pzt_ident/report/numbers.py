@@ -71,6 +71,11 @@ def unit(text: str) -> str:
     return "" if text == "1" else re.sub(r"\s*\*\s*|\s+", "·", text)
 
 
+def spelled(text: str) -> str:
+    """A sentence with its units spelled as `unit` does: 3 um is 3 µm."""
+    return re.sub(r"(?<=\d[ \u00a0])u(?=(m|s|g|V|A|N|C|F)\b)", "µ", text)
+
+
 def quantity(value: float | None, of: str, digits: int = 4) -> str:
     """Number and unit, which no line break parts."""
     return f"{number(value, digits)}\u00a0{unit(of)}".rstrip("\u00a0")

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 LARGEST = 295_000  # bytes; where the page would be larger, its signals are thinned
 POINTS = (7000, 4000, 2000)  # of all records together
-MODULES = ("signals.js", "plane.js", "explorer.js", "staircase.js", "report.js")
+MODULES = ("parts.js", "signals.js", "plane.js", "explorer.js", "staircase.js", "report.js")
 
 
 def write_report(folder: Path) -> Path:
@@ -101,7 +101,10 @@ def module() -> str:
     """The page's modules as one: without what they import from each other and export, comments and indents."""
     whole = "\n".join(web(name) for name in MODULES)
     return re.sub(
-        r"^import .*;\n|^export (?=async|function|class|const)|^ *(//|/\*\*).*\n|^ +", "", whole, flags=re.MULTILINE
+        r"^import .*;\n|^export (?=async|function|class|const)|^ *(//.*|/\*\*[^/]*\*/)\n|^ +",
+        "",
+        whole,
+        flags=re.MULTILINE,
     )
 
 
@@ -112,5 +115,6 @@ def environment() -> Environment:
     loader = PackageLoader("pzt_ident", "report")
     made = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     made.globals.update(zip=zip)
-    made.filters.update(quantity=numbers.quantity, count=numbers.count, number=numbers.number, percent=numbers.percent)
+    made.filters.update(quantity=numbers.quantity, count=numbers.count, number=numbers.number)
+    made.filters.update(percent=numbers.percent, spelled=numbers.spelled)
     return made

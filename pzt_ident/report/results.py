@@ -79,6 +79,15 @@ class Results:
         return (self.result or self.diagnosis)["noise_floor"]
 
     @property
+    def share_of_noise(self) -> float:
+        """The largest noise floor over the span of its response; 1 where a floor is not known."""
+        spans = {trace.axis: 0.0 for trace in self.traces}
+        for trace in self.traces:
+            spans[trace.axis] = max(spans[trace.axis], float(np.ptp(trace.response)))
+        found = [1.0 if floor is None else floor / (spans.get(axis) or 1.0) for axis, floor in self.floors.items()]
+        return max(found, default=1.0)
+
+    @property
     def rmse(self) -> dict[str, float | None]:
         """Of the last model, on the records of each use."""
         if self.improvement:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pzt_ident.files import write_text
+from pzt_ident.report.latex import tabular
 from pzt_ident.report.numbers import bounds, count, number, percent, quantity, short, unit, with_error
 from pzt_ident.report.results import Results
 from pzt_ident.report.words import step_name
@@ -42,7 +42,7 @@ def write_tables(tables: Mapping[str, Table], folder: Path) -> None:
     """Write `<name>.csv` and `<name>.tex` (a booktabs tabular) of each into the folder."""
     for table in tables.values():
         write_text(folder / f"{table.name}.csv", table.data.to_csv(index=False, lineterminator="\n"))
-        write_text(folder / f"{table.name}.tex", latex(table))
+        write_text(folder / f"{table.name}.tex", tabular(table.text, table.words))
 
 
 def league(results: Results) -> Table:
@@ -237,48 +237,6 @@ def changes(results: Results) -> Table:
         "unit": lambda row: unit(row["unit"]),
     }
     return table("changes", rows, cells, {"parameter", "unit"}, {})
-
-
-def latex(table: Table) -> str:
-    r"""The printed table as a booktabs `tabular`, to be read with `\input`; needs `\usepackage{booktabs}`."""
-    align = "".join("l" if column in table.words else "r" for column in table.text)
-    body = [_latex_row(row) for row in table.text.itertuples(index=False, name=None)]
-    lines = [rf"\begin{{tabular}}{{{align}}}", r"\toprule", _latex_row(table.text.columns), r"\midrule", *body]
-    return "\n".join([*lines, r"\bottomrule", r"\end{tabular}", ""])
-
-
-def latex_escape(text: str) -> str:
-    """`text` as LaTeX shows it: its special characters, and the signs that numbers and units are printed with."""
-    text = re.sub(r"[\\{}&%$#_~^<>|]", lambda match: _SPECIAL[match[0]], text)
-    text = re.sub(r"[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda match: f"$^{{{match[0].translate(_DIGITS)}}}$", text)
-    return re.sub("|".join(_SIGNS), lambda match: _SIGNS[match[0]], text)
-
-
-_SPECIAL = {character: f"\\{character}" for character in "{}&%$#_"} | {
-    "\\": r"\textbackslash{}",
-    "~": r"\textasciitilde{}",
-    "^": r"\textasciicircum{}",
-    "<": r"\textless{}",
-    ">": r"\textgreater{}",
-    "|": r"\textbar{}",
-}
-_SIGNS = {
-    " × ": r" $\times$ ",
-    "±": r"$\pm$",
-    "−": "$-$",
-    "∞": r"$\infty$",
-    "·": r"$\cdot$",
-    "–": "--",
-    "µ": r"\textmu{}",
-    "\u03bc": r"\textmu{}",
-    "\u202f": r"\,",
-    "\u00a0": "~",
-}
-_DIGITS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
-
-
-def _latex_row(cells: Any) -> str:
-    return " & ".join(latex_escape(str(cell)) for cell in cells) + r" \\"
 
 
 def table(

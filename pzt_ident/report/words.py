@@ -2,21 +2,50 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from pzt_ident.report.numbers import count, number, percent, quantity
+from pzt_ident.report.numbers import count, number, percent, quantity, spelled
 from pzt_ident.report.results import Results
+
+BETTER = 0.95  # of the run's RMSE: less than that is worth a word
+NOISELESS = 1e-6  # of the span of a response: no sensor has less noise
+FLOORS = re.compile(r"(?:([\d.]+) to )?([\d.]+) noise floors")
 
 
 def verdict(results: Results) -> str:
     """What is missing or was added, or else what the model leaves, on which records, beside the noise."""
     if found := results.improvement:
         added = f"Added: {listed(found['effects'])}. " if found["effects"] else ""
-        return f"{added}{found['reason']}"
+        return reason(f"{added}{found['reason']}", results)
     if results.diagnosis:
-        return str(results.diagnosis["reason"])
+        return reason(results.diagnosis["reason"], results)
     return left(results)
+
+
+def reason(said: str, results: Results) -> str:
+    """What a diagnosis says, as it is read: of a response without noise in its unit, not in noise floors."""
+    if results.share_of_noise < NOISELESS and len(results.floors) == 1:
+        (floor,) = results.floors.values()
+        said = FLOORS.sub(lambda found: _in_unit(found, floor or 0.0, results.unit), said)
+    return spelled(said + _better(results))
+
+
+def _better(results: Results) -> str:
+    """That the diagnosis, which fits the model again from several starts, came to less than the run."""
+    if not (results.result and results.diagnosis):
+        return ""
+    found, run = results.diagnosis["rmse"]["identify"], results.best["rmse"]["identify"]
+    if found > BETTER * run:
+        return ""
+    here, there = (quantity(value, results.unit, 3) for value in (found, run))
+    return f" Fitted again from other starts it leaves {here}, not the run's {there}: search longer."
+
+
+def _in_unit(found: re.Match[str], floor: float, unit: str) -> str:
+    first, last = (quantity(float(part) * floor, unit, 3) if part else "" for part in found.groups())
+    return f"{first} to {last}" if first else last
 
 
 def left(results: Results) -> str:
@@ -35,7 +64,7 @@ def findings(results: Results) -> list[str]:
     simulations and runs failed."""
     diagnosed = [*_advice(results)] if results.diagnosis else []
     run = [*_parameters(results), *_notes(results), *_failures(results)] if results.result else []
-    return diagnosed + run
+    return [spelled(sentence) for sentence in diagnosed + run]
 
 
 def _advice(results: Results) -> Iterator[str]:
@@ -52,6 +81,8 @@ def _advice(results: Results) -> Iterator[str]:
 
 def _over_noise(results: Results, use: str) -> str:
     known = results.floors
+    if results.share_of_noise < NOISELESS:
+        return "; the response holds hardly any noise to compare it with, as if it were simulated"
     floor = {axis: value for axis, value in known.items() if value}
     if not floor:
         return "" if 0 in known.values() else "; the noise floor is not known"

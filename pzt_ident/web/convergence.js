@@ -8,7 +8,7 @@ export class Convergence {
   constructor(root) {
     this.root = root;
     this.clear();
-    new ResizeObserver(() => this.plot?.setSize(this.size())).observe(root);
+    new ResizeObserver(() => this.plot && this.plot.width !== this.size().width && this.draw(true)).observe(root);
   }
 
   clear() {
@@ -34,11 +34,11 @@ export class Convergence {
     return { width: Math.max(280, this.root.clientWidth - 4), height: 210 };
   }
 
-  draw() {
+  draw(anew = false) {
     const tables = [...this.runs.values()].map((points) => [points.map(([x]) => x), points.map(([, y]) => y)]);
     if (!tables.length) return;
     const data = uPlot.join(tables);
-    if (this.plot?.series.length !== data.length) {
+    if (anew || this.plot?.series.length !== data.length) {
       this.plot?.destroy();
       this.plot = new uPlot(this.options([...this.runs.keys()]), data, this.root);
     } else this.plot.setData(data);

@@ -1,3 +1,4 @@
+import { element, onPaper, printed } from "./parts.js";
 import { colour, gridded, Plane, tick } from "./plane.js";
 import { errorOf, extent, lowerBound, marksInBox, marksInTime, number, opened, thinned } from "./signals.js";
 
@@ -76,7 +77,7 @@ export class Explorer {
     const ends = marks.length ? [time[marks[0][0]], time[marks.at(-1)[1] - 1]] : ["", ""];
     if (written) [this.from.value, this.to.value] = ends.map((value) => (value === "" ? "" : Number(value.toPrecision(7))));
     this.say();
-    for (const plot of this.plots) plot.redraw(false);
+    for (const plot of this.plots) this.band(plot);
     for (const plane of [this.loop, this.map]) plane.mark(marks);
   }
 
@@ -118,17 +119,17 @@ export class Explorer {
 
   draw() {
     this.drawnAt = this.root.clientWidth;
-    this.fine = document.documentElement.hasAttribute("data-print") ? 2 : 1; // pixels a pixel
+    this.fine = onPaper() ? 2 : 1; // pixels a pixel
     this.curves.replaceChildren();
     const { record } = this;
-    const named = record.models.length > 1;
+    const named = record.models.length > 1, models = record.models.toReversed();
     this.plots = [
-      this.plot(`response [${record.unit}]`, 0.26, 0, [record.response, ...record.models.map((model) => sum(record.response, model.residual))], [
+      this.plot(`response [${record.unit}]`, 0.26, 0, [record.response, ...models.map((model) => sum(record.response, model.residual))], [
         { label: "measured", stroke: () => colour("--measured"), width: 3 * this.fine },
-        ...record.models.map((model, place) => this.line(named ? model.name : "model", place)),
+        ...this.lines(named ? (model) => model.name : () => "model"),
       ]),
-      this.plot(`residual [${record.unit}]`, 0.18, this.floors[record.axis] ?? 0, record.models.map((model) => model.residual),
-        record.models.map((model, place) => this.line(named ? `residual, ${model.name}` : "residual: model less measured", place))),
+      this.plot(`residual [${record.unit}]`, 0.18, this.floors[record.axis] ?? 0, models.map((model) => model.residual),
+        this.lines(named ? (model) => `residual, ${model.name}` : () => "residual: model less measured")),
     ];
     this.loop.show(this.scene(record.response, `response [${record.unit}]`, {
       curves: [
@@ -154,7 +155,7 @@ export class Explorer {
     const width = Math.max(280, this.curves.clientWidth - 4);
     const font = `${Math.round(0.78 * fine * parseFloat(getComputedStyle(this.curves).fontSize))}px system-ui, sans-serif`;
     const axis = (label, labelSize, size, more) => ({
-      label, labelSize: fine * labelSize, size: fine * size, gap: 5 * fine, space: (self, axis) => fine * (axis ? 30 : 50), font, labelFont: font,
+      label, labelSize: fine * labelSize, size: fine * size, gap: 5 * fine, space: (self, axis) => fine * (axis ? 24 : 50), font, labelFont: font,
       stroke: () => colour("--quiet"), grid: { stroke: () => colour("--rule"), width: fine }, ticks: { show: false }, ...more,
     });
     const plot = new uPlot({
@@ -168,8 +169,10 @@ export class Explorer {
         setSelect: [(self) => this.dragged(self)],
         setCursor: [(self) => this.hover(self)],
         drawAxes: [(self) => this.shade(self, floor)],
+        draw: [(self) => self.bands && this.band(self)],
       },
     }, null, this.curves);
+    plot.bands = element(plot.under, "canvas");
     plot.fill = () => {
       const shown = thinned(arrays, ...this.span, Math.max(200, Math.round(width)));
       plot.setData([shown.map((i) => record.time[i]), ...arrays.map((values) => shown.map((i) => values[i]))]);
@@ -188,9 +191,12 @@ export class Explorer {
     return [low - 0.06 * (high - low), high + 0.06 * (high - low)];
   }
 
-  line(label, place) {
+  /** The curves of the models, the last one on top. */
+  lines(said) {
     const width = (this.record.index.length > LONG ? 1 : 1.2) * this.fine;
-    return { label, stroke: () => colour(MODELS[place % 4]), width, dash: this.dash(place) };
+    return this.record.models.map((model, place) => ({
+      label: said(model), stroke: () => colour(MODELS[place % 4]), width, dash: this.dash(place),
+    })).reverse();
   }
 
   dash(place) { return this.record.index.length > LONG ? [] : DASHES[place % 4]; }
@@ -210,18 +216,31 @@ export class Explorer {
     this.map.overlay(point);
   }
 
-  /** The marked stretches, what is not scored, and in the residual the noise floor, behind the curves. */
+  /** The marked stretches, on a sheet behind the curves that is wiped without drawing these again. */
+  band(plot) {
+    const { time } = this.record;
+    const { width, height } = plot.bbox;
+    Object.assign(plot.bands, { width, height }); // which wipes it
+    const pen = plot.bands.getContext("2d");
+    pen.fillStyle = colour("--marked");
+    for (const [first, end] of this.marks) {
+      const [from, to] = [time[first], time[end - 1]].map((value) => plot.valToPos(value, "x", true) - plot.bbox.left);
+      if (to >= 0 && from <= width) pen.fillRect(from, 0, Math.max(to - from, 1), height);
+    }
+  }
+
+  /** What is not scored, and in the residual the noise floor, behind the curves. */
   shade(plot, floor) {
     const { time, settle, start, dt } = this.record;
     const { left, top, width, height } = plot.bbox;
-    const band = (from, to, fill) => {
+    const strip = (from, to, fill) => {
       const [x0, x1] = [from, to].map((value) => Math.min(Math.max(plot.valToPos(value, "x", true), left), left + width));
       plot.ctx.fillStyle = fill;
-      plot.ctx.fillRect(x0, top, Math.max(x1 - x0, x1 > left && x0 < left + width ? 1 : 0), height);
+      plot.ctx.fillRect(x0, top, x1 - x0, height);
     };
     plot.ctx.save();
-    if (settle) band(start, start + settle * dt, colour("--soft"));
-    for (const [first, end] of this.marks) band(time[first], time[end - 1], colour("--marked"));
+    if (settle) strip(start, start + settle * dt, colour("--soft"));
+    if (onPaper()) for (const [first, end] of this.marks) strip(time[first], time[end - 1], colour("--marked"));
     if (floor) {
       const [y0, y1] = [floor, -floor].map((value) => Math.min(Math.max(plot.valToPos(value, "y", true), top), top + height));
       plot.ctx.fillStyle = colour("--noise");
@@ -271,22 +290,4 @@ export class Explorer {
 
 function sum(a, b) {
   return a.map((value, i) => value + b[i]);
-}
-
-/** Draw as wide as a sheet of paper and in its colours while it is printed. */
-export function printed(redraw) {
-  for (const [name, on] of [["beforeprint", true], ["afterprint", false]])
-    addEventListener(name, () => {
-      document.documentElement.toggleAttribute("data-print", on);
-      redraw();
-    });
-}
-
-/** A new element inside another. */
-export function element(parent, tag, attributes = {}, text = "") {
-  const made = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
-  made.textContent = text;
-  parent.append(made);
-  return made;
 }

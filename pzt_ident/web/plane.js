@@ -1,8 +1,10 @@
+import { onPaper } from "./parts.js";
 import { extent, number, thinned, ticks } from "./signals.js";
 
 const EDGE = { left: 62, right: 14, top: 10, bottom: 42 };
 const NEAR = 0.7; // px: a shorter step of a curve is not seen
 const DRAWN = 4000; // bins of a curve: more cannot be told apart on a screen
+const MARKED = 600; // bins of what is marked: it is drawn with every move of the mouse
 
 /** A colour of the page's style sheet, such as "--model". */
 export function colour(name) {
@@ -16,10 +18,14 @@ export class Plane {
     this.figure.className = "plane";
     this.caption = this.figure.appendChild(document.createElement("figcaption"));
     this.caption.textContent = title;
-    this.canvas = this.figure.appendChild(document.createElement("canvas"));
-    this.canvas.setAttribute("role", "img");
-    this.canvas.setAttribute("aria-label", title);
-    [this.layer, this.marked] = ["canvas", "canvas"].map((tag) => document.createElement(tag));
+    this.stack = this.figure.appendChild(document.createElement("div"));
+    this.stack.setAttribute("role", "img");
+    this.stack.setAttribute("aria-label", title);
+    this.layers = ["drawn", "marked", "pointed"].map((name) => {
+      const canvas = this.stack.appendChild(document.createElement("canvas"));
+      canvas.className = name;
+      return canvas;
+    });
     this.onBox = onBox;
     this.listen();
   }
@@ -45,14 +51,8 @@ export class Plane {
 
   draw() {
     [this.width, this.height] = this.size();
-    const scale = Math.max(window.devicePixelRatio || 1, 2); // fine enough for print
-    for (const canvas of [this.canvas, this.layer, this.marked]) {
-      canvas.width = this.width * scale;
-      canvas.height = this.height * scale;
-    }
-    this.canvas.style.height = `${this.height}px`;
-    const pen = this.layer.getContext("2d");
-    pen.setTransform(scale, 0, 0, scale, 0, 0);
+    this.stack.style.height = `${this.height}px`;
+    const pen = this.pen(0);
     this.axes(pen);
     pen.save();
     pen.beginPath();
@@ -62,25 +62,29 @@ export class Plane {
     for (const curve of this.scene.curves ?? []) this.curve(pen, curve, [[0, curve.xs.length]]);
     pen.restore();
     this.mark(this.scene.marks);
+    if (onPaper()) this.trace(pen);
   }
 
-  /** The drawing with stretches marked on it. */
+  /** Mark stretches, on a sheet above the drawing. */
   mark(marks = []) {
     this.scene.marks = marks;
-    const { xs, ys, cells } = this.scene;
-    const pen = this.over(this.marked, this.layer);
-    if (marks.length) this.curve(pen, { xs, ys, colour: "--mark", width: cells ? 1 : 2.5 }, marks);
+    this.trace(this.pen(1));
     this.overlay();
   }
 
-  /** A pen for a canvas that shows another one, in pixels of the page. */
-  over(canvas, below) {
+  trace(pen) {
+    const { xs, ys, cells, marks } = this.scene;
+    const bins = Math.ceil(MARKED / Math.max(marks.length, 1));
+    this.curve(pen, { xs, ys, colour: "--mark", width: cells ? 1 : 2.5, bins }, marks);
+  }
+
+  /** A pen for a sheet, in pixels of the page. The sheet is wiped by its size. */
+  pen(sheet) {
+    const { [sheet]: canvas } = this.layers;
+    const scale = Math.max(window.devicePixelRatio || 1, 2); // fine enough for print
+    Object.assign(canvas, { width: this.width * scale, height: this.height * scale });
     const pen = canvas.getContext("2d");
-    const scale = canvas.width / this.width;
-    pen.setTransform(1, 0, 0, 1, 0, 0);
-    pen.clearRect(0, 0, canvas.width, canvas.height);
-    pen.drawImage(below, 0, 0);
-    pen.setTransform(scale, 0, 0, scale, 0, 0);
+    pen.scale(scale, scale);
     return pen;
   }
 
@@ -113,12 +117,12 @@ export class Plane {
     pen.stroke();
   }
 
-  curve(pen, { xs, ys, colour: name, width, dash }, stretches) {
+  curve(pen, { xs, ys, colour: name, width, dash, bins = DRAWN }, stretches) {
     [pen.strokeStyle, pen.lineWidth, pen.lineJoin] = [colour(name), width, "round"];
     pen.setLineDash(dash ?? []);
     pen.beginPath();
     for (const [first, end] of stretches) {
-      const shown = thinned([xs, ys], first, end, DRAWN);
+      const shown = thinned([xs, ys], first, end, bins);
       let [left, top] = [this.toX(xs[shown[0]]), this.toY(ys[shown[0]])];
       pen.moveTo(left, top);
       if (shown.length === 1) pen.lineTo(left + 0.01, top);
@@ -150,9 +154,9 @@ export class Plane {
     });
   }
 
-  /** On it all where the cursor is, or the box that is being drawn. */
+  /** On top of it all where the cursor is, or the box that is being drawn. */
   overlay(point = null, box = null) {
-    const pen = this.over(this.canvas, this.marked);
+    const pen = this.pen(2);
     const { xs, ys } = this.scene;
     pen.strokeStyle = colour("--ink");
     if (point !== null) {
@@ -165,14 +169,14 @@ export class Plane {
 
   listen() {
     let start = null;
-    this.canvas.addEventListener("pointerdown", (event) => {
+    this.stack.addEventListener("pointerdown", (event) => {
       start = [event.offsetX, event.offsetY];
-      this.canvas.setPointerCapture(event.pointerId);
+      this.stack.setPointerCapture(event.pointerId);
     });
-    this.canvas.addEventListener("pointermove", (event) => {
+    this.stack.addEventListener("pointermove", (event) => {
       if (start) this.overlay(null, [...start, event.offsetX, event.offsetY]);
     });
-    this.canvas.addEventListener("pointerup", (event) => {
+    this.stack.addEventListener("pointerup", (event) => {
       if (!start) return;
       const sorted = (a, b) => (a < b ? [a, b] : [b, a]);
       const far = Math.hypot(event.offsetX - start[0], event.offsetY - start[1]) > 4;
@@ -181,7 +185,7 @@ export class Plane {
       start = null;
       this.onBox(...(far ? [xs, ys] : [null, null]));
     });
-    this.canvas.addEventListener("pointercancel", () => { start = null; this.overlay(); });
+    this.stack.addEventListener("pointercancel", () => { start = null; this.overlay(); });
   }
 }
 

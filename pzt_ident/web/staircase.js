@@ -1,7 +1,6 @@
-import { element, printed } from "./explorer.js";
+import { element, printed, put } from "./parts.js";
 import { number, ticks } from "./signals.js";
 
-const SVG = "http://www.w3.org/2000/svg";
 const USES = ["identify", "validate"];
 
 /** How the error falls, step by step, down to the noise: bars of `steps` ({name, identify, validate, note}). */
@@ -70,12 +69,4 @@ export class Staircase {
 
 function said({ steps, unit }) {
   return "RMSE by step: " + steps.map((step) => `${step.name} ${USES.filter((use) => Number.isFinite(step[use])).map((use) => `${use} ${number(step[use])} ${unit}`).join(", ")}`).join("; ");
-}
-
-/** A new element of a drawing inside another. */
-export function put(parent, tag, attributes, text = "") {
-  const made = document.createElementNS(SVG, tag);
-  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
-  made.textContent = text;
-  return parent.appendChild(made);
 }

@@ -1,7 +1,9 @@
 import { Asking } from "./asking.js";
-import { Columns, row, select } from "./columns.js";
+import { Chain } from "./chain.js";
+import { Columns } from "./columns.js";
 import { Convergence } from "./convergence.js";
-import { element, Explorer } from "./explorer.js";
+import { Explorer } from "./explorer.js";
+import { element, keepingFocus, row } from "./parts.js";
 import { ask, call, follow, opening, save } from "./session.js";
 import { decode, number } from "./signals.js";
 import { Staircase } from "./staircase.js";
@@ -11,11 +13,12 @@ const at = (id) => document.getElementById(id);
 const convergence = new Convergence(at("convergence"));
 const columns = new Columns(at("columns"), at("begin"), look, begin);
 const asking = new Asking(() => { if (state?.stage === "diagnose") { status(); candidates(); } });
-let state = null, stairs = null, explorer = null, shown = "", away = false, draft = ["bouc_wen"];
+const chain = new Chain(at("blocks"), at("more"), { choose, add: (effect) => act("add", { effect }), remove: (effect) => act("remove", { effect }) });
+let state = null, failure = "", stairs = null, explorer = null, shown = "", away = false, draft = ["bouc_wen"];
 
 /** Do something on the server and show what became of it; an error is said, and nothing is lost. */
 async function act(name, body = {}, then = null) {
-  at("error").hidden = true;
+  [failure, at("error").hidden] = ["", true];
   at("status").textContent = "One moment …";
   try {
     show(await ask(name, body));
@@ -33,12 +36,23 @@ function begin(form) {
   } catch (error) { fail(error); }
 }
 
+/** Another model: that of the job, or what it will be made with. */
+function choose(words) {
+  if (state.steps.length) return act("model", { model: words });
+  draft = words;
+  keepingFocus(() => chain.show({ model: draft, effects: [] }, state, false));
+}
+
 function fail(error) {
   at("error").textContent = error.message;
   at("error").hidden = false;
 }
 
 function show(found) {
+  keepingFocus(() => draw(found), () => at("actions").querySelector("button:not([hidden])"));
+}
+
+function draw(found) {
   state = found;
   const begun = state.steps.length > 0;
   at("name").textContent = begun ? state.job.name : "pzt-ident workbench";
@@ -47,11 +61,14 @@ function show(found) {
   for (const id of ["fall", "fit", "where-it-fails", "candidates"]) at(id).hidden = !begun;
   at("terminal").hidden = !state.commands.length;
   at("commands").textContent = state.commands.join("\n");
-  if (state.failure) fail({ message: state.failure });
-  else at("error").hidden = true;
+  if (state.failure !== failure) {
+    failure = state.failure;
+    if (failure) fail({ message: failure });
+    else at("error").hidden = true;
+  }
   buttons(begun);
   words(begun);
-  chain(begun);
+  chain.show(begun ? state.job : { model: draft, effects: [] }, state, begun);
   others();
   at("begin").hidden = begun;
   if (!begun) return files();
@@ -84,7 +101,7 @@ function status() {
 function words(begun) {
   const { diagnosis, result } = state;
   at("advice").replaceChildren();
-  if (!begun) at("verdict").textContent = columns.files.length ? "Is this what was measured?" : "Drop a measurement: voltage in, displacement out.";
+  if (!begun) at("verdict").textContent = columns.records.length ? "Is this what was measured?" : "Drop a measurement: voltage in, displacement out.";
   else if (diagnosis) at("verdict").textContent = diagnosis.reason;
   else if (result) at("verdict").textContent = `The model leaves ${number(result.best.rmse.validate ?? result.best.rmse.identify)} ${result.unit} RMS${result.best.rmse.validate === null ? "" : " on records the fit never saw"}.`;
   else at("verdict").textContent = state.stage ? "Identifying the model." : state.failure ? "Not finished." : "Ready to run.";
@@ -95,6 +112,7 @@ function words(begun) {
   for (const item of missing) addButton(at("advice"), item.effect, "strong");
   if (missing.length) at("advice").append(` ${missing[0].physics} On the rig: ${missing[0].remedy}`);
   if (diagnosis.next_experiment) at("advice").append(` To tell them apart: ${diagnosis.next_experiment.why}.`);
+  else if (diagnosis.verdict === "inconclusive") at("advice").append(` No drive within the limits tells them apart. On the rig: ${missing[0].separate_by}`);
 }
 
 function addButton(parent, effect, kind = "", text = `Add ${effect}`) {
@@ -105,19 +123,18 @@ function addButton(parent, effect, kind = "", text = `Add ${effect}`) {
 
 function files() {
   at("here").replaceChildren();
-  const free = state.files.filter((name) => !columns.files.some(({ file }) => file === name));
+  const free = state.files.filter((name) => !columns.files.includes(name));
   if (!free.length) return;
   at("here").append("Or take one of this folder: ");
   for (const name of free)
-    element(at("here"), "button", { type: "button" }, name).addEventListener("click", () => look(name).catch(() => {})), at("here").append(" ");
+    element(at("here"), "button", { type: "button" }, name).addEventListener("click", () => take(name)), at("here").append(" ");
 }
 
-/** See what is in a file of the folder, or in a part of one. */
-async function look(file, part = null, place = undefined) {
+/** See what is in files of the folder, or in parts of them, that make a record. */
+async function look(files) {
   at("error").hidden = true;
   try {
-    columns.add(await ask("look", { file, part }), place);
-    measured();
+    return await ask("look", { files });
   } catch (error) {
     fail(error);
     throw error;
@@ -130,42 +147,23 @@ function measured() {
   files();
 }
 
+async function take(file) {
+  try {
+    await columns.add(await look([{ file }]));
+    measured();
+  } catch { /* it is said */ }
+}
+
 async function upload(list) {
   at("error").hidden = true;
   const said = [];
   for (const file of list)
     try {
-      columns.add(await (await call(`upload?name=${encodeURIComponent(file.name)}`, file, true)).json());
+      if (file.size > state?.largest) throw new Error(`${file.name} is larger than ${state.largest >> 20} MiB: put it into the folder that the workbench was started in, and take it from there.`);
+      await columns.add(await (await call(`upload?name=${encodeURIComponent(file.name)}`, file, true)).json());
       measured();
     } catch (error) { said.push(error.message); }
   if (said.length) fail({ message: said.join("\n") });
-}
-
-/** The chain of blocks: that of the job, or what it will be made with. */
-function chain(begun) {
-  const { model, effects } = begun ? state.job : { model: draft, effects: [] };
-  const choose = (words) => { if (begun) act("model", { model: words }); else { draft = words; chain(false); } };
-  const docs = Object.fromEntries([...state.blocks, ...state.effects].map((block) => [block.name, block.doc]));
-  at("blocks").replaceChildren();
-  element(at("blocks"), "li", { class: "end" }, "drive");
-  for (const word of model) {
-    const item = element(at("blocks"), "li", { title: docs[word] ?? "" }, word);
-    if (model.length > 1) takeOff(item, word, () => choose(model.filter((other) => other !== word)));
-  }
-  for (const word of effects) takeOff(element(at("blocks"), "li", { class: "effect", title: docs[word] ?? "" }, word), word, () => act("remove", { effect: word }));
-  element(at("blocks"), "li", { class: "end" }, "response");
-  at("more").replaceChildren();
-  more("Add a block", state.blocks.filter((block) => !model.includes(block.name)), (word) => choose([...model, word]));
-  if (begun) more("Add an effect", state.effects.filter((block) => !effects.includes(block.name)), (word) => act("add", { effect: word }));
-}
-
-function takeOff(item, word, act) {
-  element(item, "button", { type: "button", "aria-label": `Take off ${word}`, title: `Take off ${word}` }, "×").addEventListener("click", act);
-}
-
-function more(name, choices, act) {
-  const list = select(at("more"), [["", `${name} …`], ...choices.map(({ name: word, doc }) => [word, `${word}: ${doc}`.slice(0, 110)])], "", name);
-  list.addEventListener("change", () => list.value && act(list.value));
 }
 
 /** The staircase, its last stair live while the search runs. */
@@ -177,7 +175,7 @@ function fall() {
   if (state.stage === "run" && last.identify === null && Number.isFinite(convergence.best))
     Object.assign(last, { identify: convergence.best, validate: convergence.validate, live: true, note: "so far" });
   else if (state.stage === "run") last.note = "begins";
-  const content = { steps, floor: fall.floor, unit: state.unit };
+  const content = { steps, floor: fall.floor, unit: state.unit || convergence.unit };
   if (stairs) stairs.show(content);
   else stairs = new Staircase(at("stairs"), content);
   at("converging").hidden = !convergence.runs.size;
@@ -282,7 +280,7 @@ addEventListener("drop", (event) => event.preventDefault());
 setInterval(status, 500);
 
 await refresh();
-if (opening && !state?.steps.length) await look(opening).catch(() => {});
+if (opening && !state?.steps.length) await take(opening);
 follow((event) => {
   if (away) [away, at("error").hidden] = [false, true];
   if (event.event === "step") [convergence, asking].forEach((part) => part.clear());

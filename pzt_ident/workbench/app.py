@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import json
-import os
 import re
 import secrets
 from collections.abc import AsyncIterator, Awaitable, Callable
@@ -18,18 +17,18 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response, StreamingResponse
 from starlette.routing import Route
 
-from pzt_ident.amend import with_effects
+from pzt_ident.amend import amended
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.workbench import view
 from pzt_ident.workbench.bench import Bench
 from pzt_ident.workbench.columns import columns_of
+from pzt_ident.workbench.form import places
 from pzt_ident.workbench.gather import gathered
-from pzt_ident.workbench.guard import Guard, inside
+from pzt_ident.workbench.guard import LARGEST_UPLOAD, Guard, inside
 
-LARGEST_UPLOAD = 256 << 20
 LARGEST_FORM = 1 << 20
 SECONDS_BETWEEN_LOOKS = 0.1
-NAME = re.compile(r"\w[\w .+()-]{0,120}")
+NAME = re.compile(r"\w[\w .,;+=@#%&'()\[\]-]{0,120}")
 SERVED = {".js": "text/javascript", ".css": "text/css", ".html": "text/html"}
 
 Handler = Callable[[Bench, Request], Awaitable[Response]]
@@ -37,48 +36,50 @@ Handler = Callable[[Bench, Request], Awaitable[Response]]
 
 def make_app(bench: Bench, hosts: set[str], token: str) -> Guard:
     """The application; `hosts` are the values that a request's Host may have."""
-    tickets: dict[str, Path] = {}
 
     @asynccontextmanager
     async def life(app: Starlette) -> AsyncIterator[None]:
         yield
         await bench.stop()
 
-    def route(path: str, handler: Handler, method: str = "GET") -> Route:
-        async def answer(request: Request) -> Response:
-            try:
-                return await handler(bench, request)
-            except (InputError, RunError) as error:
-                return JSONResponse({"error": str(error).replace(f"{bench.root}{os.sep}", "")}, status_code=400)
-            except (KeyError, TypeError, ValueError) as error:
-                return JSONResponse({"error": f"not a form of the workbench: {error!r}"}, status_code=400)
-
-        return Route(path, answer, methods=[method])
-
-    async def ticket(bench: Bench, request: Request) -> Response:
-        """Write the report of the step shown; where it can be read, by who has the address only."""
-        from pzt_ident.report.page import write_report
-
-        made, key = await asyncio.to_thread(lambda: write_report(gathered(bench))), secrets.token_urlsafe(24)
-        tickets[key] = made
-        return JSONResponse({"url": f"/report/{key}", "file": bench.relative(made)})
-
-    async def report(bench: Bench, request: Request) -> Response:
-        path = tickets.get(request.path_params["key"])
-        return FileResponse(path, media_type="text/html") if path else PlainTextResponse("not found", 404)
-
     posts = {"upload": upload, "look": look, "job": begin, "run": run, "stop": stop, "model": choose, "report": ticket}
     posts |= {"add": change, "remove": change, "undo": undo, "back": back}
     gets = {"state": state, "signals": signals, "events": events, "job": job_file, "drive": drive_file}
-    routes = [
-        route("/", page),
-        route("/favicon.ico", nothing),
-        route("/web/{name:path}", web),
-        route("/report/{key}", report),
-    ]
-    routes += [route(f"/api/{name}", handler) for name, handler in gets.items()]
-    routes += [route(f"/api/{name}", handler, "POST") for name, handler in posts.items()]
-    return Guard(Starlette(routes=routes, lifespan=life), hosts, token)
+    pages = {"/": page, "/favicon.ico": nothing, "/web/{name:path}": web, "/report/{key}": report}
+    routes = [route(bench, path, handler) for path, handler in pages.items()]
+    routes += [route(bench, f"/api/{name}", handler) for name, handler in gets.items()]
+    routes += [route(bench, f"/api/{name}", handler, "POST") for name, handler in posts.items()]
+    app = Starlette(routes=routes, lifespan=life)
+    app.state.reports = dict[str, Path]()
+    return Guard(app, hosts, token)
+
+
+def route(bench: Bench, path: str, handler: Handler, method: str = "GET") -> Route:
+    """A handler at a path; what it raises of bad input is said."""
+
+    async def answer(request: Request) -> Response:
+        try:
+            return await handler(bench, request)
+        except (InputError, RunError) as error:
+            return JSONResponse({"error": bench.readable(str(error))}, status_code=400)
+        except (KeyError, TypeError, ValueError) as error:
+            return JSONResponse({"error": f"not a form of the workbench: {error!r}"}, status_code=400)
+
+    return Route(path, answer, methods=[method])
+
+
+async def ticket(bench: Bench, request: Request) -> Response:
+    """Write the report of the step shown; where it can be read, by who has the address only."""
+    from pzt_ident.report.page import write_report
+
+    made, key = await asyncio.to_thread(lambda: write_report(gathered(bench))), secrets.token_urlsafe(24)
+    request.app.state.reports[key] = made
+    return JSONResponse({"url": f"/report/{key}", "file": bench.relative(made)})
+
+
+async def report(bench: Bench, request: Request) -> Response:
+    path = request.app.state.reports.get(request.path_params["key"])
+    return FileResponse(path, media_type="text/html") if path else PlainTextResponse("not found", 404)
 
 
 async def page(bench: Bench, request: Request) -> Response:
@@ -130,7 +131,7 @@ async def upload(bench: Bench, request: Request) -> Response:
     """Keep a dropped file in the session's folder and say what is in it. It is read as numbers, never run."""
     name = request.query_params.get("name", "")
     if not NAME.fullmatch(name):
-        raise InputError(f"{name!r} cannot be the name of a file", remedy="use letters, digits, blanks and . _ + -")
+        raise InputError(f"{name!r} cannot be the name of a file", remedy="use letters, digits, blanks and . , _ + -")
     if int(request.headers.get("content-length", 0)) > LARGEST_UPLOAD:
         return too_large()
     bench.data.mkdir(parents=True, exist_ok=True)
@@ -147,7 +148,7 @@ async def upload(bench: Bench, request: Request) -> Response:
         if path.exists() and path.read_bytes() != part.read_bytes():
             raise InputError(f"another {name!r} was dropped before", remedy="give it another name")
         part.replace(path)
-        return await looked_at(bench, path)
+        return await looked_at(bench, (path, None))
     except InputError:
         if new:  # it may be dropped again once it is mended
             path.unlink(missing_ok=True)
@@ -157,25 +158,28 @@ async def upload(bench: Bench, request: Request) -> Response:
 
 
 def too_large() -> Response:
-    said = f"larger than {LARGEST_UPLOAD >> 20} MiB: put it into the folder and name it in a job"
-    return JSONResponse({"error": said}, status_code=413, headers={"connection": "close"})
+    return JSONResponse(
+        {"error": f"larger than {LARGEST_UPLOAD >> 20} MiB"}, status_code=413, headers={"connection": "close"}
+    )
 
 
 async def look(bench: Bench, request: Request) -> Response:
-    """What is in a file of the folder that the workbench was started in, or in one of its tables or sheets."""
-    wanted = await form(request)
-    return await looked_at(bench, inside(bench.root, wanted["file"]), wanted.get("part"))
+    """What is in files of the folder that the workbench was started in, or in one of the tables or sheets of each."""
+    wanted = (await form(request))["files"]
+    return await looked_at(bench, *((inside(bench.root, item["file"]), item.get("part")) for item in wanted))
 
 
-async def looked_at(bench: Bench, path: Path, part: str | None = None) -> Response:
-    found = await asyncio.to_thread(columns_of, path, part)
-    return JSONResponse(found | {"file": bench.relative(path)})
+async def looked_at(bench: Bench, *files: tuple[Path, str | None]) -> Response:
+    found = await asyncio.to_thread(columns_of, *files)
+    for about, (path, _) in zip(found["files"], files, strict=True):
+        about["file"] = bench.relative(path)
+    return JSONResponse(found)
 
 
 async def begin(bench: Bench, request: Request) -> Response:
     wanted = await form(request)
-    for record in wanted["records"]:
-        inside(bench.root, record["file"])
+    for place in places(wanted["records"]):
+        inside(bench.root, place["file"])
     await asyncio.to_thread(bench.begin, wanted)
     return await state(bench, request)
 
@@ -224,7 +228,7 @@ async def back(bench: Bench, request: Request) -> Response:
 async def job_file(bench: Bench, request: Request) -> Response:
     """The job, for the folder that the workbench was started in."""
     job = bench.job()
-    return PlainTextResponse(with_effects(job, job.effects, bench.root))
+    return PlainTextResponse(amended(job, job.effects, bench.root))
 
 
 async def drive_file(bench: Bench, request: Request) -> Response:

@@ -10,20 +10,21 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+import re
 import shutil
 import signal
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from shlex import join
 from typing import Any
 
-from pzt_ident.amend import with_effects
+from pzt_ident.amend import amended
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.files import write_json, write_text
 from pzt_ident.job import Job, load_job
-from pzt_ident.workbench.form import job_text, with_model
+from pzt_ident.workbench.form import job_text, places
 
 SECONDS_TO_STOP = 8.0
 CUT_OFF = "This was ended before it was finished. Run goes on from here."
@@ -73,14 +74,14 @@ class Bench:
 
     def begin(self, form: dict[str, Any]) -> None:
         """A first step from what was confirmed on the page. Raises InputError that lists every fault."""
-        for record in form["records"]:
-            record["file"] = os.path.relpath(self.root / record["file"], self.folder / "steps" / str(self._next))
+        for place in places(form["records"]):
+            place["file"] = os.path.relpath(self.root / place["file"], self.folder / "steps" / str(self._next))
         self._add(job_text(form), parent=0, change="as given")
 
     def open(self, path: Path) -> None:
         """A first step from a job file of the user's. Raises InputError where the session began with another."""
         job, first = load_job(path), self.folder / "steps" / "1"
-        text = with_effects(job, job.effects, first)
+        text = amended(job, job.effects, first)
         if not self.steps:
             self._add(text, parent=0, change="as given")
         elif (first / "job.yaml").read_text(encoding="utf-8") != text:
@@ -102,21 +103,21 @@ class Bench:
         self._change(tuple(word for word in job.effects if word != effect), f"− {effect}")
 
     def _change(self, effects: tuple[str, ...], change: str) -> None:
-        before, folder = self.step(), self.folder / "steps" / str(self._next)
-        self._add(with_effects(self.job(), effects, folder), self.at, change)
         sign, effect = change.split()
-        paths = [self.relative(place / "job.yaml") for place in (before, folder)]
-        add = ["pzt-ident", "add", paths[0], effect, "-o", paths[1]]
-        self.log(join(add) if sign == "+" else f"# {paths[1]} is {paths[0]} less {effect}")
+        self._amend({"+": "add", "−": "remove"}[sign], [effect], change, effects)
 
     def choose(self, words: list[str]) -> None:
         """Another chain of blocks."""
-        folder = self.folder / "steps" / str(self._next)
-        text = with_effects(self.job(), self.job().effects, folder)
-        before = self.step()
-        self._add(with_model(text, words), self.at, " → ".join(words))
-        paths = [self.relative(place / "job.yaml") for place in (folder, before)]
-        self.log(f"# {paths[0]} is {paths[1]} with the model {', '.join(words)}")
+        self._amend("model", words, " → ".join(words), self.job().effects, words)
+
+    def _amend(
+        self, command: str, said: list[str], change: str, effects: Sequence[str], words: list[str] | None = None
+    ) -> None:
+        """A step from the one shown, as a command makes it."""
+        before, folder = self.step(), self.folder / "steps" / str(self._next)
+        self._add(amended(self.job(), effects, folder, words), self.at, change)
+        paths = [self.relative(place / "job.yaml") for place in (before, folder)]
+        self.log(join(["pzt-ident", command, paths[0], *said, "-o", paths[1]]))
 
     def undo(self) -> None:
         """Back to the step before, from the first one to the measurement; what was made stays in its folder."""
@@ -155,6 +156,11 @@ class Bench:
         self.failure = ""
         self.version += 1
 
+    def readable(self, text: str) -> str:
+        """What was said, with paths from the root, and none that leads up and down again."""
+        within = text.replace(f"{self.root}{os.sep}", "")
+        return re.sub(r"\S+/\.\./\S+", lambda found: os.path.normpath(found[0]), within)
+
     def relative(self, path: Path) -> str:
         return os.path.relpath(path, self.root)
 
@@ -175,9 +181,15 @@ class Bench:
         return [step / "run" / "environment.json", *(last for _, last, _ in self.commands(step))]
 
     def log(self, line: str) -> None:
-        """Keep a line of what it takes to repeat the session in a terminal."""
-        with (self.folder / "commands.txt").open("a", encoding="utf-8") as log:
-            log.write(line + "\n")
+        """Keep a line of what it takes to repeat the session in a terminal, once."""
+        if line not in self.said():
+            with (self.folder / "commands.txt").open("a", encoding="utf-8") as log:
+                log.write(line + "\n")
+
+    def said(self) -> list[str]:
+        """The lines kept."""
+        path = self.folder / "commands.txt"
+        return path.read_text(encoding="utf-8").splitlines() if path.exists() else []
 
     def start(self) -> None:
         """Fill the step that is shown. Raises InputError while another is being filled."""
@@ -221,7 +233,9 @@ class Bench:
             raise RunError(f"`pzt-ident {name}` was killed by signal {-code}. Run goes on from here.")
         if code:
             lines = said.decode(errors="replace").strip().splitlines()
-            raise RunError("\n".join(lines[-12:]).removeprefix("Error: ") or f"`pzt-ident {name}` failed")
+            raise RunError(
+                self.readable("\n".join(lines[-12:])).removeprefix("Error: ") or f"`pzt-ident {name}` failed"
+            )
 
     async def stop(self) -> None:
         """End what is running, with its workers; returns when it has ended."""

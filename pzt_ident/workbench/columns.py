@@ -5,53 +5,102 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from pzt_ident.errors import InputError
-from pzt_ident.readers.column import Column
+from pzt_ident.readers.column import Column, Table
 from pzt_ident.readers.formats import open_table, parts_of
 from pzt_ident.record import Source
-from pzt_ident.units import TIME, dimension, is_unit
+from pzt_ident.units import FREQUENCY, TIME, dimension, factor, is_unit
 
 SHOWN = 5  # values of each column
+LEAST = 3  # values of a column
+MOST = 40  # columns of an array
 BINS = 60  # of its shape
 AXES = "xyz"
 _LENGTH, _VOLTAGE, _FIELD, _CHARGE, _POLARIZATION = map(dimension, ("m", "V", "V/m", "C", "C/m2"))
 _NAMES = {
-    "time": r"t|time|zeit|timestamp|sec(onds?)?",
-    "drive": r"u|v|e|volt.*|drive|input|command|cmd|field|.*voltage",
+    "time": r"t|time|zeit|clock|timestamp|sec(onds?)?",
+    "drive": r"u|v|vplus|e|volt.*|drive|input|command|cmd|field|.*voltage",
     "response": r"x|y|z|d|pos.*|disp.*|sensor|resp.*|output|strain|.*displacement|.*position",
 }
 
+_RATES = {"fs": FREQUENCY, "rate": FREQUENCY, "samplerate": FREQUENCY, "dt": TIME, "ts": TIME, "increment": TIME}
 
-def columns_of(path: Path, part: str | None = None) -> dict[str, Any]:
-    """The numeric columns of a file with their first values, range, unit and guessed role: of its table or sheet
-    `part`, of the first that holds any if none is named.
 
-    Raises InputError where the file cannot be read or has fewer than two such columns.
+def columns_of(*files: tuple[Path, str | None]) -> dict[str, Any]:
+    """The numeric columns of the files of a record with their first values, range, unit and guessed role, and which
+    of the files each is `of`: of a table or sheet where one is named, else of the first that holds any. `rate` is the
+    sample rate that a file states.
+
+    Raises InputError where a file cannot be read or has no such column, or files differ in length.
     """
+    about, columns, rate = list[dict[str, Any]](), list[dict[str, Any]](), ""
+    for path, part in files:
+        facts, table = _of_file(path, part)
+        columns += [item | {"of": len(about)} for item in _columns(table)]
+        rate = rate or _rate(table)
+        about.append(facts)
+    rows = {item["rows"] for item in columns}
+    if len(rows) > 1:
+        lengths = ", ".join(
+            f"{name} {next(c['rows'] for c in columns if c['of'] == i)}"
+            for i, name in enumerate(facts["file"] for facts in about)
+        )
+        raise InputError(f"the files of a record differ in rows: {lengths}", remedy="drop files of one measurement")
+    _guess(columns)
+    return {"files": about, "rows": rows.pop(), "rate": rate, "columns": columns}
+
+
+def _of_file(path: Path, part: str | None) -> tuple[dict[str, Any], Table]:
+    """Facts of a file, and its table: that which is named, else the first that holds columns of numbers."""
     kind, parts = parts_of(path)
     about = {"file": path.name, "kind": kind, "parts": parts}
     *others, last = [part] if part or not parts else parts
     for tried in others:
         with suppress(InputError):
-            return about | {"part": tried} | _of_part(path, {kind: tried})
-    return about | {"part": last} | _of_part(path, {kind: last} if kind else {})
+            table = open_table(path, Source(str(path), **{kind: tried}))  # type: ignore[arg-type]
+            _columns(table)
+            return about | {"part": tried}, table
+    return about | {"part": last}, open_table(path, Source(str(path), **({kind: last} if kind else {})))  # type: ignore[arg-type]
 
 
-def _of_part(path: Path, part: dict[str, Any]) -> dict[str, Any]:
-    table = open_table(path, Source(str(path), **part))
-    found = [item for number, column in enumerate(table.columns, 1) if (item := _column(number, column))]
+def _columns(table: Table) -> list[dict[str, Any]]:
+    """The longest that it holds. Raises InputError where it holds none."""
+    found = [item for number, column in enumerate(_apart(table.columns), 1) if (item := _column(number, column))]
     rows = max((item["rows"] for item in found), default=0)
-    found = [item for item in found if item["rows"] == rows]
-    if len(found) < 2:
-        remedy = "drop a table of signals; signals in separate files need a job file, see `pzt-ident init`"
-        raise InputError("holds no two columns of numbers", where=path.name, remedy=remedy)
-    _guess(found)
-    return {"rows": rows, "columns": found}
+    if not rows:
+        remedy = "drop a table of signals; of an array of more than two dimensions a job file takes slices by `index`"
+        raise InputError(f"holds no column of at least {LEAST} numbers", where=table.path.name, remedy=remedy)
+    return [item for item in found if item["rows"] == rows]
+
+
+def _rate(table: Table) -> str:
+    """The sample rate, by a value that stands for one or for the sample time."""
+    for column in table.scalars:
+        word = re.split(r"[\W_]+", column.name.lower())[-1]
+        kind = dimension(column.unit) if column.unit and is_unit(column.unit) else _RATES.get(word)
+        if kind not in (TIME, FREQUENCY):
+            continue
+        with suppress(ValueError, TypeError):
+            value = float(np.squeeze(column.load())) * factor(column.unit or ("s" if kind == TIME else "Hz"))
+            if 0 < value < np.inf:
+                return f"{1 / value if kind == TIME else value:.9g} Hz"
+    return ""
+
+
+def _apart(columns: Sequence[Column]) -> Sequence[Column]:
+    """The columns of the array, where a file has nothing but one of two dimensions."""
+    if len(columns) != 1:
+        return columns
+    array = columns[0].load()
+    if np.ndim(array) != 2 or 1 in np.shape(array):
+        return columns
+    return [Column("", partial(array.__getitem__, np.s_[:, i])) for i in range(min(np.shape(array)[1], MOST))]
 
 
 def _column(number: int, column: Column) -> dict[str, Any] | None:
@@ -59,7 +108,7 @@ def _column(number: int, column: Column) -> dict[str, Any] | None:
         values = np.squeeze(np.asarray(column.load(), dtype=float))
     except (ValueError, TypeError):
         return None
-    if values.ndim != 1 or values.size < 3 or not np.isfinite(values).any():
+    if values.ndim != 1 or values.size < LEAST or not np.isfinite(values).any():
         return None
     return {
         "number": number,
@@ -110,7 +159,7 @@ def _guess(columns: list[dict[str, Any]]) -> None:
     by_sign = (("time", _is_time), ("x.drive", _is_drive), ("x.response", _is_length), ("x.response", _is_charge))
     for role, fits in by_sign:
         _take(columns, role, fits)
-    for role in ("x.drive", "x.response"):
+    for role in ("x.drive", "x.response") if len(columns) > 1 else ():
         _take(columns, role, lambda item: True)
     first = [item for role in ("x.drive", "x.response") for item in columns if item["role"] == role]
     if len(first) == 2 and not first[0]["name"] and first[0]["rough"] > 2 * first[1]["rough"]:
@@ -122,10 +171,14 @@ def _guess(columns: list[dict[str, Any]]) -> None:
 
 
 def _beside(item: dict[str, Any], first: dict[str, Any]) -> bool:
-    """Whether a column without a role is called as another one, but for one letter, and moves."""
-    a, b = item["name"], first["name"]
-    alike = len(a) == len(b) and sum(one != other for one, other in zip(a, b, strict=True)) == 1
+    """Whether a column without a role is called as another one, but for the sign of its axis, and moves."""
+    alike = first["name"] != item["name"] and _unsigned(first["name"]) == _unsigned(item["name"])
     return not item["role"] and alike and item["unit"] == first["unit"] and item["high"] > item["low"]
+
+
+def _unsigned(name: str) -> str:
+    """A name less what may tell one axis from another: a digit or a letter of x y z a b c by itself or at an end."""
+    return re.sub(r"(?<![0-9])[0-9](?![0-9])|(?<![a-z])[xyzabc](?![a-z])|(?<=[0-9_])[xyzabc]|[xyz]$", "", name.lower())
 
 
 def _take(columns: list[dict[str, Any]], role: str, fits: Callable[[dict[str, Any]], bool]) -> None:

@@ -23,6 +23,7 @@ HEADERS = {
     "cross-origin-opener-policy": "same-origin",
     "cross-origin-resource-policy": "same-origin",
 }
+LARGEST_UPLOAD = 256 << 20
 REPORT = "/report/"  # a page with a policy of its own
 
 

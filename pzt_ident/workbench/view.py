@@ -9,24 +9,27 @@ from pathlib import Path
 from typing import Any
 
 from pzt_ident.readers.formats import READERS
-from pzt_ident.registry import blocks
-from pzt_ident.report.numbers import unit
+from pzt_ident.registry import blocks, word_of
+from pzt_ident.report.numbers import spelled, unit
 from pzt_ident.report.results import Trace, read_results
 from pzt_ident.report.tables import expected
 from pzt_ident.report.traces import packed
+from pzt_ident.report.words import reason
 from pzt_ident.workbench.bench import Bench
+from pzt_ident.workbench.guard import LARGEST_UPLOAD
 
 DATA = tuple(READERS)
+SPELLED = {"unit": unit} | dict.fromkeys(("reason", "why", "said", "sentences"), spelled)
 
 
 def state(bench: Bench) -> dict[str, Any]:
     """Everything but the signals; empty parts where there is nothing yet."""
     chain = bench.chain()
     step = bench.step() if chain else None
-    commands = bench.folder / "commands.txt"
     return {
         "version": bench.version,
         "folder": bench.relative(bench.folder),
+        "largest": LARGEST_UPLOAD,
         "blocks": chainable(),
         "effects": effects(),
         "files": [*files_in(bench.root), *(bench.relative(bench.data / name) for name in files_in(bench.data))],
@@ -40,7 +43,7 @@ def state(bench: Bench) -> dict[str, Any]:
         "result": read(step / "run" / "result.json") if step else None,
         "misfit": read(step / "run" / "residuals.json") if step else None,
         "diagnosis": diagnosis_of(step) if step else None,
-        "commands": commands.read_text(encoding="utf-8").splitlines() if commands.exists() else [],
+        "commands": bench.said(),
     }
 
 
@@ -60,15 +63,23 @@ def unit_of(bench: Bench) -> str:
 def diagnosis_of(step: Path) -> dict[str, Any] | None:
     """The diagnosis, with what each effect would be as it is printed."""
     found = read(step / "diagnosis" / "diagnosis.json")
-    for item in found["candidates"] if found else ():
+    if not found:
+        return None
+    for item in found["candidates"]:
         item["would_be"] = expected(item["expected"], item["units"])
-    return found
+    return found | {"reason": reason(found["reason"], read_results(step / "run"))}
 
 
 def job_of(bench: Bench) -> dict[str, Any]:
     job = bench.job()
     folder = bench.relative(bench.step())
-    return {"name": job.name, "model": job.model, "effects": job.effects, "folder": folder, "text": job.text}
+    return {
+        "name": job.name,
+        "model": [word_of(item) for item in job.model],
+        "effects": job.effects,
+        "folder": folder,
+        "text": job.text,
+    }
 
 
 def signals(bench: Bench) -> dict[str, Any]:
@@ -83,14 +94,19 @@ def signals(bench: Bench) -> dict[str, Any]:
 
 
 def read(path: Path) -> Any:
-    """A JSON file; None where there is none, with its unit as it is printed."""
+    """A JSON file; None where there is none, with its units as they are printed."""
     if not path.exists():
         return None
     return printed(json.loads(path.read_text(encoding="utf-8")))
 
 
-def printed(found: dict[str, Any]) -> dict[str, Any]:
-    return found | {"unit": unit(found["unit"])} if "unit" in found else found
+def printed(found: Any, key: str = "") -> Any:
+    """The units in it, and those in its sentences, as they are printed."""
+    if isinstance(found, dict):
+        return {word: printed(item, word) for word, item in found.items()}
+    if isinstance(found, list):
+        return [printed(item, key) for item in found]
+    return SPELLED[key](found) if key in SPELLED and isinstance(found, str) else found
 
 
 def files_in(root: Path) -> list[str]:
@@ -100,16 +116,17 @@ def files_in(root: Path) -> list[str]:
 
 
 @cache
-def chainable() -> list[dict[str, str]]:
+def chainable() -> list[dict[str, Any]]:
     """Blocks that a model may be made of."""
     return [described(word) for word in blocks.words() if blocks.folder(word) != "effects"]
 
 
 @cache
-def effects() -> list[dict[str, str]]:
+def effects() -> list[dict[str, Any]]:
     return [described(word) for word in blocks.effects()]
 
 
-def described(word: str) -> dict[str, str]:
+def described(word: str) -> dict[str, Any]:
     place = getattr(blocks[word], "place", None)
-    return {"name": word, "doc": (inspect.getdoc(blocks[word]) or "").partition("\n")[0], "place": str(place or "")}
+    doc = (inspect.getdoc(blocks[word]) or "").partition("\n")[0]
+    return {"name": word, "doc": doc, "place": None if place is None else int(place), "kind": blocks.folder(word)}

@@ -45,7 +45,7 @@ def rmse_of(folder, start=0.0, end=np.inf):
 
 def test_it_opens_without_a_network_or_an_error(opened, folder):
     assert rmse_said(opened) == pytest.approx(rmse_of(folder), rel=0.006)
-    assert opened.locator(".curves canvas").count() == 2 and opened.locator(".plane canvas").count() == 2
+    assert opened.locator(".u-wrap > canvas").count() == 2 and opened.locator(".plane canvas.drawn").count() == 2
 
 
 def test_in_the_dark_the_paper_is(opened):
@@ -66,7 +66,7 @@ def test_a_stretch_by_its_times(opened, folder):
 
 
 def test_a_drag_in_time_marks_the_planes_too(opened):
-    before = opened.evaluate("document.querySelectorAll('.plane canvas')[1].toDataURL()")
+    before = opened.evaluate("document.querySelectorAll('.plane .marked')[1].toDataURL()")
     box = opened.locator(".curves .u-over").first.bounding_box()
     opened.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 40)
     opened.mouse.down()
@@ -75,12 +75,12 @@ def test_a_drag_in_time_marks_the_planes_too(opened):
     expect(opened.locator(".readout")).to_contain_text("Marked from")
     ends = [float(opened.locator(".bar input").nth(i).input_value()) for i in (0, 1)]
     assert ends == pytest.approx([12, 20], abs=0.5)
-    assert opened.evaluate("document.querySelectorAll('.plane canvas')[1].toDataURL()") != before
+    assert opened.evaluate("document.querySelectorAll('.plane .marked')[1].toDataURL()") != before
 
 
 def test_a_box_in_the_loop_marks_stretches_of_time(opened):
-    opened.locator(".plane canvas").first.scroll_into_view_if_needed()
-    box = opened.locator(".plane canvas").first.bounding_box()
+    opened.locator(".plane .pointed").first.scroll_into_view_if_needed()
+    box = opened.locator(".plane .pointed").first.bounding_box()
     opened.mouse.move(box["x"] + 0.8 * box["width"], box["y"] + 0.05 * box["height"])
     opened.mouse.down()
     opened.mouse.move(box["x"] + 0.95 * box["width"], box["y"] + 0.4 * box["height"], steps=4)
@@ -103,6 +103,7 @@ def test_it_prints(opened, tmp_path):
     opened.evaluate("dispatchEvent(new Event('beforeprint'))")
     width = "[...document.querySelectorAll('.explorer canvas')].map((one) => one.getBoundingClientRect().right)"
     assert max(opened.evaluate(width)) < 180 / 25.4 * 96
+    assert not opened.locator(".plane .marked").first.is_visible()  # it would cut out what is below
     opened.evaluate("dispatchEvent(new Event('afterprint'))")
     opened.emulate_media(media="screen")
     opened.pdf(path=tmp_path / "report.pdf", format="A4")

@@ -38,6 +38,12 @@ def text(name):
     return SAMPLE.joinpath(name).read_text(encoding="utf-8")
 
 
+def thinned(text):
+    """Every fourth row."""
+    header, *rows = text.splitlines()
+    return "\n".join([header, *rows[::4]]) + "\n"
+
+
 def roles(page):
     return [box.input_value() for box in page.locator("table.guessed select").all()]
 
@@ -54,7 +60,7 @@ def test_from_the_file_drop_to_the_fallen_error(workbench, page, tmp_path):
     page.goto(workbench())
     expect(page.locator("#verdict")).to_contain_text("Drop a measurement")
     names = ["identify.csv", "validate.csv"]
-    page.evaluate(DROP, [names, [text(name) for name in names]])
+    page.evaluate(DROP, [names, [thinned(text(name)) for name in names]])
     expect(page.locator("table.files tr")).to_have_count(3)
     assert roles(page) == ["time", "x.drive", "x.response"]
     page.click("#confirm")
@@ -69,6 +75,7 @@ def test_from_the_file_drop_to_the_fallen_error(workbench, page, tmp_path):
     expect(page.locator(".staircase rect.validate:not(.live)")).to_have_count(2)
     second = read(tmp_path / "workbench/steps/2/run/result.json")["best"]["rmse"]
     assert second["identify"] < 0.6 * first["identify"] and second["validate"] < 0.4 * first["validate"]
+    expect(page.locator("#verdict")).to_contain_text("Missing: creep")
     assert "pzt-ident add workbench/steps/1/job.yaml quadratic_gain" in page.text_content("#commands")
 
     with page.expect_download() as download:
@@ -174,7 +181,7 @@ def test_sheets_axes_and_what_is_left_open(workbench, page, tmp_path):
     page.click("#confirm")
     expect(page.locator("#error")).to_have_text("Which column is the drive of y?")
     page.select_option("[aria-label='Role of p1 [nm]']", "x.response")
-    page.select_option("#more select", "lumped")
+    page.click(".chip:text-is('lumped')")
     page.click("#confirm")
     expect(page.locator("#stop")).to_be_visible()
     page.click("#stop")
@@ -184,3 +191,18 @@ def test_sheets_axes_and_what_is_left_open(workbench, page, tmp_path):
     assert (list(job.channels.axes), job.model) == (["x"], ("bouc_wen", "lumped"))
     page.click("#undo")
     expect(page.locator("#verdict")).to_have_text("Is this what was measured?")
+
+
+def test_signals_in_files_of_their_own_and_a_block_drawn_onto_the_chain(workbench, page):
+    page.goto(workbench())
+    expect(page.locator("#blocks li")).to_have_count(3)
+    signals = ["\n".join(f"{i % period / 3}" for i in range(900)) for period in (30, 50)]
+    page.evaluate(DROP, [["drive.csv", "response.csv"], signals])
+    expect(page.locator("table.files td").first).to_have_text("drive.csv + response.csv")
+    assert roles(page) == ["x.drive", "x.response"]
+    expect(page.locator("table.files select")).to_have_value("split")
+    for word in ("lumped", "prandtl_ishlinskii"):
+        page.drag_and_drop(f".chip:text-is('{word}')", "#blocks")
+    expect(page.locator("#blocks li")).to_have_text(["drive", "prandtl_ishlinskii×", "lumped×", "response"])
+    page.click("#confirm")
+    expect(page.locator("#error")).to_have_text("Which column is the time? Or give the sample rate.")

@@ -106,3 +106,15 @@ def test_counts_and_shares():
     assert numbers.percent(0.8) == "80\u00a0%"
     assert numbers.bounds(0, 1e5) == "0 to 10⁵"
     assert numbers.bounds(None, None) == "–"
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("ended on its bound of 3 um: why", "ended on its bound of 3 µm: why"),
+        ("moves at 2 to 40 um/s or 1\u00a0uC/cm2", "moves at 2 to 40 µm/s or 1\u00a0µC/cm2"),
+        ("u_x 3 us 4 umbrellas um", "u_x 3 µs 4 umbrellas um"),
+    ],
+)
+def test_units_in_sentences(text, expected):
+    assert numbers.spelled(text) == expected

@@ -3,6 +3,7 @@ import hashlib
 import json
 import re
 import shutil
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from pzt_ident.compare import compare
 from pzt_ident.report.page import write_report
 from pzt_ident.report.results import read_results
-from pzt_ident.report.words import findings, listed, verdict
+from pzt_ident.report.words import findings, listed, reason, verdict
 
 from .conftest import WEIRD, make_run
 
@@ -184,3 +185,24 @@ def perfect(folder):
             entry["verdict"] = "fixed"
     result["best"]["correlation"] = None
     (folder / "result.json").write_text(json.dumps(result))
+
+
+def test_of_a_response_without_noise_errors_are_not_counted_in_floors(tmp_path):
+    folder = make_run(tmp_path / "run", noise_floor=1e-9)
+    results = read_results(folder)
+    assert verdict(results).endswith(
+        "; the response holds hardly any noise to compare it with, as if it were simulated."
+    )
+    said = "The RMSE falls from 3e6 to 1171.2 noise floors. It leaves 2000 noise floors."
+    assert reason(said.replace("3e6", "3000000.0"), results) == (
+        "The RMSE falls from 0.00300 µm to 1.17 × 10⁻⁶ µm. It leaves 2.00 × 10⁻⁶ µm.".replace(" µm", "\u00a0µm")
+    )
+    assert reason(said, read_results(make_run(tmp_path / "noisy"))) == said
+
+
+def test_a_better_fit_than_the_runs_is_told(plain):
+    results = read_results(plain)
+    run = results.best["rmse"]["identify"]
+    for share, told in ((0.5, True), (0.99, False)):
+        found = replace(results, diagnosis={"rmse": {"identify": share * run}})
+        assert ("search longer" in reason("The model is adequate.", found)) is told

@@ -4,8 +4,9 @@ import re
 import pandas as pd
 import pytest
 
+from pzt_ident.report.latex import escaped, tabular
 from pzt_ident.report.results import read_results
-from pzt_ident.report.tables import latex, latex_escape, make_tables, write_tables
+from pzt_ident.report.tables import make_tables, write_tables
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +53,7 @@ def test_verdicts_are_words_in_the_table(written):
 def test_latex_is_a_booktabs_tabular_with_a_cell_for_each_column(plain, written):
     for name, table in written.items():
         lines = (plain / "tables" / f"{name}.tex").read_text(encoding="utf-8").splitlines()
-        align = re.fullmatch(r"\\begin\{tabular\}\{([lr]+)\}", lines[0])[1]
+        align = re.fullmatch(r"\\begin\{tabular\}\{([lr]+)\}", lines[0].replace("p{60mm}", "l"))[1]
         assert len(align) == len(table.text.columns)
         assert (lines[1], lines[3], lines[-2], lines[-1]) == (
             r"\toprule",
@@ -65,14 +66,15 @@ def test_latex_is_a_booktabs_tabular_with_a_cell_for_each_column(plain, written)
 
 
 def test_latex_escapes_what_a_file_may_be_called(weird):
-    text = latex(make_tables(read_results(weird))["records"])
+    table = make_tables(read_results(weird))["records"]
+    text = tabular(table.text, table.words)
     assert r"100\%\_\textmu{} \& " in text
     assert r"\$a\_1\$" in text
     assert r"\textless{}script\textgreater{}" in text
 
 
 @pytest.mark.parametrize(
-    ("text", "escaped"),
+    ("text", "expected"),
     [
         (r"a\b{c}", r"a\textbackslash{}b\{c\}"),
         ("~^#", r"\textasciitilde{}\textasciicircum{}\#"),
@@ -82,5 +84,5 @@ def test_latex_escapes_what_a_file_may_be_called(weird):
         ("17\u202f500", r"17\,500"),
     ],
 )
-def test_latex_signs(text, escaped):
-    assert latex_escape(text) == escaped
+def test_latex_signs(text, expected):
+    assert escaped(text) == expected

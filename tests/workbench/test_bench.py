@@ -4,9 +4,12 @@ import asyncio
 import json
 import subprocess
 import sys
+from shlex import split
 
 import pytest
+from click.testing import CliRunner
 
+from pzt_ident.cli import main
 from pzt_ident.errors import InputError
 from pzt_ident.job import Job, load_job
 from pzt_ident.workbench.bench import Bench
@@ -94,9 +97,28 @@ def test_the_log_repeats_the_session(begun):
     begun.choose(["bouc_wen", "lumped"])
     assert (begun.folder / "commands.txt").read_text().splitlines() == [
         "pzt-ident add workbench/steps/1/job.yaml creep -o workbench/steps/2/job.yaml",
-        "# workbench/steps/3/job.yaml is workbench/steps/2/job.yaml less creep",
-        "# workbench/steps/4/job.yaml is workbench/steps/3/job.yaml with the model bouc_wen, lumped",
+        "pzt-ident remove workbench/steps/2/job.yaml creep -o workbench/steps/3/job.yaml",
+        "pzt-ident model workbench/steps/3/job.yaml bouc_wen lumped -o workbench/steps/4/job.yaml",
     ]
+
+
+def test_what_is_done_again_is_logged_once(begun):
+    for _ in range(2):
+        begun.log("pzt-ident run here/job.yaml")
+    assert begun.said() == ["pzt-ident run here/job.yaml"]
+
+
+def test_in_a_terminal_the_log_makes_the_same_jobs(begun):
+    begun.add("creep")
+    begun.choose(["bouc_wen", "lumped"])
+    begun.remove("creep")
+    made = [begun.step(number) / "job.yaml" for number in (2, 3, 4)]
+    before = [path.read_text() for path in made]
+    for path in made:
+        path.unlink()
+    for line in (begun.folder / "commands.txt").read_text().splitlines():
+        assert CliRunner().invoke(main, split(line)[1:]).exit_code == 0
+    assert [path.read_text() for path in made] == before
 
 
 def test_a_run_that_was_cut_off_goes_on(begun):

@@ -5,8 +5,9 @@ import pytest
 
 from pzt_ident.errors import InputError
 from pzt_ident.job import Job
+from pzt_ident.run import read
 from pzt_ident.workbench.columns import columns_of
-from pzt_ident.workbench.form import job_text, with_model
+from pzt_ident.workbench.form import job_text
 from sheets import write_sheets
 
 from .conftest import form
@@ -17,7 +18,7 @@ RESPONSE = 3 * np.sin(TIME * 9 - 0.2)
 
 
 def roles(path):
-    return [column["role"] for column in columns_of(path)["columns"]]
+    return [column["role"] for column in columns_of((path, None))["columns"]]
 
 
 @pytest.mark.parametrize(
@@ -57,7 +58,7 @@ def test_another_axis_where_both_its_signals_are_called_alike(tmp_path, header, 
 def test_of_two_columns_without_a_name_the_smoother_is_the_drive(tmp_path):
     noisy = RESPONSE + np.random.default_rng(1).normal(0, 0.05, TIME.size)
     np.savetxt(tmp_path / "data.csv", np.column_stack([TIME, noisy, DRIVE]), delimiter=",")
-    found = columns_of(tmp_path / "data.csv")["columns"]
+    found = columns_of((tmp_path / "data.csv", None))["columns"]
     assert [column["role"] for column in found] == ["time", "x.response", "x.drive"]
     assert all(0 <= value <= 1 for column in found for value in column["shape"])
 
@@ -65,21 +66,21 @@ def test_of_two_columns_without_a_name_the_smoother_is_the_drive(tmp_path):
 def test_a_unit_at_the_end_of_a_name(tmp_path):
     columns = np.column_stack([TIME, DRIVE, RESPONSE])
     np.savetxt(tmp_path / "data.csv", columns, delimiter=",", header="t_ms,gain_x,disp_nm", comments="")
-    assert [column["unit"] for column in columns_of(tmp_path / "data.csv")["columns"]] == ["ms", None, "nm"]
+    assert [column["unit"] for column in columns_of((tmp_path / "data.csv", None))["columns"]] == ["ms", None, "nm"]
 
 
 def test_sheets_and_tables(tmp_path):
     rows = [["t [s]", "u [V]", "x [um]"], *np.column_stack([TIME, DRIVE, RESPONSE]).tolist()]
     write_sheets(tmp_path / "rig.xlsx", Sheet=[["Rig 3"]], Loops=rows, Check=rows)
-    found = columns_of(tmp_path / "rig.xlsx")
+    (found,) = columns_of((tmp_path / "rig.xlsx", None))["files"]
     assert (found["kind"], found["part"], list(found["parts"])) == ("sheet", "Loops", ["Sheet", "Loops", "Check"])
-    assert columns_of(tmp_path / "rig.xlsx", "Check")["part"] == "Check"
+    assert columns_of((tmp_path / "rig.xlsx", "Check"))["files"][0]["part"] == "Check"
     with pytest.raises(InputError, match="no table of numbers"):
-        columns_of(tmp_path / "rig.xlsx", "Sheet")
+        columns_of((tmp_path / "rig.xlsx", "Sheet"))
     lines = "\n".join(f"{t},{u},{x}" for t, u, x in zip(TIME, DRIVE, RESPONSE, strict=True))
     tables = (f"Table {n}\nSampleName: run {n}\nt [s],u [V],x [um]\n{lines}\n\n" for n in (1, 2))
     (tmp_path / "rig.dat").write_text("".join(tables))
-    found = columns_of(tmp_path / "rig.dat", "2")
+    (found,) = columns_of((tmp_path / "rig.dat", "2"))["files"]
     assert (found["kind"], found["parts"]) == ("table", {"1": "Table 1: run 1", "2": "Table 2: run 2"})
     records = [
         {"file": "rig.dat", "use": use, found["kind"]: part} for use, part in (("identify", "1"), ("validate", "2"))
@@ -102,10 +103,52 @@ def test_matlab_vectors_are_columns(tmp_path):
     assert sorted(roles(tmp_path / "data.mat")) == ["time", "x.drive", "x.response"]
 
 
+def test_a_file_a_signal(tmp_path):
+    paths = []
+    for name, values in {"drive": DRIVE, "clock": TIME, "response": RESPONSE}.items():
+        np.save(tmp_path / f"{name}.npy", values)
+        paths.append(tmp_path / f"{name}.npy")
+    assert [roles(path) for path in paths] == [["x.drive"], ["time"], ["x.response"]]
+    found = columns_of(*((path, None) for path in paths))["columns"]
+    assert [(column["of"], column["role"]) for column in found] == [(0, "x.drive"), (1, "time"), (2, "x.response")]
+    np.save(tmp_path / "short.npy", RESPONSE[:50])
+    with pytest.raises(InputError, match=r"differ in rows: drive\.npy 60, short\.npy 50"):
+        columns_of((paths[0], None), (tmp_path / "short.npy", None))
+
+
+def test_an_array_of_columns(tmp_path):
+    np.save(tmp_path / "all.npy", np.column_stack([TIME, DRIVE, RESPONSE]))
+    found = columns_of((tmp_path / "all.npy", None))["columns"]
+    assert [(column["number"], column["role"]) for column in found] == [(1, "time"), (2, "x.drive"), (3, "x.response")]
+
+
+def test_a_record_of_several_files_reads(tmp_path):
+    for name, values in {"drive": DRIVE, "response": RESPONSE}.items():
+        np.save(tmp_path / f"{name}.npy", values)
+    channels = {role: {"file": f"{role[2:]}.npy", "number": 1} for role in ("x.drive", "x.response")}
+    records = [{"file": "drive.npy", "use": "identify", "channels": channels}]
+    axes = {"x": {"drive": {"unit": "V"}, "response": {"unit": "nm"}}}
+    job = Job.from_text(job_text(form(records=records, time=None, sample_rate="100Hz", axes=axes)), tmp_path)
+    (record,) = read(job)
+    assert np.allclose(record.response, 1e-9 * RESPONSE) and np.allclose(record.drive, DRIVE)
+
+
+@pytest.mark.parametrize("more", [{}, {"time": None, "sample_rate": "100 Hz"}])
+def test_the_last_third_of_a_record_alone_is_kept_back(tmp_path, more):
+    header = "time [s],u_x [V],x [um]"
+    np.savetxt(
+        tmp_path / "data.csv", np.column_stack([TIME, DRIVE, RESPONSE]), delimiter=",", header=header, comments=""
+    )
+    records = [{"file": "data.csv", "use": "split", "rows": 60, "span": TIME[-1]}]
+    fitted, kept = read(Job.from_text(job_text(form(records=records) | more), tmp_path))
+    assert (fitted.use, fitted.samples, fitted.settle) == ("identify", 40, 0)
+    assert (kept.use, kept.samples, kept.settle, kept.notes) == ("validate", 60, 40, ())
+
+
 def test_a_file_without_signals_is_an_error(tmp_path):
     (tmp_path / "data.csv").write_text("nothing\nhere\n")
     with pytest.raises(InputError):
-        columns_of(tmp_path / "data.csv")
+        columns_of((tmp_path / "data.csv", None))
 
 
 def test_the_form_is_a_job_that_reads(tmp_path):
@@ -120,9 +163,3 @@ def test_a_form_without_headings_counts_columns(tmp_path):
     job = Job.from_text(job_text(form(time=None, sample_rate="200 Hz", axes=axes)), tmp_path)
     assert job.channels.axes["x"].response.column == 5
     assert job.records[0].sample_rate == 200
-
-
-def test_another_model_keeps_the_comments(tmp_path):
-    text = with_model(job_text(form()), ["bouc_wen", "lumped"])
-    assert text.startswith("# Made in the workbench.")
-    assert Job.from_text(text, tmp_path).model == ("bouc_wen", "lumped")

@@ -107,10 +107,13 @@ def test_no_file_outside_the_folder_is_read(client, bench, tmp_path_factory, nam
     (bench.root / "link.csv").symlink_to(outside / "data.csv")
     (bench.root / "linked").symlink_to(outside, target_is_directory=True)
     measured(bench.root.parent / "secret.csv")
-    answer = client.post("/api/look", json={"file": name})
+    answer = client.post("/api/look", json={"files": [{"file": name}]})
     assert answer.status_code == 400 and "columns" not in answer.text
-    answer = client.post("/api/job", json=form(records=[{"file": name, "use": "identify"}]))
-    assert answer.status_code == 400
+    measured(bench.root / "data.csv")
+    elsewhere = {"channels": {"x.response": {"file": name, "number": 3}}}
+    for record in ({"file": name}, {"file": "data.csv"} | elsewhere):
+        answer = client.post("/api/job", json=form(records=[record | {"use": "identify"}]))
+        assert answer.status_code == 400
     assert not bench.steps
 
 
@@ -118,7 +121,7 @@ def test_what_is_inside_is_read(client, bench):
     (bench.root / "deep").mkdir()
     measured(bench.root / "deep" / "data.csv")
     assert inside(bench.root, "deep/data.csv") == bench.root / "deep" / "data.csv"
-    found = client.post("/api/look", json={"file": "deep/data.csv"}).json()
+    found = client.post("/api/look", json={"files": [{"file": "deep/data.csv"}]}).json()
     assert [column["role"] for column in found["columns"]] == ["time", "x.drive", "x.response"]
     with pytest.raises(InputError):
         inside(bench.root, "deep/../deep/data.csv")

@@ -1,0 +1,59 @@
+"""Tables as LaTeX sets them: booktabs, and the signs that numbers and units are printed with."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+SENTENCE = 45  # letters
+
+
+def tabular(text: pd.DataFrame, words: Collection[str]) -> str:
+    r"""A printed table, its columns of `words` flush left, to be read with `\input`; needs `\usepackage{booktabs}`."""
+    align = "".join(_alignment(text[column]) if column in words else "r" for column in text)
+    body = [_row(row) for row in text.itertuples(index=False, name=None)]
+    lines = [rf"\begin{{tabular}}{{{align}}}", r"\toprule", _row(text.columns), r"\midrule", *body]
+    return "\n".join([*lines, r"\bottomrule", r"\end{tabular}", ""])
+
+
+def _alignment(column: pd.Series[str]) -> str:
+    """Sentences are broken into lines."""
+    return "p{60mm}" if column.str.len().max() > SENTENCE else "l"
+
+
+def escaped(text: str) -> str:
+    """`text` as LaTeX shows it: its special characters, and the signs that numbers and units are printed with."""
+    text = re.sub(r"[\\{}&%$#_~^<>|]", lambda match: _SPECIAL[match[0]], text)
+    text = re.sub(r"[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda match: f"$^{{{match[0].translate(_DIGITS)}}}$", text)
+    return re.sub("|".join(_SIGNS), lambda match: _SIGNS[match[0]], text)
+
+
+_SPECIAL = {character: f"\\{character}" for character in "{}&%$#_"} | {
+    "\\": r"\textbackslash{}",
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "|": r"\textbar{}",
+}
+_SIGNS = {
+    " × ": r" $\times$ ",
+    "±": r"$\pm$",
+    "−": "$-$",
+    "∞": r"$\infty$",
+    "·": r"$\cdot$",
+    "–": "--",
+    "µ": r"\textmu{}",
+    "\u03bc": r"\textmu{}",
+    "\u202f": r"\,",
+    "\u00a0": "~",
+}
+_DIGITS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+
+
+def _row(cells: Any) -> str:
+    return " & ".join(escaped(str(cell)) for cell in cells) + r" \\"
