@@ -133,7 +133,9 @@ class Block:
         known = form.settings()
         for word, value in settings.items():
             if word not in known:
+                owners = [form for form, item in cls.forms.items() if word in item.settings()]
                 remedy = nearest(word, known) if known else f"write just `{cls.name}`"
+                remedy = f"only its form {' or '.join(owners)} has it" if owners else remedy
                 raise InputError(f"unknown setting {word!r}", where=cls.name, remedy=remedy)
             known[word].check(value, f"{cls.name}.{word}")
         return _made(form, cls.name, tuple(sorted(settings.items())))  # type: ignore[arg-type]

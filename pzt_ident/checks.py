@@ -246,9 +246,13 @@ def _stranger(document: Document, name: str, earlier: Earlier, spelled: Mapping[
     elif block not in chosen:
         said = f"unknown parameter {name!r}", nearest(name, spelled)
     elif declared := blocks[block].parameters().get(word):
-        effect = declared.effect or block
-        said = f"belongs to the effect {effect!r}", f"add `effects: [{effect}]`"
-        if declared.per_record:
+        said = (
+            f"is not in the form of {block!r} that is chosen",
+            f"take it out; `pzt-ident show {block}` says which has it",
+        )
+        if declared.effect:
+            said = f"belongs to the effect {declared.effect!r}", f"add `effects: [{declared.effect}]`"
+        elif declared.per_record:
             said = "is taken in closed form for each record", "take it out"
         elif declared.each == "stage":
             said = "is one of the whole stage", f"write {block}.{word}"

@@ -13,14 +13,14 @@ class Parameter:
     """A quantity of a block: everything else (bounds, schema, report, sensitivities) is derived from this.
 
     `unit` is written as in a job file. The words `drive` and `response` stand for the units of the axis' own
-    channels, and the bounds of such a parameter are multiples of the data's own spans: `Parameter("response/drive",
-    (0, 2))` of a record over 100 V and 8 um goes from 0 to 0.16 um/V.
+    channels, `first` for that of the first response, and the bounds of such a parameter are multiples of the data's own
+    spans: `Parameter("response/drive", (0, 2))` of a record over 100 V and 8 um goes from 0 to 0.16 um/V.
 
     `null` is the value at which the block is exactly the identity; None where there is none.
     `effect` names the effect that the parameter belongs to; unless the job lists it, the parameter stays at its null.
     `count` makes a parameter one of each branch of the block, `weight_1`, `weight_2`, ...; where a job chooses how
     many, it is the setting's name. `each` says who has one of its own: every axis, the stage as a whole, or every axis
-    after the first, to which it is relative.
+    after the first, to which it is relative and which has the null.
     `per_record` gives every record one of its own, for what begins anew or at another phase with each measurement.
     `value` is what it is fixed to unless the job frees it with bounds.
     `linear` has it solved for inside the search where the job says nothing of it: the response must be linear in all

@@ -94,7 +94,7 @@ class Plan:
         places = [(a, b) for a in axes for b in axes if b != a] if coupling else [(axis, axis)]
         branches = range(block.branches) if issubclass(block, Bank | Modes) else [0]
         words = (*form.arguments(), *(asked(block.terms) if variant.terms else ()))  # type: ignore[attr-defined]
-        nulls = {p.name: p.null or 0.0 for p in block.parameters().values() if p.effect}
+        nulls = {p.name: p.null for p in block.parameters().values() if p.null is not None}
         row = self.rows + made.layout.first_given
         for axis, other in places:
             columns = self.model.columns(block, axis, other)

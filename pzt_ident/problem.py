@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pzt_ident.errors import InputError
+from pzt_ident.kinds import agree
 from pzt_ident.linear import Linear
 from pzt_ident.model import Model, Slot
 from pzt_ident.plan import Plan
@@ -66,6 +67,7 @@ class Problem:
     def _settle(self, identify: list[Record], wishes: Mapping[str, Wish]) -> None:
         """Which parameters are free, within which bounds, and what the others are fixed to."""
         count = len(self.model.slots)
+        agree(self.model, identify[0], self._unit)
         self.all_units = [self._unit(slot, identify[0]) for slot in self.model.slots]
         self._factor = np.array([factor(unit) for unit in self.all_units])
         self.theta = np.full(count, np.nan)
@@ -98,11 +100,11 @@ class Problem:
         self._any_log = bool(self.log.any())
 
     def _unit(self, slot: Slot, record: Record) -> str:
-        drive = record.drive_units[slot.axis]
-        response = record.response_units[slot.axis] or record.response_units[self.model.measured[0]]
-        return re.sub(
-            r"drive|response", lambda word: str({"drive": drive, "response": response}[word[0]]), slot.parameter.unit
-        )
+        first = record.response_units[self.model.measured[0]]
+        response = record.response_units[slot.axis] or first
+        own = {"drive": str(record.drive_units[slot.axis]), "response": str(response), "first": str(first)}
+        divisor = {f"/{word}": f"/({unit})" if re.search(r"[/* ]", unit) else f"/{unit}" for word, unit in own.items()}
+        return re.sub(r"/?(drive|response|first)", lambda word: (own | divisor)[word[0]], slot.parameter.unit)
 
     def _bounds(self, slot: Slot, records: list[Record]) -> Array:
         """Declared bounds in SI units; those of a gain also with the other sign, unless the response rises with the
@@ -117,8 +119,9 @@ class Problem:
         spans = {
             "drive": max(float(np.ptp(record.drive[slot.axis])) for record in records),
             "response": max(float(np.ptp(record.response[slot.axis])) for record in records),
+            "first": max(float(np.ptp(record.response[self.model.measured[0]])) for record in records),
         }
-        named = re.findall(r"drive|response", slot.parameter.unit)
+        named = re.findall(r"drive|response|first", slot.parameter.unit)
         if not named:
             return factor(slot.parameter.unit)
         if "drive" in named and spans["drive"] == 0:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import inspect
+from collections.abc import Iterator
 from dataclasses import asdict, fields
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -13,6 +15,7 @@ from pzt_ident import terminal
 from pzt_ident.block import Term
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.registry import blocks, optimizers
+from pzt_ident.report.words import ranges
 from pzt_ident.units import factor
 
 if TYPE_CHECKING:
@@ -99,9 +102,15 @@ def show_job(found: Facts) -> None:
     )
     terminal.table(
         ("parameter", "unit", "bounds", "what it is"),
-        [(row["name"], row["unit"], _searched(row), row["doc"]) for row in found["parameters"]],
+        [(row["name"], row["unit"], _searched(row), row["doc"]) for row in _together(found["parameters"])],
     )
     click.echo(f"runs: {' '.join(found['runs'])}, {found['evaluations']} evaluations in all")
+
+
+def _together(rows: list[Facts]) -> Iterator[Facts]:
+    """Rows of parameters, those in one that differ in their number alone."""
+    for facts, alike in groupby(rows, lambda row: {key: value for key, value in row.items() if key != "name"}):
+        yield from (facts | {"name": said} for said in ranges(row["name"] for row in alike))
 
 
 _TIMES = ("sample_rate", "seconds", "settle")
@@ -188,10 +197,12 @@ def _choices(item: Setting | Form) -> Facts:
 def _declared(block: type[Any]) -> list[Facts]:
     """Parameters of a block, and what another form of it has beside them."""
     keys = ("unit", "bounds", "null", "value", "scale", "effect", "per_record", "doc")
-    own = {word: (declared, "") for word, declared in block.parameters().items()}
+    own = {name: (declared, "") for name, declared in block.parameters().items()}
     for word, each in _forms(block):
         more = block.make(**{word: each}).parameters()
-        own = {name: (declared, f"{word}: {each}") for name, declared in more.items()} | own
+        usual = f"{word}: {block.setting(word)}"
+        own = {name: (item, form if name in more else usual) for name, (item, form) in own.items()}
+        own |= {name: (item, f"{word}: {each}") for name, item in more.items() if name not in own}
     return [
         {"name": name, "form": form} | {key: getattr(item, key) for key in keys} for name, (item, form) in own.items()
     ]
@@ -217,7 +228,7 @@ def show_word(found: Facts) -> None:
             ("parameter", "unit", "bounds", "null", "what it is"),
             [
                 (row["name"], row["unit"], "{:g} to {:g}".format(*row["bounds"]), _plain(row["null"]), _meaning(row))
-                for row in found["parameters"]
+                for row in _together(found["parameters"])
             ],
         )
         if any("drive" in row["unit"] or "response" in row["unit"] for row in found["parameters"]):

@@ -77,7 +77,7 @@ _SINGLE: dict[str, tuple[float, Dimension]] = {
 }
 _SYNONYM = {word: unit for unit, words in _WORDS.items() for word in words.split()}
 _FACTOR = re.compile(
-    r"(?P<name>[^\W\d_]+|%)(?:(?:\^|\*\*)?(?P<power>[+-]?\d+))?|(?P<number>[+-]?\d+\.?\d*(?:[eE][+-]?\d+)?)"
+    r"(?:(?P<name>[^\W\d_]+|%)|\((?P<inside>[^()]+)\))(?:(?:\^|\*\*)?(?P<power>[+-]?\d+))?|(?P<number>[+-]?\d+\.?\d*(?:[eE][+-]?\d+)?)"
 )
 _SCALED = re.compile(r"^[+-]?\d+\.?\d*(?:[eE][+-]?\d+)?\s+(?=[^\W\d_])")
 _BRACKETED = re.compile(r"^(?P<name>.*?)\s*(?:\[(?P<square>[^\[\]]*)\]|\((?P<round>[^()]*)\))\s*$")
@@ -163,6 +163,8 @@ def _parsed(unit: str) -> tuple[float, Dimension]:
 def _single(unit: str, found: re.Match[str]) -> tuple[float, Dimension, int]:
     if found["number"]:
         return float(found["number"]), _NUMBER, 1
+    if found["inside"]:
+        return *_parsed(found["inside"]), int(found["power"] or 1)
     name = found["name"]
     name = name if name in _SINGLE else _SYNONYM.get(name.lower(), name)
     name = re.sub("(?:Ω|ohm)$", "Ohm", name)

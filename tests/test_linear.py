@@ -1,5 +1,6 @@
 """Parameters that the response is linear in: the free density of the plays against the one that made the data."""
 
+import dataclasses
 import json
 from types import SimpleNamespace
 
@@ -70,6 +71,26 @@ def test_the_residual_is_the_noise_at_the_true_interaction(measured):
     assert made.loss(point)[0] == pytest.approx(NOISE, rel=0.06)
     wrong = [made.loss(at(made, width))[0] for width in (3000, 12000)]
     assert min(wrong) > 1.3 * NOISE
+
+
+def test_polarization_and_strain_share_a_density(measured):
+    """D = 3 (P less its linear part) + c E: the ratio is found, and the weights are those of both together."""
+    field_part = 4e-9 * FIELD
+    both = [measured.response[0], 3 * response(["homogenized_energy"], smith.A, FIELD) + field_part]
+    both[1] += np.random.default_rng(5).normal(0, 3 * NOISE, FIELD.size)
+    pair = dataclasses.replace(record(FIELD, FIELD, response=both), response_units=("uC/cm2", "um"))
+    model = Model([blocks["homogenized_energy"].make(density="shared", nodes=NODES)], ["p", "d"], [0, 1])
+    fixed = {"poled": 1e6, "reach": REACH, "smoothness": 1e-3}
+    wishes = {f"homogenized_energy.{word}": SimpleNamespace(bounds=None, value=value) for word, value in fixed.items()}
+    made = Problem(model, [pair], wishes, [NOISE, 3 * NOISE])
+    assert made.names == ("homogenized_energy.interaction", "d.homogenized_energy.ratio")
+    assert made.units == ("V", "um/(uC/cm2)")
+    point, _ = made.polish(np.array([0.5, 0.7]))
+    width, ratio = made.physical(point)[0]
+    assert width == pytest.approx(6120, rel=0.05) and ratio == pytest.approx(3e4, rel=0.01)
+    assert made.loss(point)[0] == pytest.approx(1, rel=0.06)
+    alone = problem(measured)
+    np.testing.assert_allclose(weights(made, point)[:14].sum(), weights(alone, at(alone, 6120))[:14].sum(), rtol=0.02)
 
 
 def test_nodes_that_no_record_moved_are_said_to_be(measured):
@@ -178,6 +199,23 @@ def test_an_effect_that_the_form_has_no_term_for_is_refused():
     Job.from_text(text.replace(", density: free, nodes: 24", ""))
     with pytest.raises(InputError, match="no block of this model has a term for 'thermal_relaxation'"):
         Job.from_text(text)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("density: free, nodes", "nodes", "only its form free or shared has it"),
+        (
+            "parameters: {}",
+            "parameters: {homogenized_energy.spread: {value: 1}}",
+            "is not in the form of 'homogenized_en",
+        ),
+    ],
+)
+def test_what_another_form_has_is_said_to_be_its(old, new, says):
+    with pytest.raises(InputError) as error:
+        Job.from_text(JOB.format(parameters="{}").replace(old, new))
+    assert says in str(error.value)
 
 
 def test_counted_names_in_a_row_are_said_in_one():

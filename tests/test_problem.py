@@ -238,3 +238,54 @@ def test_a_field_far_from_the_drive_is_refused(field, says):
         Problem(model, [record], {"homogenized_energy.coercive": wish(value=field)})
     assert error.value.where == "homogenized_energy.coercive" and "50 V/m" in error.value.remedy
     Problem(model, [record], {"homogenized_energy.coercive": wish(bounds=(1, 2400))})
+
+
+@pytest.mark.parametrize(
+    ("unit", "said", "size"), [("V", "um/V", 1), ("kV/mm", "um/(kV/mm)", 1e6), ("V/m", "um/(V/m)", 1)]
+)
+def test_a_response_per_field_has_the_field_in_brackets(unit, said, size):
+    """And the same bounds in SI units whatever the field is given in."""
+    drive = size * np.abs(np.sin(np.arange(500) / 30))
+    record = Record(
+        "r", "identify", 1e-3, drive[None], drive[None] * 1e-6 / size, drive_units=(unit,), response_units=("um",)
+    )
+    problem = Problem(Model([blocks["homogenized_energy"]], ["x"], [0]), [record])
+    assert problem.units[0] == said
+    assert problem.all_units[5] == f"um/({unit})^2".replace("(V)", "V")
+    assert problem.upper[0] == pytest.approx(3.0, rel=1e-3)
+
+
+def test_a_number_of_two_kinds_cannot_be_shared():
+    drive = np.vstack([np.sin(np.arange(200) / 30)] * 2)
+    record = Record("r", "identify", 1e-3, drive, drive * 1e-6, **TWO)
+    model = Model(
+        [blocks["homogenized_energy"].make(density="free")], TWO["axes"], [0, 1], ["homogenized_energy.weight_3"]
+    )
+    with pytest.raises(
+        InputError, match=r"weight_3 is in um and in uC/cm2: no one number is both.*\n.*density: shared"
+    ):
+        Problem(model, [record])
+
+
+@pytest.mark.parametrize(
+    ("block", "word", "bounds", "says"),
+    [
+        ("homogenized_energy", "spread", (-1, 2), "a standard deviation of -1 is below zero"),
+        ("thermal_homogenized_energy", "spread", (-0.5, 2), "a standard deviation of -0.5 is below zero"),
+        ("domain_wall", "reversible", (0.5, 1.5), "a share from 0.5 to 1.5"),
+    ],
+)
+def test_a_density_or_share_that_cannot_be_is_refused(block, word, bounds, says):
+    drive = np.sin(np.arange(200) / 30)
+    record = Record("r", "identify", 1e-3, drive[None], drive[None])
+    with pytest.raises(InputError, match=says) as error:
+        Problem(Model([blocks[block]], ["x"], [0]), [record], {f"{block}.{word}": wish(bounds=bounds)})
+    assert error.value.where == f"{block}.{word}"
+
+
+def test_no_mechanics_moves_a_charge():
+    drive = np.vstack([np.sin(np.arange(200) / 30)] * 2)
+    record = Record("r", "identify", 1e-3, drive, drive * 1e-6, **TWO)
+    model = Model([blocks["bouc_wen"], blocks["lumped"]], TWO["axes"], [0, 1])
+    with pytest.raises(InputError, match="'lumped' would move the response of axis y, which is in uC/cm2"):
+        Problem(model, [record])

@@ -34,6 +34,9 @@ NAMED = {
     "20 V": 20,
     "-15480 nm": -15480e-9,
     "1.25 V/mm": 1250,
+    "um/(kV/mm)": 1e-12,
+    "1/(kV/mm)^2": 1e-12,
+    "uC/cm2/(V/m)": 1e-2,
 }
 
 
@@ -118,6 +121,7 @@ def test_unscaled_is_the_unit_to_show(unit, shown):
         ("", "''", "known: "),
         ("V/", "'' (in 'V/')", "known: "),
         ("V^x", "'V^x'", "'V'"),
+        ("um/(kV/furlong)", "'furlong'", "known: "),
     ],
 )
 def test_an_unknown_unit_names_the_nearest(unit, part, remedy):

@@ -27,7 +27,7 @@ def stairs(axis: Any, folder: Path) -> None:
         axis.plot(range(len(steps)), values, "o-", drawstyle="steps-mid", ms=3, lw=1, color=colour, label=use)
     axis.set_xticks(range(len(steps)), [step_name(step) for step in steps], rotation=20, ha="right")
     axis.set_ylim(0, None)
-    axis.set_ylabel("RMSE, weighed (1)", fontsize=8)
+    axis.set_ylabel("RMSE of P and D, weighed (1)", fontsize=8)
     axis.legend(fontsize=7, frameon=False)
 
 

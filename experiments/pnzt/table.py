@@ -8,6 +8,7 @@ from experiments.tables import Result, command, number, parameters, staircase, t
 from pzt_ident.report.words import step_name
 
 JOBS = {"homogenized_energy": "without activation", "thermal_homogenized_energy": "with activation"}
+AMPLITUDES = {"amplitudes": "turned at each end", "partial": "poled one way"}
 UNITS = {"p": "uC/cm2", "d": "nm"}
 
 
@@ -15,6 +16,7 @@ def text(results: Mapping[str, Result]) -> str:
     parts = [by_model(results)]
     for job, said in JOBS.items():
         parts += [f"**{said}**", parameters(results[job])]
+    parts += ["**Amplitudes left out**", by_amplitude(results)]
     missing = results["missing"]
     parts += ["**What is missing, loops of four amplitudes and two rates**", staircase(missing), by_record(missing)]
     parts += ["**What is missing, holds**", results["holds"]["reason"], refitted(results["holds"])]
@@ -28,6 +30,16 @@ def by_model(results: Mapping[str, Result]) -> str:
         for record in results[job]["records"]
     ]
     return table(["record", "model", *(f"RMSE {axis} [{unit}]" for axis, unit in UNITS.items())], rows)
+
+
+def by_amplitude(results: Mapping[str, Result]) -> str:
+    """Displacement alone, of a model without rate."""
+    rows = [
+        [said, f"{record['name']} ({record['use']})", number(record["rmse"]["d"], 3)]
+        for job, said in AMPLITUDES.items()
+        for record in results[job]["records"]
+    ]
+    return table(["sample", "record", f"RMSE d [{UNITS['d']}]"], rows)
 
 
 def by_record(improvement: Result) -> str:

@@ -93,11 +93,12 @@ def figure() -> None:
     fig, axes = plt.subplots(3, 2, figsize=(180 / 25.4, 200 / 25.4), layout="constrained")
     for high in (2000, 4000, 6000, 8000):
         field, y = settled(PLAIN, 0, high)
-        axes[0, 0].plot(field, y * 1e6, lw=1)
-    axes[0, 0].set_title("nested loops, set A", fontsize=9)
+        axes[0, 0].plot(field, y * 1e6, lw=1, label=f"to {high / 1000:g} kV/m")
+    axes[0, 0].legend(fontsize=7, frameon=False)
+    axes[0, 0].set_title("nested loops, set A (figures 3, 9)", fontsize=9)
     for axis, chain, title in (
-        (axes[0, 1], PLAIN | {"lumped": ROD}, "set A behind the lumped rod"),
-        (axes[1, 0], THERMAL, "thermal activation, set T"),
+        (axes[0, 1], PLAIN | {"lumped": ROD}, "set A behind the lumped rod (figure 10)"),
+        (axes[1, 0], THERMAL, "thermal activation, set T (figure 11)"),
     ):
         for hertz in HERTZ:
             field, y = sine(chain, hertz)
@@ -106,13 +107,13 @@ def figure() -> None:
         axis.legend(fontsize=7, frameon=False)
     field, y = settled(WALLS, -1000, 13500, 3)
     axes[1, 1].plot(field, y * 1e6, lw=1)
-    axes[1, 1].set_title("domain walls, set DW1", fontsize=9)
+    axes[1, 1].set_title("domain walls, set DW1 (figure 4)", fontsize=9)
     field = path(*MINOR)
     for form, axis in zip(FORMS, axes[2], strict=True):
         y = response(WALLS, field, minor_loops=form)
         axis.plot(field, y * 1e6, lw=1)
         axis.plot(field[POINTS::POINTS], y[POINTS::POINTS] * 1e6, ".", ms=4)
-        axis.set_title(f"domain walls, {form} minor loops", fontsize=9)
+        axis.set_title(f"domain walls, {form} minor loops (eq. 5)", fontsize=9)
     for axis in axes.flat:
         axis.set_xlabel("E (V/m)", fontsize=8)
         axis.set_ylabel("u (µm)", fontsize=8)

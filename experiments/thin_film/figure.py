@@ -14,8 +14,8 @@ import matplotlib.pyplot as plt
 
 
 def main(folder: Path) -> None:
-    fig, axes = plt.subplots(2, 2, figsize=(180 / 25.4, 140 / 25.4), sharex=True, sharey=True, layout="constrained")
-    for (job, said), axis in zip(JOBS.items(), axes.flat, strict=True):
+    fig, axes = plt.subplots(2, 3, figsize=(180 / 25.4, 120 / 25.4), sharex=True, sharey=True, layout="constrained")
+    for (job, said), axis in zip(JOBS.items(), axes.flat, strict=False):
         with h5netcdf.File(folder / job / "signals.nc") as file:
             left_out = [group for group in file.groups.values() if group.attrs["use"] == "validate"]
             for group in left_out:
@@ -25,8 +25,10 @@ def main(folder: Path) -> None:
         axis.set_title(said, fontsize=9)
         axis.tick_params(labelsize=7)
         axis.grid(alpha=0.25, lw=0.5)
-    axes[0, 0].legend(*(part[:2] for part in axes[0, 0].get_legend_handles_labels()), fontsize=7, frameon=False)
-    for axis in axes[1]:
+    axes[1, 2].legend(*(part[:2] for part in axes[0, 0].get_legend_handles_labels()), fontsize=8, loc="center")
+    axes[1, 2].set_axis_off()
+    axes[0, 2].tick_params(labelbottom=True)
+    for axis in (*axes[1, :2], axes[0, 2]):
         axis.set_xlabel("V (V)", fontsize=8)
     for axis in axes[:, 0]:
         axis.set_ylabel("P from saturation (µC/cm²)", fontsize=8)

@@ -1,4 +1,4 @@
-"""What four models of memory reach on reversal curves of a thin film."""
+"""What five models of memory reach on reversal curves of a thin film."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ JOBS = {
     "plays": "eight plays",
     "domain_wall": "domain walls",
     "homogenized_energy": "homogenized energy",
+    "free_density": "free density",
 }
 
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from pzt_ident.diagnosis.refit import Case, Fit, elsewhere, refit
 from pzt_ident.diagnosis.score import Scorer, applicable, misfit
-from pzt_ident.diagnosis.verdict import Candidate, Diagnosis, adequate, alike, diagnose, drop, earns, pair
+from pzt_ident.diagnosis.verdict import Candidate, Diagnosis, adequate, alike, diagnose, drop, earns, least, pair
 from pzt_ident.registry import blocks
 
-MOST = 5  # steps
+MOST = 8  # steps
 BEAM = 2  # first picks that are followed
 SURE = 0.05  # noise floors by which one effect fits better than another in its place: less may be the simulation's
 HOPELESS = 5.0  # noise floors: where the first way leaves more, another order of the same effects does not help
@@ -112,11 +112,13 @@ def explained(case: Case, before: Fit, after: Fit) -> float:
 
 
 def unneeded(case: Case, first: Fit, now: Fit) -> list[Step]:
-    """Take back effects, other than the newest and those of the job itself, that no longer earn their place."""
+    """Take back effects, other than the newest and those of the job itself, that no longer earn their place and that
+    the records to validate do not miss."""
     found: list[Step] = []
     for effect in now.effects[len(first.effects) : -1]:
         without = refit(case, now, others(now, effect), {})
-        if not earns(case, first, without, now):
+        missed = now.validate is not None and drop(without.validate, now.validate) > least(case, first)
+        if not missed and not earns(case, first, without, now):
             found.append(Step(without, None, effect, (), explained(case, now, without)))
             now = without
     return found

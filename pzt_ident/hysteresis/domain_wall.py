@@ -37,6 +37,12 @@ class DomainWall(Block):
     reversible = Parameter("1", (0, 1), "Share of the polarization that bends back, c.")
 
     def refuse(least, most):
+        if least.reversible < 0 or most.reversible > 1:
+            raise InputError(
+                f"a share from {least.reversible:g} to {most.reversible:g}",
+                where="domain_wall.reversible",
+                remedy="keep it between 0 and 1",
+            )
         if least.reversible * least.coupling >= 1:
             raise InputError(
                 f"c alpha P_s / a is {least.reversible * least.coupling:.3g} or more: no polarization is stable, the "

@@ -1,15 +1,29 @@
 """The homogenized energy model without thermal activation, as plays with a nonlinear readout."""
 
+from dataclasses import replace
 from math import exp, sqrt
 from statistics import NormalDist
 
 from pzt_ident.block import Bank, Place, erf
+from pzt_ident.errors import InputError
 from pzt_ident.hysteresis._play import play, relaxed, relaxing
 from pzt_ident.parameter import Form, Parameter, Setting
 from pzt_ident.registry import blocks
 
 NODES = 64
 QUANTILES = tuple(NormalDist().inv_cdf((i + 0.5) / NODES) for i in range(NODES))
+
+
+def spread_of(block):
+    """Refuses a standard deviation below zero."""
+
+    def refuse(least, most):
+        if least.spread < 0:
+            remedy = "give a value or lower bound of zero or more"
+            said = f"a standard deviation of {least.spread:g} is below zero"
+            raise InputError(said, where=f"{block}.spread", remedy=remedy)
+
+    return refuse
 
 
 @blocks.register
@@ -27,7 +41,11 @@ class HomogenizedEnergy(Bank):
     """
 
     place = Place.OPERATOR
-    density = Form("lognormal", ("lognormal", "free"), "Of the coercive fields; `free` weighs nodes that lie evenly.")
+    density = Form(
+        "lognormal",
+        ("lognormal", "free", "shared"),
+        "Of the coercive fields; `free` weighs nodes that lie evenly, `shared` does so once for all responses.",
+    )
     seen = ("coercive",)
     branches = NODES
     gain = Parameter("response/drive", (0, 3), "Response per field of a domain that does not switch, a1 / eta.")
@@ -45,6 +63,8 @@ class HomogenizedEnergy(Bank):
         null=0,
         effect="thermal_relaxation",
     )
+
+    refuse = spread_of("homogenized_energy")
 
     def prepare(gain, remanence, coercive, spread, interaction, quadratic, poled, bias, branch):
         per_width = 1 / (sqrt(2.0) * interaction)
@@ -117,6 +137,25 @@ class FreeDensity(Bank):
         return gain * (u - bias) + total
 
 
+class SharedDensity(FreeDensity):
+    """The same weights and plays for all responses, such as P itself and a strain a1 (P - P_R):
+    y = a1 / eta E + ratio sum_i w_i (2 Phi2(F_i[E]) - 1), the ratio that of a response to the first one."""
+
+    weight = replace(FreeDensity.weight, each="stage")
+    interaction, reach = replace(FreeDensity.interaction, each="stage"), replace(FreeDensity.reach, each="stage")
+    smoothness = replace(FreeDensity.smoothness, each="stage")
+    poled, bias = replace(FreeDensity.poled, each="stage"), replace(FreeDensity.bias, each="stage")
+    ratio = Parameter(
+        "response/first", (-3, 3), "Response to the domains over that of the first axis.", null=1, each="later axis"
+    )
+
+    def prepare(gain, weight, interaction, reach, nodes, poled, bias, ratio, branch):
+        per_width = 1 / (sqrt(2.0) * interaction)
+        half = reach * (branch + 0.5) / nodes * per_width
+        before = play(0.0, (poled - bias) * per_width, half)
+        return gain, ratio * weight, bias, per_width, half, before
+
+
 class Relaxing(HomogenizedEnergy):
     """The same with plays that heat helps along. Coercive fields are those that are met at the rate of one fluctuation
     field a second; in a hold the domains go on with the logarithm of time."""
@@ -144,4 +183,4 @@ class Relaxing(HomogenizedEnergy):
         return (gain + quadratic * field) * field
 
 
-HomogenizedEnergy.forms = {"free": FreeDensity, "thermal_relaxation": Relaxing}
+HomogenizedEnergy.forms = {"free": FreeDensity, "shared": SharedDensity, "thermal_relaxation": Relaxing}

@@ -70,12 +70,13 @@ class Variant(NamedTuple):
 @cache
 def compile_block(block: type[Block], variant: Variant = Variant()) -> Compiled:  # noqa: B008
     """The block's C function."""
-    from pzt_ident import kernel
+    from pzt_ident import elementary, kernel
 
     template = template_of(block, variant)
     layout = layout_of(block, variant)
     text = (TEMPLATES / f"{template}.jinja").read_text()
-    sources = [text, kernel.VERSION, str(layout), str(variant), inspect.getsource(kernel), *authors(block)]
+    known = [inspect.getsource(module) for module in (kernel, elementary)]
+    sources = [text, kernel.VERSION, str(layout), str(variant), *known, *authors(block)]
     sources.append(block.__module__)  # which the cached code looks up
     key = hashlib.sha256("\0".join(sources).encode()).hexdigest()[:16]
     path = cache_folder() / f"{block.__name__.lower()}_{template}_{key}.py"

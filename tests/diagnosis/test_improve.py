@@ -58,6 +58,7 @@ def test_a_wrong_first_pick_is_taken_back():
     first = first_fit(made, 0)
     wrong = refit(made, first, ("asymmetry",), {})
     right = refit(made, wrong, ("asymmetry", "quadratic_gain"), {})
+    assert unneeded(made, first, replace(right, validate=0.0)) == []  # what the unseen records would miss stays
     (back,) = unneeded(made, first, right)
     assert (back.added, back.removed) == (None, "asymmetry")
     assert back.fit.effects == ("quadratic_gain",)

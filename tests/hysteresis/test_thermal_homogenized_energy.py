@@ -95,6 +95,20 @@ def test_creep_is_arrested_by_a_small_step_back():
     assert creep((8000, 0.5), (4800, 100.2)) == pytest.approx(-1.1, abs=0.1)
 
 
+def test_creep_after_small_steps_hangs_on_the_interaction_fields():
+    """Over eight sigma of 6120 V/m: the share of the creep that 64 and 256 of them miss."""
+    known = {word: SHAPE[word] for word in ("coercive", "spread", "interaction", "dwell", "poled")}
+
+    def grown(step, bins):
+        field = np.concatenate([np.zeros(2), np.full(5, 4000.0), np.full(26, 4000.0 + step)])
+        found = twin.thermal(field, 0.2, smith.T_ETA, smith.T_REMANENCE, width=WIDTH, nodes=16, bins=bins, **known)
+        return found[-1] - found[7]
+
+    off = {bins: [abs(grown(s, bins) / grown(s, 512) - 1) for s in (50, 2000)] for bins in (64, 256)}
+    assert off[64][1] < 0.05 < off[64][0] < 0.4
+    assert max(off[256]) < 0.015
+
+
 def test_cold_domains_switch_at_their_coercive_field():
     """As kT / V falls the model comes to the one of plays, less the domains above eta P_R."""
     field = path(0, 8000, 0, 6000, 1000, points=60)

@@ -88,7 +88,7 @@ def parameters(model, block, record, axis, other, theta):
     where it is not given its own."""
     found = {"dt": [record.dt / model.oversample / record.steps], "span": [np.ptp(record.drive[axis])]}
     found |= {"peak": [np.abs(record.drive[axis]).max()]} | {word: [n] for word, n in block.numbers().items()}
-    found |= {declared.name: [declared.null] for declared in block.parameters().values() if declared.effect}
+    found |= {name: [each.null] for name, each in block.parameters().items() if each.null is not None}
     if axis not in model.measured:
         if other != axis or issubclass(block, Modes):
             return None
