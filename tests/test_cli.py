@@ -211,7 +211,7 @@ class TestCheck:
 
     def test_says_that_validation_is_none(self, folder):
         (folder / "job.yaml").write_text(JOB.replace("validate.csv", "identify.csv"))
-        said = "identify_2: rows 20 to 300 are fitted in 'identify_1', so they validate nothing"
+        said = "identify_2: rows 100 to 300 are fitted in 'identify_1', so they validate nothing"
         assert said in call("check", "job.yaml").stdout
 
     def test_quiet(self, folder):
