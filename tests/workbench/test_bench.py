@@ -13,6 +13,7 @@ from pzt_ident.cli import main
 from pzt_ident.errors import InputError
 from pzt_ident.job import Job, load_job
 from pzt_ident.workbench.bench import Bench
+from pzt_ident.workbench.form import job_text
 
 from .conftest import alone, form, measured
 
@@ -82,6 +83,16 @@ def test_comments_of_the_users_job_are_kept(bench):
     assert bench.at == 2
     text = bench.job().text
     assert text.startswith("# mine\n") and "# loops" in text and bench.job().effects == ("creep",)
+
+
+def test_a_block_keeps_its_settings(client, bench):
+    measured(bench.root / "data.csv")
+    text = job_text(form()).replace('"bouc_wen"]', '"bouc_wen", {name: rod_reduced, elements: 4}]')
+    (bench.root / "job.yaml").write_text(text, encoding="utf-8")
+    bench.open(bench.root / "job.yaml")
+    assert client.get("/api/state").json()["job"]["model"] == ["bouc_wen", "rod_reduced"]
+    bench.choose(["prandtl_ishlinskii", "rod_reduced"])
+    assert "elements: 4" in bench.job().text
 
 
 def test_a_session_is_of_one_job(begun):
