@@ -1,9 +1,13 @@
 """Mass, damper and spring against the matrix exponential and what is conserved."""
 
+import math
+
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import lin_lin
+from pzt_ident.hold import oscillator
 from pzt_ident.mechanics.lumped import Lumped
 from rig import response, triangle
 from twins import lumped_twin
@@ -72,3 +76,23 @@ def test_a_sine_comes_out_with_the_transfer_function():
 def test_only_ratios_of_the_parameters_matter():
     force = np.random.default_rng(2).normal(size=300)
     np.testing.assert_allclose(displacement(force, 0.3, 1e-4, 7.0), displacement(force, 0.3, 1e-4), atol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("axis", "continuous", "sampled"), [(lin_lin.COUPLED_X, 5.78, 22.4), (lin_lin.COUPLED_Y, 3.09, 13.6)]
+)
+def test_damping_that_lin_and_lins_pi_loop_needs(axis, continuous, sampled):
+    """N s/m, at K_P = 0.8 V/um and K_I = 480 V/um/s: Routh's limit, and that of a loop at 1 kHz without delay, three
+    times below the resonance. State (x, x' / omega, integral of the error): eq. 24 with eq. 1."""
+    mass, _, stiffness, gain = (axis[word] for word in lin_lin.WORDS[:4])
+    proportional, integral, dt = 0.8 * gain, 480 * gain, 1e-3
+    x, v, summed = np.eye(3)
+
+    def loop(damping):
+        r11, r12, r21, r22, *_ = oscillator(math.sqrt(stiffness / mass), damping / 2 / math.sqrt(stiffness * mass), dt)
+        force = integral * (summed - dt * x) - proportional * x
+        return np.array([force + r11 * (x - force) + r12 * v, r21 * (x - force) + r22 * v, summed - dt * x])
+
+    assert mass * integral / (1 + proportional) == pytest.approx(continuous, abs=0.005)
+    least = brentq(lambda damping: np.abs(np.linalg.eigvals(loop(damping))).max() - 1, 1, 100)
+    assert least == pytest.approx(sampled, abs=0.05)
