@@ -11,6 +11,7 @@ class ViscousDamping(Term):
     Below the resonance the response lags by b omega / k, and ringing fades sooner.
     """
 
-    looks_like = ("amplifier_lag", "sensor_lag", "delay")
+    sizes = tuple(0.002 * 1.5**k for k in range(16))
+    looks_like = ("amplifier_lag", "sensor_lag", "delay", "resonance")
     separate_by = "Chirp with small amplitude through the resonance: damping lowers its peak, a lag or delay does not."
     remedy = "Free the moving parts of films and cables, or keep it and put the lag into the feedforward."
