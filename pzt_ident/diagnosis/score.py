@@ -21,14 +21,15 @@ from pzt_ident.registry import blocks
 Array = NDArray[np.float64]
 
 BATCH = 48  # candidates that are simulated together
+TRACE = 1e-9  # of what is left: less is rounding
 TRIALS = 5  # values over the range of a parameter that means nothing at the null
 
 
 @dataclass
 class Score:
     """What the data say of an effect without a refit. `guess` in the user's `units`; `visibility` is the share of its
-    trace, where it explains most, that the fitted parameters cannot take up, `power` the largest plausible rms of what
-    they cannot, in noise floors."""
+    trace, at the least size that leaves one, that the fitted parameters cannot take up, `power` that share of the
+    largest plausible rms, in noise floors."""
 
     effect: str
     explained: float = 0.0
@@ -95,21 +96,22 @@ class Scorer:
 
     def _growth(self, effect: str, problem: Problem) -> Score:
         """What the response does as the effect leaves its null."""
-        found, most = Score(effect), 0.0
+        found, visible, most = Score(effect), dict[float, float](), 0.0
         for trial, columns in self._trials(effect, problem):
             trace = self.project(columns.T)
             left_over, whole = np.linalg.norm(trace, axis=0).max(), np.linalg.norm(columns, axis=1).max()
-            seen = float(left_over / max(whole, 1e-300))
-            most = max(most, seen)
+            if whole > TRACE * np.linalg.norm(self.raw):
+                visible[trial.size] = max(visible.get(trial.size, 0.0), float(left_over / whole))
             if trial.size == max(blocks[effect].sizes):
-                found.power = max(found.power, float(left_over / trial.size / self.case.floor))
+                most = max(most, float(whole / trial.size / self.case.floor))
             amounts = self._amounts(trace, problem.lower[trial.growing] >= trial.start[trial.growing])
             left = self.residual + trace @ amounts
             explained = (self.residual @ self.residual - left @ left) / self.misfit
             if explained > found.explained:
-                found.explained, found.trace, found.visibility = float(explained), trace @ amounts, seen
+                found.explained, found.trace = float(explained), trace @ amounts
                 found.guess = self._scaled(problem, trial, amounts)
-        return found if found.guess else replace(found, visibility=most)
+        share = visible[min(visible)] if visible else 0.0
+        return replace(found, visibility=share, power=share * most)
 
     def _amounts(self, trace: Array, one_sided: NDArray[np.bool_]) -> Array:
         """How much of each trace fits best, as if the effect were linear; none where the bounds allow no way back, as
