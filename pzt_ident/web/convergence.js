@@ -9,6 +9,7 @@ export class Convergence {
     this.root = root;
     this.clear();
     new ResizeObserver(() => this.plot && this.plot.width !== this.size().width && this.draw(true)).observe(root);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.plot && this.draw(true));
   }
 
   clear() {
