@@ -154,20 +154,21 @@ def resolved(case: Case, fit: Fit) -> Fit:
 
     Where the drive is linear between samples, what each block hands on to the next is taken for linear too.
     """
-    coarse = step_errors(fit) > COARSE * case.floor
-    if not coarse.any() or max(fit.steps) >= FINEST:
+    coarse = (step_errors(case, fit) > COARSE * case.floor) & (np.array(fit.steps) < FINEST)
+    if not coarse.any():
         return fit
     steps = [count * (2 if more else 1) for count, more in zip(fit.steps, coarse, strict=True)]
     problem = case.problem(fit.effects, steps)
     return resolved(case, made(fit.effects, problem, descend(problem, fit.point), fit.converged))
 
 
-def step_errors(fit: Fit) -> Array:
+def step_errors(case: Case, fit: Fit) -> Array:
     """What halving the step of the simulation changes in each record, root mean square, in units of the loss."""
     problem, found = fit.problem, []
     theta = problem.parameters(fit.point)
-    for record in problem.records:
-        one, two = (Plan(problem.model, replace(record, steps=record.steps * n)).simulate(theta)[0] for n in (1, 2))
+    for number, record in enumerate(problem.records):
+        finer = case.at(number, 2 * record.steps)
+        one, two = (Plan(problem.model, each).simulate(theta)[0] for each in (record, finer))
         change = (two - one)[:, record.settle :] / problem.sizes[:, None]
         found.append(np.sqrt(np.mean(np.var(change, axis=1))))
     return np.array(found)

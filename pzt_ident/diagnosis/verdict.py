@@ -122,7 +122,7 @@ def faulty(case: Case, first: Fit, fit: Fit) -> str:
         return ""
     if not fit.converged:
         return "Two starts of the fit do not agree: what is left may be the search's fault. Narrow the bounds."
-    coarse = float(np.sqrt(np.mean(np.square(step_errors(fit)))))
+    coarse = float(np.sqrt(np.mean(np.square(step_errors(case, fit)))))
     if coarse <= COARSE * misfit(case, fit) ** 0.5:
         return ""
     return (

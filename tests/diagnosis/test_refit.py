@@ -173,7 +173,7 @@ class Coarse(Block):
 
 def test_halving_the_step_changes_nothing_of_what_is_exact(plain):
     fit = first_fit(plain, 0)
-    assert refit.step_errors(fit).max() < 1e-9 * plain.floor
+    assert refit.step_errors(plain, fit).max() < 1e-9 * plain.floor
     assert fit.steps == (1, 1)
 
 
@@ -185,7 +185,7 @@ def test_a_solver_too_coarse_for_what_is_left_is_blamed_on_no_effect(plain, monk
     response = problem.model.simulate(problem.records[0], problem.parameters(fit.point))[0, 0]
     half_a_step = np.gradient(response) / 2 / refit.FINEST  # by which Euler's lag is too short
     assert fit.steps == (refit.FINEST, refit.FINEST)
-    assert refit.step_errors(fit)[0] == pytest.approx(np.std(half_a_step), rel=0.1)
+    assert refit.step_errors(made, fit)[0] == pytest.approx(np.std(half_a_step), rel=0.1)
 
 
 def test_a_lag_within_the_sample_is_told_from_a_delay_by_finer_steps():
