@@ -1,18 +1,14 @@
 """The virtual rod against closed forms, and its committed records."""
 
-import importlib.util
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from experiments.rigs import rod as rig
+
 ROOT = Path(__file__).parents[2]
-SPEC = importlib.util.spec_from_file_location("rod_rig", ROOT / "experiments/rigs/rod.py")
-rig = importlib.util.module_from_spec(SPEC)
-sys.modules["rod_rig"] = rig
-SPEC.loader.exec_module(rig)
 ROD = rig.Rod()
 
 

@@ -1,7 +1,5 @@
 """The virtual tube against the splines of the package and closed forms, and its committed records."""
 
-import importlib.util
-import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -10,13 +8,10 @@ import pytest
 from scipy.linalg import eigh
 from scipy.special import ndtr
 
+from experiments.rigs import shell as rig
 from pzt_ident.mechanics._shell import matrices
 
 ROOT = Path(__file__).parents[2]
-SPEC = importlib.util.spec_from_file_location("shell_rig", ROOT / "experiments/rigs/shell.py")
-rig = importlib.util.module_from_spec(SPEC)
-sys.modules["shell_rig"] = rig
-SPEC.loader.exec_module(rig)
 TUBE = rig.Tube()
 
 

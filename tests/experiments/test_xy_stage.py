@@ -1,26 +1,15 @@
 """The virtual stage against the closed numbers of Lin & Lin's models, and the committed files against the stage."""
 
-import importlib.util
 import math
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from experiments.rigs import xy_stage as rig
+
 ROOT = Path(__file__).parents[2]
 RINGING = 0.012  # um, the most that the corners of a drive leave
-
-
-def load(path):
-    """A script of the experiments as a module; their folder is no package."""
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    module = sys.modules[path.stem] = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-rig = load(ROOT / "experiments/rigs/xy_stage.py")
 
 
 def triangles(stage, *amplitudes):
