@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -62,12 +62,17 @@ def _write(before: Job, effects: Sequence[str], words: Sequence[str] | None, out
 
 
 def amended(
-    job: Job, effects: Sequence[str], folder: Path, words: Sequence[str] | None = None, steps: Sequence[int] = ()
+    job: Job,
+    effects: Sequence[str],
+    folder: Path,
+    words: Sequence[str] | None = None,
+    steps: Sequence[int] = (),
+    values: Mapping[str, float] | None = None,
 ) -> str:
     """The job's text with these effects, its paths as seen from another folder; with these blocks where `words` are
-    given, and `steps` a sample of each record, where they are not the job's."""
+    given, `steps` a sample of each record, where they are not the job's, and parameters fixed to `values`."""
     from ruamel.yaml import YAML
-    from ruamel.yaml.comments import CommentedSeq
+    from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
     yaml = YAML()
     yaml.preserve_quotes = True
@@ -75,6 +80,9 @@ def amended(
     document: Any = yaml.load(job.text)
     if "effects" not in document:
         document.insert(list(document).index("model") + 1, "effects", CommentedSeq())
+    if values and not document.get("parameters"):
+        document.pop("parameters", None)
+        document.insert(list(document).index("effects") + 1, "parameters", CommentedMap())
     found = document["effects"]
     if not found:
         found.fa.set_flow_style()
@@ -86,6 +94,9 @@ def amended(
     for record, source, count in zip(document["records"], job.records, steps, strict=False):
         if count != source.steps:
             record["steps"] = count
+    for name, value in (values or {}).items():
+        document["parameters"][name] = CommentedMap(value=value)
+        document["parameters"][name].fa.set_flow_style()
     if job.folder.resolve() != folder.resolve():
         moved(document, job.folder, folder)
         for i, file in enumerate(document.get("plugins", ())):

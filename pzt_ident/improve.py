@@ -96,7 +96,8 @@ def improve(job: Job, out: Path | None = None, listen: Listen = lambda event: No
             write_signals(folder / name, step.fit.problem, step.fit.point)
         content = improvement_of(job, case, steps, diagnosis) | {"next_experiment": diagnosis["next_experiment"]}
         end = steps[-1].fit
-        write_text(folder / "improved.yaml", amended(job, end.effects, folder, steps=end.steps))
+        values = case.silent(end.effects) if end.alone else None
+        write_text(folder / "improved.yaml", amended(job, end.effects, folder, steps=end.steps, values=values))
         write_json(folder / "diagnosis.json", diagnosis)
         write_json(folder / "improvement.json", content)
         compare(folder, folder)
@@ -112,7 +113,7 @@ def improvement_of(job: Job, case: Case, steps: list[stairs.Step], last: dict[st
     added = [word for word in steps[-1].fit.effects if word not in job.effects]
     if verdict != "adequate" and added:
         reason += f" Added on the way, and not proven while that is open: {', '.join(added)}."
-    reason += bounded(steps[-1].fit)
+    reason += silenced(case, steps[-1].fit) + bounded(steps[-1].fit)
     return {
         "name": job.name,
         "steps": [stair(case, step) for step in steps],
@@ -123,6 +124,16 @@ def improvement_of(job: Job, case: Case, steps: list[stairs.Step], last: dict[st
         "floor": case.floor / size_of(case),
         "unit": unit_of(list(case.records)),
     }
+
+
+def silenced(case: Case, fit: Fit) -> str:
+    """A sentence about effects that fit better where axes without a response do not have them."""
+    names = case.silent(fit.effects) if fit.alone else {}
+    if not names:
+        return ""
+    axes = " and ".join(dict.fromkeys(name.partition(".")[0] for name in names))
+    said = f" What comes from {axes}, which has no response, fits better without these effects there"
+    return f"{said}: {', '.join(names)} kept at null."
 
 
 def bounded(fit: Fit) -> str:
@@ -165,9 +176,7 @@ def by_record(case: Case, fit: Fit) -> list[dict[str, Any]]:
 
 
 def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
-    problem, point = step.fit.problem, step.fit.point
-    values = problem.physical(point)[0]
-    units = zip(problem.names, values, problem.units, strict=True)
+    values = zip(step.fit.values.items(), step.fit.problem.units, strict=True)
     return {
         "added": step.added,
         "removed": step.removed,
@@ -176,7 +185,7 @@ def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
         "records": by_record(case, step.fit),
         "explained": step.explained,
         "expected": step.expected,
-        "parameters": {name: {"value": float(value), "unit": unit} for name, value, unit in units},
+        "parameters": {name: {"value": value, "unit": unit} for (name, value), unit in values},
     }
 
 

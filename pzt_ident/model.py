@@ -79,14 +79,15 @@ class Model:
                     if parameter.per_record or (parameter.effect and parameter.effect not in self._listed):
                         continue
                     name = plain if each == "stage" else f"{prefix}{plain}{suffix}"
-                    own = measured or (name in given and self._alone(block, parameter))
+                    own = measured or (name in given and self.alone(block, parameter))
                     if own and (each == "axis" or (each == "stage") == (axis == self.measured[0])):
                         found.append(Slot(name, block, word, axis, other, parameter))
         return found
 
-    def _alone(self, block: type[Block], parameter: Parameter) -> bool:
+    @staticmethod
+    def alone(block: type[Block], parameter: Parameter) -> bool:
         """Whether an axis can have the parameter without a response of its own."""
-        return not issubclass(block, Coupling | Modes | Addition) and parameter.count is None
+        return not issubclass(block, Coupling | Modes | Addition) and parameter.each == "axis"
 
     def _each(self, block: type[Block], word: str, parameter: Parameter) -> str:
         """Who has one of its own, as the block declares it or the job shares it."""
@@ -129,18 +130,26 @@ class Model:
 
     def columns(self, block: type[Block], axis: int, other: int) -> dict[str, int | list[int]] | None:
         """Columns of theta that hold a block's parameters; None for a pair onto an axis that is not measured."""
+        if axis not in self.measured and issubclass(block, Coupling | Modes):
+            return None
         found: dict[str, int | list[int]] = {}
-        if axis not in self.measured:
-            if issubclass(block, Coupling | Modes):
-                return None
-            found = self.columns(block, self.measured[0], self.measured[0]) or {}
+        own = self._own(block, axis, other)
+        for word, parameter in {slot.word: slot.parameter for slot in self.slots if slot.block is block}.items():
+            if word in own and parameter.count is None:
+                found[parameter.name] = own[word]
+            elif word in own:
+                found.setdefault(parameter.name, []).append(own[word])  # type: ignore[union-attr]
+        return found
+
+    def _own(self, block: type[Block], axis: int, other: int) -> dict[str, int]:
+        """Column of each parameter of a block; an axis that is not measured has those of the first that is, but for
+        what it is given."""
+        measured = axis in self.measured
+        found = {} if measured else self._own(block, self.measured[0], self.measured[0])
         for column, slot in enumerate(self.slots):
             stage = self._each(slot.block, slot.word, slot.parameter) == "stage"
             if slot.block is block and (stage or (slot.axis, slot.other) == (axis, other)):
-                if slot.parameter.count is None:
-                    found[slot.parameter.name] = column
-                else:
-                    found.setdefault(slot.parameter.name, []).append(column)  # type: ignore[union-attr]
+                found[slot.word] = column
         return found
 
     def simulate(self, record: Record, theta: Array) -> Array:

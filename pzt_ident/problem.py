@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from itertools import product
 from types import SimpleNamespace
 from typing import Protocol
@@ -33,6 +34,14 @@ class Wish(Protocol):
     def bounds(self) -> tuple[float, float] | None: ...
     @property
     def value(self) -> float | None: ...
+
+
+@dataclass(frozen=True)
+class Fixed:
+    """The wish for a value."""
+
+    value: float
+    bounds: None = None
 
 
 class Problem:

@@ -1,12 +1,12 @@
 """Small campaigns of a stage that the package itself simulates, with effects and noise in them."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 
 import rig
 from pzt_ident.diagnosis.refit import Case
+from pzt_ident.problem import Fixed
 
 NOISE = 5e-9  # m
 STAGE = {
@@ -50,8 +50,11 @@ def records(parameters, drives=None, dt=5e-3, model=("bouc_wen",), noise=NOISE, 
 
 def case(parameters=None, fixed=None, effects=(), model=("bouc_wen",), **more):
     """The model without effects on records of a stage that has some; `fixed` parameters are known."""
-    wishes = {name: SimpleNamespace(bounds=None, value=value) for name, value in (fixed or {}).items()}
-    return Case(model, effects, records(parameters or {}, model=model, **more), wishes)
+    return Case(model, effects, records(parameters or {}, model=model, **more), wishes(fixed or {}))
+
+
+def wishes(fixed):
+    return {name: Fixed(value) for name, value in fixed.items()}
 
 
 def with_response(made, change):

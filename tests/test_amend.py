@@ -56,6 +56,14 @@ def test_finer_steps_are_noted_where_they_are_not_the_jobs(job):
     assert new == ["  - {file: data/slow.csv, use: identify, steps: 4} # loops"]
 
 
+@pytest.mark.parametrize("text", [JOB, JOB.replace("parameters:\n  bouc_wen.alpha: {bounds: [0, 1e0]}\n", "")])
+def test_values_join_the_parameters(job, text):
+    before = load_job(job(text))
+    gone, new = changed(text, amended(before, ["drift"], before.folder, values={"y.amplifier_lag.tau": 0.0}))
+    assert gone == []
+    assert new[-1] == "  y.amplifier_lag.tau: {value: 0.0}"
+
+
 def call(*arguments):
     return CliRunner().invoke(main, [*map(str, arguments)])
 

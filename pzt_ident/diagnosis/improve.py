@@ -95,7 +95,7 @@ def both(case: Case, first: Fit, now: Fit, found: Diagnosis) -> list[Step]:
     fit = pair(case, first, now, found.candidates)
     if fit is None:
         return []
-    values = {name: fit.value(name) for name in fit.problem.names if name not in now.problem.names}
+    values = {name: value for name, value in fit.values.items() if name not in now.problem.names}
     halves = [refit(case, now, (*now.effects, word), values) for word in fit.effects[-2:]]
     half = min(halves, key=lambda half: half.total)
     one, two = half.effects[-1], next(word for word in fit.effects[-2:] if word != half.effects[-1])

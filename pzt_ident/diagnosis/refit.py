@@ -6,15 +6,17 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import product
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.block import Coupling
 from pzt_ident.diagnosis.noise import noise_floor, sizes
 from pzt_ident.model import Model
 from pzt_ident.plan import Plan
-from pzt_ident.problem import Problem
+from pzt_ident.problem import Fixed, Problem
 from pzt_ident.record import Record
 from pzt_ident.registry import Choice, blocks
 
@@ -55,14 +57,32 @@ class Case:
         self.refits: dict[Any, Fit] = {}  # by effects, steps and start
         self.records, self.wishes, self.sizes = tuple(records), wishes, sizes(list(records))
 
-    def problem(self, effects: Sequence[str], steps: Sequence[int] = ()) -> Problem:
-        """`steps` a sample of each record, by default those of the job."""
+    def problem(self, effects: Sequence[str], steps: Sequence[int] = (), alone: bool = False) -> Problem:
+        """`steps` a sample of each record, by default those of the job; `alone` as in a fit."""
         first = self.records[0]
         chain = blocks.chain((*self.words, *effects))
-        model = Model(chain, first.axes, first.measured, self.shared, self.wishes)
+        silent = self.silent(effects) if alone else {}
+        wishes = {name: Fixed(null) for name, null in silent.items()} | self.wishes
+        model = Model(chain, first.axes, first.measured, self.shared, wishes)
         own = steps or [record.steps for record in self.records]
         records = [self.at(number, count) for number, count in enumerate(own)]
-        return Problem(model, records, self.wishes, self.sizes)
+        return Problem(model, records, wishes, self.sizes)
+
+    def silent(self, effects: Sequence[str]) -> dict[str, float]:
+        """What keeps effects that were added off the axes without a response, by name: their nulls there, in the user's
+        units. Empty where no coupling lets such an axis be seen."""
+        first, chain = self.records[0], blocks.chain((*self.words, *effects))
+        if not any(issubclass(block, Coupling) for block in chain):
+            return {}
+        others = [axis for number, axis in enumerate(first.axes) if number not in first.measured]
+        own = {word for word in effects if word not in self.effects}
+        return {
+            f"{axis}.{block.name}.{word}": parameter.null
+            for axis, block in product(others, chain)
+            for word, parameter in block.parameters().items()
+            if {block.name, parameter.effect} & own and parameter.null is not None and Model.alone(block, parameter)
+            if f"{block.name}.{word}" not in (*self.shared, *self.wishes)
+        }
 
     def at(self, number: int, steps: int) -> Record:
         """A record, simulated in so many steps a sample; the same one each time, whose signals are made ready once."""
@@ -77,7 +97,8 @@ class Case:
 
 @dataclass(frozen=True)
 class Fit:
-    """A model with its effects at its best point; RMSE in SI units, validate None without such records."""
+    """A model with its effects at its best point; RMSE in SI units, validate None without such records. `alone`: the
+    effects that were added act on the measured axes alone."""
 
     effects: tuple[str, ...]
     problem: Problem
@@ -85,6 +106,7 @@ class Fit:
     identify: float
     validate: float | None
     converged: bool = True
+    alone: bool = False
 
     @property
     def total(self) -> float:
@@ -105,14 +127,16 @@ class Fit:
         """Of the simulation in a sample of each record."""
         return tuple(record.steps for record in self.problem.records)
 
-    def value(self, name: str) -> float:
-        return float(self.problem.physical(self.point)[0][self.problem.names.index(name)])
+    @property
+    def values(self) -> dict[str, float]:
+        """Of the free parameters, in the user's units."""
+        return dict(zip(self.problem.names, self.problem.physical(self.point)[0].tolist(), strict=True))
 
 
-def made(effects: tuple[str, ...], problem: Problem, point: Array, converged: bool = True) -> Fit:
+def made(effects: tuple[str, ...], problem: Problem, point: Array, converged: bool = True, alone: bool = False) -> Fit:
     validate = float(problem.loss(point, "validate")[0])
     unseen = None if np.isnan(validate) else validate
-    return Fit(effects, problem, point, float(problem.loss(point)[0]), unseen, converged)
+    return Fit(effects, problem, point, float(problem.loss(point)[0]), unseen, converged, alone)
 
 
 def first_fit(case: Case, seed: int) -> Fit:
@@ -135,18 +159,30 @@ def first_fit(case: Case, seed: int) -> Fit:
 
 
 def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, float]) -> Fit:
-    """The model with other effects, from the parameters it had and a guess (user's units) of the new ones."""
+    """The model with other effects, from the parameters it had and a guess (user's units) of the new ones. Where that
+    makes a difference the effects act on axes without a response as well, or on the measured ones alone: the better."""
     problem = case.problem(effects, before.steps)
-    old = dict(zip(before.problem.names, before.problem.physical(before.point)[0], strict=True))
+    old = before.values
     middle = problem.physical(np.full(problem.dimensions, 0.5))[0]
     start = {name: guess.get(name, old.get(name, middle[i])) for i, name in enumerate(problem.names)}
     point = problem.unit_point(start)
     key = (effects, before.steps, point.tobytes())
     if key not in case.refits:
-        case.refits[key] = resolved(case, made(effects, problem, descend(problem, point)))
+        ways = [(problem, False)]
+        if case.silent(effects):
+            ways.append((case.problem(effects, before.steps, True), True))
+        if len(ways) > 1 and not apart(case, *(way.residuals(point)[0] for way, _ in ways)):
+            ways.pop()
+        fits = [resolved(case, made(effects, way, descend(way, point), alone=alone)) for way, alone in ways]
+        case.refits[key] = min(fits, key=lambda fit: fit.total)
     found = case.refits[key]
     case.tell({"event": "refitted", "effects": effects, "identify": found.identify, "validate": found.validate})
     return found
+
+
+def apart(case: Case, one: Array, other: Array) -> bool:
+    """Whether two residuals differ by more than the simulation's step may change."""
+    return bool(np.linalg.norm(one - other) > COARSE * case.floor)
 
 
 def resolved(case: Case, fit: Fit) -> Fit:
@@ -158,8 +194,8 @@ def resolved(case: Case, fit: Fit) -> Fit:
     if not coarse.any():
         return fit
     steps = [count * (2 if more else 1) for count, more in zip(fit.steps, coarse, strict=True)]
-    problem = case.problem(fit.effects, steps)
-    return resolved(case, made(fit.effects, problem, descend(problem, fit.point), fit.converged))
+    problem = case.problem(fit.effects, steps, fit.alone)
+    return resolved(case, made(fit.effects, problem, descend(problem, fit.point), fit.converged, fit.alone))
 
 
 def step_errors(case: Case, fit: Fit) -> Array:
@@ -186,7 +222,7 @@ def elsewhere(fit: Fit) -> Fit:
         starts = np.where(owners == owner, scattered(problem, rng), fit.point)
         ends += [descend(problem, starts[i]) for i in np.argsort(problem.loss(starts))[:ELSEWHERE]]
     best = int(np.argmin(problem.loss(np.array(ends))))
-    return made(fit.effects, problem, ends[best], fit.converged) if best else fit
+    return made(fit.effects, problem, ends[best], fit.converged, fit.alone) if best else fit
 
 
 def scattered(problem: Problem, rng: np.random.Generator) -> Array:

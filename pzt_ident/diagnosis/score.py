@@ -89,7 +89,14 @@ class Scorer:
         return signals - self.basis @ (self.basis.T @ signals)
 
     def score(self, effect: str) -> Score:
-        problem = self.case.problem((*self.fit.effects, effect), self.fit.steps)
+        """The best of the ways in which the effect may act on axes without a response: as the effects of the fit do."""
+        case, fit, effects = self.case, self.fit, (*self.fit.effects, effect)
+        new = case.silent(effects) and not case.silent(fit.effects)
+        ways = (False, True) if new else (fit.alone,)
+        found = [self._score(effect, case.problem(effects, fit.steps, alone)) for alone in ways]
+        return max(found, key=lambda score: score.explained)
+
+    def _score(self, effect: str, problem: Problem) -> Score:
         found = (self._addition if issubclass(blocks[effect], Addition) else self._growth)(effect, problem)
         units = zip(problem.names, problem.units, strict=True)
         return replace(found, units={name: unit for name, unit in units if name in found.guess})
@@ -97,6 +104,7 @@ class Scorer:
     def _growth(self, effect: str, problem: Problem) -> Score:
         """What the response does as the effect leaves its null."""
         found, visible, most = Score(effect), dict[float, float](), 0.0
+        guesses: list[dict[str, float]] = []
         for trial, columns in self._trials(effect, problem):
             trace = self.project(columns.T)
             left_over, whole = np.linalg.norm(trace, axis=0).max(), np.linalg.norm(columns, axis=1).max()
@@ -109,7 +117,8 @@ class Scorer:
             explained = (self.residual @ self.residual - left @ left) / self.misfit
             if explained > found.explained:
                 found.explained, found.trace = float(explained), trace @ amounts
-                found.guess = self._scaled(problem, trial, amounts)
+                guesses = [self._scaled(problem, trial, each) for each in (amounts, np.ones(amounts.size))]
+        found.guess = min(guesses, key=lambda guess: self._left(problem, guess), default={})
         share = visible[min(visible)] if visible else 0.0
         return replace(found, visibility=share, power=share * most)
 
@@ -131,6 +140,12 @@ class Scorer:
         values = np.clip(values, problem.lower, problem.upper)
         return {problem.names[i]: float(values[i]) for i in (*trial.growing, *trial.shapes)}
 
+    def _left(self, problem: Problem, guess: dict[str, float]) -> float:
+        """What a guess leaves, as it is and not as if the effect were linear."""
+        known = self.fit.values | guess
+        values = np.array([known[name] for name in problem.names])
+        return float(np.linalg.norm(self.project(self._residuals(problem, values[None])[0])))
+
     def _trials(self, effect: str, problem: Problem) -> Iterator[tuple[Trial, Array]]:
         """Each size and shape, and the traces (growing, samples) of what grows from its null."""
         trials = list(self._planned(effect, problem))
@@ -147,7 +162,7 @@ class Scorer:
         nulls = {i: problem.model.slots[problem.free[i]].parameter.null for i in new}
         growing = [i for i in new if nulls[i] is not None]
         shapes = [i for i in new if i not in growing]
-        old = dict(zip(self.fit.problem.names, self.fit.problem.physical(self.fit.point)[0], strict=True))
+        old = self.fit.values
         start = np.array([old.get(name, nulls.get(i) or 0) for i, name in enumerate(problem.names)], float)
         ends = np.where(problem.upper != start, problem.upper, problem.lower)[growing] - start[growing]
         for values in spread(problem, shapes, blocks[effect].trials):
@@ -164,7 +179,7 @@ class Scorer:
         """What a record may add of its own is not in the chain: what it leaves says all."""
         found, block = Score(effect), blocks[effect]
         shapes = [i for i, name in enumerate(problem.names) if name not in self.fit.problem.names]
-        old = dict(zip(self.fit.problem.names, self.fit.problem.physical(self.fit.point)[0], strict=True))
+        old = self.fit.values
         guess = getattr(block, "guess", None)
         trials: Iterator[tuple[float, ...]] = spread(problem, shapes, block.trials)
         plans = self.fit.problem.plans["identify"]

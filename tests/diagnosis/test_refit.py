@@ -7,11 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import rig
 import stage
-from pzt_ident.block import Block, Place
+from pzt_ident.block import Addition, Block, Coupling, Place
 from pzt_ident.diagnosis import refit
 from pzt_ident.diagnosis.refit import descend, elsewhere, first_fit, made, stepped
-from pzt_ident.improve import bounded
+from pzt_ident.improve import bounded, silenced
+from pzt_ident.model import Model
 from pzt_ident.parameter import Parameter
 from pzt_ident.registry import blocks
 
@@ -35,8 +37,8 @@ def test_the_first_fit_finds_the_stage(plain):
     assert fit.converged
     assert fit.identify == pytest.approx(stage.NOISE, rel=0.1)
     assert fit.validate == pytest.approx(stage.NOISE, rel=0.1)
-    assert fit.value("bouc_wen.gain") == pytest.approx(0.082, rel=0.01)
-    assert fit.value("bouc_wen.alpha") == pytest.approx(0.55, rel=0.05)
+    assert fit.values["bouc_wen.gain"] == pytest.approx(0.082, rel=0.01)
+    assert fit.values["bouc_wen.alpha"] == pytest.approx(0.55, rel=0.05)
 
 
 def test_the_first_fit_is_a_function_of_its_seed(creeping):
@@ -82,7 +84,7 @@ def test_a_refit_goes_on_from_what_was_found(creeping):
     before = first_fit(creeping, 0)
     after = refit.refit(creeping, before, ("creep",), {"creep.ratio": 0.05, "creep.tau": 2.0})
     assert after.effects == ("creep",)
-    assert after.value("creep.ratio") == pytest.approx(0.08, rel=0.15)
+    assert after.values["creep.ratio"] == pytest.approx(0.08, rel=0.15)
     assert after.identify == pytest.approx(stage.NOISE, rel=0.1)
     assert before.identify > 3 * after.identify
     back = refit.refit(creeping, after, (), {})
@@ -199,7 +201,7 @@ def test_a_lag_within_the_sample_is_told_from_a_delay_by_finer_steps():
     lag, delay = (refit.refit(made, first, (word,), {}) for word in ("amplifier_lag", "delay"))
     assert min(lag.steps) > 1
     assert lag.identify == pytest.approx(2e-9, rel=0.1)
-    assert lag.value("amplifier_lag.tau") == pytest.approx(2e-5, rel=0.02)
+    assert lag.values["amplifier_lag.tau"] == pytest.approx(2e-5, rel=0.02)
     assert delay.total > 1.5 * lag.total
 
 
@@ -214,3 +216,50 @@ def test_a_parameter_on_a_bound_is_told_unless_it_is_its_null(creeping):
     assert set(replace(fit, point=point).on_bounds) == {"bouc_wen.gamma", "amplifier_lag.tau"}
     said = bounded(replace(fit, point=point))
     assert "amplifier_lag.tau ended on its bound of 0.005 s" in said
+
+
+COUPLED = ("bouc_wen", "lumped", "kinematic_coupling")
+MECHANICS = {name: value for name, value in stage.STAGE.items() if name.startswith("lumped")}
+
+
+def seen_through_a_coupling(response=None):
+    """x and y are driven, only x is measured."""
+    rng = np.random.default_rng(3)
+    drive = [np.interp(np.arange(600), np.arange(0, 601, 25), rng.uniform(0, 100, 25)) for _ in "xy"]
+    made = rig.record(*drive, response=[drive[0] * 1e-7 if response is None else response, 0 * drive[1]], measured=[0])
+    return refit.Case(COUPLED, (), [replace(made, response_units=("um", None))], stage.wishes(MECHANICS))
+
+
+ON_AXES = [word for word in blocks.effects() if not issubclass(blocks[word], Coupling | Addition)]
+
+
+@pytest.mark.parametrize("effect", ON_AXES)
+def test_an_effect_kept_off_an_axis_leaves_it_as_it_is_without(effect):
+    """x reads what it would of a stage whose y, measured as well, has the effect at its null."""
+    made = seen_through_a_coupling()
+    silent = made.silent((effect,))
+    assert silent
+    chain = blocks.chain((*COUPLED, effect))
+    one, both = Model(chain, "xy", (0,), given=silent), Model(chain, "xy", (0, 1))
+    known = dict(zip(one.names, rig.candidates(one, made.records[0].drive, 4, 1).T, strict=True)) | silent
+    apart = {name: known.get(name, known.get(name.partition(".")[2])) for name in both.names}
+    responses = [
+        each.simulate(made.records[0], np.stack([np.broadcast_to(values[name], 4) for name in each.names], axis=1))
+        for each, values in ((one, known), (both, apart))
+    ]
+    rig.assert_close(responses[0][:, 0], responses[1][:, 0])
+
+
+@pytest.mark.parametrize("alone", [True, False])
+def test_an_axis_without_response_has_an_effect_where_that_fits_better(alone):
+    blank, effects = seen_through_a_coupling(), ("amplifier_lag",)
+    stage_of = blank.problem(effects, alone=alone)
+    known = stage.STAGE | {"kinematic_coupling.ratio": 0.3, "amplifier_lag.tau": 3e-3, "y.amplifier_lag.tau": 0.0}
+    theta = np.array([[known[name] for name in stage_of.model.names]])
+    noise = np.random.default_rng(4).normal(0, stage.NOISE, 600)
+    case = seen_through_a_coupling(stage_of.model.simulate(blank.records[0], theta)[0, 0] + noise)
+    found = refit.refit(case, first_fit(case, 0), effects, {"amplifier_lag.tau": 1.0})
+    assert found.alone == alone
+    assert found.identify == pytest.approx(stage.NOISE, rel=0.1)
+    assert found.values["amplifier_lag.tau"] == pytest.approx(3e-3, rel=0.02)
+    assert ("y.amplifier_lag.tau kept at null" in silenced(case, found)) == alone

@@ -50,7 +50,7 @@ def test_thermal_relaxation_is_named_and_the_rate_left_out_foreseen(made):
     first = first_fit(made, 1)
     found = diagnose(made, first)
     assert (found.verdict, found.best.score.effect) == ("missing", "thermal_relaxation")
-    assert found.best.fit.value("homogenized_energy.fluctuation") == pytest.approx(45, rel=0.05)
+    assert found.best.fit.values["homogenized_energy.fluctuation"] == pytest.approx(45, rel=0.05)
     assert found.best.fit.validate < 0.05 * first.validate
 
 
