@@ -11,7 +11,7 @@ class LoadMass(Term):
     f1 falls by (1 + load / m)^(-1/2); slow records do not show it.
     """
 
-    sizes = tuple(0.003 * 1.15**k for k in range(42))
+    sizes = tuple(0.003 * 1.03**k for k in range(197))
     looks_like = ("resonance",)
     separate_by = "Chirp with small amplitude through the resonance, with and without a known mass on the stage."
     remedy = "Take the load off or fix it firmly, and lower the bandwidth or the notch to the resonance with the load."

@@ -57,6 +57,19 @@ def test_what_a_fitted_parameter_can_do_as_well_leaves_no_trace():
     assert fitted.explained < 0.05
 
 
+@pytest.mark.parametrize("load", [0.013, 0.209, 0.77])
+def test_a_load_is_expected_within_the_breadth_of_its_resonance(load):
+    """Between two resonances that do not overlap there is no slope that leads from one to the other."""
+    bare = {name: value for name, value in stage.STAGE.items() if name.startswith("lumped")}
+    t = np.arange(4000) * 2e-5
+    sweep = 50 + 3 * np.sin(2 * np.pi * (300 * t + 0.5 * (4500 - 300) / t[-1] * t**2))
+    made = stage.case({"lumped.load": load}, bare, model=("bouc_wen", "lumped"), drives=[sweep, sweep], dt=2e-5)
+    mass, damping, stiffness = bare["lumped.mass"] + load, bare["lumped.damping"], bare["lumped.stiffness"]
+    breadth = damping / np.sqrt(stiffness * mass)  # between the points of half power, of the frequency
+    guess = scored(made, "load_mass").guess["lumped.load"]
+    assert np.sqrt((bare["lumped.mass"] + guess) / mass) == pytest.approx(1, abs=breadth)
+
+
 def test_an_effect_whose_null_is_on_its_bound_goes_one_way_only():
     made = stage.case(fixed={"amplifier_lag.tau": 2e-3}, effects=["amplifier_lag"])
     assert scored(made, "sensor_lag").explained == 0
@@ -106,8 +119,7 @@ def test_power_is_what_the_strongest_plausible_effect_would_leave():
     fit = first_fit(made, 0)
     score = Scorer(made, fit).score("amplifier_lag")
     problem = made.problem(("amplifier_lag",))
-    old = dict(zip(fit.problem.names, fit.problem.physical(fit.point)[0], strict=True))
-    off, full = problem.residuals(np.array([problem.unit_point(old | {"amplifier_lag.tau": tau}) for tau in (0, 5e-3)]))
+    off, full = problem.residuals(np.array([problem.unit_point(fit.values | {"amplifier_lag.tau": tau}) for tau in (0, 5e-3)]))
     left = np.linalg.norm(Scorer(made, fit).project(full - off)) / made.floor
     assert score.power == pytest.approx(left, rel=0.1)
 
