@@ -210,19 +210,21 @@ def step_errors(case: Case, fit: Fit) -> Array:
     return np.array(found)
 
 
-def elsewhere(fit: Fit) -> Fit:
-    """The fit, or a better one that starts from other values of one block on one axis, the others kept: beside a
-    greater misfit, since explained, a block may have come to rest in a side minimum, such as a resonance far off."""
+def elsewhere(fit: Fit, only: str = "", most: int = ELSEWHERE) -> Fit:
+    """The fit, or a better one that starts from other values of one block on one axis, the others kept: of each block
+    in turn, or of `only` one. Beside a greater misfit, since explained, or for want of a better guess, a block may
+    have come to rest in a side minimum, such as a resonance far off."""
     problem = fit.problem
     slots = [problem.model.slots[column] for column in problem.free]
-    owners = np.array([f"{slot.axis} {slot.block.name}" for slot in slots])
+    owners = [(slot.axis, slot.block.name) for slot in slots]
     rng = np.random.default_rng(0)
-    ends = [fit.point]
-    for owner in dict.fromkeys(owners):
-        starts = np.where(owners == owner, scattered(problem, rng), fit.point)
-        ends += [descend(problem, starts[i]) for i in np.argsort(problem.loss(starts))[:ELSEWHERE]]
-    best = int(np.argmin(problem.loss(np.array(ends))))
-    return made(fit.effects, problem, ends[best], fit.converged, fit.alone) if best else fit
+    found = [fit]
+    for owner in dict.fromkeys(owner for owner in owners if only in ("", owner[1])):
+        own = np.array([each == owner for each in owners])
+        starts = np.where(own, scattered(problem, rng), fit.point)
+        for start in starts[np.argsort(problem.loss(starts))[:most]]:
+            found.append(made(fit.effects, problem, descend(problem, start), fit.converged, fit.alone))
+    return min(found, key=lambda each: each.total)
 
 
 def scattered(problem: Problem, rng: np.random.Generator) -> Array:

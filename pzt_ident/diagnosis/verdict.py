@@ -8,7 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
-from pzt_ident.diagnosis.refit import Case, Fit, refit, step_errors
+from pzt_ident.diagnosis.refit import Case, Fit, elsewhere, refit, step_errors
 from pzt_ident.diagnosis.score import Score, Scorer, applicable, misfit
 from pzt_ident.registry import blocks
 
@@ -20,6 +20,7 @@ TIED = 0.2  # noise floors between two refits: less than that, these data cannot
 HELD = 3.0  # times as much may be left of the records that the fit never saw
 FORM = 0.03  # of the misfit at first: less is as likely the form of the effects found as another effect
 COARSE = 0.6  # of what is left: if halving the step of the simulation changes more, it is mostly the step's fault
+DOUBTED = 8  # starts of a look-alike's own parameters
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
 
 
@@ -98,6 +99,7 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
         return nothing(case, first, before, candidates)
     shortlist = [item for item in candidates if item.score.explained > LEAST][:SHORT]
     refits(case, before, shortlist)
+    doubted(case, first, before, shortlist)
     candidates.sort(key=lambda item: (item.fit.total if item.fit else np.inf, -item.score.explained))
     settle(case, candidates)
     passing = [item for item in shortlist if item.fit and earns(case, first, before, item.fit)]
@@ -160,6 +162,21 @@ def refits(case: Case, before: Fit, items: list[Candidate]) -> None:
     with ThreadPoolExecutor(2) as pool:
         for item, fit in zip(items, pool.map(one, items), strict=True):
             item.fit = fit
+
+
+def doubted(case: Case, first: Fit, before: Fit, items: list[Candidate]) -> None:
+    """Fit look-alikes of the best that leave hardly more of the records to identify, but more of the others, from
+    elsewhere: with several parameters they may have come to rest in a side minimum."""
+    passing = [item for item in items if item.fit and earns(case, first, before, item.fit)]
+    best = min(passing, key=lambda item: item.fit.total, default=None)  # type: ignore[union-attr]
+    if best is None or best.fit is None:
+        return
+    for item in items:
+        one, other = item.score.effect, best.score.effect
+        related = one in blocks[other].looks_like or other in blocks[one].looks_like
+        close = item.fit and drop(item.fit.identify, best.fit.identify) < 2 * TIED * case.floor
+        if item.fit and close and related and len(item.score.guess) > 1:
+            item.fit = elsewhere(item.fit, one, DOUBTED)
 
 
 def settle(case: Case, candidates: list[Candidate]) -> None:

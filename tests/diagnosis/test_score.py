@@ -119,7 +119,9 @@ def test_power_is_what_the_strongest_plausible_effect_would_leave():
     fit = first_fit(made, 0)
     score = Scorer(made, fit).score("amplifier_lag")
     problem = made.problem(("amplifier_lag",))
-    off, full = problem.residuals(np.array([problem.unit_point(fit.values | {"amplifier_lag.tau": tau}) for tau in (0, 5e-3)]))
+    off, full = problem.residuals(
+        np.array([problem.unit_point(fit.values | {"amplifier_lag.tau": tau}) for tau in (0, 5e-3)])
+    )
     left = np.linalg.norm(Scorer(made, fit).project(full - off)) / made.floor
     assert score.power == pytest.approx(left, rel=0.1)
 

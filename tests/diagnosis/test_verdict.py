@@ -11,7 +11,7 @@ import stage
 from pzt_ident.diagnosis import refit
 from pzt_ident.diagnosis.refit import first_fit
 from pzt_ident.diagnosis.score import Score
-from pzt_ident.diagnosis.verdict import Candidate, diagnose, drop, earns, sentence, settle
+from pzt_ident.diagnosis.verdict import Candidate, diagnose, doubted, drop, earns, sentence, settle
 from pzt_ident.registry import blocks
 
 
@@ -195,3 +195,24 @@ def test_drives_of_one_level_only_leave_a_gain_that_grows_unseen():
     found = judged(stage.case(drives=one))
     assert of(found, "amplitude_gain").score.visibility < 0.05
     assert decisions(found)["amplitude_gain"] != "missing"
+
+
+def test_a_look_alike_of_the_best_is_fitted_again_from_elsewhere():
+    """A friction whose fit rests in a side minimum, beside plays that stand in for it; what is no look-alike stays."""
+    loops = [np.concatenate([np.zeros(100), rig.path(0, top, 0, top, 0), np.zeros(150)]) for top in (100, 60)]
+    hidden = {"friction.force": 0.25e-6, "friction.reach": 0.5e-6, "friction.stiction": 0.0, "friction.stribeck": 1e-6}
+    simulated = stage.case(hidden, model=("bouc_wen", "friction"), drives=loops)
+    made = refit.Case(("bouc_wen",), (), simulated.records, {})
+    first = first_fit(made, 0)
+    fits = {word: refit.refit(made, first, (word,), {}) for word in ("friction", "distributed_memory", "creep")}
+    for word in ("friction", "creep"):
+        resting = fits[word].problem
+        null = resting.unit_point(first.values | {name: 0.0 for name in resting.names if name.startswith(word)})
+        aside = refit.made((word,), resting, null)
+        fits[word] = replace(aside, identify=fits["distributed_memory"].identify)
+    items = [Candidate(Score(word, 1.0, dict.fromkeys(("one", "two"), 0.0)), fit) for word, fit in fits.items()]
+    doubted(made, first, first, items)
+    after = {item.score.effect: item.fit for item in items}
+    assert after["friction"].identify == pytest.approx(stage.NOISE, rel=0.1)
+    assert after["friction"].validate == pytest.approx(stage.NOISE, rel=0.1)
+    assert after["creep"] is fits["creep"]
