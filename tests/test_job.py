@@ -379,7 +379,7 @@ EDITS = st.tuples(
 )
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(st.lists(EDITS, min_size=1, max_size=6))
 def test_mangled_text_is_a_job_or_an_input_error(edits):
     text = GOOD
@@ -399,7 +399,7 @@ VALUES = st.recursive(
 KEYS = ("name", "records", "channels", "model", "effects", "parameters", "optimizers", "repeats", "seed", "stop")
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(st.dictionaries(st.sampled_from(KEYS), VALUES, min_size=1, max_size=4))
 def test_any_value_at_any_key_is_a_job_or_an_input_error(replaced):
     import io

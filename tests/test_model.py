@@ -42,7 +42,7 @@ def kind(item):
 @settings(deadline=None, max_examples=40, derandomize=True)
 def test_every_chain_is_its_blocks_one_after_the_other(chain, measured, seed, more):
     axes, measured = measured
-    samples, response = (20, 1e-4) if "bouc_wen_oscillator" in chain else (150, 10.0)
+    samples, response = (20, 1e-4) if "bouc_wen_oscillator" in chain else (100, 10.0)
     chain = model(*chain, axes=axes, measured=measured)
     made = record(*noise(axes, samples, seed), measured=measured, **more)
     theta = candidates(chain, SPAN, 3, seed, response)
@@ -60,7 +60,7 @@ def test_whatever_stands_around_hysteresis(around, measured, seed, more):
     """A memory that does not run away: |gamma| <= beta."""
     axes, measured = measured
     chain = model("bouc_wen", *around, axes=axes, measured=measured)
-    made = record(*noise(axes, 150, seed), measured=measured, **more)
+    made = record(*noise(axes, 100, seed), measured=measured, **more)
     theta = candidates(chain, SPAN, 3, seed)
     beta, gamma = ([name.endswith(f"bouc_wen.{word}") for name in chain.names] for word in ("beta", "gamma"))
     theta[:, gamma] = np.clip(theta[:, gamma], -theta[:, beta], theta[:, beta])

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pzt_ident.block import Addition, Bank, Beside, Coupling, Modes, Operator, Place, Relays, Shift, Term
+from pzt_ident.kernel import WIDTH
 from pzt_ident.plan import Plan
 from pzt_ident.registry import blocks
 from pzt_ident.units import is_unit
@@ -51,6 +52,7 @@ CHAINS = [
     " ".join(["bouc_wen", *(term for host, term in HOSTS if host == "bouc_wen"), *at(Place.READOUT)]),
 ]
 SPAN = np.array([0.0, 100.0])
+LANES = WIDTH + 4  # candidates of which some are in a second group
 CATALOGUE = """
 creep thermal_relaxation rate_dependence amplifier_lag sensor_lag slew_limit delay asymmetry quadratic_gain saturation
 distributed_memory amplitude_gain cross_coupling kinematic_coupling resonance load_mass viscous_damping cubic_stiffness
@@ -82,10 +84,10 @@ def noise(seed, samples):
 levels = st.lists(st.integers(-30, 100), min_size=2, max_size=6)
 seeds = st.integers(0, 2**31)
 drives = st.one_of(
-    st.builds(legs, levels, st.integers(1, 40)),
+    st.builds(legs, levels, st.integers(1, 30)),
     st.builds(shaky, levels, seeds, st.integers(0, 12)),
-    st.builds(waves, seeds, st.integers(4, 200)),
-    st.builds(noise, seeds, st.integers(4, 200)),
+    st.builds(waves, seeds, st.integers(4, 150)),
+    st.builds(noise, seeds, st.integers(4, 150)),
 )
 quick = settings(deadline=None, max_examples=20, derandomize=True)
 
@@ -189,7 +191,7 @@ def test_compiled_is_what_the_author_wrote(words, drive, seed):
         assert_close(chain.simulate(measured, theta), expected, rounding(chain, measured, theta))
 
 
-@pytest.mark.parametrize("samples", [1, 2, 3, 63, 64, 65, 127, 129, 1000])
+@pytest.mark.parametrize("samples", [1, 2, 3, 63, 64, 65, 127, 129, 400])
 @pytest.mark.parametrize("words", CHAINS)
 def test_tiles_leave_no_seam(words, samples):
     chain, measured, theta = made(words, waves(samples, samples), count=1)
@@ -200,19 +202,19 @@ def test_tiles_leave_no_seam(words, samples):
 
 @pytest.mark.parametrize("words", CHAINS)
 def test_batch_is_each_alone(words):
-    chain, measured, theta = made(words, waves(1), count=70)
+    chain, measured, theta = made(words, waves(1), count=LANES)
     alone = [chain.simulate(measured, candidate)[0] for candidate in theta]
     assert_close(chain.simulate(measured, theta), np.array(alone))
 
 
 @pytest.mark.parametrize("words", CHAINS)
 def test_a_candidate_that_fails_leaves_the_others_alone(words):
-    chain, measured, theta = made(words, waves(2), count=70)
+    chain, measured, theta = made(words, waves(2), count=LANES)
     failing = theta.copy()
-    failing[3], failing[11], failing[30] = np.nan, 1e300, np.inf
+    failing[3], failing[11], failing[26] = np.nan, 1e300, np.inf
     with np.errstate(all="ignore"):
         found, squares = chain.simulate(measured, failing), Plan(chain, measured).squares(failing)
-    others = np.delete(np.arange(70), [3, 11, 30])
+    others = np.delete(np.arange(LANES), [3, 11, 26])
     clean = chain.simulate(measured, theta)
     assert_close(found[others], clean[others])
     assert np.array_equal(np.isfinite(squares[others]), np.isfinite(clean[others]).all(axis=2))
@@ -273,12 +275,15 @@ def test_run_in_is_the_drive_again(words):
 @pytest.mark.parametrize("words", CHAINS)
 @pytest.mark.parametrize("more", [{}, {"settle": 70}, {"run_in": 2}, {"run_in": 1, "settle": 129}])
 def test_squares_are_those_of_the_residuals(words, more):
-    chain, measured, theta = made(words, waves(5), count=30, **more)
+    chain, measured, theta = made(words, waves(5), count=LANES, **more)
     measured.response[:] = np.random.default_rng(6).normal(size=measured.response.shape)
     plan, residuals = Plan(chain, measured), Plan(chain, measured).residuals(theta)
+    squares = plan.squares(theta)
+    alive = np.isfinite(residuals).all(axis=(1, 2))
+    assert np.array_equal(np.isfinite(squares).all(axis=1), alive) and alive.sum() > LANES / 2
     assert residuals.shape[-1] == plan.scored == 200 - more.get("settle", 0)
-    np.testing.assert_allclose(residuals.mean(axis=-1), 0, atol=1e-13 * np.abs(residuals).max())
-    np.testing.assert_allclose(plan.squares(theta), (residuals**2).sum(axis=-1), rtol=1e-10)
+    np.testing.assert_allclose(residuals[alive].mean(axis=-1), 0, atol=1e-13 * np.abs(residuals[alive]).max())
+    np.testing.assert_allclose(squares[alive], (residuals[alive] ** 2).sum(axis=-1), rtol=1e-10)
 
 
 @pytest.mark.parametrize("words", CHAINS)
