@@ -79,7 +79,8 @@ def reconsider(case: Case, first: Fit, before: Fit, step: Step) -> None:
 
 
 def onward(case: Case, first: Fit, steps: list[Step], found: Diagnosis, pick: Candidate | None) -> list[Step]:
-    """The next stair: what was picked, else two effects at once, else, once a way, one in the place of another."""
+    """The next stair: what was picked, else two effects at once, else one with other values of a block beside it, else,
+    once a way, one in the place of another."""
     now = steps[-1].fit
     if pick is not None and pick.fit is not None:
         tied = tuple(found.tied) if pick is found.best else (pick.score.effect,)
@@ -87,7 +88,11 @@ def onward(case: Case, first: Fit, steps: list[Step], found: Diagnosis, pick: Ca
     if found.verdict in ("adequate", "refused"):
         return []
     before = any(step.added and step.removed for step in steps)
-    return both(case, first, now, found) or ([] if before else exchanged(case, first, now))
+    return (
+        both(case, first, now, found)
+        or again(case, first, now, found)
+        or ([] if before else exchanged(case, first, now))
+    )
 
 
 def both(case: Case, first: Fit, now: Fit, found: Diagnosis) -> list[Step]:
@@ -103,6 +108,19 @@ def both(case: Case, first: Fit, now: Fit, found: Diagnosis) -> list[Step]:
         Step(half, one, None, (one,), explained(case, now, half)),
         Step(fit, two, None, (two,), explained(case, half, fit)),
     ]
+
+
+def again(case: Case, first: Fit, now: Fit, found: Diagnosis) -> list[Step]:
+    """An effect of the short list with which another block, such as the hysteresis, must move far to fit."""
+    if now.identify > HOPELESS * case.floor:
+        return []
+    tries = [(item, elsewhere(item.fit)) for item in found.candidates if item.fit]
+    good = [(item, fit) for item, fit in tries if earns(case, first, now, fit)]
+    if not good:
+        return []
+    item, fit = min(good, key=lambda found: found[1].total)
+    word = item.score.effect
+    return [Step(fit, word, None, (word,), explained(case, now, fit), item.score.explained)]
 
 
 def explained(case: Case, before: Fit, after: Fit) -> float:

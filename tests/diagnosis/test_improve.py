@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 import stage
-from pzt_ident.diagnosis.improve import Step, both, exchanged, explained, improve, unneeded
+from pzt_ident.diagnosis import improve as improving
+from pzt_ident.diagnosis.improve import Step, again, both, exchanged, explained, improve, unneeded
 from pzt_ident.diagnosis.refit import first_fit, refit
-from pzt_ident.diagnosis.verdict import diagnose
+from pzt_ident.diagnosis.refit import made as fitted
+from pzt_ident.diagnosis.score import Score
+from pzt_ident.diagnosis.verdict import Candidate, Diagnosis, diagnose
 from pzt_ident.registry import blocks
 
 PAIR = stage.EFFECTS["creep"] | stage.EFFECTS["quadratic_gain"]
@@ -107,6 +110,19 @@ def test_two_effects_that_hide_each_other_are_two_stairs_the_better_one_first():
     assert one.fit.effects == (one.added,)
     assert first.total > one.fit.total > two.fit.total
     assert two.fit.validate == pytest.approx(stage.NOISE, rel=0.1)
+
+
+@pytest.mark.parametrize("hopeless", [0, np.inf])
+def test_an_effect_that_rests_in_a_side_minimum_is_a_stair_once_nothing_else_is_left(monkeypatch, hopeless):
+    monkeypatch.setattr(improving, "HOPELESS", hopeless)
+    made = stage.case(stage.EFFECTS["quadratic_gain"])
+    first = first_fit(made, 0)
+    problem = made.problem(("quadratic_gain",))
+    resting = fitted(("quadratic_gain",), problem, problem.unit_point(first.values | {"quadratic_gain.curvature": 0.0}))
+    found = Diagnosis("unexplained", "", first, [Candidate(Score("quadratic_gain"), resting)], [])
+    steps = again(made, first, first, found)
+    assert [step.added for step in steps] == (["quadratic_gain"] if hopeless else [])
+    assert all(step.fit.identify == pytest.approx(stage.NOISE, rel=0.1) for step in steps)
 
 
 def test_a_proxy_is_exchanged_for_what_is_missing():
