@@ -126,14 +126,14 @@ def improvement_of(job: Job, case: Case, steps: list[stairs.Step], last: dict[st
     }
 
 
-def silenced(case: Case, fit: Fit) -> str:
+def silenced(case: Case, fit: Fit | None) -> str:
     """A sentence about effects that fit better where axes without a response do not have them."""
-    names = case.silent(fit.effects) if fit.alone else {}
+    names = case.silent(fit.effects) if fit and fit.alone else {}
     if not names:
         return ""
     axes = " and ".join(dict.fromkeys(name.partition(".")[0] for name in names))
     said = f" What comes from {axes}, which has no response, fits better without these effects there"
-    return f"{said}: {', '.join(names)} kept at null."
+    return f"{said}: {', '.join(f'`{name}: {{value: {null:g}}}`' for name, null in names.items())}."
 
 
 def bounded(fit: Fit) -> str:
@@ -195,7 +195,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
     reason = f"{found.reason} {rest(case, found.before)}" if found.verdict == "unexplained" else found.reason
     return {
         "verdict": found.verdict,
-        "reason": reason + broken(found.before),
+        "reason": reason + silenced(case, found.best.fit if found.best else None) + broken(found.before),
         "unit": unit_of(list(case.records)),
         "noise_floor": floors(case),
         "rmse": errors_of(case, found.before),

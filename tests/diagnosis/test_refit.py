@@ -262,4 +262,4 @@ def test_an_axis_without_response_has_an_effect_where_that_fits_better(alone):
     assert found.alone == alone
     assert found.identify == pytest.approx(stage.NOISE, rel=0.1)
     assert found.values["amplifier_lag.tau"] == pytest.approx(3e-3, rel=0.02)
-    assert ("y.amplifier_lag.tau kept at null" in silenced(case, found)) == alone
+    assert ("`y.amplifier_lag.tau: {value: 0}`" in silenced(case, found)) == alone
