@@ -68,7 +68,7 @@ def misfits(results: Results) -> dict[str, Any]:
 
 def floors(results: Results, record: Record) -> list[Floor]:
     """The noise floor of each measured axis, 0 where none is known."""
-    values, sources = results.floors, results.result.get("noise_floor_source", {})
+    values, sources = results.floors, results.noise_sources
     return [
         Floor(
             (values.get(record.axes[a]) or 0.0) * factor(str(record.response_units[a])),

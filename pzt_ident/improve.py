@@ -13,15 +13,15 @@ import numpy as np
 from pzt_ident.amend import amended
 from pzt_ident.compare import compare
 from pzt_ident.diagnosis import improve as stairs
-from pzt_ident.diagnosis.locate import locate
-from pzt_ident.diagnosis.next_experiment import LEAST, Proposal, Reach, propose
 from pzt_ident.diagnosis.noise import noise_floor
 from pzt_ident.diagnosis.refit import Case, Fit, first_fit
 from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.diagnosis.verdict import diagnose as judge
 from pzt_ident.files import write_json, write_text
 from pzt_ident.job import Job
+from pzt_ident.proposal import limits_of, separating
 from pzt_ident.registry import blocks
+from pzt_ident.remarks import broken, remarks, rest
 from pzt_ident.report.words import happening
 from pzt_ident.run import (
     Event,
@@ -94,7 +94,9 @@ def improve(job: Job, out: Path | None = None, listen: Listen = lambda event: No
         diagnosis = diagnosis_of(job, case, last, folder)
         for name, step in (("signals_as_given.nc", steps[0]), ("signals.nc", steps[-1])):
             write_signals(folder / name, step.fit.problem, step.fit.point)
-        content = improvement_of(job, case, steps, diagnosis) | {"next_experiment": diagnosis["next_experiment"]}
+        proposals = (separating(job, case, step.rivals, folder) for step in ties(steps))
+        proposed = diagnosis["next_experiment"] or next(filter(None, proposals), None)
+        content = improvement_of(job, case, steps, diagnosis) | {"next_experiment": proposed}
         end = steps[-1].fit
         values = case.silent(end.effects) if end.alone else None
         write_text(folder / "improved.yaml", amended(job, end.effects, folder, steps=end.steps, values=values))
@@ -113,7 +115,9 @@ def improvement_of(job: Job, case: Case, steps: list[stairs.Step], last: dict[st
     added = [word for word in steps[-1].fit.effects if word not in job.effects]
     if verdict != "adequate" and added:
         reason += f" Added on the way, and not proven while that is open: {', '.join(added)}."
-    reason += silenced(case, steps[-1].fit) + bounded(steps[-1].fit)
+    for step in ties(steps):
+        reason += f" These data cannot tell {' from '.join(step.tied)}."
+    reason += remarks(case, steps[-1].fit)
     return {
         "name": job.name,
         "steps": [stair(case, step) for step in steps],
@@ -121,37 +125,10 @@ def improvement_of(job: Job, case: Case, steps: list[stairs.Step], last: dict[st
         "reason": reason,
         "effects": added,
         "noise_floor": floors(case),
+        "noise_floor_source": sources(case),
         "floor": case.floor / size_of(case),
         "unit": unit_of(list(case.records)),
     }
-
-
-def silenced(case: Case, fit: Fit | None) -> str:
-    """A sentence about effects that fit better where axes without a response do not have them."""
-    names = case.silent(fit.effects) if fit and fit.alone else {}
-    if not names:
-        return ""
-    axes = " and ".join(dict.fromkeys(name.partition(".")[0] for name in names))
-    said = f" What comes from {axes}, which has no response, fits better without these effects there"
-    return f"{said}: {', '.join(f'`{name}: {{value: {null:g}}}`' for name, null in names.items())}."
-
-
-def bounded(fit: Fit) -> str:
-    """A sentence about each parameter that ended on a bound."""
-    problem, said = fit.problem, ""
-    why = "these data do not determine it, its bounds are too narrow, or it stands in for something else"
-    for name in fit.on_bounds:
-        i = problem.names.index(name)
-        bound = (problem.lower if fit.point[i] < 0.5 else problem.upper)[i]
-        said += f" {name} ended on its bound of {f'{bound:.3g} {problem.units[i]}'.removesuffix(' 1')}: {why}."
-    return said
-
-
-def broken(fit: Fit) -> str:
-    """A sentence about each record over which a block breaks a condition of its own equation."""
-    theta = fit.problem.parameters(fit.point)
-    plans = [plan for plans in fit.problem.plans.values() for plan in plans]
-    return "".join(f" Record {plan.record.name}: {each}." for plan in plans for each in plan.broken(theta))
 
 
 def size_of(case: Case) -> float:
@@ -164,6 +141,17 @@ def floors(case: Case) -> dict[str, float]:
         first.axes[a]: noise_floor(list(case.records), a).value / factor(str(first.response_units[a]))
         for a in first.measured
     }
+
+
+def sources(case: Case) -> dict[str, str]:
+    """What each noise floor was taken from."""
+    first = case.records[0]
+    return {first.axes[a]: noise_floor(list(case.records), a).source for a in first.measured}
+
+
+def ties(steps: list[stairs.Step]) -> list[stairs.Step]:
+    """The stairs of effects that the last model has and these data cannot tell from others."""
+    return [step for step in steps if len(step.rivals) > 1 and step.added in steps[-1].fit.effects]
 
 
 def errors_of(case: Case, fit: Fit) -> dict[str, float | None]:
@@ -190,14 +178,19 @@ def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
 
 
 def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[str, Any]:
-    rivals = {item.score.effect: item.fit for item in found.candidates if item.fit and item.score.effect in found.tied}
-    proposal = propose(case, rivals, reach_of(job, case)) if len(rivals) > 1 else None
+    rivals = stairs.rivals_of(found)
+    proposed = separating(job, case, rivals, folder)
     reason = f"{found.reason} {rest(case, found.before)}" if found.verdict == "unexplained" else found.reason
+    if len(rivals) > 1 and not proposed:
+        reason += f" No drive within {limits_of(job, case)} tells them apart: allow more under `limits`."
     return {
         "verdict": found.verdict,
-        "reason": reason + silenced(case, found.best.fit if found.best else None) + broken(found.before),
+        "reason": reason
+        + (remarks(case, found.best.fit) if found.best and found.best.fit else "")
+        + broken(found.before),
         "unit": unit_of(list(case.records)),
         "noise_floor": floors(case),
+        "noise_floor_source": sources(case),
         "rmse": errors_of(case, found.before),
         "records": by_record(case, found.before),
         "candidates": [
@@ -219,45 +212,5 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
             }
             for item in found.candidates
         ],
-        "next_experiment": written(case, proposal, folder) if proposal else None,
+        "next_experiment": proposed,
     }
-
-
-def rest(case: Case, fit: Fit) -> str:
-    """What that which a fit leaves depends on most, a sentence for each axis."""
-    plans = [plan for plans in fit.problem.plans.values() for plan in plans]
-    records, theta = [plan.record for plan in plans], fit.problem.parameters(fit.point)
-    noise = [noise_floor(list(case.records), axis) for axis in records[0].measured]
-    found = [axis for axis in locate(records, [plan.errors(theta)[0] for plan in plans], noise) if axis.misfit]
-    names = [f"{axis.axis}: " if len(records[0].measured) > 1 else "" for axis in found]
-    return " ".join(f"{name}{axis.sentences[0]}" for name, axis in zip(names, found, strict=True))
-
-
-def reach_of(job: Job, case: Case) -> Reach:
-    """The job's limits; where it gives none, what the records themselves did."""
-    axis = case.records[0].measured[0]
-    unit = factor(str(case.records[0].drive_units[axis]))
-    drives = [record.drive[axis] for record in case.records]
-    rate = max(float(np.abs(np.diff(r.drive[axis])).max()) / r.dt for r in case.records)
-    length = max(r.samples * r.dt for r in case.records)
-    limits = job.limits
-    low, high = limits.drive or (min(u.min() for u in drives) / unit, max(u.max() for u in drives) / unit)
-    slew = limits.slew * unit if limits.slew else rate
-    return Reach(low * unit, high * unit, slew, limits.duration or max(length, 60.0))
-
-
-def written(case: Case, proposal: Proposal, folder: Path) -> dict[str, Any]:
-    """The proposal and its drive as CSV."""
-    first = case.records[0]
-    size = [factor(str(unit)) for unit in first.drive_units]
-    header = ",".join(
-        ["time [s]", *(f"u_{axis} [{unit}]" for axis, unit in zip(first.axes, first.drive_units, strict=True))]
-    )
-    time = np.arange(proposal.drive.shape[1]) * proposal.dt
-    rows = np.column_stack([time, *(row / s for row, s in zip(proposal.drive, size, strict=True))])
-    text = "\n".join([header, *(",".join(f"{value:.9g}" for value in row) for row in rows)]) + "\n"
-    path = folder / "next_experiment.csv"
-    write_text(path, text)
-    apart = f"them {proposal.apart:.1f} noise floors" if proposal.apart > LEAST else "some of them"
-    said = f"{proposal.name}: {proposal.why}; sets {apart} apart"
-    return {"splits": list(proposal.splits), "file": path.name, "why": said}

@@ -43,10 +43,13 @@ def _advise(found: Facts, folder: Path) -> None:
     if best:
         click.echo(f"{best['effect']}: {best['physics']}\non the rig: {best['remedy']}")
     if found["next_experiment"]:
-        proposal = found["next_experiment"]
-        click.echo(f"to tell {' from '.join(proposal['splits'])}, run {folder / proposal['file']} ({proposal['why']})")
+        _propose(found["next_experiment"], folder)
     elif best and found["verdict"] == "inconclusive":
         click.echo(f"no drive within the limits tells them apart. On the rig: {best['separate_by']}")
+
+
+def _propose(proposal: Facts, folder: Path) -> None:
+    click.echo(f"to tell {' from '.join(proposal['splits'])}, run {folder / proposal['file']} ({proposal['why']})")
 
 
 def show_improvement(found: Facts, folder: Path) -> None:
@@ -70,6 +73,8 @@ def show_improvement(found: Facts, folder: Path) -> None:
     )
     click.echo(f"noise floor [{unit}]: {number(floor)}")
     click.echo(f"{found['verdict']}: {found['reason']}")
+    if found["next_experiment"]:
+        _propose(found["next_experiment"], folder)
     click.echo(f"improved job: {folder / 'improved.yaml'}")
     if (folder / "report.html").exists():
         click.echo(f"report: {folder / 'report.html'}")

@@ -141,7 +141,7 @@ class TestDiagnose:
         assert call("diagnose", stage.write(tmp_path, made.records), "--out", tmp_path / "out").exit_code == 0
         found = read(tmp_path / "out" / "diagnosis.json")
         assert found["verdict"] == "unexplained"
-        assert re.search(r"what is left, an RMSE of .* noise floors\. \d+ % of the misfit lies ", found["reason"])
+        assert re.search(r"what is left, an RMSE of .* to validate\. \d+ % of the misfit lies ", found["reason"])
 
 
 class TestImprove:

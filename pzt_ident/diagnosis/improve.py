@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from pzt_ident.diagnosis.refit import Case, Fit, elsewhere, refit
 from pzt_ident.diagnosis.score import Scorer, applicable, misfit
@@ -18,14 +18,19 @@ HOPELESS = 5.0  # noise floors: where the first way leaves more, another order o
 
 @dataclass
 class Step:
-    """One stair: the fit after it, what it added or removed, and its look-alikes in these data."""
+    """One stair: the fit after it, what it added or removed, and its look-alikes in these data with their fits."""
 
     fit: Fit
     added: str | None = None
     removed: str | None = None
-    tied: tuple[str, ...] = ()
+    rivals: dict[str, Fit] = field(default_factory=dict)
     explained: float = 0.0
     expected: float | None = None  # share of the misfit that the score promised
+
+    @property
+    def tied(self) -> tuple[str, ...]:
+        """What these data cannot tell from the effect that was added, itself first."""
+        return tuple(self.rivals)
 
 
 Tell = Callable[[Step], None]
@@ -83,8 +88,8 @@ def onward(case: Case, first: Fit, steps: list[Step], found: Diagnosis, pick: Ca
     once a way, one in the place of another."""
     now = steps[-1].fit
     if pick is not None and pick.fit is not None:
-        tied = tuple(found.tied) if pick is found.best else (pick.score.effect,)
-        return [Step(pick.fit, pick.score.effect, None, tied, explained(case, now, pick.fit), pick.score.explained)]
+        rivals = rivals_of(found) if pick is found.best else {pick.score.effect: pick.fit}
+        return [Step(pick.fit, pick.score.effect, None, rivals, explained(case, now, pick.fit), pick.score.explained)]
     if found.verdict in ("adequate", "refused"):
         return []
     before = any(step.added and step.removed for step in steps)
@@ -93,6 +98,12 @@ def onward(case: Case, first: Fit, steps: list[Step], found: Diagnosis, pick: Ca
         or again(case, first, now, found)
         or ([] if before else exchanged(case, first, now))
     )
+
+
+def rivals_of(found: Diagnosis) -> dict[str, Fit]:
+    """The refits that these data cannot tell apart, the best first."""
+    fits = {item.score.effect: item.fit for item in found.candidates}
+    return {word: fit for word in found.tied if (fit := fits[word])}
 
 
 def both(case: Case, first: Fit, now: Fit, found: Diagnosis) -> list[Step]:
@@ -105,8 +116,8 @@ def both(case: Case, first: Fit, now: Fit, found: Diagnosis) -> list[Step]:
     half = min(halves, key=lambda half: half.total)
     one, two = half.effects[-1], next(word for word in fit.effects[-2:] if word != half.effects[-1])
     return [
-        Step(half, one, None, (one,), explained(case, now, half)),
-        Step(fit, two, None, (two,), explained(case, half, fit)),
+        Step(half, one, None, {one: half}, explained(case, now, half)),
+        Step(fit, two, None, {two: fit}, explained(case, half, fit)),
     ]
 
 
@@ -120,7 +131,7 @@ def again(case: Case, first: Fit, now: Fit, found: Diagnosis) -> list[Step]:
         return []
     item, fit = min(good, key=lambda found: found[1].total)
     word = item.score.effect
-    return [Step(fit, word, None, (word,), explained(case, now, fit), item.score.explained)]
+    return [Step(fit, word, None, {word: fit}, explained(case, now, fit), item.score.explained)]
 
 
 def explained(case: Case, before: Fit, after: Fit) -> float:
@@ -137,7 +148,7 @@ def unneeded(case: Case, first: Fit, now: Fit) -> list[Step]:
         without = refit(case, now, others(now, effect), {})
         missed = now.validate is not None and drop(without.validate, now.validate) > least(case, first)
         if not missed and not earns(case, first, without, now):
-            found.append(Step(without, None, effect, (), explained(case, now, without)))
+            found.append(Step(without, None, effect, {}, explained(case, now, without)))
             now = without
     return found
 
@@ -168,8 +179,8 @@ def classed(case: Case, first: Fit, steps: list[Step]) -> None:
     own = now.effects[len(first.effects) :]
     for effect in own if len(own) > 1 else ():
         step = next(step for step in reversed(steps) if step.added == effect)
-        close = [fit.effects[-1] for fit in look_alikes(case, now, effect) if alike(case, effect, now, fit)]
-        step.tied = (effect, *close)
+        close = {fit.effects[-1]: fit for fit in look_alikes(case, now, effect) if alike(case, effect, now, fit)}
+        step.rivals = {effect: now} | close
 
 
 def exchanged(case: Case, first: Fit, now: Fit) -> list[Step]:
@@ -193,4 +204,4 @@ def better(case: Case, now: Fit, best: Fit) -> bool:
 
 def exchange(case: Case, now: Fit, best: Fit, effect: str) -> Step:
     word = best.effects[-1]
-    return Step(best, word, effect, (word,), explained(case, now, best))
+    return Step(best, word, effect, {word: best}, explained(case, now, best))

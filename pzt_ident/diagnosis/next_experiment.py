@@ -18,12 +18,12 @@ Array = NDArray[np.float64]
 CHIRP = (20.0, 2000.0)  # Hz
 BEYOND = 6000.0  # Hz, beyond the resonances of a stage
 HOLD = 20.0  # s
-LEAST, AMPLE = 0.3, 3.0  # noise floors between two rivals: less does not tell them apart, more is no better
+LEAST, FAINT, AMPLE = 0.3, 1.0, 3.0  # noise floors between two rivals: told apart, well, and more is no better
 
 
 @dataclass(frozen=True)
 class Reach:
-    """What the rig may do: drive, SI units, its rate, a second, and the length of a record, s."""
+    """What the rig may do with an axis: drive, SI units, its rate, a second, and the length of a record, s."""
 
     low: float
     high: float
@@ -43,15 +43,17 @@ class Proposal:
     apart: float
 
 
-def propose(case: Case, rivals: dict[str, Fit], reach: Reach) -> Proposal | None:
-    """Simulate all rivals on each protocol; the one that tells the most of them apart, the closest two by the most.
+def propose(case: Case, rivals: dict[str, Fit], reaches: Sequence[Reach]) -> Proposal | None:
+    """Simulate all rivals on each protocol, within the reach of each axis; the one that tells the most of them apart,
+    the closest two by the most.
 
     None where no protocol within reach tells any two of them apart.
     """
     best: Proposal | None = None
     most = (0.0, 0.0)
     alike = drives_of(case.records)
-    for name, why, dt, own in protocols(reach, alike.max() + 1, alike[case.records[0].measured[0]]):
+    apart = [reaches[list(alike).index(drive)] for drive in range(alike.max() + 1)]
+    for name, why, dt, own in protocols(apart, alike[case.records[0].measured[0]]):
         drive = own[alike]
         responses = [respond(case, fit, dt, drive) for fit in rivals.values()]
         pairs = [float(np.sqrt(np.mean((a - b) ** 2))) / case.floor for a, b in combinations(responses, 2)]
@@ -77,14 +79,13 @@ def respond(case: Case, fit: Fit, dt: float, drive: Array) -> Array:
     return found - found.mean()
 
 
-def protocols(reach: Reach, axes: int, axis: int) -> Iterator[tuple[str, str, float, Array]]:
-    """Name, what it shows, sample time and drives of each protocol."""
-    span = reach.high - reach.low
-    quick = min(reach.rate / (2 * span), 50.0)  # cycles a second that the rate allows
+def protocols(reaches: Sequence[Reach], axis: int) -> Iterator[tuple[str, str, float, Array]]:
+    """Name, what it shows, sample time and drives of each protocol, all but one of which move one axis alone."""
+    reach = reaches[axis]
+    quick = quickest(reach)
     own = [
         ("slow triangles", "rate and creep play no part", 1e-3, turns(reach, [1, 0] * 3, min(0.5, quick), 1e-3)),
-        ("two rates", "a lag grows with the rate, hysteresis with its logarithm", 1e-4,
-         np.concatenate([turns(reach, [1, 0], quick / 30, 1e-4), turns(reach, [1, 0] * 5, quick, 1e-4)])),
+        ("two rates", "a lag grows with the rate, hysteresis with its logarithm", 1e-4, two_rates(reach, quick, 1e-4)),
         ("steps and holds", "creep follows the step, relaxation stops after a small step back, drift does not care",
          1e-2, holds(reach, [0.6, 0.57, 0.3, 0.9, 0.1], 1e-2)),
         ("nested loops", "memory closes its loops, a gain does not", 1e-3,
@@ -94,24 +95,39 @@ def protocols(reach: Reach, axes: int, axis: int) -> Iterator[tuple[str, str, fl
         ("small chirp", "phase against frequency: delay, lag and modes part", 5e-5, chirp(reach, CHIRP, 2.0, 5e-5)),
     ]  # fmt: skip
     for name, why, dt, u in own:
-        yield from bounded(reach, name, why, dt, u, axes, axis)
-    if axes > 1:
-        for other in (a for a in range(axes) if a != axis):
-            slow = turns(reach, [1, 0] * 2, min(0.5, quick), 1e-3)
-            yield from bounded(reach, "the other axis alone", "what comes through a coupling", 1e-3, slow, axes, other)
-            fast = chirp(reach, (CHIRP[0], BEYOND), 1.0, 2e-5)
-            why = "couplings ring at different modes"
-            yield from bounded(reach, "chirp of the other axis", why, 2e-5, fast, axes, other)
+        yield from bounded(reaches, name, why, dt, u, axis)
+    for other, theirs in enumerate(reaches):
+        if other == axis or theirs.high <= theirs.low:
+            continue
+        slow = turns(theirs, [1, 0] * 2, min(0.5, quickest(theirs)), 1e-3)
+        yield from bounded(reaches, "the other axis alone", "what comes through a coupling", 1e-3, slow, other)
+        fast = chirp(theirs, (CHIRP[0], BEYOND), 1.0, 2e-5)
+        why = "couplings ring at different modes"
+        yield from bounded(reaches, "chirp of the other axis", why, 2e-5, fast, other)
+
+
+def quickest(reach: Reach) -> float:
+    """Cycles a second over the whole range that the rate allows."""
+    return min(reach.rate / (2 * (reach.high - reach.low)), 50.0)
 
 
 def bounded(
-    reach: Reach, name: str, why: str, dt: float, u: Array, axes: int, axis: int
+    reaches: Sequence[Reach], name: str, why: str, dt: float, u: Array, axis: int
 ) -> Iterator[tuple[str, str, float, Array]]:
-    u = u[: int(reach.duration / dt)]
+    u = u[: int(reaches[axis].duration / dt)]
     if u.size > 100:
-        drive = np.zeros((axes, u.size)) + min(max(0.0, reach.low), reach.high)
+        rest = np.array([min(max(0.0, reach.low), reach.high) for reach in reaches])
+        drive = np.tile(rest[:, None], u.size)
         drive[axis] = u
         yield name, why, dt, drive
+
+
+def two_rates(reach: Reach, quick: float, dt: float) -> Array:
+    """A slow cycle in two thirds of the time at most and five quick ones; nothing where the rates are not apart."""
+    slow = max(quick / 30, 1.5 / reach.duration)
+    if quick < 3 * slow or 5 / quick > reach.duration / 3:
+        return np.zeros(0)
+    return np.concatenate([turns(reach, [1, 0], slow, dt), turns(reach, [1, 0] * 5, quick, dt)])
 
 
 def turns(reach: Reach, levels: list[float], frequency: float, dt: float) -> Array:

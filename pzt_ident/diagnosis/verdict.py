@@ -10,6 +10,7 @@ import numpy as np
 
 from pzt_ident.diagnosis.refit import Case, Fit, elsewhere, refit, step_errors
 from pzt_ident.diagnosis.score import Score, Scorer, applicable, misfit
+from pzt_ident.diagnosis.wording import percent
 from pzt_ident.registry import blocks
 
 SHORT = 5  # effects that are refitted
@@ -17,6 +18,7 @@ LEAST = 0.02  # of the misfit: what scores less is not refitted
 CLEAR = 0.6  # noise floors: an effect removes at least this much, root mean square
 SHARE = 0.15  # and at least this much of the misfit
 TIED = 0.2  # noise floors between two refits: less than that, these data cannot tell; of look-alikes twice that
+CLOSE = 0.01  # of what is left: as close are two refits of look-alikes where that is far above the noise
 HELD = 3.0  # times as much may be left of the records that the fit never saw
 FORM = 0.03  # of the misfit at first: less is as likely the form of the effects found as another effect
 COARSE = 0.6  # of what is left: if halving the step of the simulation changes more, it is mostly the step's fault
@@ -95,13 +97,13 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     scorer = Scorer(case, before)
     candidates = sorted(map(Candidate, scored(case, before, scorer)), key=lambda item: -item.score.explained)
     if adequate(case, first, before) and not any(_worth(case, first, before, item) for item in candidates):
-        settle(case, candidates)
+        settle(case, first, before, candidates)
         return nothing(case, first, before, candidates)
     shortlist = [item for item in candidates if item.score.explained > LEAST][:SHORT]
     refits(case, before, shortlist)
     doubted(case, first, before, shortlist)
     candidates.sort(key=lambda item: (item.fit.total if item.fit else np.inf, -item.score.explained))
-    settle(case, candidates)
+    settle(case, first, before, candidates)
     passing = [item for item in shortlist if item.fit and earns(case, first, before, item.fit)]
     if not passing:
         return nothing(case, first, before, candidates)
@@ -144,10 +146,15 @@ def scored(case: Case, before: Fit, scorer: Scorer) -> list[Score]:
     return found
 
 
+def related(one: str, other: str) -> bool:
+    """Whether one of two effects counts the other among its look-alikes."""
+    return one in blocks[other].looks_like or other in blocks[one].looks_like
+
+
 def alike(case: Case, effect: str, fit: Fit, rival: Fit) -> bool:
     """Whether a fit with a look-alike in the place of an effect leaves hardly more."""
-    close = drop(rival.total, fit.total) < 2 * TIED * case.floor
-    return close and rival.effects[-1] in blocks[effect].looks_like
+    close = drop(rival.total, fit.total) < 2 * TIED * case.floor or rival.total < (1 + CLOSE) * fit.total
+    return close and related(effect, rival.effects[-1])
 
 
 def _worth(case: Case, first: Fit, before: Fit, item: Candidate) -> bool:
@@ -173,43 +180,74 @@ def doubted(case: Case, first: Fit, before: Fit, items: list[Candidate]) -> None
         return
     for item in items:
         one, other = item.score.effect, best.score.effect
-        related = one in blocks[other].looks_like or other in blocks[one].looks_like
         close = item.fit and drop(item.fit.identify, best.fit.identify) < 2 * TIED * case.floor
-        if item.fit and close and related and len(item.score.guess) > 1:
+        if item.fit and close and related(one, other) and len(item.score.guess) > 1:
             item.fit = elsewhere(item.fit, one, DOUBTED)
 
 
-def settle(case: Case, candidates: list[Candidate]) -> None:
+def settle(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> None:
+    """What is decided without a refit."""
     for item in candidates:
         if item.score.power < VISIBLE:
             item.decision = "cannot be seen"
-        elif item.fit is None:
-            item.decision = "too small" if LEAST < item.score.explained < SHARE else "not missing"
+        elif item.fit is None and item.score.explained > LEAST and not _worth(case, first, before, item):
+            item.decision = "too small"
 
 
 def nothing(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> Diagnosis:
     """No effect earns its place: the model is at the noise, or what is left is unexplained."""
-    left = before.identify / case.floor
+    left = leaves(case, before)
     if adequate(case, first, before):
-        said = f"The model is adequate: it leaves {left:.2f} noise floors."
+        said = f"The model is adequate: it leaves {left}.{form(case, first, before)}"
         return Diagnosis("adequate", said, before, candidates, [])
     if before.validate is not None and reaches(case, first, before):
-        unseen = before.validate / case.floor
         said = (
-            f"The model leaves {left:.2f} noise floors of the records to identify, but {unseen:.1f} of those to"
-            " validate: they show something that the others do not, or do not determine. Give a record of their"
-            " kind `use: identify`."
+            f"The model leaves {left}: these show something that the others do not, or do not determine. Give a record"
+            " of their kind `use: identify`."
         )
     else:
-        said = f"No effect of the catalogue explains what is left, an RMSE of {left:.1f} noise floors."
-    return Diagnosis("unexplained", said, before, candidates, [])
+        said = f"No effect of the catalogue explains what is left, an RMSE of {left}."
+    return Diagnosis("unexplained", said + fitted_only(case, first, before, candidates), before, candidates, [])
+
+
+def leaves(case: Case, fit: Fit) -> str:
+    """`1.02 noise floors of the records to identify and 1.05 noise floors of those to validate`."""
+    own = f"{fit.identify / case.floor:.2f} noise floors"
+    if fit.validate is None:
+        return own
+    return f"{own} of the records to identify and {fit.validate / case.floor:.2f} noise floors of those to validate"
+
+
+def form(case: Case, first: Fit, fit: Fit) -> str:
+    """A sentence where more is left than noise, but so little of what there was that another effect cannot be told from
+    the form of those found."""
+    if max(fit.identify, fit.validate or 0.0) <= np.hypot(1, HELD * CLEAR) * case.floor:
+        return ""
+    share = percent(misfit(case, fit) / misfit(case, first))
+    return (
+        f" That is above the noise, but {share} of the misfit at first: as likely the form of what was found as more."
+    )
+
+
+def fitted_only(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> str:
+    """A sentence about an effect that would explain the records to identify alone."""
+    tried = [(item.score.effect, item.fit) for item in candidates if item.fit and item.fit.validate is not None]
+    word, fit = min(tried, key=lambda pair: pair[1].identify, default=("", None))
+    if fit is None or before.validate is None or fit.validate is None:
+        return ""
+    gone, unseen = drop(before.identify, fit.identify), drop(before.validate, fit.validate)
+    if gone**2 <= SHARE * misfit(case, before) or gone <= least(case, first) or unseen > least(case, first) / 2:
+        return ""
+    share = percent(gone**2 / misfit(case, before))
+    floors = f"{before.validate / case.floor:.2f} to {fit.validate / case.floor:.2f} noise floors"
+    return f" {word} would take {share} of it from the records to identify; those to validate go from {floors}."
 
 
 def sentence(case: Case, first: Fit, before: Fit, best: Candidate, words: list[str]) -> str:
     assert best.fit is not None
-    share = drop(before.identify, best.fit.identify) ** 2 / misfit(case, before)
+    share = percent(drop(before.identify, best.fit.identify) ** 2 / misfit(case, before))
     floors = f"{before.identify / case.floor:.1f} to {best.fit.identify / case.floor:.1f} noise floors"
-    said = f"it explains {100 * min(share, 1):.0f} % of the misfit; the RMSE falls from {floors}."
+    said = f"it explains {share} of the misfit; the RMSE falls from {floors}."
     if unseen(case, first, before, best.fit):
         said += " The records to validate show nothing of it, so only those that it was fitted to speak for it."
     if not adequate(case, first, best.fit):

@@ -65,6 +65,8 @@ def after(bins: Sequence[Bin], first: int, last: int) -> str:
 
 def percent(share: float) -> str:
     value = 100 * share
+    if 99.5 <= value < 100:
+        return "more than 99 %"
     return f"{value:.0f} %" if value >= 1 else f"{value:.1g} %" if value >= 0.01 else "less than 0.01 %"
 
 

@@ -79,6 +79,16 @@ class Results:
         return (self.result or self.diagnosis)["noise_floor"]
 
     @property
+    def noise_sources(self) -> dict[str, str]:
+        """What the noise floor of each axis was taken from."""
+        return (self.result or self.diagnosis).get("noise_floor_source", {})
+
+    @property
+    def next_experiment(self) -> dict[str, Any] | None:
+        """The drive that would tell apart what these data cannot."""
+        return (self.improvement or self.diagnosis).get("next_experiment")
+
+    @property
     def share_of_noise(self) -> float:
         """The largest noise floor over the span of its response; 1 where a floor is not known."""
         spans = {trace.axis: 0.0 for trace in self.traces}

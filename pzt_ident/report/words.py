@@ -73,7 +73,7 @@ def _advice(results: Results) -> Iterator[str]:
     best = next((item for item in results.diagnosis["candidates"] if item["decision"] == "missing"), None)
     if best:
         yield f"{best['effect']}: {best['physics']} On the rig: {best['remedy']}"
-    if proposal := results.diagnosis["next_experiment"]:
+    if proposal := results.next_experiment:
         yield f"To tell {' from '.join(proposal['splits'])}, run the drive in {proposal['file']}: {proposal['why']}."
     elif best and results.diagnosis["verdict"] == "inconclusive":
         yield f"No drive within the limits tells them apart. On the rig: {best['separate_by']}"

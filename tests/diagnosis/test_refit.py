@@ -12,10 +12,10 @@ import stage
 from pzt_ident.block import Addition, Block, Coupling, Place
 from pzt_ident.diagnosis import refit
 from pzt_ident.diagnosis.refit import descend, elsewhere, first_fit, made, stepped
-from pzt_ident.improve import bounded, silenced
 from pzt_ident.model import Model
 from pzt_ident.parameter import Parameter
 from pzt_ident.registry import blocks
+from pzt_ident.remarks import bounded, silenced
 
 
 @pytest.fixture(scope="module")
@@ -215,7 +215,7 @@ def test_a_parameter_on_a_bound_is_told_unless_it_is_its_null(creeping):
     point[place["amplifier_lag.tau"]] = 1.0
     assert set(replace(fit, point=point).on_bounds) == {"bouc_wen.gamma", "amplifier_lag.tau"}
     said = bounded(replace(fit, point=point))
-    assert "amplifier_lag.tau ended on its bound of 0.005 s" in said
+    assert "amplifier_lag.tau and bouc_wen.gamma ended on their bounds of 0.005 s and 0.5 1/V" in said
 
 
 COUPLED = ("bouc_wen", "lumped", "kinematic_coupling")

@@ -58,6 +58,6 @@ def test_what_moves_two_responses_is_proposed_as_one_drive(made):
     assert drives_of(made.records).tolist() == [0, 0]
     first = first_fit(made, 1)
     rivals = {"as given": first, "thermal_relaxation": refit(made, first, ("thermal_relaxation",), {})}
-    found = propose(made, rivals, Reach(-1500.0, 1500.0, 6000.0, 0.4))
+    found = propose(made, rivals, [Reach(-1500.0, 1500.0, 6000.0, 0.4)] * 2)
     assert np.array_equal(*found.drive)
     assert 1 < found.apart < 1e4

@@ -154,11 +154,14 @@ def test_what_leaves_less_than_the_noise_at_its_strongest_cannot_be_seen():
         Score("delay", explained=0.5, power=0.1),
         Score("creep", explained=0.001, power=3.0),
         Score("drift", explained=0.1, power=3.0),
-        Score("saturation", explained=0.3, power=3.0),
+        Score("saturation", explained=0.9, power=3.0),
+        Score("friction", explained=9.0, power=3.0),
     )
-    items = [Candidate(score) for score in scores]
-    settle(stage.case(), items)
-    assert [item.decision for item in items] == ["cannot be seen", "not missing", "too small", "not missing"]
+    items, made = [Candidate(score) for score in scores], stage.case()
+    fit = first_fit(made, 0)
+    settle(made, fit, fit, items)
+    decided = ["cannot be seen", "not missing", "too small", "too small", "not missing"]
+    assert [item.decision for item in items] == decided
 
 
 def test_an_effect_that_helps_only_the_records_that_were_fitted_earns_nothing():

@@ -9,7 +9,7 @@ import pytest
 import smith
 from pzt_ident.diagnosis.refit import Case, first_fit
 from pzt_ident.errors import InputError
-from pzt_ident.improve import broken
+from pzt_ident.remarks import broken
 from pzt_ident.job import Job
 from pzt_ident.model import Model
 from pzt_ident.plan import Plan
