@@ -281,10 +281,28 @@ class Plan:
                     said.append(f"at {share:.1%} of its samples {block.broken}")
         return tuple(said)
 
+    def added(self, theta: Array) -> dict[str, Array]:
+        """What each addition puts into the record with one candidate, root mean square about its mean, SI units: by
+        name of the effect, (measured axes,)."""
+        left = self.record.response[list(self.model.measured)] - self.simulate(theta)[0]
+        found = {block.name: np.zeros(len(left)) for block in self.model.additions}
+        for i, axis in enumerate(self.model.measured):
+            one, settle = np.atleast_2d(theta)[0], self.record.settle
+            basis = self._basis(axis, one)[settle:]
+            amounts = np.linalg.lstsq(basis, left[i, settle:], rcond=1e-12)[0]
+            owners = ["", *(block.name for block in self.model.additions for _ in self._signals_of(block, axis, one))]
+            for name in found:
+                own = [owner == name for owner in owners]
+                found[name][i] = np.std(basis[:, own] @ amounts[own])
+        return found
+
     def _basis(self, axis: int, theta: Array) -> Array:
         """One, and the signals of all additions of an axis: (samples, signals)."""
-        time, signals = self.record.time, [np.ones(self.record.samples)]
-        for block in self.model.additions:
-            columns = self.model.columns(block, axis, axis) or {}
-            signals += block.basis(time, *(theta[columns[word]] for word in asked(block.basis)[1:]))  # type: ignore[attr-defined]
-        return np.array(signals).T
+        found = [self._signals_of(block, axis, theta) for block in self.model.additions]
+        return np.array([np.ones(self.record.samples), *(signal for own in found for signal in own)]).T
+
+    def _signals_of(self, addition: type[Block], axis: int, theta: Array) -> tuple[Array, ...]:
+        columns = self.model.columns(addition, axis, axis) or {}
+        words = asked(addition.basis)[1:]  # type: ignore[attr-defined]
+        signals: tuple[Array, ...] = addition.basis(self.record.time, *(theta[columns[word]] for word in words))  # type: ignore[attr-defined]
+        return signals

@@ -2,15 +2,32 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 from pzt_ident.diagnosis.locate import locate
 from pzt_ident.diagnosis.noise import noise_floor
 from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.report.words import listed
+from pzt_ident.units import factor
 
 
 def remarks(case: Case, fit: Fit) -> str:
     """All but what is told of the records."""
-    return silenced(case, fit) + bounded(fit)
+    return sized(fit) + silenced(case, fit) + bounded(fit)
+
+
+def sized(fit: Fit) -> str:
+    """A sentence about each effect that adds to the response in amounts of each record: the most it adds to one."""
+    problem, model = fit.problem, fit.problem.model
+    theta = problem.parameters(fit.point)
+    added = {plan.record.name: plan.added(theta) for plans in problem.plans.values() for plan in plans}
+    said = ""
+    for effect, (i, axis) in product((block.name for block in model.additions), enumerate(model.measured)):
+        record, most = max(((name, own[effect][i]) for name, own in added.items()), key=lambda pair: pair[1])
+        unit = str(problem.records[0].response_units[axis])
+        where = f" of {model.axes[axis]}" if len(model.measured) > 1 else ""
+        said += f" The {effect}{where} is {most / factor(unit):.2g} {unit} rms in record {record}, the most of all."
+    return said
 
 
 def silenced(case: Case, fit: Fit) -> str:

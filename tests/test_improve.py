@@ -161,6 +161,21 @@ class TestImprove:
         assert found["steps"][0]["rmse"]["validate"] > 3 * floor
         assert found["steps"][1]["rmse"]["validate"] == pytest.approx(floor, rel=0.1)
 
+    def test_a_tie_is_said_and_the_drive_that_tells_is_proposed(self, lagging, tmp_path):
+        answer = call("improve", lagging, "--out", tmp_path / "out")
+        found = read(tmp_path / "out" / "improvement.json")
+        assert found["verdict"] == "adequate"
+        step = next(step for step in found["steps"] if step["added"])
+        assert {"amplifier_lag", "sensor_lag"} <= set(step["class"])
+        assert f"These data cannot tell {' from '.join(step['class'])}." in found["reason"]
+        assert found["next_experiment"]["splits"] == step["class"]
+        path = tmp_path / "out" / found["next_experiment"]["file"]
+        assert path.exists() and f"run {path}" in answer.stdout
+
+    def test_the_noise_is_told_with_what_it_was_taken_from(self, improved):
+        assert read(improved[1] / "improvement.json")["noise_floor_source"] == {"x": "rest segments"}
+        assert [axis["noise_source"] for axis in read(improved[1] / "residuals.json")["axes"].values()] == ["rest segments"]
+
     def test_the_diagnosis_is_of_the_last_model(self, improved):
         found = read(improved[1] / "diagnosis.json")
         last = read(improved[1] / "improvement.json")["steps"][-1]

@@ -57,10 +57,16 @@ def span(bins: Sequence[Bin], first: int, last: int, unit: str) -> str:
 def after(bins: Sequence[Bin], first: int, last: int) -> str:
     lower, upper = bins[first].lower, bins[last].upper
     if not lower:
-        return f"within {upper:.6g} s after a reversal or stop"
+        return f"within {seconds(upper)} after a reversal or stop"
     if last == len(bins) - 1:
-        return f"later than {lower:.6g} s after a reversal or stop"
-    return f"{lower:.6g} to {upper:.6g} s after a reversal or stop"
+        return f"later than {seconds(lower)} after a reversal or stop"
+    return f"{seconds(lower)} to {seconds(upper)} after a reversal or stop"
+
+
+def seconds(value: float | None) -> str:
+    """`0.03 s`, `300 us`"""
+    value = value or 0.0
+    return f"{value:.6g} s" if value >= 1e-3 else f"{1e6 * value:.6g} us"
 
 
 def percent(share: float) -> str:

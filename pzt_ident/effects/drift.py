@@ -18,7 +18,10 @@ class Drift(Addition):
     size = Parameter("response", (-1, 1), "Final drift of a record.", null=0, per_record=True)
     tau = Parameter("s", (10, 3000), "Thermal time constant.", scale="log")
     looks_like = ("creep", "thermal_relaxation")
-    separate_by = "Record at constant voltage for as long: drift is there too, creep and relaxation are not."
+    separate_by = (
+        "Record at a constant voltage that has rested for as long before: drift is there too, creep and relaxation are "
+        "not."
+    )
     remedy = "Let the rig warm up, shield it from draughts, and re-zero it before and after each record."
 
     def basis(t, tau):

@@ -15,7 +15,10 @@ class QuadraticGain(Block):
     place = Place.READOUT
     curvature = Parameter("1/drive", (-0.5, 0.5), "Growth of the gain per volt, over twice the gain.", null=0)
     looks_like = ("saturation", "cubic_stiffness", "encoder_cyclic_error")
-    separate_by = "Repeat the loop under a known preload, and with the encoder shifted by half a pitch."
+    separate_by = (
+        "Drive to both polarities: the parabola is even, saturation odd; repeat under a known preload, and with the "
+        "encoder shifted by half a pitch."
+    )
     remedy = "Linearise the drive by the identified parabola, or drive by charge."
 
     def prepare(curvature):

@@ -145,8 +145,10 @@ def test_addition_of_any_size_is_taken_in_closed_form(word):
         signals = addition.basis(measured.time, *candidate)
         amounts = [declared.per_record for declared in addition.parameters().values()].count(True)
         assert len(signals) == amounts
-        measured.response[:] = measured.drive + 3 + rng.normal(size=amounts) @ np.array(signals)
+        added = rng.normal(size=amounts) @ np.array(signals)
+        measured.response[:] = measured.drive + 3 + added
         np.testing.assert_allclose(Plan(chain, measured).errors(candidate), 0, atol=1e-9)
+        assert Plan(chain, measured).added(candidate) == {word: pytest.approx([added[20:].std()], rel=1e-6)}
 
 
 @pytest.mark.parametrize("word", EFFECTS)

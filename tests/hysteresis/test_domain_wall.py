@@ -9,11 +9,11 @@ import pytest
 import smith
 from pzt_ident.diagnosis.refit import Case, first_fit
 from pzt_ident.errors import InputError
-from pzt_ident.remarks import broken
 from pzt_ident.job import Job
 from pzt_ident.model import Model
 from pzt_ident.plan import Plan
 from pzt_ident.problem import Problem
+from pzt_ident.remarks import broken
 from pzt_ident.run import read, run
 from rig import block_of, path, record, response
 from twins import domain_wall_twin as twin
