@@ -197,7 +197,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
             {
                 "effect": item.score.effect,
                 "class": found.tied if item.score.effect in found.tied else [item.score.effect],
-                "explained": item.score.explained,
+                "explained": item.score.within,
                 "expected": item.score.guess,
                 "units": item.score.units,
                 "visibility": item.score.visibility,

@@ -174,7 +174,9 @@ class TestImprove:
 
     def test_the_noise_is_told_with_what_it_was_taken_from(self, improved):
         assert read(improved[1] / "improvement.json")["noise_floor_source"] == {"x": "rest segments"}
-        assert [axis["noise_source"] for axis in read(improved[1] / "residuals.json")["axes"].values()] == ["rest segments"]
+        assert [axis["noise_source"] for axis in read(improved[1] / "residuals.json")["axes"].values()] == [
+            "rest segments"
+        ]
 
     def test_the_diagnosis_is_of_the_last_model(self, improved):
         found = read(improved[1] / "diagnosis.json")

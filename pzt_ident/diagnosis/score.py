@@ -27,12 +27,14 @@ TRIALS = 5  # values over the range of a parameter that means nothing at the nul
 
 @dataclass
 class Score:
-    """What the data say of an effect without a refit. `guess` in the user's `units`; `visibility` is the share of its
-    trace, at the least size that leaves one, that the fitted parameters cannot take up, `power` that share of the
-    largest plausible rms, in noise floors."""
+    """What the data say of an effect without a refit. `guess` in the user's `units`; `explained` as if there were no
+    bounds, which may be too narrow, and `within` them; `visibility` is the share of its trace, at the least size that
+    leaves one, that the fitted parameters cannot take up, `power` that share of the largest plausible rms, in noise
+    floors."""
 
     effect: str
     explained: float = 0.0
+    within: float = 0.0
     guess: dict[str, float] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
     visibility: float = 0.0
@@ -118,7 +120,12 @@ class Scorer:
             if explained > found.explained:
                 found.explained, found.trace = float(explained), trace @ amounts
                 guesses = [self._scaled(problem, trial, each) for each in (amounts, np.ones(amounts.size))]
-        found.guess = min(guesses, key=lambda guess: self._left(problem, guess), default={})
+        lefts = [(self._left(problem, guess), guess) for guess in guesses]
+        least, found.guess = min(lefts, key=lambda pair: pair[0], default=(0.0, {}))
+        found.within = found.explained
+        if on_bound(problem, found.guess):
+            reached = (self.residual @ self.residual - least**2) / self.misfit
+            found.within = float(np.clip(reached, 0, found.explained))
         share = visible[min(visible)] if visible else 0.0
         return replace(found, visibility=share, power=share * most)
 
@@ -202,8 +209,16 @@ class Scorer:
             if explained > found.explained:
                 found.explained, found.trace = float(explained), left - self.residual
                 found.guess = {problem.names[i]: float(value) for i, value in zip(shapes, values, strict=True)}
-        found.visibility, found.power = 1.0, float("inf")
+        found.within, found.visibility, found.power = found.explained, 1.0, float("inf")
         return found
+
+
+def on_bound(problem: Problem, guess: Mapping[str, float]) -> bool:
+    """Whether a value of a guess is at an end of its range which is not its null."""
+    places = [problem.names.index(name) for name in guess]
+    nulls = [problem.model.slots[problem.free[i]].parameter.null for i in places]
+    ends = [value in (problem.lower[i], problem.upper[i]) for i, value in zip(places, guess.values(), strict=True)]
+    return any(end and value != null for end, value, null in zip(ends, guess.values(), nulls, strict=True))
 
 
 def misfit(case: Case, fit: Fit) -> float:

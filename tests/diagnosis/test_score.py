@@ -153,3 +153,12 @@ def test_every_axis_has_its_own_amounts_and_its_own_line():
     scorer = Scorer(made, first_fit(made, 0))
     assert scorer.score("creep").explained > 0.9
     assert len(list(scorer._trials("creep", made.problem(("creep",))))) <= 36
+
+
+def test_what_lies_beyond_the_bounds_is_not_promised():
+    """A lag of 12 ms, where 5 ms are plausible: as if linear it explains nearly all."""
+    score = scored(stage.case({"sensor_lag.tau": 12e-3}), "sensor_lag")
+    assert score.guess["sensor_lag.tau"] == pytest.approx(5e-3)
+    assert score.within < 0.9 * score.explained
+    within = scored(stage.case({"sensor_lag.tau": 3e-3}), "sensor_lag")
+    assert within.within == within.explained

@@ -213,7 +213,7 @@ def test_a_look_alike_of_the_best_is_fitted_again_from_elsewhere():
         null = resting.unit_point(first.values | {name: 0.0 for name in resting.names if name.startswith(word)})
         aside = refit.made((word,), resting, null)
         fits[word] = replace(aside, identify=fits["distributed_memory"].identify)
-    items = [Candidate(Score(word, 1.0, dict.fromkeys(("one", "two"), 0.0)), fit) for word, fit in fits.items()]
+    items = [Candidate(Score(word, guess=dict.fromkeys(("one", "two"), 0.0)), fit) for word, fit in fits.items()]
     doubted(made, first, first, items)
     after = {item.score.effect: item.fit for item in items}
     assert after["friction"].identify == pytest.approx(stage.NOISE, rel=0.1)
