@@ -20,7 +20,7 @@ def show_diagnosis(found: Facts, folder: Path) -> None:
     rows = [
         (
             item["effect"],
-            f"{100 * item['explained']:.0f} %",
+            f"{round(100 * item['explained'])} %",
             expected(item["expected"], item["units"]),
             f"{item['visibility']:.2f}",
             number(item["rmse"]["identify"]) if item["rmse"] else "",
@@ -61,8 +61,8 @@ def show_improvement(found: Facts, folder: Path) -> None:
             number(step["rmse"]["identify"]),
             number(step["rmse"]["validate"]),
             f"{step['rmse']['identify'] / floor:.2f}",
-            "" if step["expected"] is None else f"{100 * min(step['expected'], 1):.0f} %",
-            f"{100 * step['explained']:.0f} %" if step["added"] or step["removed"] else "",
+            "" if step["expected"] is None else f"{round(100 * min(step['expected'], 1))} %",
+            f"{round(100 * step['explained'])} %" if step["added"] or step["removed"] else "",
             " or ".join(step["class"]),
         )
         for step in found["steps"]

@@ -17,7 +17,8 @@ FLOORS = re.compile(r"(?:([\d.]+) to )?([\d.]+) noise floors")
 def verdict(results: Results) -> str:
     """What is missing or was added, or else what the model leaves, on which records, beside the noise."""
     if found := results.improvement:
-        added = f"Added: {listed(found['effects'])}. " if found["effects"] else ""
+        proven = found["effects"] and found["verdict"] == "adequate"  # what is not, the reason names
+        added = f"Added: {listed(found['effects'])}. " if proven else ""
         return reason(f"{added}{found['reason']}", results)
     if results.diagnosis:
         return reason(results.diagnosis["reason"], results)
