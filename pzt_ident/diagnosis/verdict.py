@@ -211,11 +211,11 @@ def nothing(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) ->
 
 
 def leaves(case: Case, fit: Fit) -> str:
-    """`1.02 noise floors of the records to identify and 1.05 noise floors of those to validate`."""
+    """`1.02 noise floors on the records to identify and 1.05 noise floors on those to validate`."""
     own = f"{fit.identify / case.floor:.2f} noise floors"
     if fit.validate is None:
         return own
-    return f"{own} of the records to identify and {fit.validate / case.floor:.2f} noise floors of those to validate"
+    return f"{own} on the records to identify and {fit.validate / case.floor:.2f} noise floors on those to validate"
 
 
 def form(case: Case, first: Fit, fit: Fit) -> str:

@@ -71,7 +71,7 @@ def test_what_is_at_the_noise_of_its_own_records_alone_is_not_adequate():
     assert fit.identify == pytest.approx(stage.NOISE, rel=0.1)
     found = diagnose(wrong, fit)
     assert found.verdict == "unexplained"
-    assert "of those to validate" in found.reason
+    assert "on those to validate" in found.reason
 
 
 def test_candidates_stand_best_first_and_each_once():
