@@ -133,13 +133,20 @@ def test_a_run_killed_hard_goes_on_to_the_same_result(folder, finished, tmp_path
     assert numbers(out) == numbers(finished[0])
 
 
+def heed_ctrl_c():
+    """A shell lets what it runs in the background ignore it, and so would all that a test run there starts."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.mark.parametrize("searching", [False, True])
 def test_ctrl_c_ends_all_processes_and_says_how_to_go_on(folder, tmp_path, searching):
     out = tmp_path / "out"
     (tmp_path / "job.yaml").write_text((folder / "job.yaml").read_text().replace("{file: ", f"{{file: {folder}/"))
     edit(tmp_path / "job.yaml", "generations: 40", "generations: 1000000")
     command = [sys.executable, "-m", "pzt_ident", "run", str(tmp_path / "job.yaml"), "--out", str(out)]
-    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    process = subprocess.Popen(
+        command, stderr=subprocess.PIPE, text=True, start_new_session=True, preexec_fn=heed_ctrl_c
+    )
     while not (out / "runs" / "pso-0.told" if searching else out / "events.jsonl").exists():
         assert process.poll() is None
         time.sleep(0.01)
