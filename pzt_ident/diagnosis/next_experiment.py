@@ -80,7 +80,7 @@ def respond(case: Case, fit: Fit, dt: float, drive: Array) -> Array:
 
 
 def protocols(reaches: Sequence[Reach], axis: int) -> Iterator[tuple[str, str, float, Array]]:
-    """Name, what it shows, sample time and drives of each protocol, all but one of which move one axis alone."""
+    """Name, what it shows, sample time and drives of each protocol, which moves one axis alone."""
     reach = reaches[axis]
     quick = quickest(reach)
     own = [
