@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.model import Model
-from pzt_ident.plan import Plan
-from pzt_ident.record import Record
-from pzt_ident.registry import blocks
+from pzt_ident.data.record import Record
+from pzt_ident.engine.simulator import Simulator
+from pzt_ident.model.chain import Chain
+from pzt_ident.model.registry import blocks
 
 Array = NDArray[np.float64]
 REFERENCE = Path(__file__).parents[1] / "results" / "reference"
@@ -23,15 +23,17 @@ def record(drive: Array, dt: float) -> Record:
     return Record("made up", "identify", dt, drive[None], np.zeros((1, drive.size)))
 
 
-def plan(chain: Sequence[Any], parameters: Mapping[str, float], drive: Array, dt: float) -> tuple[Plan, Array]:
+def simulator(
+    chain: Sequence[Any], parameters: Mapping[str, float], drive: Array, dt: float
+) -> tuple[Simulator, Array]:
     """Words (or blocks with settings) made ready for a drive, and the parameters in their order, SI units."""
     chosen = [blocks[item] if isinstance(item, str) else item for item in chain]
-    model = Model(chosen, ("x",), (0,))
-    return Plan(model, record(drive, dt)), np.array([[parameters[name] for name in model.names]])
+    model = Chain(chosen, ("x",), (0,))
+    return Simulator(model, record(drive, dt)), np.array([[parameters[name] for name in model.names]])
 
 
 def simulate(chain: Sequence[Any], parameters: Mapping[str, float], drive: Array, dt: float) -> Array:
-    made, theta = plan(chain, parameters, drive, dt)
+    made, theta = simulator(chain, parameters, drive, dt)
     return made.simulate(theta)[0, 0]
 
 

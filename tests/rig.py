@@ -4,11 +4,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from pzt_ident.block import Coupling, Modes
-from pzt_ident.model import Model
-from pzt_ident.parameter import Setting
-from pzt_ident.record import Record
-from pzt_ident.registry import blocks
+from pzt_ident.data.record import Record
+from pzt_ident.model.block import Coupling, Modes
+from pzt_ident.model.chain import Chain
+from pzt_ident.model.parameter import Setting
+from pzt_ident.model.registry import blocks
 
 AXES = "xyz"
 
@@ -34,7 +34,7 @@ def model(*chain, axes=None, measured=None):
     """A model of blocks or their words, these as small as is worth a test; two axes where a block couples them."""
     chain = [small(block_of(item)) if isinstance(item, str) else item for item in chain]
     axes = axes or (2 if any(issubclass(block, Coupling | Modes) for block in chain) else 1)
-    return Model(chain, AXES[:axes], range(axes) if measured is None else measured)
+    return Chain(chain, AXES[:axes], range(axes) if measured is None else measured)
 
 
 def block_of(word):
@@ -55,7 +55,7 @@ def response(chain, parameters, *drives, dt=1e-3, **more):
     chosen = [blocks[item] if isinstance(item, str) else item for item in chain]
     named = {f"{block.name}.{word}": p.effect for block in chosen for word, p in block.parameters().items() if p.effect}
     made = model(*chain, *{named[name] for name in parameters if name in named}, axes=len(drives))
-    nulls = {slot.name: slot.parameter.null for slot in made.slots if slot.parameter.effect}
+    nulls = {entry.name: entry.parameter.null for entry in made.entries if entry.parameter.effect}
     theta = np.array([[(nulls | parameters)[name] for name in made.names]])
     found = made.simulate(record(*drives, dt=dt, **more), theta)[0]
     return found if len(drives) > 1 else found[0]
@@ -65,8 +65,8 @@ def candidates(made, drive, count, seed, response=10.0):
     """Random theta within the declared bounds, for drives of that span and responses of the given one."""
     rng = np.random.default_rng(seed)
     columns = []
-    for slot in made.slots:
-        declared = slot.parameter
+    for entry in made.entries:
+        declared = entry.parameter
         low, high = np.array(declared.bounds) * size(declared.unit, np.ptp(drive), response)
         share = rng.uniform(0.02, 0.98, count)
         columns.append(low * (high / low) ** share if declared.scale == "log" else low + (high - low) * share)

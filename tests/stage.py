@@ -6,7 +6,7 @@ import numpy as np
 
 import rig
 from pzt_ident.diagnosis.refit import Case
-from pzt_ident.problem import Fixed
+from pzt_ident.search.problem import FixedValue
 
 NOISE = 5e-9  # m
 STAGE = {
@@ -50,17 +50,17 @@ def records(parameters, drives=None, dt=5e-3, model=("bouc_wen",), noise=NOISE, 
 
 def case(parameters=None, fixed=None, effects=(), model=("bouc_wen",), **more):
     """The model without effects on records of a stage that has some; `fixed` parameters are known."""
-    return Case(model, effects, records(parameters or {}, model=model, **more), wishes(fixed or {}))
+    return Case(model, effects, records(parameters or {}, model=model, **more), specs(fixed or {}))
 
 
-def wishes(fixed):
-    return {name: Fixed(value) for name, value in fixed.items()}
+def specs(fixed):
+    return {name: FixedValue(value) for name, value in fixed.items()}
 
 
 def with_response(made, change):
     """The same case with change(record) added to each response."""
     changed = [replace(r, response=r.response + change(r)) for r in made.records]
-    return Case(made.words, made.effects, changed, made.wishes)
+    return Case(made.words, made.effects, changed, made.specs)
 
 
 def beside(made, other):
@@ -76,7 +76,7 @@ def beside(made, other):
         )
         for one, two in zip(made.records, other.records, strict=True)
     ]
-    return Case(made.words, made.effects, records, made.wishes)
+    return Case(made.words, made.effects, records, made.specs)
 
 
 JOB = """\

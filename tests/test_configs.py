@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from pzt_ident.job import Job, Stopping, load_job
-from pzt_ident.record import Record
-from pzt_ident.run import read, tasks_of
-from pzt_ident.worker import read_result, search
+from pzt_ident.data.record import Record
+from pzt_ident.job.schema import Job, Stopping, load_job
+from pzt_ident.run.identify import read, tasks_of
+from pzt_ident.run.task import read_result, search
 
 ROOT = Path(__file__).parents[1]
 CONFIGS = sorted(ROOT.glob("configs/*.yaml"))

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from upstream import DIMENSIONS, HIGH, LOW, PAIRS
 
-from pzt_ident.search import minimize
+from pzt_ident.search.loop import minimize
 
 OUT = Path(__file__).parents[2] / "results" / "reference" / "bbob"
 BUDGET = 1000 * DIMENSIONS

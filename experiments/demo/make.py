@@ -17,7 +17,7 @@ RATE = 200  # Hz
 STAGE = Axis(mass=0.1566, damping=120.0, stiffness=7.0028e7, gain=0.082, alpha=0.48, beta=0.018, gamma=0.05)
 SENSOR = Sensor(white=0.004, coloured=0.003, correlation=4e-3, quantum=0.001, seed=11)
 HIDDEN = [Dose("creep", 0.012, {}), Dose("quadratic_gain", 6e-5, {})]
-FOLDER = Path(__file__).parents[2] / "pzt_ident" / "sample"
+FOLDER = Path(__file__).parents[2] / "pzt_ident" / "job" / "examples" / "demo"
 
 
 def drives() -> list[Drive]:

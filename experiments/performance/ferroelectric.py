@@ -15,13 +15,13 @@ from types import SimpleNamespace
 import numpy as np
 
 from experiments.reduced_rod.reduced import least, measured
-from experiments.smith.loops import HELPED, PLAIN, THERMAL, A, path, plan, response
+from experiments.smith.loops import HELPED, PLAIN, THERMAL, A, path, response, simulator
 from experiments.tables import number, table
-from pzt_ident.model import Model
-from pzt_ident.problem import Problem
-from pzt_ident.record import Record
-from pzt_ident.registry import blocks, optimizers
-from pzt_ident.search import Outcome, Stop, drive
+from pzt_ident.data.record import Record
+from pzt_ident.model.chain import Chain
+from pzt_ident.model.registry import blocks, optimizers
+from pzt_ident.search.loop import Outcome, Stop, drive
+from pzt_ident.search.problem import Problem
 
 OUT = Path(__file__).parents[2] / "results" / "reference" / "performance"
 FIELD = 4000 * (1 - np.cos(2 * np.pi * np.arange(5000) / 1000))
@@ -54,7 +54,7 @@ def relays(coercive: np.ndarray, interaction: np.ndarray) -> Callable[[], np.nda
 
 def candidates(chain: dict[str, dict[str, float]]) -> float:
     """CPU seconds a candidate, the lanes full."""
-    made, theta = plan(chain, FIELD)
+    made, theta = simulator(chain, FIELD)
     many = theta * np.exp(np.random.default_rng(0).normal(0, 0.05, (LANES, theta.shape[1])))
     return least(lambda: made.squares(many)) / LANES
 
@@ -64,7 +64,7 @@ def solved() -> float:
     y = response(PLAIN, FIELD) + np.random.default_rng(0).normal(0, NOISE, FIELD.size)
     record = Record("r", "identify", 1e-3, FIELD[None], y[None], drive_units=("V/m",))
     fixed = {"homogenized_energy.poled": SimpleNamespace(bounds=None, value=1e6)}
-    problem = Problem(Model([blocks["homogenized_energy"].make(density="free")], ["x"], [0]), [record], fixed)
+    problem = Problem(Chain([blocks["homogenized_energy"].make(density="free")], ["x"], [0]), [record], fixed)
     widths = iter(np.linspace(0.6, 0.8, 100))  # each solved once
     return least(lambda: problem.loss(np.array([next(widths)])))
 
@@ -84,10 +84,10 @@ def search() -> tuple[float, Outcome, Problem]:
         field = np.interp(np.linspace(0, 1, 5000), np.linspace(0, 1, path(0, *tips).size), path(0, *tips))
         x = response(PLAIN, field) + np.random.default_rng(seed).normal(0, NOISE, 5000)
         records.append(Record(name, "identify", 1e-3, field[None], x[None], drive_units=("V/m",)))
-    model = plan(PLAIN, FIELD)[0].model
-    wishes = {f"homogenized_energy.{word}": SimpleNamespace(bounds=None, value=value) for word, value in A.items()}
-    wishes |= {f"homogenized_energy.{word}": SimpleNamespace(bounds=b, value=None) for word, b in SEARCHED.items()}
-    problem = Problem(model, records, wishes)
+    model = simulator(PLAIN, FIELD)[0].model
+    specs = {f"homogenized_energy.{word}": SimpleNamespace(bounds=None, value=value) for word, value in A.items()}
+    specs |= {f"homogenized_energy.{word}": SimpleNamespace(bounds=b, value=None) for word, b in SEARCHED.items()}
+    problem = Problem(model, records, specs)
     problem.loss(np.full((1, 2), 0.5))
     begun = time.process_time()
     found = drive(optimizers["pso"].make(population=40, generations=40), 2, problem.loss, 1, Stop(1600))

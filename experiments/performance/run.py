@@ -19,11 +19,11 @@ from types import SimpleNamespace
 import numpy as np
 from baselines import first_order_hold, lsoda, numpy_population, plain_loop
 
-from pzt_ident.model import Model
-from pzt_ident.problem import Problem
-from pzt_ident.record import Record
-from pzt_ident.registry import blocks, optimizers
-from pzt_ident.search import Stop, drive
+from pzt_ident.data.record import Record
+from pzt_ident.model.chain import Chain
+from pzt_ident.model.registry import blocks, optimizers
+from pzt_ident.search.loop import Stop, drive
+from pzt_ident.search.problem import Problem
 
 HERE = Path(__file__).parent
 OUT = HERE.parents[1] / "results" / "reference" / "performance"
@@ -62,13 +62,13 @@ def drives(time_axis: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def problem(u: np.ndarray, words: tuple[str, ...] = BASE) -> Problem:
-    model, stage = (Model([blocks[word] for word in chain], ["x"], [0]) for chain in (words, BASE))
+    model, stage = (Chain([blocks[word] for word in chain], ["x"], [0]) for chain in (words, BASE))
     blank = Record("r", "identify", 1e-3, u[None], u[None] * 1e-7, response_units=("um",))
-    truth = np.array([[TRUTH[slot.word] for slot in stage.slots]])
+    truth = np.array([[TRUTH[entry.word] for entry in stage.entries]])
     y = np.round(stage.simulate(blank, truth)[0] / 1e-7) * 1e-7
     record = Record("r", "identify", 1e-3, u[None], y, response_units=("um",))
-    wishes = {name: SimpleNamespace(bounds=b, value=None) for name, b in BOUNDS.items() if name in model.names}
-    return Problem(model, [record], wishes)
+    specs = {name: SimpleNamespace(bounds=b, value=None) for name, b in BOUNDS.items() if name in model.names}
+    return Problem(model, [record], specs)
 
 
 def cpu(functions: dict[str, Callable[[], object]], rounds: int = 12, repeats: int = 9) -> dict[str, float]:
@@ -160,7 +160,7 @@ def scaling() -> dict[str, list[tuple[int, float]]]:
     record = Record("r", "identify", 1e-3, u[None], u[None] * 1e-7, response_units=("um",))
     plays, force = ("prandtl_ishlinskii",), ("lumped",)
     for words in (force, ("bouc_wen",), ("bouc_wen", *force), plays, plays + force):
-        bare = Problem(Model([blocks[word] for word in words], ["x"], [0]), [record])
+        bare = Problem(Chain([blocks[word] for word in words], ["x"], [0]), [record])
         points = rng.uniform(size=(72, bare.dimensions))
         found["parameters"][bare.dimensions] = (lambda p=bare, x=points: p.loss(x)), 72
     result = {}

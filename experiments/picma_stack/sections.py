@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from experiments.tables import number, table
-from pzt_ident.job import load_job
-from pzt_ident.run import problem_of, read
+from pzt_ident.job.schema import load_job
+from pzt_ident.run.identify import problem_of, read
 
 HERE = Path(__file__).parent
 JOBS = {
@@ -30,8 +30,8 @@ def row(folder: Path, name: str) -> list[str]:
     problem = problem_of(job, read(job))
     best = json.loads((folder / name / "result.json").read_text(encoding="utf-8"))["best"]["parameters"]
     point = problem.unit_point({word: entry["value"] for word, entry in best.items()})
-    (plan,) = problem.plans["validate"]
-    error = 1e6 * plan.errors(problem.parameters(point))[0, 0]
+    (simulator,) = problem.simulators["validate"]
+    error = 1e6 * simulator.errors(problem.parameters(point))[0, 0]
     parts = [error[200:], *(error[first:last] for first, last in PARTS.values())]
     return [said, *(number(float(np.sqrt(np.mean(part**2))), 3) for part in parts)]
 

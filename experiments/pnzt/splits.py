@@ -16,8 +16,8 @@ from ruamel.yaml import YAML
 
 from experiments.pnzt.table import UNITS
 from experiments.tables import Result, number, table
-from pzt_ident.improve import diagnose
-from pzt_ident.job import Job
+from pzt_ident.job.schema import Job
+from pzt_ident.run.improve import diagnose
 
 JOB = Path(__file__).parent / "missing.yaml"
 RATES = ("0.01 Hz", "0.1 Hz", "1 Hz")

@@ -17,11 +17,11 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from experiments.simulate import Array, keep, named, plan
+from experiments.simulate import Array, keep, named, simulator
 from experiments.tables import number, table
 from pzt_ident.mechanics._balanced import balanced
 from pzt_ident.mechanics._rod import matrices
-from pzt_ident.registry import blocks
+from pzt_ident.model.registry import blocks
 
 ROD = {"density": 7600.0, "area": 1e-4, "length": 0.06, "modulus": 7e10, "viscosity": 1e5}
 ROD |= {"end_mass": 0.05, "end_damping": 0.0, "end_stiffness": 0.0}
@@ -61,7 +61,7 @@ def measured(name: str, word: str, bound: float | None = None, **settings: int) 
     """The rod behind Bouc-Wen on the record of the virtual rod, its own data fixed, CANDIDATES at once."""
     drive = np.loadtxt(RECORD, delimiter=",", skiprows=1)[:, 1]
     block = blocks[word].make(**settings)
-    made, theta = plan(["bouc_wen", block], LOOP | named(word, ROD), drive, 2.5e-6)
+    made, theta = simulator(["bouc_wen", block], LOOP | named(word, ROD), drive, 2.5e-6)
     many = np.repeat(theta, CANDIDATES, axis=0)
     many[:, 0] *= np.linspace(0.9, 1.1, CANDIDATES)
     own = SimpleNamespace(**ROD, load=0.0, extra_damping=0.0, **{key: block.setting(key) for key in block.settings()})
@@ -88,7 +88,7 @@ def text(found: list[Row]) -> str:
     header = ["rod", "largest difference [nm]", "bound of the transfer function"]
     header += ["us CPU a candidate", "less Bouc-Wen", "ms once"]
     drive = np.loadtxt(RECORD, delimiter=",", skiprows=1)[:, 1]
-    made, theta = plan(["bouc_wen"], LOOP, drive, 2.5e-6)
+    made, theta = simulator(["bouc_wen"], LOOP, drive, 2.5e-6)
     alone = 1e6 * least(lambda: made.squares(np.repeat(theta, CANDIDATES, axis=0))) / CANDIDATES
     lines = []
     for row in found:

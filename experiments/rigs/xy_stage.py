@@ -218,7 +218,7 @@ def recordings(k12: float = -3.23e6) -> list[Recording]:
     loops_y = nested(90, 12, 0.2, Sine(25, 1.9, 2.8), Sine(10, 6.3, 2.8))
     waves_y = hold(45, 0.35, Sine(25, 1.3, 0.5), Sine(12, 4.7, 0.5))
     example = nested(130, 10, 0.2, Sine(35, 2.3, 2.4), Sine(15, 5.1, 2.4))
-    case_1, case_2, template = "experiments/case_1/data", "experiments/case_2/data", "pzt_ident/template"
+    case_1, case_2, template = "experiments/case_1/data", "experiments/case_2/data", "pzt_ident/job/examples/start"
     return [
         Recording(f"{case_1}/case_1_x.csv", x, (triangle(130, 1, 5),)),
         Recording(f"{case_1}/case_1_x_validate.csv", x, (loops_x,)),

@@ -13,7 +13,7 @@ import numpy as np
 
 from experiments.simulate import Array, keep, named, simulate
 from experiments.tables import table
-from pzt_ident.registry import blocks
+from pzt_ident.model.registry import blocks
 
 PRINTED = {"density": 7600.0, "area": 2.5e-5, "length": 0.02, "modulus": 7e10, "viscosity": 5e6}
 PRINTED |= {"end_mass": 4.015, "end_damping": 440.0, "end_stiffness": 8.49e-5}

@@ -18,7 +18,7 @@ from experiments.simulate import Array, keep, named, simulate
 from experiments.tables import number, table
 from pzt_ident.mechanics._linear import forms, modes, sections
 from pzt_ident.mechanics._shell import matrices
-from pzt_ident.registry import blocks
+from pzt_ident.model.registry import blocks
 
 TUBE = {"density": 7600.0, "modulus": 7.1e10, "viscosity": 1e5, "length": 0.0396, "radius": 0.0056}
 TUBE |= {"thickness": 0.0015, "poisson": 0.3, "end_mass": 0.0}

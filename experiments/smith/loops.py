@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 
 from experiments.tables import table
-from pzt_ident.model import Model
-from pzt_ident.plan import Plan
-from pzt_ident.record import Record
-from pzt_ident.registry import blocks
+from pzt_ident.data.record import Record
+from pzt_ident.engine.simulator import Simulator
+from pzt_ident.model.chain import Chain
+from pzt_ident.model.registry import blocks
 
 OUT = Path(__file__).parents[2] / "results" / "reference" / "smith"
 DENSITY = {"spread": 0.887, "interaction": 6120.0, "quadratic": 0.0, "poled": 1e6, "bias": 0.0}
@@ -34,20 +34,20 @@ LINEAR = {"homogenized_energy": COLD, "creep": {"ratio": 0.0211, "tau": 3.16, "d
 CREEPING = {"creep of set T": THERMAL, "of plays that heat helps": HELPED, "of linear creep": LINEAR}
 HERTZ = (0.279, 1.12, 5.58, 27.9)
 POINTS = 400
-Chain = dict[str, dict[str, float]]
+Values = dict[str, dict[str, float]]
 
 
-def plan(chain: Chain, field: np.ndarray, dt: float = 1e-3, **settings: str) -> tuple[Plan, np.ndarray]:
+def simulator(chain: Values, field: np.ndarray, dt: float = 1e-3, **settings: str) -> tuple[Simulator, np.ndarray]:
     """`settings` are those of the first block."""
     first, *others = chain
-    model = Model([blocks[first].make(**settings), *(blocks[word] for word in others)], ["x"], [0])
-    theta = [[(chain[s.block.name] | {"load": 0.0, "extra_damping": 0.0})[s.word] for s in model.slots]]
+    model = Chain([blocks[first].make(**settings), *(blocks[word] for word in others)], ["x"], [0])
+    theta = [[(chain[s.block.name] | {"load": 0.0, "extra_damping": 0.0})[s.word] for s in model.entries]]
     record = Record("r", "identify", dt, field[None], np.zeros((1, field.size)), drive_units=("V/m",))
-    return Plan(model, record), np.array(theta)
+    return Simulator(model, record), np.array(theta)
 
 
-def response(chain: Chain, field: np.ndarray, dt: float = 1e-3, **settings: str) -> np.ndarray:
-    made, theta = plan(chain, field, dt, **settings)
+def response(chain: Values, field: np.ndarray, dt: float = 1e-3, **settings: str) -> np.ndarray:
+    made, theta = simulator(chain, field, dt, **settings)
     return np.asarray(made.simulate(theta)[0, 0])
 
 
@@ -56,7 +56,7 @@ def path(*levels: float) -> np.ndarray:
     return np.append(np.concatenate(legs), levels[-1])
 
 
-def settled(chain: Chain, low: float, high: float, cycles: int = 2) -> tuple[np.ndarray, np.ndarray]:
+def settled(chain: Values, low: float, high: float, cycles: int = 2) -> tuple[np.ndarray, np.ndarray]:
     """Field and displacement of the last rise and fall between two fields."""
     field = path(0, high, *[low, high] * cycles, low)
     return field[-2 * POINTS - 1 :], response(chain, field)[-2 * POINTS - 1 :]
@@ -67,7 +67,7 @@ def width(y: np.ndarray) -> float:
     return float(100 * np.max(y[POINTS:][::-1] - y[: POINTS + 1]) / np.ptp(y))
 
 
-def sine(chain: Chain, hertz: float) -> tuple[np.ndarray, np.ndarray]:
+def sine(chain: Values, hertz: float) -> tuple[np.ndarray, np.ndarray]:
     """The last of four periods from 0 to 8 kV/m."""
     field = 4000 * (1 - np.cos(2 * np.pi * np.arange(4 * POINTS) / POINTS))
     return field[-POINTS:], response(chain, field, 1 / (POINTS * hertz))[-POINTS:]
@@ -77,7 +77,7 @@ def middle(y: np.ndarray) -> float:
     return float(100 * abs(y[POINTS // 4] - y[3 * POINTS // 4]) / np.ptp(y))
 
 
-def crept(chain: Chain, back: float, dt: float = 0.02) -> float:
+def crept(chain: Values, back: float, dt: float = 0.02) -> float:
     """Growth from 0.1 to 100 s after 0 -> 8 kV/m, 0.5 s and a step back by a share, percent of the first step."""
     field = np.concatenate([np.zeros(50), np.full(25, 8000.0), np.full(5010, 8000 * (1 - back))])
     y = response(chain, field, dt)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from experiments.tables import table
-from pzt_ident.hold import oscillator
+from pzt_ident.model.first_order_hold import oscillator
 
 Array = NDArray[np.float64]
 HERE = Path(__file__).parent

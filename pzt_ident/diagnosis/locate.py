@@ -9,13 +9,13 @@ from itertools import combinations_with_replacement
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.data.noise import Floor
+from pzt_ident.data.record import Record
+from pzt_ident.data.units import factor
 from pzt_ident.diagnosis import wording
-from pzt_ident.diagnosis.noise import Floor
-from pzt_ident.diagnosis.sorting import Bin, Sorting, Tally, by_frequency, by_line, tally
-from pzt_ident.diagnosis.stretches import Stretch, worst_stretches
-from pzt_ident.diagnosis.views import MOVING, sortings
-from pzt_ident.record import Record
-from pzt_ident.units import factor
+from pzt_ident.diagnosis.binning import Bin, Binning, Tally, by_frequency, by_line, tally
+from pzt_ident.diagnosis.views import MOVING, binnings
+from pzt_ident.diagnosis.worst_intervals import Interval, worst_intervals
 
 Array = NDArray[np.float64]
 
@@ -96,7 +96,7 @@ class Misfit:
     misfit: float
     views: tuple[View, ...]
     map: Crossing | None
-    worst: tuple[Stretch, ...]
+    worst: tuple[Interval, ...]
     sentences: tuple[str, ...]
 
 
@@ -119,10 +119,10 @@ def of_axis(records: Sequence[Record], residuals: list[Array], axis: int, floor:
     square = float(np.square(np.concatenate(parts)).mean())
     excess = square - noise**2
     missing = excess if excess > noise**2 * max(FLOOR_ERROR, CERTAIN * np.sqrt(2 / samples)) else 0.0
-    sorted_by = sortings(records, axis)
+    sorted_by = binnings(records, axis)
     spectral = [by_frequency(parts, [r.dt for r in records]), by_line(parts, [r.drive[:, r.settle :] for r in records])]
-    tallies = [*(tally(sorting, parts) for sorting in sorted_by), *filter(None, spectral)]
-    due = {sorting.name: of_records(sorting, parts, noise) for sorting in sorted_by if sorting.name not in CAMPAIGN}
+    tallies = [*(tally(binning, parts) for binning in sorted_by), *filter(None, spectral)]
+    due = {binning.name: of_records(binning, parts, noise) for binning in sorted_by if binning.name not in CAMPAIGN}
     views = tuple(view(found, noise, samples, missing > 0, due.get(found.name)) for found in tallies)
     rmse, misfit = float(np.sqrt(square)), float(np.sqrt(missing))
     return Misfit(
@@ -135,7 +135,7 @@ def of_axis(records: Sequence[Record], residuals: list[Array], axis: int, floor:
         misfit,
         views,
         crossing(sorted_by, views, parts, noise) if missing else None,
-        worst_stretches(records, parts, noise) if missing else (),
+        worst_intervals(records, parts, noise) if missing else (),
         tuple(wording.account(misfit, [found.dominant for found in views])),
     )
 
@@ -156,11 +156,11 @@ def view(found: Tally, noise: float, samples: int, missing: bool, due: Array | N
     return View(found.name, found.unit, covers, bins, most)
 
 
-def of_records(sorting: Sorting, residuals: list[Array], noise: float) -> Array:
+def of_records(binning: Binning, residuals: list[Array], noise: float) -> Array:
     """Shares of the misfit in the bins, were the misfit of each record spread evenly over its samples."""
     squares = np.array([np.square(part).sum() for part in residuals])
     shares = shares_of(squares, np.array([part.size for part in residuals], dtype=np.float64), noise)
-    counts = np.array([np.bincount(places, minlength=len(sorting.bins)) / places.size for places in sorting.places])
+    counts = np.array([np.bincount(places, minlength=len(binning.bins)) / places.size for places in binning.places])
     return shares @ counts
 
 
@@ -202,7 +202,7 @@ def divergence(shares: Array, samples: Array) -> float:
     return float((shares[known] * np.log(shares[known] / samples[known])).sum())
 
 
-def crossing(sorted_by: list[Sorting], views: Sequence[View], residuals: list[Array], noise: float) -> Crossing | None:
+def crossing(sorted_by: list[Binning], views: Sequence[View], residuals: list[Array], noise: float) -> Crossing | None:
     """The two views that tell most, crossed; None where fewer than two have more than one bin in use."""
     telling = [
         (divergence(np.array([b.share for b in own.bins]), np.array([b.samples for b in own.bins])), -place)

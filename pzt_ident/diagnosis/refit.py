@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.block import Coupling
-from pzt_ident.diagnosis.noise import noise_floor, sizes
-from pzt_ident.model import Model
-from pzt_ident.plan import Plan
-from pzt_ident.problem import Fixed, Problem
-from pzt_ident.record import Record
-from pzt_ident.registry import Choice, blocks
+from pzt_ident.data.noise import noise_floor, sizes
+from pzt_ident.data.record import Record
+from pzt_ident.engine.simulator import Simulator
+from pzt_ident.model.block import Coupling
+from pzt_ident.model.chain import Chain
+from pzt_ident.model.registry import Choice, blocks
+from pzt_ident.search.problem import FixedValue, Problem
 
 Array = NDArray[np.float64]
 Tell = Callable[[dict[str, Any]], None]
@@ -45,7 +45,7 @@ class Case:
         words: Sequence[str | Choice],
         effects: Sequence[str],
         records: Sequence[Record],
-        wishes: Any,
+        specs: Any,
         ruled_out: Sequence[str] = (),
         shared: Sequence[str] = (),
         tell: Tell = lambda event: None,
@@ -55,18 +55,18 @@ class Case:
         self.ruled_out, self.shared = tuple(ruled_out), tuple(shared)
         self._at: dict[tuple[int, int], Record] = {}
         self.refits: dict[Any, Fit] = {}  # by effects, steps and start
-        self.records, self.wishes, self.sizes = tuple(records), wishes, sizes(list(records))
+        self.records, self.specs, self.sizes = tuple(records), specs, sizes(list(records))
 
     def problem(self, effects: Sequence[str], steps: Sequence[int] = (), alone: bool = False) -> Problem:
         """`steps` a sample of each record, by default those of the job; `alone` as in a fit."""
         first = self.records[0]
         chain = blocks.chain((*self.words, *effects))
         silent = self.silent(effects) if alone else {}
-        wishes = {name: Fixed(null) for name, null in silent.items()} | self.wishes
-        model = Model(chain, first.axes, first.measured, self.shared, wishes)
+        specs = {name: FixedValue(null) for name, null in silent.items()} | self.specs
+        model = Chain(chain, first.axes, first.measured, self.shared, specs)
         own = steps or [record.steps for record in self.records]
         records = [self.at(number, count) for number, count in enumerate(own)]
-        return Problem(model, records, wishes, self.sizes)
+        return Problem(model, records, specs, self.sizes)
 
     def silent(self, effects: Sequence[str]) -> dict[str, float]:
         """What keeps effects that were added off the axes without a response, by name: their nulls there, in the user's
@@ -80,8 +80,8 @@ class Case:
             f"{axis}.{block.name}.{word}": parameter.null
             for axis, block in product(others, chain)
             for word, parameter in block.parameters().items()
-            if {block.name, parameter.effect} & own and parameter.null is not None and Model.alone(block, parameter)
-            if f"{block.name}.{word}" not in (*self.shared, *self.wishes)
+            if {block.name, parameter.effect} & own and parameter.null is not None and Chain.alone(block, parameter)
+            if f"{block.name}.{word}" not in (*self.shared, *self.specs)
         }
 
     def at(self, number: int, steps: int) -> Record:
@@ -117,7 +117,7 @@ class Fit:
     def on_bounds(self) -> tuple[str, ...]:
         """Names of the parameters that ended on a bound which is not their null."""
         problem, values = self.problem, self.problem.physical(self.point)[0]
-        nulls = [problem.model.slots[column].parameter.null for column in problem.free]
+        nulls = [problem.model.entries[column].parameter.null for column in problem.free]
         ends = (self.point <= EDGE) | (self.point >= 1 - EDGE)
         found = zip(problem.names, ends, values, nulls, strict=True)
         return tuple(name for name, end, value, null in found if end and (null is None or not np.isclose(value, null)))
@@ -204,7 +204,7 @@ def step_errors(case: Case, fit: Fit) -> Array:
     theta = problem.parameters(fit.point)
     for number, record in enumerate(problem.records):
         finer = case.at(number, 2 * record.steps)
-        one, two = (Plan(problem.model, each).simulate(theta)[0] for each in (record, finer))
+        one, two = (Simulator(problem.model, each).simulate(theta)[0] for each in (record, finer))
         change = (two - one)[:, record.settle :] / problem.sizes[:, None]
         found.append(np.sqrt(np.mean(np.var(change, axis=1))))
     return np.array(found)
@@ -215,8 +215,8 @@ def elsewhere(fit: Fit, only: str = "", most: int = ELSEWHERE) -> Fit:
     in turn, or of `only` one. Beside a greater misfit, since explained, or for want of a better guess, a block may
     have come to rest in a side minimum, such as a resonance far off."""
     problem = fit.problem
-    slots = [problem.model.slots[column] for column in problem.free]
-    owners = [(slot.axis, slot.block.name) for slot in slots]
+    entries = [problem.model.entries[column] for column in problem.free]
+    owners = [(entry.axis, entry.block.name) for entry in entries]
     rng = np.random.default_rng(0)
     found = [fit]
     for owner in dict.fromkeys(owner for owner in owners if only in ("", owner[1])):

@@ -13,10 +13,10 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.block import Addition, Coupling, Term
 from pzt_ident.diagnosis.refit import Case, Fit
-from pzt_ident.problem import Problem
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Addition, Coupling, Term
+from pzt_ident.model.registry import blocks
+from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
 
@@ -166,7 +166,7 @@ class Scorer:
 
     def _planned(self, effect: str, problem: Problem) -> Iterator[Trial]:
         new = [i for i, name in enumerate(problem.names) if name not in self.fit.problem.names]
-        nulls = {i: problem.model.slots[problem.free[i]].parameter.null for i in new}
+        nulls = {i: problem.model.entries[problem.free[i]].parameter.null for i in new}
         growing = [i for i in new if nulls[i] is not None]
         shapes = [i for i in new if i not in growing]
         old = self.fit.values
@@ -189,13 +189,13 @@ class Scorer:
         old = self.fit.values
         guess = getattr(block, "guess", None)
         trials: Iterator[tuple[float, ...]] = spread(problem, shapes, block.trials)
-        plans = self.fit.problem.plans["identify"]
+        simulators = self.fit.problem.simulators["identify"]
         if guess:
             measured = problem.model.measured
-            parts = np.split(self.raw, np.cumsum([plan.scored * len(measured) for plan in plans])[:-1])
-            times = [plan.record.time[plan.record.settle :] for plan in plans]
-            drives = [plan.record.drive[:, plan.record.settle :] for plan in plans]
-            own = [measured.index(problem.model.slots[problem.free[i]].axis) for i in shapes]
+            parts = np.split(self.raw, np.cumsum([simulator.scored * len(measured) for simulator in simulators])[:-1])
+            times = [simulator.record.time[simulator.record.settle :] for simulator in simulators]
+            drives = [simulator.record.drive[:, simulator.record.settle :] for simulator in simulators]
+            own = [measured.index(problem.model.entries[problem.free[i]].axis) for i in shapes]
             lines = [[part.reshape(len(measured), -1)[axis] for part in parts] for axis in own]
             bounds = [(problem.lower[i], problem.upper[i]) for i in shapes]
             axes = [[drive[measured[axis]] for drive in drives] for axis in own]
@@ -216,7 +216,7 @@ class Scorer:
 def on_bound(problem: Problem, guess: Mapping[str, float]) -> bool:
     """Whether a value of a guess is at an end of its range which is not its null."""
     places = [problem.names.index(name) for name in guess]
-    nulls = [problem.model.slots[problem.free[i]].parameter.null for i in places]
+    nulls = [problem.model.entries[problem.free[i]].parameter.null for i in places]
     ends = [value in (problem.lower[i], problem.upper[i]) for i, value in zip(places, guess.values(), strict=True)]
     return any(end and value != null for end, value, null in zip(ends, guess.values(), nulls, strict=True))
 
@@ -228,7 +228,7 @@ def misfit(case: Case, fit: Fit) -> float:
 
 def spread(problem: Problem, columns: list[int], counts: Mapping[str, int]) -> Iterator[tuple[float, ...]]:
     """Values of parameters over their ranges, in the user's units; on each axis the same share of them."""
-    words = [problem.model.slots[problem.free[i]].word for i in columns]
+    words = [problem.model.entries[problem.free[i]].word for i in columns]
     own = list(dict.fromkeys(words))
     for shares in product(*(((np.arange(n) + 0.5) / n) for n in (counts.get(word, TRIALS) for word in own))):
         point = np.full(problem.dimensions, 0.5)

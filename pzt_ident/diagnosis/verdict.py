@@ -11,7 +11,7 @@ import numpy as np
 from pzt_ident.diagnosis.refit import Case, Fit, elsewhere, refit, step_errors
 from pzt_ident.diagnosis.score import Score, Scorer, applicable, misfit
 from pzt_ident.diagnosis.wording import percent
-from pzt_ident.registry import blocks
+from pzt_ident.model.registry import blocks
 
 SHORT = 5  # effects that are refitted
 LEAST = 0.02  # of the misfit: what scores less is not refitted
@@ -148,7 +148,7 @@ def scored(case: Case, before: Fit, scorer: Scorer) -> list[Score]:
 
 def related(one: str, other: str) -> bool:
     """Whether one of two effects counts the other among its look-alikes."""
-    return one in blocks[other].looks_like or other in blocks[one].looks_like
+    return one in blocks[other].look_alikes or other in blocks[one].look_alikes
 
 
 def alike(case: Case, effect: str, fit: Fit, rival: Fit) -> bool:

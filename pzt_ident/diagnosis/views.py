@@ -6,18 +6,18 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pzt_ident.diagnosis.motion import Motion, motion
-from pzt_ident.diagnosis.sorting import Array, Sorting, doubling, linear, logarithmic, named
-from pzt_ident.record import Record
-from pzt_ident.units import factor
+from pzt_ident.data.record import Record
+from pzt_ident.data.units import factor
+from pzt_ident.diagnosis.binning import Array, Binning, doubling, linear, logarithmic, named
+from pzt_ident.diagnosis.drive_history import DriveHistory, drive_history
 
 MOVING = ("rising", "falling")
 WAYS = (*MOVING, "holding")
 
 
-def sortings(records: Sequence[Record], axis: int) -> list[Sorting]:
+def binnings(records: Sequence[Record], axis: int) -> list[Binning]:
     """Scored samples by record, by the motion of the own drive, by position, and by the drives of the other axes."""
-    own = motions(records, axis)
+    own = drive_histories(records, axis)
     unit = records[0].drive_units[axis]
     position = str(records[0].response_units[axis])
     rates = [found.rate / factor(unit) for found in own]
@@ -37,19 +37,19 @@ def sortings(records: Sequence[Record], axis: int) -> list[Sorting]:
     ]
 
 
-def by_other(records: Sequence[Record], axis: int) -> list[Sorting]:
+def by_other(records: Sequence[Record], axis: int) -> list[Binning]:
     """Level and way of another axis' drive, where it moves in any record."""
     name, unit = records[0].axes[axis], records[0].drive_units[axis]
     levels: list[Array] = [record.drive[axis, record.settle :] / factor(unit) for record in records]
     if not max(map(np.max, levels)) > min(map(np.min, levels)):
         return []
-    return [linear(f"drive of {name}", unit, levels), by_way(f"branch of {name}", motions(records, axis))]
+    return [linear(f"drive of {name}", unit, levels), by_way(f"branch of {name}", drive_histories(records, axis))]
 
 
-def by_way(name: str, motions: list[Motion]) -> Sorting:
-    return named(name, WAYS, [np.where(found.way == 0, 2, (1 - found.way) // 2) for found in motions])
+def by_way(name: str, drive_histories: list[DriveHistory]) -> Binning:
+    return named(name, WAYS, [np.where(found.way == 0, 2, (1 - found.way) // 2) for found in drive_histories])
 
 
-def motions(records: Sequence[Record], axis: int) -> list[Motion]:
+def drive_histories(records: Sequence[Record], axis: int) -> list[DriveHistory]:
     """Motion of an axis' drive in the scored samples of each record."""
-    return [motion(record.drive[axis], record.dt).behind(record.settle) for record in records]
+    return [drive_history(record.drive[axis], record.dt).behind(record.settle) for record in records]

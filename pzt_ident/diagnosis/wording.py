@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from pzt_ident.diagnosis.sorting import Bin, Tally
+from pzt_ident.diagnosis.binning import Bin, Tally
 
 if TYPE_CHECKING:
     from pzt_ident.diagnosis.locate import Dominant

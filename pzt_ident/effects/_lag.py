@@ -1,7 +1,7 @@
 """First-order lag, T y' + y = u, stepped exactly for an input that is linear between samples."""
 
-from pzt_ident.block import Block
-from pzt_ident.hold import decay
+from pzt_ident.model.block import Block
+from pzt_ident.model.first_order_hold import decay
 
 
 class Lag(Block):

@@ -1,9 +1,9 @@
 """Amplifier that charges the stack through its output resistance."""
 
-from pzt_ident.block import Place
 from pzt_ident.effects._lag import Lag
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Place
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -15,7 +15,7 @@ class AmplifierLag(Lag):
 
     place = Place.AMPLIFIER
     tau = Parameter("s", (0, 5e-3), "Time constant of output resistance and capacitance.", null=0)
-    looks_like = ("sensor_lag", "delay", "viscous_damping")
+    look_alikes = ("sensor_lag", "delay", "viscous_damping")
     separate_by = (
         "Put a known capacitor in parallel with the stack, which lengthens this lag alone, or record the amplifier's "
         "monitor output instead of the command."

@@ -1,8 +1,8 @@
 """A gain that grows with the amplitude of the drive."""
 
-from pzt_ident.block import Block, Place
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Block, Place
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -14,7 +14,7 @@ class AmplitudeGain(Block):
 
     place = Place.STATIC
     growth = Parameter("1/drive", (-1, 1), "Relative growth of the gain per volt peak to peak.", null=0)
-    looks_like = ("distributed_memory", "creep")
+    look_alikes = ("distributed_memory", "creep")
     separate_by = "Run equal loops at several amplitudes and several biases, and nested loops with revisits."
     remedy = "Calibrate at the amplitude that is used, or let the feedforward take the amplitude."
 

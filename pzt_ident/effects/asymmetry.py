@@ -1,7 +1,7 @@
 """A loop that is not point-symmetric about its centre."""
 
-from pzt_ident.block import Term
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Term
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -12,6 +12,6 @@ class Asymmetry(Term):
     operator's asymmetry times alpha d.
     """
 
-    looks_like = ("quadratic_gain", "creep")
+    look_alikes = ("quadratic_gain", "creep")
     separate_by = "Cycle one loop until it has settled and compare the branches turned about its centre."
     remedy = "Invert the asymmetric operator in the feedforward, or work on one branch only."

@@ -1,9 +1,9 @@
 """Creep of the ceramic: slow domains follow the prompt ones."""
 
-from pzt_ident.block import Bank, Place
-from pzt_ident.hold import decay
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Bank, Place
+from pzt_ident.model.first_order_hold import decay
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 BRANCHES = 10
 
@@ -21,7 +21,7 @@ class Creep(Bank):
     ratio = Parameter("1", (-0.1, 0.4), "Final creep over the prompt response.", null=0)
     tau = Parameter("s", (0.01, 1000), "Geometric centre of the time constants.", scale="log")
     decades = Parameter("1", (0, 7), "Decades that the time constants are spread over.")
-    looks_like = ("thermal_relaxation", "drift", "amplitude_gain")
+    look_alikes = ("thermal_relaxation", "drift", "amplitude_gain")
     separate_by = "Step up and hold, step down and hold, back by 5 % and hold, then a null record at constant voltage."
     remedy = "Wait after large steps, or add the identified creep to the feedforward."
 

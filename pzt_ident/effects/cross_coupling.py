@@ -1,8 +1,8 @@
 """Force of one axis that moves another through the guide's stiffness."""
 
-from pzt_ident.block import Coupling, Place
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Coupling, Place
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -14,7 +14,7 @@ class CrossCoupling(Coupling):
 
     place = Place.COUPLING
     ratio = Parameter("1", (-5, 5), "Stiffness coupling k12 / k11 from the other axis.", null=0)
-    looks_like = ("kinematic_coupling",)
+    look_alikes = ("kinematic_coupling",)
     separate_by = (
         "Chirp the other axis beyond the resonances of both with this one at rest: stiffness coupling rings at this "
         "axis' own resonance, a kinematic one at the other's."

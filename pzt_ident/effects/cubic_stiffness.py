@@ -1,7 +1,7 @@
 """Flexure that stiffens or softens as it bends."""
 
-from pzt_ident.block import Term
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Term
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -12,6 +12,6 @@ class CubicStiffness(Term):
     """
 
     sizes = tuple(0.005 * 1.5**k for k in range(12))
-    looks_like = ("quadratic_gain", "saturation", "encoder_cyclic_error")
+    look_alikes = ("quadratic_gain", "saturation", "encoder_cyclic_error")
     separate_by = "Load the stage with a known force or change its preload, or measure the resonance at several biases."
     remedy = "Work on a smaller part of the range, or put the identified curve into the calibration or feedforward."

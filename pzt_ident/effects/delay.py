@@ -1,8 +1,8 @@
 """Time that passes between command and voltage."""
 
-from pzt_ident.block import Place, Shift
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Place, Shift
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -15,7 +15,7 @@ class Delay(Shift):
     place = Place.DELAY
     sizes = tuple(0.002 * 1.5**k for k in range(16))
     time = Parameter("s", (0, 0.01), "Dead time.", null=0)
-    looks_like = ("amplifier_lag", "sensor_lag", "viscous_damping")
+    look_alikes = ("amplifier_lag", "sensor_lag", "viscous_damping")
     separate_by = "Chirp with a small amplitude beyond 500 Hz, sampled ten times faster than these records."
     remedy = "Record the voltage at the amplifier, or shift the reference ahead by the delay."
 

@@ -1,8 +1,8 @@
 """Memory of many past reversals."""
 
-from pzt_ident.block import Bank, Place
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Bank, Place
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 PLAYS = 10
 
@@ -19,7 +19,7 @@ class DistributedMemory(Bank):
     branches = PLAYS
     weight = Parameter("1", (-0.5, 0.5), "Weight of the i-th play over the gain.", null=0, count=PLAYS)
     reach = Parameter("drive", (0.05, 1), "Half-width of the widest play.", value=0.4)
-    looks_like = ("amplitude_gain",)
+    look_alikes = ("amplitude_gain",)
     separate_by = "Run nested loops that come back to the same voltages: plays close them, Bouc-Wen does not."
     remedy = "Use a Prandtl-Ishlinskii or Preisach inverse in the feedforward, or return over a full loop."
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from pzt_ident.block import Addition, Place
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Addition, Place
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -17,7 +17,7 @@ class Drift(Addition):
     place = Place.OUTPUT
     size = Parameter("response", (-1, 1), "Final drift of a record.", null=0, per_record=True)
     tau = Parameter("s", (10, 3000), "Thermal time constant.", scale="log")
-    looks_like = ("creep", "thermal_relaxation")
+    look_alikes = ("creep", "thermal_relaxation")
     separate_by = (
         "Record at a constant voltage that has rested for as long before: drift is there too, creep and relaxation are "
         "not."

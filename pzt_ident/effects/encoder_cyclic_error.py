@@ -2,9 +2,9 @@
 
 from math import pi
 
-from pzt_ident.block import Block, Place, cos, sin
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Block, Place, cos, sin
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -19,7 +19,7 @@ class EncoderCyclicError(Block):
     sine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, odd about x = 0.", null=0)
     cosine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, even about x = 0.", null=0)
     pitch = Parameter("response", (0.01, 2), "Period of the grating's signal.", scale="log")
-    looks_like = ("quadratic_gain", "cubic_stiffness", "saturation")
+    look_alikes = ("quadratic_gain", "cubic_stiffness", "saturation")
     separate_by = "Shift the encoder head by half a pitch and repeat: this error changes its sign, all others stay."
     remedy = "Correct offset, gain and phase of the encoder's signals, or subtract the error tabulated over a pitch."
 

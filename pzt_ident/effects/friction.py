@@ -1,8 +1,8 @@
 """Dry friction in the guide."""
 
-from pzt_ident.block import Block, Place, expm1, log1p
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Block, Place, expm1, log1p
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -24,7 +24,7 @@ class Friction(Block):
     reach = Parameter("response", (1e-3, 0.5), "Displacement over which friction builds up.", scale="log")
     stiction = Parameter("1", (0, 0.5), "What break-away takes above sliding friction, as a share of it.", null=0)
     stribeck = Parameter("response/s", (1e-3, 100), "Speed at which the bristles let go.", scale="log")
-    looks_like = ("distributed_memory", "delay", "amplifier_lag")
+    look_alikes = ("distributed_memory", "delay", "amplifier_lag")
     separate_by = "Hold the voltage and push the stage by an external force or another axis: only friction has a loop."
     remedy = "Free cables and guides, lubricate or change the preload, drive turning points slower or close the loop."
 

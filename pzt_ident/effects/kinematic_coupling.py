@@ -1,8 +1,8 @@
 """Displacement of another axis that the sensor of one axis sees."""
 
-from pzt_ident.block import Coupling, Place
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Coupling, Place
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -14,7 +14,7 @@ class KinematicCoupling(Coupling):
 
     place = Place.OUTPUT
     ratio = Parameter("1", (-5, 5), "Share of the other axis' displacement in this axis' reading.", null=0)
-    looks_like = ("cross_coupling",)
+    look_alikes = ("cross_coupling",)
     separate_by = (
         "Chirp the other axis beyond the resonances of both with this one at rest: this coupling rings at the other "
         "axis' resonance, stiffness coupling at this axis' own."

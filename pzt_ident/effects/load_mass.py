@@ -1,7 +1,7 @@
 """Payload on the stage."""
 
-from pzt_ident.block import Term
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Term
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -12,6 +12,6 @@ class LoadMass(Term):
     """
 
     sizes = tuple(0.003 * 1.03**k for k in range(197))
-    looks_like = ("resonance",)
+    look_alikes = ("resonance",)
     separate_by = "Chirp with small amplitude through the resonance, with and without a known mass on the stage."
     remedy = "Take the load off or fix it firmly, and lower the bandwidth or the notch to the resonance with the load."

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from pzt_ident.block import Addition, Place
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Addition, Place
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 PERIODS = 8
 LEAST = 3  # periods in a record, of fewer it could be the response itself
@@ -23,7 +23,7 @@ class PeriodicDisturbance(Addition):
     sine = Parameter("response", (-1, 1), "Part in phase at the start of a record.", null=0, per_record=True)
     cosine = Parameter("response", (-1, 1), "Part a quarter period ahead of it.", null=0, per_record=True)
     frequency = Parameter("Hz", (1, 1000), "Frequency of the disturbance.", scale="log")
-    looks_like = ()
+    look_alikes = ()
     separate_by = "Record at constant voltage, then with the driver off: a line that stays is not the drive's."
     remedy = "Ground and shield against hum, isolate the stage from the floor, or filter the line out."
 

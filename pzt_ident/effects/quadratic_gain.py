@@ -1,8 +1,8 @@
 """A gain that changes with the voltage."""
 
-from pzt_ident.block import Block, Place
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Block, Place
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -14,7 +14,7 @@ class QuadraticGain(Block):
 
     place = Place.READOUT
     curvature = Parameter("1/drive", (-0.5, 0.5), "Growth of the gain per volt, over twice the gain.", null=0)
-    looks_like = ("saturation", "cubic_stiffness", "encoder_cyclic_error")
+    look_alikes = ("saturation", "cubic_stiffness", "encoder_cyclic_error")
     separate_by = (
         "Drive to both polarities: the parabola is even, saturation odd; repeat under a known preload, and with the "
         "encoder shifted by half a pitch."

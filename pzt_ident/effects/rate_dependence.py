@@ -1,7 +1,7 @@
 """Hysteresis that widens with the rate of the drive."""
 
-from pzt_ident.block import Term
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Term
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -12,6 +12,6 @@ class RateDependence(Term):
     small amplitudes, where a lag is linear in the rate and in the amplitude. Absorbed by alpha in data of one rate.
     """
 
-    looks_like = ("amplifier_lag", "sensor_lag", "viscous_damping", "thermal_relaxation")
+    look_alikes = ("amplifier_lag", "sensor_lag", "viscous_damping", "thermal_relaxation")
     separate_by = "Repeat one loop at rates two decades apart, and a small amplitude at the fastest."
     remedy = "Run at the rate that the model was identified at, or schedule the feedforward on the rate."

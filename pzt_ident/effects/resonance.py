@@ -2,10 +2,10 @@
 
 from math import pi
 
-from pzt_ident.block import Beside, Place
-from pzt_ident.hold import oscillate, oscillator
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Beside, Place
+from pzt_ident.model.first_order_hold import oscillate, oscillator
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -20,7 +20,7 @@ class Resonance(Beside):
     share = Parameter("1", (-0.4, 0.4), "Part of the static response that the second mode carries.", null=0)
     frequency = Parameter("Hz", (100, 2e4), "Natural frequency of the second mode.", scale="log")
     damping = Parameter("1", (1e-3, 0.3), "Damping ratio of the second mode.", scale="log")
-    looks_like = ("load_mass",)
+    look_alikes = ("load_mass",)
     separate_by = "Chirp with a small amplitude through all modes, sampled ten times faster than the highest."
     remedy = "Put a notch at the identified frequency, or shape the reference so that it does not ring."
 

@@ -1,8 +1,8 @@
 """A response that runs out at large voltages."""
 
-from pzt_ident.block import Block, Place, expm1
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Block, Place, expm1
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -15,7 +15,7 @@ class Saturation(Block):
     place = Place.READOUT
     sizes = (0.1, 0.3, 0.8)
     knee = Parameter("1/drive", (0, 2), "One over the voltage at which the response saturates.", null=0)
-    looks_like = ("quadratic_gain", "cubic_stiffness", "encoder_cyclic_error")
+    look_alikes = ("quadratic_gain", "cubic_stiffness", "encoder_cyclic_error")
     separate_by = "Drive to both polarities up to the limits of the amplifier, and repeat under a known preload."
     remedy = "Keep to smaller voltages, or linearise the drive by the identified curve."
 

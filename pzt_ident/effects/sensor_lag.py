@@ -1,9 +1,9 @@
 """Sensor that follows the stage through a low-pass filter."""
 
-from pzt_ident.block import Place
 from pzt_ident.effects._lag import Lag
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Place
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -15,7 +15,7 @@ class SensorLag(Lag):
 
     place = Place.SENSOR
     tau = Parameter("s", (0, 5e-3), "Time constant of the sensor's filter.", null=0)
-    looks_like = ("amplifier_lag", "delay", "viscous_damping")
+    look_alikes = ("amplifier_lag", "delay", "viscous_damping")
     separate_by = (
         "Change the filter of the sensor electronics, which changes this lag alone, or put a known capacitor in "
         "parallel with the stack, which does not."

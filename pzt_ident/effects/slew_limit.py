@@ -2,9 +2,9 @@
 
 from math import inf
 
-from pzt_ident.block import Block, Place
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Block, Place
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -18,7 +18,7 @@ class SlewLimit(Block):
     place = Place.SLEW
     sizes = tuple(1.25**-k for k in range(32))
     slowness = Parameter("s/drive", (0, 0.1), "Capacitance over the greatest current.", null=0)
-    looks_like = ("amplifier_lag", "sensor_lag")
+    look_alikes = ("amplifier_lag", "sensor_lag")
     separate_by = "Sweep the amplitude at one frequency: this sets in where frequency times amplitude is too much."
     remedy = "Stay below the slew rate, round the corners of the drive, or take an amplifier of more current."
 

@@ -1,7 +1,7 @@
 """Hysteresis that forgets with time."""
 
-from pzt_ident.block import Term
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Term
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -13,6 +13,6 @@ class ThermalRelaxation(Term):
     step back arrests it.
     """
 
-    looks_like = ("creep", "drift", "rate_dependence")
+    look_alikes = ("creep", "drift", "rate_dependence")
     separate_by = "Step up, wait, step back by five percent and hold for a minute: relaxation stops, creep goes on."
     remedy = "End every approach with a small step back, which arrests the relaxation."

@@ -1,7 +1,7 @@
 """Damping beyond that of the bare mechanics."""
 
-from pzt_ident.block import Term
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Term
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register
@@ -12,6 +12,6 @@ class ViscousDamping(Term):
     """
 
     sizes = tuple(0.002 * 1.5**k for k in range(16))
-    looks_like = ("amplifier_lag", "sensor_lag", "delay", "resonance")
+    look_alikes = ("amplifier_lag", "sensor_lag", "delay", "resonance")
     separate_by = "Chirp with small amplitude through the resonance: damping lowers its peak, a lag or delay does not."
     remedy = "Free the moving parts of films and cables, or keep it and put the lag into the feedforward."

@@ -2,7 +2,7 @@
 
 from math import log
 
-from pzt_ident.block import expm1, log1p
+from pzt_ident.model.block import expm1, log1p
 
 
 def play(p, u, half):

@@ -2,9 +2,9 @@
 
 from math import exp, inf, log
 
-from pzt_ident.block import Operator, Place, expm1, log1p
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Operator, Place, expm1, log1p
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 RATE = 100.0  # V/s, at which alpha is meant
 

@@ -2,10 +2,10 @@
 
 from math import nan
 
-from pzt_ident.block import Block, Place, expm1
 from pzt_ident.errors import InputError
-from pzt_ident.parameter import Form, Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Block, Place, expm1
+from pzt_ident.model.parameter import Form, Parameter
+from pzt_ident.model.registry import blocks
 
 ANHYSTERETIC = (1.0, 0.0, 0.0, 0.0)
 """P_an / P_s = tanh((E + alpha P) / a), the curve of all walls that no reversal has rescaled; see `anhysteretic`."""

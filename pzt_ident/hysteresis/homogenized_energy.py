@@ -4,11 +4,11 @@ from dataclasses import replace
 from math import exp, sqrt
 from statistics import NormalDist
 
-from pzt_ident.block import Bank, Place, erf
 from pzt_ident.errors import InputError
 from pzt_ident.hysteresis._play import play, relaxed, relaxing
-from pzt_ident.parameter import Form, Parameter, Setting
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Bank, Place, erf
+from pzt_ident.model.parameter import Form, Parameter, Setting
+from pzt_ident.model.registry import blocks
 
 NODES = 64
 QUANTILES = tuple(NormalDist().inv_cdf((i + 0.5) / NODES) for i in range(NODES))

@@ -1,8 +1,8 @@
 """Prandtl-Ishlinskii hysteresis: weighted plays."""
 
-from pzt_ident.block import Bank, Place
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Bank, Place
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 PLAYS = 8
 

@@ -2,11 +2,11 @@
 
 from math import erf, erfc, exp, expm1, log, pi, sqrt
 
-from pzt_ident.block import Place, Relays
 from pzt_ident.hysteresis._play import play
 from pzt_ident.hysteresis.homogenized_energy import HomogenizedEnergy, spread_of
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Place, Relays
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 COERCIVES, INTERACTIONS, COLUMNS = Relays.coercives, Relays.interactions, Relays.columns
 SHELL = 0.1  # width of the shell about the inflection point from which domains switch, over the thermal width s

@@ -6,7 +6,7 @@ import numpy as np
 
 from pzt_ident.errors import InputError
 from pzt_ident.mechanics._linear import Linear, modes, paired
-from pzt_ident.parameter import Setting
+from pzt_ident.model.parameter import Setting
 
 ROUNDING = 1e-9
 """Share of the first Hankel singular value below which a state is rounding, a root of a gramian's own."""

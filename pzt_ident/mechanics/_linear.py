@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pzt_ident.block import Bank, Place
-from pzt_ident.hold import oscillate, oscillator
+from pzt_ident.model.block import Bank, Place
+from pzt_ident.model.first_order_hold import oscillate, oscillator
 
 
 class Linear(Bank):

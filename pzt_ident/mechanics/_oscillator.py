@@ -2,8 +2,8 @@
 
 from math import sqrt
 
-from pzt_ident.block import Block, Place
-from pzt_ident.hold import oscillate, oscillator
+from pzt_ident.model.block import Block, Place
+from pzt_ident.model.first_order_hold import oscillate, oscillator
 
 
 class Oscillator(Block):

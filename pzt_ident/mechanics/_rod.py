@@ -4,7 +4,7 @@ import numpy as np
 
 from pzt_ident.mechanics._linear import Linear, sections
 from pzt_ident.mechanics._solid import Solid, resolved
-from pzt_ident.parameter import Parameter, Setting
+from pzt_ident.model.parameter import Parameter, Setting
 
 
 class RodData(Solid):

@@ -6,7 +6,7 @@ import numpy as np
 
 from pzt_ident.mechanics._linear import Linear, sections
 from pzt_ident.mechanics._solid import Solid, resolved
-from pzt_ident.parameter import Parameter, Setting
+from pzt_ident.model.parameter import Parameter, Setting
 
 CLAMPED = ((1, 0), (1, 0), (2, 0))
 """Splines left out of u, v and w at x = 0 and at the free end: u = v = w = w_x = 0 at x = 0."""

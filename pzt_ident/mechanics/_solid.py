@@ -1,7 +1,7 @@
 """What rods and shells have in common."""
 
 from pzt_ident.errors import InputError
-from pzt_ident.parameter import Parameter
+from pzt_ident.model.parameter import Parameter
 
 
 class Solid:

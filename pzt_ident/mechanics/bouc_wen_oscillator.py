@@ -1,8 +1,8 @@
 """The standard Bouc-Wen benchmark: a mass on a hysteretic spring."""
 
-from pzt_ident.block import Block, Place
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Block, Place
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register

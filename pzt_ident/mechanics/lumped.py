@@ -1,10 +1,10 @@
 """One mass, damper and spring."""
 
-from pzt_ident.block import expm1, log1p
-from pzt_ident.hold import oscillate
 from pzt_ident.mechanics._oscillator import Oscillator, mode
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import expm1, log1p
+from pzt_ident.model.first_order_hold import oscillate
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 SOFTEST = 0.19  # the slope of the spring is then 0.43 of what it is at x = 0
 

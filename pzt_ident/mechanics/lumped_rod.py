@@ -2,7 +2,7 @@
 
 from pzt_ident.mechanics._oscillator import Oscillator, mode
 from pzt_ident.mechanics._rod import RodData
-from pzt_ident.registry import blocks
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register

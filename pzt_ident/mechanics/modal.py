@@ -2,11 +2,11 @@
 
 from math import pi
 
-from pzt_ident.block import Modes
-from pzt_ident.hold import oscillator
 from pzt_ident.mechanics._oscillator import Oscillator
-from pzt_ident.parameter import Parameter, Setting
-from pzt_ident.registry import blocks
+from pzt_ident.model.block import Modes
+from pzt_ident.model.first_order_hold import oscillator
+from pzt_ident.model.parameter import Parameter, Setting
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register

@@ -1,7 +1,7 @@
 """A distributed rod, stepped exactly."""
 
 from pzt_ident.mechanics._rod import RodElements
-from pzt_ident.registry import blocks
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register

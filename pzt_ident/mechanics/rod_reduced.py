@@ -4,8 +4,8 @@ import numpy as np
 
 from pzt_ident.mechanics._balanced import Balanced, balanced
 from pzt_ident.mechanics._rod import RodData, matrices
-from pzt_ident.parameter import Setting
-from pzt_ident.registry import blocks
+from pzt_ident.model.parameter import Setting
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register

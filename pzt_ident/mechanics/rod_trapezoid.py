@@ -1,8 +1,8 @@
 """A distributed rod, stepped as in the paper."""
 
-from pzt_ident.hold import trapezoid
 from pzt_ident.mechanics._rod import RodElements
-from pzt_ident.registry import blocks
+from pzt_ident.model.first_order_hold import trapezoid
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register

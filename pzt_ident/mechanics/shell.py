@@ -1,7 +1,7 @@
 """A piezoceramic tube, stepped exactly."""
 
 from pzt_ident.mechanics._shell import ShellSplines
-from pzt_ident.registry import blocks
+from pzt_ident.model.registry import blocks
 
 
 @blocks.register

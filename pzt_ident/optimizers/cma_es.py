@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pzt_ident.registry import optimizers
-from pzt_ident.search import Array, Budgeted, Search, setting
+from pzt_ident.model.registry import optimizers
+from pzt_ident.search.loop import Array, Budgeted, Search, setting
 
 
 @optimizers.register

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pzt_ident.registry import optimizers
-from pzt_ident.search import Array, Generational, Search, setting
+from pzt_ident.model.registry import optimizers
+from pzt_ident.search.loop import Array, Generational, Search, setting
 
 
 @optimizers.register
@@ -31,7 +31,7 @@ class DifferentialEvolution(Generational):
         points = rng.random((self.population, dimensions))
         losses = yield points.copy()
         archive = points[:0]
-        scale, cross, slot, used = np.full(self.memory, 0.5), np.full(self.memory, 0.5), 0, len(points)
+        scale, cross, entry, used = np.full(self.memory, 0.5), np.full(self.memory, 0.5), 0, len(points)
         while True:
             order = np.argsort(losses, kind="stable")[: self.survivors(used)]
             points, losses = points[order], losses[order]
@@ -44,8 +44,8 @@ class DifferentialEvolution(Generational):
             better = told < losses
             if better.any():
                 weight = gains(losses[better], told[better])
-                scale[slot], cross[slot] = lehmer(f[better], weight), lehmer(cr[better], weight)
-                slot = (slot + 1) % self.memory
+                scale[entry], cross[entry] = lehmer(f[better], weight), lehmer(cr[better], weight)
+                entry = (entry + 1) % self.memory
                 archive = np.concatenate([archive, points[better]])
             level = told <= losses
             points[level], losses[level] = trial[level], told[level]

@@ -10,14 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pzt_ident.files import replaced
-from pzt_ident.report import density_figures, staircase
+from pzt_ident.report import density_figures
 from pzt_ident.report import misfit_figures as misfit
 from pzt_ident.report import residual_figures as residual
 from pzt_ident.report import search_figures as search
 from pzt_ident.report import signal_figures as signal
-from pzt_ident.report.results import Results, Trace
+from pzt_ident.report import staircase_figures as staircase
 from pzt_ident.report.style import COLUMN, PAGE, saved, style
 from pzt_ident.report.words import standing
+from pzt_ident.run.results import Results, Trace
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pzt_ident.report.numbers import percent, unit
+from pzt_ident.data.notation import percent, unit
 from pzt_ident.report.residual_figures import colour_bar
-from pzt_ident.report.results import Floats, Trace
 from pzt_ident.report.style import (
     COLUMN,
     INK,
@@ -29,6 +28,7 @@ from pzt_ident.report.style import (
     patch,
     width_of,
 )
+from pzt_ident.run.results import Floats, Trace
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -11,14 +11,14 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pzt_ident.data import notation as numbers
 from pzt_ident.files import plain, write_text
-from pzt_ident.report import numbers
 from pzt_ident.report.figures import Plate, write_page_figures
 from pzt_ident.report.inline import inline
-from pzt_ident.report.results import Results, read_folder
 from pzt_ident.report.tables import make_tables, write_tables
 from pzt_ident.report.traces import packed
 from pzt_ident.report.words import findings, listed, step_name, verdict
+from pzt_ident.run.results import Results, read_folder
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -94,7 +94,7 @@ def rendered(name: str, title: str, content: dict[str, Any], **words: Any) -> st
 
 
 def web(name: str) -> str:
-    return files("pzt_ident.web").joinpath(name).read_text(encoding="utf-8")
+    return files("pzt_ident.report").joinpath("web", name).read_text(encoding="utf-8")
 
 
 def module() -> str:

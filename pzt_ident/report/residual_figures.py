@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.report.results import Floats, Trace
 from pzt_ident.report.signal_figures import record_panels
 from pzt_ident.report.style import (
     COLUMN,
@@ -25,6 +24,7 @@ from pzt_ident.report.style import (
     patch,
     width_of,
 )
+from pzt_ident.run.results import Floats, Trace
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

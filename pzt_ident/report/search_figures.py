@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pzt_ident.report.numbers import bounds, unit
+from pzt_ident.data.notation import bounds, unit
 from pzt_ident.report.residual_figures import colour_bar
-from pzt_ident.report.results import Floats, Results
 from pzt_ident.report.style import (
     COLUMN,
     DASHES,
@@ -26,6 +25,7 @@ from pzt_ident.report.style import (
     panels,
     width_of,
 )
+from pzt_ident.run.results import Floats, Results
 
 if TYPE_CHECKING:
     import pandas as pd

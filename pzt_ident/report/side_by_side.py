@@ -6,13 +6,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from pzt_ident.data.notation import number, quantity, unit
 from pzt_ident.files import write_text
-from pzt_ident.report.numbers import number, quantity, unit
 from pzt_ident.report.page import POINTS, rendered, stairs
-from pzt_ident.report.results import Results, read_folder
 from pzt_ident.report.tables import Cell, Table, table, write_tables
 from pzt_ident.report.traces import packed
 from pzt_ident.report.words import verdict
+from pzt_ident.run.results import Results, read_folder
 
 
 def write_side_by_side(folders: Sequence[Path], page: Path) -> Path:

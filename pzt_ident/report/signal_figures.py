@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from pzt_ident.report.results import Floats, Trace
 from pzt_ident.report.style import (
     COLUMN,
     INK,
@@ -26,6 +25,7 @@ from pzt_ident.report.style import (
     patch,
     width_of,
 )
+from pzt_ident.run.results import Floats, Trace
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

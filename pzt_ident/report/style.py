@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.report.numbers import power_of_ten, short, unit
+from pzt_ident.data.notation import power_of_ten, short, unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

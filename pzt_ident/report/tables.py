@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pzt_ident.data.notation import bounds, count, number, percent, quantity, short, unit, with_error
 from pzt_ident.files import write_text
 from pzt_ident.report.latex import tabular
-from pzt_ident.report.numbers import bounds, count, number, percent, quantity, short, unit, with_error
-from pzt_ident.report.results import Results
 from pzt_ident.report.words import step_name
+from pzt_ident.run.results import Results
 
 if TYPE_CHECKING:
     import pandas as pd

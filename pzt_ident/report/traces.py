@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.report.numbers import unit
-from pzt_ident.report.results import Floats, Trace
+from pzt_ident.data.notation import unit
 from pzt_ident.report.style import decimate
+from pzt_ident.run.results import Floats, Trace
 
 LEVELS = 65535
 

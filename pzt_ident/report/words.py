@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from pzt_ident.report.numbers import count, number, percent, quantity, spelled
-from pzt_ident.report.results import Results
+from pzt_ident.data.notation import count, number, percent, quantity, spelled
+from pzt_ident.run.results import Results
 
 BETTER = 0.95  # of the run's RMSE: less than that is worth a word
 NOISELESS = 1e-6  # of the span of a response: no sensor has less noise

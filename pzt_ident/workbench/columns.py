@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from pzt_ident.data.readers.column import Column, Table
+from pzt_ident.data.readers.formats import open_table, parts_of
+from pzt_ident.data.record import Source
+from pzt_ident.data.units import FREQUENCY, TIME, dimension, factor, is_unit
 from pzt_ident.errors import InputError
-from pzt_ident.readers.column import Column, Table
-from pzt_ident.readers.formats import open_table, parts_of
-from pzt_ident.record import Source
-from pzt_ident.units import FREQUENCY, TIME, dimension, factor, is_unit
 
 SHOWN = 5  # values of each column
 LEAST = 3  # values of a column

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from pzt_ident.errors import InputError
 from pzt_ident.workbench.app import make_app
-from pzt_ident.workbench.bench import Bench
+from pzt_ident.workbench.session import Session
 
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 
@@ -26,26 +26,26 @@ def serve(source: Path | None, folder: Path, host: str, port: int, exposed: bool
         remedy = "add --allow-network if whoever can reach it may read and run everything in this folder"
         raise InputError(f"{host} can be reached from other machines", where="--host", remedy=remedy)
     root = Path.cwd()
-    bench = Bench(root, folder)
-    given = opened(bench, source, root) if source else ""
+    session = Session(root, folder)
+    given = opened(session, source, root) if source else ""
     bound = bind(host, port)
     number = bound.getsockname()[1]
     shown = f"[{host}]" if ":" in host else host
     hosts = {f"{name}:{number}" for name in ({"127.0.0.1", "localhost", "[::1]"} if host in LOOPBACK else {shown})}
     token = secrets.token_urlsafe(24)
     config = uvicorn.Config(
-        make_app(bench, hosts, token), log_level="error", server_header=False, timeout_graceful_shutdown=2
+        make_app(session, hosts, token), log_level="error", server_header=False, timeout_graceful_shutdown=2
     )
     server = uvicorn.Server(config)
-    bench.closing = lambda: server.should_exit
+    session.closing = lambda: server.should_exit
     ready(f"http://{shown}:{number}/#{token}{given}")
     server.run(sockets=[bound])
 
 
-def opened(bench: Bench, source: Path, root: Path) -> str:
+def opened(session: Session, source: Path, root: Path) -> str:
     """Begin with a job, or go on with its session; a file of data is named to the page, which asks for its columns."""
     if source.suffix.lower() in (".yaml", ".yml"):
-        bench.open(source)
+        session.open(source)
         return ""
     if not source.resolve().is_relative_to(root):
         raise InputError("is not in this folder", where=str(source), remedy="start the workbench where the data are")

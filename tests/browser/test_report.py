@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import expect
 
 from pzt_ident.report.page import write_report
-from pzt_ident.report.results import read_results
+from pzt_ident.run.results import read_results
 from report.conftest import make_run
 
 

@@ -12,10 +12,10 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import expect
 
-from pzt_ident.job import load_job
+from pzt_ident.job.schema import load_job
 from sheets import write_sheets
 
-SAMPLE = files("pzt_ident").joinpath("sample")
+SAMPLE = files("pzt_ident.job").joinpath("examples", "demo")
 LONG = """\
 # a search that does not end by itself
 name: long

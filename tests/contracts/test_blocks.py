@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pzt_ident.block import Addition, Bank, Beside, Coupling, Modes, Operator, Place, Relays, Shift, Term
-from pzt_ident.kernel import WIDTH
-from pzt_ident.plan import Plan
-from pzt_ident.registry import blocks
-from pzt_ident.units import is_unit
+from pzt_ident.data.units import is_unit
+from pzt_ident.engine.kernel import WIDTH
+from pzt_ident.engine.simulator import Simulator
+from pzt_ident.model.block import Addition, Bank, Beside, Coupling, Modes, Operator, Place, Relays, Shift, Term
+from pzt_ident.model.registry import blocks
 from rig import assert_close, block_of, candidates, model, path, record, rounding
 from twins import plain
 from twins.blocks import Identity
@@ -118,8 +118,8 @@ def test_declarations_are_complete(word):
 @pytest.mark.parametrize("word", EFFECTS)
 def test_effect_says_what_else_it_may_be_and_what_to_do(word):
     effect = blocks[word]
-    assert {"looks_like", "separate_by", "remedy"} <= set(vars(effect))
-    assert set(effect.looks_like) <= set(CATALOGUE.split()) - {word}
+    assert {"look_alikes", "separate_by", "remedy"} <= set(vars(effect))
+    assert set(effect.look_alikes) <= set(CATALOGUE.split()) - {word}
     for sentence in (effect.separate_by, effect.remedy):
         assert re.fullmatch(r"[A-Z].{30,}[a-z%]\.", sentence)
 
@@ -147,8 +147,8 @@ def test_addition_of_any_size_is_taken_in_closed_form(word):
         assert len(signals) == amounts
         added = rng.normal(size=amounts) @ np.array(signals)
         measured.response[:] = measured.drive + 3 + added
-        np.testing.assert_allclose(Plan(chain, measured).errors(candidate), 0, atol=1e-9)
-        assert Plan(chain, measured).added(candidate) == {word: pytest.approx([added[20:].std()], rel=1e-6)}
+        np.testing.assert_allclose(Simulator(chain, measured).errors(candidate), 0, atol=1e-9)
+        assert Simulator(chain, measured).added(candidate) == {word: pytest.approx([added[20:].std()], rel=1e-6)}
 
 
 @pytest.mark.parametrize("word", EFFECTS)
@@ -156,7 +156,7 @@ def test_addition_of_any_size_is_taken_in_closed_form(word):
 @given(drive=drives, seed=seeds)
 def test_effect_is_exactly_the_identity_at_its_null(word, drive, seed):
     chain, measured, theta = made(word, drive, seed=seed)
-    nulls = [slot.parameter.null for slot in chain.slots]
+    nulls = [entry.parameter.null for entry in chain.entries]
     theta[:, [null is not None for null in nulls]] = [null for null in nulls if null is not None]
     assert np.array_equal(chain.simulate(measured, theta), np.broadcast_to(measured.drive, (3, *measured.drive.shape)))
 
@@ -171,7 +171,7 @@ def test_term_at_its_null_is_not_there(host, term, drive, seed):
         count = 3 if getattr(blocks[host], "solved", ()) else 30  # NumPy's share is once a candidate
         measured, theta = record(drive), candidates(without, SPAN, count, seed)
         known = dict(zip(without.names, theta.T, strict=True))
-        nulls = [np.full(count, slot.parameter.null or 0.0) for slot in within.slots]
+        nulls = [np.full(count, entry.parameter.null or 0.0) for entry in within.entries]
         every = np.array([known.get(name, null) for name, null in zip(within.names, nulls, strict=True)]).T
         assert len(every.T) > len(theta.T)
         found, expected = within.simulate(measured, every), without.simulate(measured, theta)
@@ -215,7 +215,7 @@ def test_a_candidate_that_fails_leaves_the_others_alone(words):
     failing = theta.copy()
     failing[3], failing[11], failing[26] = np.nan, 1e300, np.inf
     with np.errstate(all="ignore"):
-        found, squares = chain.simulate(measured, failing), Plan(chain, measured).squares(failing)
+        found, squares = chain.simulate(measured, failing), Simulator(chain, measured).squares(failing)
     others = np.delete(np.arange(LANES), [3, 11, 26])
     clean = chain.simulate(measured, theta)
     assert_close(found[others], clean[others])
@@ -279,11 +279,11 @@ def test_run_in_is_the_drive_again(words):
 def test_squares_are_those_of_the_residuals(words, more):
     chain, measured, theta = made(words, waves(5), count=LANES, **more)
     measured.response[:] = np.random.default_rng(6).normal(size=measured.response.shape)
-    plan, residuals = Plan(chain, measured), Plan(chain, measured).residuals(theta)
-    squares = plan.squares(theta)
+    simulator, residuals = Simulator(chain, measured), Simulator(chain, measured).residuals(theta)
+    squares = simulator.squares(theta)
     alive = np.isfinite(residuals).all(axis=(1, 2))
     assert np.array_equal(np.isfinite(squares).all(axis=1), alive) and alive.sum() > LANES / 2
-    assert residuals.shape[-1] == plan.scored == 200 - more.get("settle", 0)
+    assert residuals.shape[-1] == simulator.scored == 200 - more.get("settle", 0)
     np.testing.assert_allclose(residuals[alive].mean(axis=-1), 0, atol=1e-13 * np.abs(residuals[alive]).max())
     np.testing.assert_allclose(squares[alive], (residuals[alive] ** 2).sum(axis=-1), rtol=1e-10)
 
@@ -291,12 +291,12 @@ def test_squares_are_those_of_the_residuals(words, more):
 @pytest.mark.parametrize("words", CHAINS)
 def test_nothing_before_the_settling_or_constant_is_scored(words):
     chain, measured, theta = made(words, waves(7), settle=80)
-    expected = Plan(chain, measured).squares(theta)
+    expected = Simulator(chain, measured).squares(theta)
     measured.response[:, :80] = 1e3
     measured.response[:] += 7.0
     about = measured.response - measured.response.mean(axis=1, keepdims=True)
     rounding = 16 * np.finfo(float).eps * np.sum(about[:, 80:] ** 2)  # what the sums of squares of the errors cost
-    np.testing.assert_allclose(Plan(chain, measured).squares(theta), expected, rtol=1e-9, atol=rounding)
+    np.testing.assert_allclose(Simulator(chain, measured).squares(theta), expected, rtol=1e-9, atol=rounding)
 
 
 def test_kinds_are_all_there():

@@ -11,8 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pzt_ident.errors import InputError
-from pzt_ident.registry import optimizers
-from pzt_ident.search import Stop, drive, minimize
+from pzt_ident.model.registry import optimizers
+from pzt_ident.search.loop import Stop, drive, minimize
 
 WORDS = optimizers.words()
 few = settings(max_examples=5, deadline=None)
@@ -119,7 +119,7 @@ def test_residuals_are_worth_their_while(word):
 def test_writes_nothing_and_needs_no_place_to_write(tmp_path):
     """pyswarms would write report.log into the working directory, and DEAP and pycma know such habits too."""
     code = (
-        "import numpy as np; from pzt_ident.registry import optimizers; from pzt_ident.search import minimize\n"
+        "from pzt_ident.model.registry import optimizers; from pzt_ident.search.loop import minimize\n"
         "for word in optimizers.words(): minimize(lambda x: float(x @ x), [(-1, 1)] * 2, word, evaluations=80)\n"
         "import logging; assert not logging.getLogger().handlers, logging.getLogger().handlers"
     )

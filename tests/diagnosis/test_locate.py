@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pzt_ident.data.noise import Floor
+from pzt_ident.data.record import Record
+from pzt_ident.diagnosis.binning import doubling, linear, logarithmic, power
 from pzt_ident.diagnosis.locate import locate
-from pzt_ident.diagnosis.noise import Floor
-from pzt_ident.diagnosis.sorting import doubling, linear, logarithmic, power
-from pzt_ident.diagnosis.stretches import heaviest
-from pzt_ident.record import Record
+from pzt_ident.diagnosis.worst_intervals import heaviest
 
 DT = 1e-3
 TIME = DT * np.arange(8000)
@@ -239,14 +239,14 @@ def test_the_heaviest_run_is_the_heaviest(weights):
 @given(st.lists(st.floats(1e-6, 1e6), min_size=1, max_size=30), st.integers(0, 5))
 def test_every_value_is_in_its_bin(values, shift):
     values = np.array(values)
-    for sorting in (linear("a", "V", [values]), logarithmic("b", "s", [values], 1e-4 * values.max())):
-        for value, place in zip(values, sorting.places[0], strict=True):
-            own, slack = sorting.bins[place], 1e-9 * values.max()
+    for binning in (linear("a", "V", [values]), logarithmic("b", "s", [values], 1e-4 * values.max())):
+        for value, place in zip(values, binning.places[0], strict=True):
+            own, slack = binning.bins[place], 1e-9 * values.max()
             assert own.lower - slack <= value <= own.upper + slack
     whole = np.round(values).astype(int) + 1
-    sorting = doubling("c", [whole])
-    for value, place in zip(whole, sorting.places[0], strict=True):
-        assert sorting.bins[place].lower <= value <= sorting.bins[place].upper
+    binning = doubling("c", [whole])
+    for value, place in zip(whole, binning.places[0], strict=True):
+        assert binning.bins[place].lower <= value <= binning.bins[place].upper
 
 
 @given(st.integers(2, 300), st.integers(0, 100))

@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 
 import rig
 import stage
-from pzt_ident.block import Addition, Block, Coupling, Place
 from pzt_ident.diagnosis import refit
+from pzt_ident.diagnosis.caveats import bounded, silenced
 from pzt_ident.diagnosis.refit import descend, elsewhere, first_fit, made, stepped
-from pzt_ident.model import Model
-from pzt_ident.parameter import Parameter
-from pzt_ident.registry import blocks
-from pzt_ident.remarks import bounded, silenced
+from pzt_ident.model.block import Addition, Block, Coupling, Place
+from pzt_ident.model.chain import Chain
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
 
 @pytest.fixture(scope="module")
@@ -227,7 +227,7 @@ def seen_through_a_coupling(response=None):
     rng = np.random.default_rng(3)
     drive = [np.interp(np.arange(600), np.arange(0, 601, 25), rng.uniform(0, 100, 25)) for _ in "xy"]
     made = rig.record(*drive, response=[drive[0] * 1e-7 if response is None else response, 0 * drive[1]], measured=[0])
-    return refit.Case(COUPLED, (), [replace(made, response_units=("um", None))], stage.wishes(MECHANICS))
+    return refit.Case(COUPLED, (), [replace(made, response_units=("um", None))], stage.specs(MECHANICS))
 
 
 ON_AXES = [word for word in blocks.effects() if not issubclass(blocks[word], Coupling | Addition)]
@@ -240,7 +240,7 @@ def test_an_effect_kept_off_an_axis_leaves_it_as_it_is_without(effect):
     silent = made.silent((effect,))
     assert silent
     chain = blocks.chain((*COUPLED, effect))
-    one, both = Model(chain, "xy", (0,), given=silent), Model(chain, "xy", (0, 1))
+    one, both = Chain(chain, "xy", (0,), given=silent), Chain(chain, "xy", (0, 1))
     known = dict(zip(one.names, rig.candidates(one, made.records[0].drive, 4, 1).T, strict=True)) | silent
     apart = {name: known.get(name, known.get(name.partition(".")[2])) for name in both.names}
     responses = [

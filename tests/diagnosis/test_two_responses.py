@@ -9,8 +9,8 @@ import pytest
 from pzt_ident.diagnosis.next_experiment import Reach, drives_of, propose
 from pzt_ident.diagnosis.refit import Case, first_fit, refit
 from pzt_ident.diagnosis.verdict import diagnose
-from pzt_ident.plan import Plan
-from pzt_ident.registry import blocks
+from pzt_ident.engine.simulator import Simulator
+from pzt_ident.model.registry import blocks
 from rig import path, record
 
 FIXED = {"remanence": 5000.0, "spread": 0.3, "interaction": 200.0, "bias": 0.0, "poled": -3000.0}
@@ -25,18 +25,18 @@ def made():
     """1 and 0.1 Hz to identify, 0.01 Hz to validate; noise of 1/1000 of each response."""
     known = {f"homogenized_energy.{word}": value for word, value in FIXED.items()}
     known |= {"p.homogenized_energy.quadratic": 0.0, "d.homogenized_energy.quadratic": 5e-5}  # nm/V^2
-    wishes = {name: SimpleNamespace(bounds=None, value=value) for name, value in known.items()}
-    wishes["homogenized_energy.coercive"] = SimpleNamespace(bounds=(300.0, 3000.0), value=None)
+    specs = {name: SimpleNamespace(bounds=None, value=value) for name, value in known.items()}
+    specs["homogenized_energy.coercive"] = SimpleNamespace(bounds=(300.0, 3000.0), value=None)
     ruled_out = [word for word in blocks.effects() if word not in LEFT]
-    case = Case(["homogenized_energy"], (), [blank(hertz) for hertz in (1, 0.1, 0.01)], wishes, ruled_out, SHARED)
+    case = Case(["homogenized_energy"], (), [blank(hertz) for hertz in (1, 0.1, 0.01)], specs, ruled_out, SHARED)
     problem, rng = case.problem(("thermal_relaxation",)), np.random.default_rng(3)
-    theta = [(FIXED | TRUE | OWN["pd"[slot.axis]])[slot.word] for slot in problem.model.slots]
+    theta = [(FIXED | TRUE | OWN["pd"[entry.axis]])[entry.word] for entry in problem.model.entries]
     records = []
     for one in case.records:
-        clean = Plan(problem.model, one).simulate(np.array(theta))[0]
+        clean = Simulator(problem.model, one).simulate(np.array(theta))[0]
         noise = 1e-3 * np.ptp(clean, axis=1, keepdims=True) * rng.normal(size=clean.shape)
         records.append(replace(one, response=clean + noise))
-    return Case(case.words, (), records, wishes, ruled_out, SHARED)
+    return Case(case.words, (), records, specs, ruled_out, SHARED)
 
 
 def blank(hertz):

@@ -12,7 +12,7 @@ from pzt_ident.diagnosis import refit
 from pzt_ident.diagnosis.refit import first_fit
 from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.verdict import Candidate, diagnose, doubted, drop, earns, sentence, settle
-from pzt_ident.registry import blocks
+from pzt_ident.model.registry import blocks
 
 
 def judged(made):
@@ -51,7 +51,7 @@ def test_what_is_missing_is_named_and_its_refit_is_at_the_noise_on_records_that_
 def test_look_alikes_that_fit_hardly_worse_are_in_its_class():
     made = stage.case(stage.EFFECTS["amplifier_lag"], noise=1e-8)
     found = judged(made)
-    assert {"amplifier_lag"} < set(found.tied) <= {"amplifier_lag", *blocks["amplifier_lag"].looks_like}
+    assert {"amplifier_lag"} < set(found.tied) <= {"amplifier_lag", *blocks["amplifier_lag"].look_alikes}
     for word in found.tied[1:]:
         assert drop(of(found, word).fit.total, found.best.fit.total) < 0.4 * made.floor
 

@@ -41,13 +41,13 @@ def test_a_chirp_moves_it_as_the_differential_equation_says(cubic):
         time = np.arange(0, 0.02, dt)
         force = 8 + 2 * np.sin(2 * np.pi * (200 + 3e4 * time) * time)
 
-        def motion(t, state, time=time, force=force):
+        def drive_history(t, state, time=time, force=force):
             x, v = state
             pull = STIFFNESS * (np.interp(t, time, force) - x - cubic * x**3)
             return v, (pull - DAMPING * v) / MASS
 
         rest = bent(force[:2] * 0 + force[0], cubic)[0]
-        truth = solve_ivp(motion, (0, time[-1]), (rest, 0), t_eval=time, rtol=1e-9, atol=1e-9, max_step=dt).y[0]
+        truth = solve_ivp(drive_history, (0, time[-1]), (rest, 0), t_eval=time, rtol=1e-9, atol=1e-9, max_step=dt).y[0]
         errors.append(np.abs(bent(force, cubic, dt) - truth).max() / np.ptp(truth))
     assert errors[1] < 2e-3
     assert errors[0] / errors[1] == pytest.approx(4, rel=0.3)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from pzt_ident.effects.periodic_disturbance import PeriodicDisturbance
-from pzt_ident.plan import Plan
+from pzt_ident.engine.simulator import Simulator
 from rig import model, record
 
 
@@ -18,8 +18,8 @@ def test_sine_and_cosine_make_any_phase():
 def test_takes_its_own_line_out_of_a_record_and_no_other(frequency, left):
     drive = np.linspace(0, 100, 1000)
     hum = 0.03 * np.sin(100 * np.pi * 1e-3 * np.arange(1000) + 1)
-    plan = Plan(model("periodic_disturbance"), record(drive, response=[drive + hum]))
-    assert np.sqrt(plan.squares(np.array([[frequency]]))[0, 0] / 1000) == pytest.approx(left, rel=1e-3, abs=1e-12)
+    simulator = Simulator(model("periodic_disturbance"), record(drive, response=[drive + hum]))
+    assert np.sqrt(simulator.squares(np.array([[frequency]]))[0, 0] / 1000) == pytest.approx(left, rel=1e-3, abs=1e-12)
 
 
 def test_a_record_of_less_than_three_periods_has_none():

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from pzt_ident.job import load_job
-from pzt_ident.registry import optimizers
-from pzt_ident.run import problem_of, read
-from pzt_ident.search import Stop, drive
+from pzt_ident.job.schema import load_job
+from pzt_ident.model.registry import optimizers
+from pzt_ident.run.identify import problem_of, read
+from pzt_ident.search.loop import Stop, drive
 
 QUANTISED = 0.02887e-6  # m, 0.1 um / sqrt(12)
 

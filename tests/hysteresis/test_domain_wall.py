@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 import smith
+from pzt_ident.diagnosis.caveats import broken
 from pzt_ident.diagnosis.refit import Case, first_fit
+from pzt_ident.engine.simulator import Simulator
 from pzt_ident.errors import InputError
-from pzt_ident.job import Job
-from pzt_ident.model import Model
-from pzt_ident.plan import Plan
-from pzt_ident.problem import Problem
-from pzt_ident.remarks import broken
-from pzt_ident.run import read, run
+from pzt_ident.job.schema import Job
+from pzt_ident.model.chain import Chain
+from pzt_ident.run.identify import read, run
+from pzt_ident.search.problem import Problem
 from rig import block_of, path, record, response
 from twins import domain_wall_twin as twin
 
@@ -111,11 +111,11 @@ def test_biased_minor_loops_close_and_are_forgotten(known):
 @pytest.mark.parametrize("word", ["domain_wall", "domain_wall:biased"])
 def test_walls_that_break_condition_9_are_said_to(word):
     """alpha P_s > a has walls run away that start to move, those of DW1 never do."""
-    model, field = Model([block_of(word)], "x", [0]), record(path(0, 13500, -1000, 4000, points=100))
+    model, field = Chain([block_of(word)], "x", [0]), record(path(0, 13500, -1000, 4000, points=100))
 
     def broken(**known):
         values = smith.domain_wall(**known)
-        return Plan(model, field).broken(np.array([[values[name] for name in model.names]]))
+        return Simulator(model, field).broken(np.array([[values[name] for name in model.names]]))
 
     assert broken(**smith.DW1) == ()
     (said,) = broken(alpha=4.5e6, k=2e3, c=0.1)
@@ -162,7 +162,7 @@ def test_another_form_is_unknown():
 
 def test_a_set_that_can_only_run_away_is_refused():
     """As printed: c alpha P_s / a = 3.9."""
-    model, field = Model([block_of("domain_wall")], "x", [0]), record(path(0, 13500, points=100))
+    model, field = Chain([block_of("domain_wall")], "x", [0]), record(path(0, 13500, points=100))
     values = {
         name: SimpleNamespace(bounds=None, value=value) for name, value in smith.domain_wall(**smith.PRINTED).items()
     }

@@ -8,7 +8,7 @@ from scipy.linalg import expm
 
 from pzt_ident.errors import InputError
 from pzt_ident.mechanics import _balanced, _linear, _rod, _shell
-from pzt_ident.registry import blocks
+from pzt_ident.model.registry import blocks
 from rig import response
 
 ROD = {

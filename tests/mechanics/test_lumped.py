@@ -7,8 +7,8 @@ import pytest
 from scipy.optimize import brentq
 
 import lin_lin
-from pzt_ident.hold import oscillator
 from pzt_ident.mechanics.lumped import Lumped
+from pzt_ident.model.first_order_hold import oscillator
 from rig import response, triangle
 from twins import lumped_twin
 

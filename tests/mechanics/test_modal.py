@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from pzt_ident.errors import InputError
-from pzt_ident.job import Job
-from pzt_ident.registry import blocks
+from pzt_ident.job.schema import Job
+from pzt_ident.model.registry import blocks
 from rig import model, record, response
 from twins import lumped_twin, modal_twin, rod_twin
 

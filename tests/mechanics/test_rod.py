@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from pzt_ident.errors import InputError
 from pzt_ident.mechanics import _linear, _rod
-from pzt_ident.registry import blocks
+from pzt_ident.model.registry import blocks
 from rig import response
 from twins import lumped_twin, rod_twin
 

@@ -9,7 +9,7 @@ from scipy.linalg import eigh
 
 from pzt_ident.errors import InputError
 from pzt_ident.mechanics import _linear, _shell
-from pzt_ident.registry import blocks
+from pzt_ident.model.registry import blocks
 from rig import response
 from twins import modal_twin
 

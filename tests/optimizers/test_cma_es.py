@@ -3,7 +3,7 @@
 import numpy as np
 
 from pzt_ident.optimizers.cma_es import CMAES, ranked
-from pzt_ident.search import Stop, drive
+from pzt_ident.search.loop import Stop, drive
 
 
 def walk(function, evaluations=240):

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
 
 from pzt_ident.optimizers.least_squares import LeastSquares, bounded_step, secant
-from pzt_ident.search import Stop, drive
+from pzt_ident.search.loop import Stop, drive
 
 seeds = st.integers(0, 2**32 - 1)
 

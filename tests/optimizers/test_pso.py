@@ -6,7 +6,7 @@ import pytest
 from pzt_ident.errors import InputError
 from pzt_ident.optimizers.pso import PSO
 from pzt_ident.optimizers.pso_vmax import VmaxPSO
-from pzt_ident.search import Stop, drive
+from pzt_ident.search.loop import Stop, drive
 
 
 def flight(optimizer, function, generations=40, dimensions=3, seed=4):

@@ -9,9 +9,9 @@ from hypothesis.extra.numpy import arrays
 
 from pzt_ident.report.figures import plates, render, write_page_figures, write_paper_figures
 from pzt_ident.report.residual_figures import banded, branches, cell_means
-from pzt_ident.report.results import Trace, read_results
 from pzt_ident.report.search_figures import descent, within
 from pzt_ident.report.style import COLUMN, PAGE, along, decimate, fit
+from pzt_ident.run.results import Trace, read_results
 
 NUMBER = st.floats(-1e6, 1e6) | st.just(np.nan)
 

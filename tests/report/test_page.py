@@ -8,10 +8,10 @@ from html.parser import HTMLParser
 
 import pytest
 
-from pzt_ident.compare import compare
 from pzt_ident.report.page import write_report
-from pzt_ident.report.results import read_results
 from pzt_ident.report.words import findings, listed, reason, verdict
+from pzt_ident.run.misfit import compare
+from pzt_ident.run.results import read_results
 
 from .conftest import WEIRD, make_run
 

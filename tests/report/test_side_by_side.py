@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from pzt_ident.cli import main
+from pzt_ident.cli.commands import main
 from pzt_ident.report.side_by_side import labels, write_side_by_side
 
 from .conftest import make_run

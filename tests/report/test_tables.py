@@ -5,8 +5,8 @@ import pandas as pd
 import pytest
 
 from pzt_ident.report.latex import escaped, tabular
-from pzt_ident.report.results import read_results
 from pzt_ident.report.tables import make_tables, write_tables
+from pzt_ident.run.results import read_results
 
 
 @pytest.fixture(scope="module")

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pzt_ident.report.results import Trace
 from pzt_ident.report.traces import packed
+from pzt_ident.run.results import Trace
 
 
 def made(samples, seed=0, settle=0.0, size=1.0):

@@ -1,7 +1,7 @@
 """Blocks that only tests use."""
 
-from pzt_ident.block import Block, Coupling, Place
-from pzt_ident.parameter import Parameter
+from pzt_ident.model.block import Block, Coupling, Place
+from pzt_ident.model.parameter import Parameter
 
 
 class Identity(Block):

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.signal import resample
 
-from pzt_ident.block import Bank, Beside, Coupling, Modes, Operator, Place, Relays, Shift, asked
+from pzt_ident.model.block import Bank, Beside, Coupling, Modes, Operator, Place, Relays, Shift, asked
 
 SIZES = ("span", "peak")  # of the drive of the axis itself
 
@@ -92,13 +92,13 @@ def parameters(model, block, record, axis, other, theta):
     if axis not in model.measured:
         if other != axis or issubclass(block, Modes):
             return None
-        given = {s.word: [v] for s, v in zip(model.slots, theta, strict=True) if s.block is block and s.axis == axis}
+        given = {s.word: [v] for s, v in zip(model.entries, theta, strict=True) if s.block is block and s.axis == axis}
         first = model.measured[0]
         return parameters(model, block, record, first, first, theta) | {word: found[word] for word in SIZES} | given
     own = {}
-    for slot, value in zip(model.slots, theta, strict=True):
-        if slot.block is block and ((slot.axis, slot.other) == (axis, other) or slot.name in model.shared):
-            own.setdefault(slot.parameter.name, []).append(value)
+    for entry, value in zip(model.entries, theta, strict=True):
+        if entry.block is block and ((entry.axis, entry.other) == (axis, other) or entry.name in model.shared):
+            own.setdefault(entry.parameter.name, []).append(value)
     return found | own
 
 

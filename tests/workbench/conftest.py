@@ -12,7 +12,7 @@ import pytest
 from starlette.testclient import TestClient
 
 from pzt_ident.workbench.app import make_app
-from pzt_ident.workbench.bench import Bench
+from pzt_ident.workbench.session import Session
 
 TOKEN = "a-token-of-the-session"
 HOST = "127.0.0.1:8000"
@@ -26,14 +26,14 @@ def alone(story: Coroutine[Any, Any, Any]) -> Any:
 
 
 @pytest.fixture
-def bench(tmp_path, monkeypatch) -> Bench:
+def session(tmp_path, monkeypatch) -> Session:
     monkeypatch.chdir(tmp_path)
-    return Bench(tmp_path, tmp_path / "workbench")
+    return Session(tmp_path, tmp_path / "workbench")
 
 
 @pytest.fixture
-def app(bench):
-    return make_app(bench, {HOST, "localhost:8000"}, TOKEN)
+def app(session):
+    return make_app(session, {HOST, "localhost:8000"}, TOKEN)
 
 
 @pytest.fixture

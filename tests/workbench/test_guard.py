@@ -18,11 +18,11 @@ GETS = ["state", "signals", "job", "drive", "events"]
 
 
 @pytest.mark.parametrize("name", POSTS)
-def test_nothing_changes_without_the_token(stranger, bench, name):
+def test_nothing_changes_without_the_token(stranger, session, name):
     for headers in ({}, {"x-pzt-token": ""}, {"x-pzt-token": TOKEN[:-1]}, {"x-pzt-token": "é"}):
         raw = {key: value.encode() for key, value in headers.items()}
         assert stranger.post(f"/api/{name}", content=b"{}", headers=raw).status_code == 403
-    assert not bench.folder.exists()
+    assert not session.folder.exists()
 
 
 @pytest.mark.parametrize("name", GETS)
@@ -101,54 +101,54 @@ def test_no_path_leads_out_of_the_page(client, path):
         "a\0b",
     ],
 )
-def test_no_file_outside_the_folder_is_read(client, bench, tmp_path_factory, name):
+def test_no_file_outside_the_folder_is_read(client, session, tmp_path_factory, name):
     outside = tmp_path_factory.mktemp("outside")
     measured(outside / "data.csv")
-    (bench.root / "link.csv").symlink_to(outside / "data.csv")
-    (bench.root / "linked").symlink_to(outside, target_is_directory=True)
-    measured(bench.root.parent / "secret.csv")
+    (session.root / "link.csv").symlink_to(outside / "data.csv")
+    (session.root / "linked").symlink_to(outside, target_is_directory=True)
+    measured(session.root.parent / "secret.csv")
     answer = client.post("/api/look", json={"files": [{"file": name}]})
     assert answer.status_code == 400 and "columns" not in answer.text
-    measured(bench.root / "data.csv")
+    measured(session.root / "data.csv")
     elsewhere = {"channels": {"x.response": {"file": name, "number": 3}}}
     for record in ({"file": name}, {"file": "data.csv"} | elsewhere):
         answer = client.post("/api/job", json=form(records=[record | {"use": "identify"}]))
         assert answer.status_code == 400
-    assert not bench.steps
+    assert not session.steps
 
 
-def test_what_is_inside_is_read(client, bench):
-    (bench.root / "deep").mkdir()
-    measured(bench.root / "deep" / "data.csv")
-    assert inside(bench.root, "deep/data.csv") == bench.root / "deep" / "data.csv"
+def test_what_is_inside_is_read(client, session):
+    (session.root / "deep").mkdir()
+    measured(session.root / "deep" / "data.csv")
+    assert inside(session.root, "deep/data.csv") == session.root / "deep" / "data.csv"
     found = client.post("/api/look", json={"files": [{"file": "deep/data.csv"}]}).json()
     assert [column["role"] for column in found["columns"]] == ["time", "x.drive", "x.response"]
     with pytest.raises(InputError):
-        inside(bench.root, "deep/../deep/data.csv")
+        inside(session.root, "deep/../deep/data.csv")
 
 
 @pytest.mark.parametrize("name", ["../a.csv", "a/b.csv", ".hidden", "", "a\\b.csv", "a\0.csv", "con\n.csv", "x" * 300])
-def test_an_upload_cannot_choose_its_folder(client, bench, name):
+def test_an_upload_cannot_choose_its_folder(client, session, name):
     answer = client.post("/api/upload", params={"name": name}, content=b"1,2\n3,4\n")
     assert answer.status_code == 400
-    assert not bench.folder.exists()
+    assert not session.folder.exists()
 
 
-def test_an_upload_of_2_gb_is_refused_before_it_is_read(client, bench):
+def test_an_upload_of_2_gb_is_refused_before_it_is_read(client, session):
     def body():
         yield b"1,2\n"
         raise AssertionError("the body was read on")
 
     answer = client.post("/api/upload?name=a.csv", content=body(), headers={"content-length": str(2 << 30)})
     assert answer.status_code == 413
-    assert not list(bench.folder.rglob("*.csv"))
+    assert not list(session.folder.rglob("*.csv"))
 
 
-def test_an_upload_that_lies_about_its_size_is_cut_off(client, bench, monkeypatch):
+def test_an_upload_that_lies_about_its_size_is_cut_off(client, session, monkeypatch):
     monkeypatch.setattr(server, "LARGEST_UPLOAD", 1000)
     answer = client.post("/api/upload?name=a.csv", content=itertools.repeat(b"1,2\n3,4\n" * 20, 50))
     assert answer.status_code == 413
-    assert not [path for path in bench.folder.rglob("*") if path.is_file()]
+    assert not [path for path in session.folder.rglob("*") if path.is_file()]
 
 
 def test_nothing_uploaded_is_unpickled(client, tmp_path):
@@ -173,8 +173,8 @@ def test_a_file_of_markup_comes_back_as_text(client):
     assert answer.json()["columns"][0]["header"].startswith("<img")
 
 
-def test_bad_forms_are_errors_not_failures(client, bench):
-    measured(bench.root / "data.csv")
+def test_bad_forms_are_errors_not_failures(client, session):
+    measured(session.root / "data.csv")
     for body in (
         b"",
         b"[]",
@@ -191,8 +191,8 @@ def test_bad_forms_are_errors_not_failures(client, bench):
         assert client.post(f"/api/{name}", json={"effect": "creep"}).status_code == 400
 
 
-def test_words_of_a_form_cannot_write_other_keys_into_the_job(client, bench):
-    measured(bench.root / "data.csv")
+def test_words_of_a_form_cannot_write_other_keys_into_the_job(client, session):
+    measured(session.root / "data.csv")
     answer = client.post("/api/job", json=form(name='x"\nseed: 99\nname: "y'))
     assert answer.status_code == 400 or "seed: 99" not in json.loads(answer.text)["job"]["text"].splitlines()
 
@@ -200,7 +200,7 @@ def test_words_of_a_form_cannot_write_other_keys_into_the_job(client, bench):
 def test_hosts_of_the_network_need_a_second_flag(tmp_path, monkeypatch):
     from click.testing import CliRunner
 
-    from pzt_ident.cli import main
+    from pzt_ident.cli.commands import main
 
     monkeypatch.chdir(tmp_path)
     answer = CliRunner().invoke(main, ["workbench", "--host", "0.0.0.0", "--no-browser"])

@@ -1,0 +1,42 @@
+"""What every reader gives: the named signals or arrays of a file, read when they are picked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from numpy.typing import NDArray
+
+from pzt_ident.data.units import split_header
+
+
+@dataclass(frozen=True)
+class Column:
+    """One signal or array. `header` is its text in the file, unit included, or its path `group/name`.
+
+    `load` reads the values; text that is no number stays text. `place` says where a row stands, `line 17` for example.
+    """
+
+    header: str
+    load: Callable[[], NDArray[Any]]
+    given_unit: str | None = None
+    place: Callable[[int], str] = "row {}".format
+
+    @property
+    def name(self) -> str:
+        return split_header(self.header)[0]
+
+    @property
+    def unit(self) -> str | None:
+        return self.given_unit or split_header(self.header)[1]
+
+
+@dataclass(frozen=True)
+class Table:
+    """What one file holds: columns, numbered from 1, and scalars that only their name finds (a sample rate)."""
+
+    path: Path
+    columns: Sequence[Column]
+    scalars: Sequence[Column] = ()

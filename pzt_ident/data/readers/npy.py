@@ -1,0 +1,18 @@
+"""NumPy arrays: one array, or the fields of a structured one."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from pzt_ident.data.readers.column import Column, Table
+from pzt_ident.data.record import Source
+
+
+def read(path: Path, source: Source) -> Table:
+    array = np.load(path, mmap_mode="r", allow_pickle=False)
+    if array.dtype.names:
+        return Table(path, [Column(name, partial(array.__getitem__, name)) for name in array.dtype.names])
+    return Table(path, [Column(path.stem, partial(np.asarray, array))])

@@ -1,0 +1,145 @@
+"""How a text table is laid out: delimiter, decimal sign, header, first line of numbers."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from operator import methodcaller
+
+from pzt_ident.data.units import is_unit
+from pzt_ident.errors import InputError
+
+DELIMITERS = ("\t", ";", ",", " ")
+COMMENTS = ("#", "%", "//", "!")
+GAPS = frozenset(("", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--"))
+
+
+@dataclass(frozen=True)
+class Layout:
+    """`start`: index of the first line of numbers; `names`: one header text a column, empty where there is none.
+
+    The delimiter " " stands for any white space.
+    """
+
+    delimiter: str
+    decimal: str
+    start: int = 0
+    width: int = 0
+    names: tuple[str, ...] = ()
+
+    def split(self, line: str) -> list[str]:
+        if '"' in line:
+            line = line.strip() if self.delimiter == " " else line
+            return next(csv.reader([line], delimiter=self.delimiter, skipinitialspace=True))
+        return line.split() if self.delimiter == " " else line.split(self.delimiter)
+
+    def splitter(self, lines: Iterable[str]) -> Callable[[str], list[str]]:
+        """`split`, or where no line has quotes the same without a look for them."""
+        if any('"' in line for line in lines):
+            return self.split
+        return methodcaller("split", None if self.delimiter == " " else self.delimiter)
+
+    def number(self, cell: str) -> bool:
+        """Whether a cell holds a number, a gap included."""
+        try:
+            float(cell.replace(self.decimal, "."))
+        except ValueError:
+            return cell.strip().lower() in GAPS
+        return True
+
+
+def sniff(lines: Sequence[str], where: str, delimiter: str | None = None) -> Layout:
+    """The layout of the table in `lines`, judged by up to 100 lines from the middle on.
+
+    Raises InputError where there are no two lines of numbers.
+    """
+    filled = [i for i, line in enumerate(lines) if line.strip()]
+    sample = [lines[i] for i in filled[len(filled) // 2 :][:100] if not lines[i].startswith(COMMENTS)]
+    layout = _punctuation(sample, delimiter)
+    rows = [layout.split(line) for line in sample]
+    width = Counter(map(len, rows)).most_common(1)[0][0] if rows else 0
+    full = [row for row in rows if len(row) == width]
+    numeric = [k for k in range(width) if 2 * sum(layout.number(row[k]) for row in full) > len(full)]
+    start = _start(lines, filled, layout, width, numeric)
+    if start is None:
+        raise InputError("holds no table of numbers", where=where, remedy="is it the right file, sheet or table?")
+    above = [lines[i].lstrip("".join(COMMENTS) + " ") for i in filled if i < start]
+    return Layout(layout.delimiter, layout.decimal, start, width, _names(above, layout, width))
+
+
+def _punctuation(sample: Sequence[str], delimiter: str | None) -> Layout:
+    choices = [Layout(mark, decimal) for mark in ([delimiter] if delimiter else DELIMITERS) for decimal in ".,"]
+
+    def numbers_less_words(layout: Layout) -> int:
+        cells = (cell for line in sample for cell in layout.split(line) if cell.strip())
+        return sum(1 if layout.number(cell) else -1 for cell in cells)
+
+    return max((layout for layout in choices if layout.delimiter != layout.decimal), key=numbers_less_words)
+
+
+def _start(
+    lines: Sequence[str], filled: Sequence[int], layout: Layout, width: int, numeric: Sequence[int]
+) -> int | None:
+    """The first of two lines of numbers, or a line above it that is no header."""
+
+    def clean(i: int) -> bool:
+        row = layout.split(lines[i])
+        return (
+            len(row) == width and any(row[k].strip() for k in numeric) and all(layout.number(row[k]) for k in numeric)
+        )
+
+    def partly(i: int) -> bool:
+        row = layout.split(lines[i])
+        numbers = [cell.strip() != "" and layout.number(cell) for cell in row]
+        return len(row) == width and any(numbers) and not _units(row)
+
+    kept: list[int] = []
+    for i in (i for i in filled if not lines[i].startswith(COMMENTS)):
+        kept.append(i)
+        if len(kept) > 1 and clean(kept[-1]) and clean(kept[-2]):
+            break
+    else:
+        return None
+    at = len(kept) - 2
+    while at > 0 and partly(kept[at - 1]):
+        at -= 1
+    return kept[at]
+
+
+def _names(above: Sequence[str], layout: Layout, width: int) -> tuple[str, ...]:
+    """Header texts from the lines above the numbers, joined with the units of a second header line."""
+    last = _fields(above[-1], layout, width) if above else []
+    first = _fields(above[-2], layout, width) if len(above) > 1 and _units(last) else []
+    if _words(first, width):
+        return tuple(f"{name} [{unit.strip('[]()- ')}]" for name, unit in zip(first, last, strict=True))
+    return tuple(last) if _words(last, width) else ("",) * width
+
+
+def _fields(line: str, layout: Layout, width: int) -> list[str]:
+    """The cells of a header line, by the delimiter of the numbers or another one that fits their count."""
+    for delimiter in (layout.delimiter, *DELIMITERS):
+        if delimiter == " " and '"' not in line:
+            cells = re.findall(r"\S+(?:\s*[\[(][^\])]*[\])])?", line)
+        else:
+            cells = [cell.strip() for cell in Layout(delimiter, ".").split(line)]
+        cells += [""] * (width - len(cells))
+        if 2 * sum(map(bool, cells)) > width and not any(cells[width:]):
+            return cells[:width]
+    return []
+
+
+def _words(cells: Sequence[str], width: int) -> bool:
+    return len(cells) == width and not any(re.fullmatch(r"[+-]?[\d.,]+(?:[eE][+-]?\d+)?", cell) for cell in cells)
+
+
+def _units(cells: Iterable[str]) -> bool:
+    """Whether the cells are the units of a second header line: `1` is one, other numbers are not."""
+    units = [unit for cell in cells if (unit := cell.strip("[]()- "))]
+    return any(unit != "1" for unit in units) and all(unit == "1" or _is_word_unit(unit) for unit in units)
+
+
+def _is_word_unit(text: str) -> bool:
+    return not text[0].isdigit() and is_unit(text)

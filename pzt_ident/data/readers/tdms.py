@@ -1,0 +1,36 @@
+"""NI TDMS files: `group/channel`, the unit from `unit_string`, the sample time as `group/channel/wf_increment`."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pzt_ident.data.readers.column import Column, Table
+from pzt_ident.data.record import Source
+
+
+def read(path: Path, source: Source) -> Table:
+    from nptdms import TdmsFile
+
+    content = TdmsFile.read_metadata(path)
+    columns: list[Column] = []
+    scalars: list[Column] = []
+    for channel in (channel for group in content.groups() for channel in group.channels()):
+        name = f"{channel.group_name}/{channel.name}"
+        unit = str(channel.properties.get("unit_string", "")) or None
+        columns.append(Column(name, partial(_values, path, channel.group_name, channel.name), unit))
+        if "wf_increment" in channel.properties:
+            step = channel.properties["wf_increment"]
+            scalars.append(Column(f"{name}/wf_increment", partial(np.asarray, step), "s"))
+    return Table(path, columns, scalars)
+
+
+def _values(path: Path, group: str, channel: str) -> NDArray[Any]:
+    from nptdms import TdmsFile
+
+    with TdmsFile.open(path) as file:
+        return np.asarray(file[group][channel][:])

@@ -1,0 +1,90 @@
+"""Text tables: CSV, TSV, white space, with or without header, in the common encodings.
+
+`str.split` and `float` take 0.1 to 0.2 s for a file of 1.5 MB and know the line of each value; pandas' C reader takes
+0.03 s, and 0.6 s more for its import.
+"""
+
+from __future__ import annotations
+
+import codecs
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pzt_ident.data.readers import analyser
+from pzt_ident.data.readers.column import Column, Table
+from pzt_ident.data.readers.sniff import COMMENTS, GAPS, sniff
+from pzt_ident.data.record import Source
+from pzt_ident.errors import InputError
+
+
+def read(path: Path, source: Source) -> Table:
+    """The columns of a text file, of a file with several tables those of `source.table`."""
+    lines = lines_of(path)
+    first, chosen = analyser.table(lines, source.table, str(path))
+    return Table(path, parse(chosen, str(path), "line", first))
+
+
+def parts(path: Path) -> tuple[str, dict[str, str]]:
+    """The numbers of the tables of an analyser's export, with what they are called."""
+    return "table", analyser.titles(lines_of(path))
+
+
+def lines_of(path: Path) -> list[str]:
+    return decode(path.read_bytes(), str(path)).replace("\r\n", "\n").replace("\r", "\n").split("\n")
+
+
+def decode(raw: bytes, where: str) -> str:
+    """Text of UTF-8 or UTF-16 with a byte order mark, of UTF-8 without, else of Latin-1."""
+    for mark, encoding in (
+        (codecs.BOM_UTF8, "utf-8-sig"),
+        (codecs.BOM_UTF16_LE, "utf-16"),
+        (codecs.BOM_UTF16_BE, "utf-16"),
+    ):
+        if raw.startswith(mark):
+            return raw.decode(encoding)
+    if b"\0" in raw:
+        raise InputError("is not a text file (it holds zero bytes)", where=where, remedy="save it as UTF-8 text")
+    try:
+        return raw.decode("utf-8")
+    except UnicodeDecodeError:
+        return raw.decode("latin-1")
+
+
+def parse(lines: Sequence[str], where: str, place: str, first: int = 1, delimiter: str | None = None) -> list[Column]:
+    """The columns of the only table in `lines`; the first of them is number `first` (of `place`: line, row).
+
+    Raises InputError where there is no table of numbers or where a line has more or fewer fields than the others.
+    """
+    layout = sniff(lines, where, delimiter)
+    kept = [i for i in range(layout.start, len(lines)) if lines[i].strip() and not lines[i].startswith(COMMENTS)]
+    rows = [lines[i] for i in kept]
+    split = layout.splitter(rows)
+    for i, row in zip(kept, map(split, rows), strict=True):
+        if len(row) != layout.width:
+            message = f"{place} {first + i} has {len(row)} fields instead of {layout.width}"
+            raise InputError(message, where=where, remedy=f"complete the {place} or delete it")
+
+    def placed(row: int) -> str:
+        return f"row {row} ({place} {first + kept[row]})" if row < len(kept) else f"row {row}"
+
+    def values(k: int) -> NDArray[Any]:
+        return _numbers([row[k] for row in map(split, rows)], layout.decimal)
+
+    return [Column(layout.names[k], partial(values, k), None, placed) for k in range(layout.width)]
+
+
+def _numbers(cells: Sequence[str], decimal: str) -> NDArray[Any]:
+    """The cells as numbers, or as text where one is no number."""
+    if decimal != ".":
+        cells = [cell.replace(decimal, ".") for cell in cells]
+    try:
+        if "_" not in "".join(cells):
+            return np.array(list(map(float, cells)))
+    except ValueError:
+        pass
+    return np.array(["nan" if cell.strip().lower() in GAPS else cell.strip() for cell in cells], dtype=object)

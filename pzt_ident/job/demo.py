@@ -1,0 +1,36 @@
+"""The whole story on a measurement that ships: a virtual stage, made by code that shares nothing with the package, in
+which two effects are hidden."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+HIDDEN = "hidden.json"
+
+
+def write_demo(folder: Path) -> Path:
+    """Write the records and the job, which knows of no effect, into a folder; the path of the job.
+
+    Raises InputError, and writes nothing, where one of the files is there already.
+    """
+    from pzt_ident.job.example import write_shipped
+
+    return write_shipped("demo", folder, without=(HIDDEN,))[0]
+
+
+def hidden() -> list[dict[str, Any]]:
+    """The truth, which the job does not know: effect, strength and unit of each effect in the measurement."""
+    return list(json.loads(files("pzt_ident.job").joinpath("examples", "demo", HIDDEN).read_text(encoding="utf-8")))
+
+
+def show_in_browser(page: Path | str) -> bool:
+    """Open a file or an address in the user's browser; False where there is none with a window."""
+    import webbrowser
+
+    windows = sys.platform in ("darwin", "win32") or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    return bool(windows) and webbrowser.open(page if isinstance(page, str) else page.resolve().as_uri())

@@ -1,0 +1,115 @@
+"""What a job may say of parameters: names that its model has, bounds and values that they can take."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from pzt_ident.errors import InputError, nearest
+from pzt_ident.job.document import Document, Loc
+from pzt_ident.model.registry import blocks, word_of
+
+if TYPE_CHECKING:
+    from pzt_ident.data.record import Axis
+    from pzt_ident.job.sections import Choice, Setting
+    from pzt_ident.model.chain import Chain, Entry
+
+Earlier = Mapping[str, Any]
+"""The sections before one, less those with a fault in their own form."""
+
+
+def check_parameters(document: Document, settings: dict[str, Setting], earlier: Earlier) -> None:
+    for name, setting in settings.items():
+        _setting(document, ("parameters", name), setting)
+    if not {"channels", "model", "effects"} <= set(earlier):
+        return
+    axes = earlier["channels"].axes
+    if all(axis.response is None for axis in axes.values()):
+        return
+    try:
+        model = _chain((*earlier["model"], *earlier["effects"]), axes, earlier.get("shared", ()), settings)
+    except InputError:
+        return  # a setting of a block, noted where it stands
+    spelled = {name: entry for entry in model.entries for name in model.spellings(entry)}
+    unseen = {entry.name for entry in model.entries if entry.axis not in model.measured}
+    if spelled and not any(_free(model, entry, settings) for entry in model.entries):
+        document.fault(("parameters",), "every parameter is fixed", "free at least one: give it `bounds`")
+    for name, setting in settings.items():
+        at: Loc = ("parameters", name)
+        if name not in spelled:
+            _stranger(document, name, earlier, spelled)
+            continue
+        declared = spelled[name].parameter
+        if setting.bounds and name in unseen:
+            document.fault(at, "its axis has no response to fit it to", "give it a `value`")
+        least = setting.bounds[0] if setting.bounds else setting.value
+        if declared.scale == "log" and least is not None and least <= 0:
+            document.fault(at, f"{least:g} is not above 0", "give a value or lower bound above 0")
+
+
+def _free(model: Chain, entry: Entry, settings: Mapping[str, Setting]) -> bool:
+    """Whether a parameter is searched for."""
+    setting = next((settings[name] for name in model.spellings(entry) if name in settings), None)
+    if setting is not None:
+        return setting.bounds is not None
+    return entry.parameter.value is None and not entry.parameter.linear
+
+
+def _chain(
+    items: Iterable[str | Choice],
+    axes: Mapping[str, Axis],
+    shared: Sequence[str] = (),
+    given: Collection[str] = (),
+) -> Chain:
+    """The model of the known words."""
+    from pzt_ident.model.chain import Chain
+
+    measured = [i for i, axis in enumerate(axes.values()) if axis.response is not None]
+    return Chain(list(dict.fromkeys(blocks.chain(items))), list(axes), measured, shared, given)
+
+
+def _setting(document: Document, at: Loc, setting: Setting) -> None:
+    if setting.bounds is None and setting.value is None:
+        document.fault(at, "sets nothing", "give `bounds: [low, high]` or `value: ...`")
+    if setting.bounds is None:
+        return
+    low, high = setting.bounds
+    if low >= high:
+        message = f"bounds reversed, {low:g} is not below {high:g}"
+        document.fault((*at, "bounds"), message, "write [low, high], or fix it with `value`")
+    if setting.value is not None:
+        document.fault((*at, "value"), "beside `bounds`", "keep one: bounds free a parameter, a value fixes it")
+
+
+def _stranger(document: Document, name: str, earlier: Earlier, spelled: Mapping[str, Entry]) -> None:
+    """Say what is wrong with a name that no parameter of this job has."""
+    *axis, block, word = ["", *name.split(".")]
+    axes, words = earlier["channels"].axes, list(map(word_of, earlier["model"]))
+    chosen = (*words, *earlier["effects"])
+    if len(axis) == 2 and axis[1] not in axes:
+        said = f"there is no axis {axis[1]!r}", nearest(axis[1], axes)
+    elif len(axis) == 2 and axes[axis[1]].response is None:
+        said = f"axis {axis[1]!r} has no response, so it has no such parameter", "take it out"
+    elif block not in chosen and block in blocks:
+        if any(word not in blocks for word in words):
+            return  # one of the unknown words may well stand for this block
+        said = f"{block!r} is not in this model", "list it under `model` or `effects`, or take this out"
+    elif block not in chosen:
+        said = f"unknown parameter {name!r}", nearest(name, spelled)
+    elif declared := blocks[block].parameters().get(word):
+        said = (
+            f"is not in the form of {block!r} that is chosen",
+            f"take it out; `pzt-ident show {block}` says which has it",
+        )
+        if declared.effect:
+            said = f"belongs to the effect {declared.effect!r}", f"add `effects: [{declared.effect}]`"
+        elif declared.per_record:
+            said = "is taken in closed form for each record", "take it out"
+        elif declared.each == "stage":
+            said = "is one of the whole stage", f"write {block}.{word}"
+        elif declared.each == "later axis":
+            said = "is relative to that of the first axis, which has none", "take it out"
+    else:
+        alike = [known for known in spelled if f"{block}." in known and known.count(".") == name.count(".")]
+        said = f"{block!r} has no parameter {word!r}", nearest(name, alike)
+    document.fault(("parameters", name), *said, at_key=True)

@@ -1,0 +1,205 @@
+"""The job file as a typed, frozen thing. Every fault in it is reported at once, each with file, line, column, key,
+value and remedy."""
+
+from __future__ import annotations
+
+import copy
+import hashlib
+import json
+import re
+from contextlib import suppress
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError, ValidationInfo, field_validator
+
+from pzt_ident.data.record import Source
+from pzt_ident.errors import InputError, nearest
+from pzt_ident.job import checks
+from pzt_ident.job.document import Document, Fault, Loc, reject
+from pzt_ident.job.normalise import written_out
+from pzt_ident.job.sections import Channels, Choice, Item, Limits, Repeats, Setting, Stopping
+
+
+class Job(BaseModel):
+    """What to identify from which records, and how. Made by `load_job` or `Job.from_text`.
+
+    text: as the user wrote it. folder: what the paths of the records are relative to.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    plugins: tuple[str, ...] = ()
+    name: Annotated[str, Field(pattern=r"^\w([\w .+-]*\w)?$")]
+    records: tuple[Source, ...]
+    channels: Channels
+    model: tuple[Item, ...]
+    effects: tuple[str, ...] = ()
+    rule_out: tuple[str, ...] = ()
+    shared: tuple[str, ...] = ()
+    parameters: dict[str, Setting] = {}
+    optimizers: tuple[Choice, ...] = (Choice("pso"),)
+    repeats: Repeats = 1
+    seed: Annotated[int, Field(ge=0)] = 0
+    polish: bool = True
+    stop: Stopping = Stopping()
+    limits: Limits = Limits()
+
+    _text: str = PrivateAttr("")
+    _folder: Path = PrivateAttr(Path())
+
+    @field_validator("*")
+    @classmethod
+    def _checked(cls, section: Any, info: ValidationInfo[Document]) -> Any:
+        if check := checks.SECTIONS.get(info.field_name or ""):
+            check(info.context, section, info.data)
+        return section
+
+    @classmethod
+    def from_text(cls, text: str, folder: Path = Path(), file: str = "job.yaml", plugins: bool = False) -> Job:
+        """Read a job from its YAML. `file` names it in errors, and gives the job its name where it has none. With
+        `plugins`, the files of code that it names are loaded.
+
+        Raises InputError that lists every fault.
+        """
+        document = Document(text, file, folder, plugins)
+        if not isinstance(document.data, dict):
+            kind = "empty" if document.data is None else "a list" if isinstance(document.data, list) else "one value"
+            reject(file, [Fault(1, 1, "", f"the job is {kind}", "write `name: ...`, `records: ...` and so on")])
+        data = {"name": _folder_name(file)} | written_out(document)
+        job = cls._validated(document, data)
+        if job is None or document.faults:
+            reject(file, document.faults)
+        job._text, job._folder = text, folder
+        return job
+
+    @classmethod
+    def _validated(cls, document: Document, data: dict[str, Any]) -> Job | None:
+        """The job, or None with every fault noted: what is wrong in its form is taken out to check the rest."""
+        try:
+            return cls.model_validate_json(json.dumps(data), context=document)
+        except ValidationError as error:
+            _note(document, error)
+            rest = _less(data, [item["loc"] for item in error.errors()])
+        with suppress(ValidationError):
+            cls.model_validate_json(json.dumps(rest), context=document)
+        return None
+
+    @property
+    def text(self) -> str:
+        return self._text
+
+    @property
+    def folder(self) -> Path:
+        return self._folder
+
+    @property
+    def hash(self) -> str:
+        """Eight digits that change with what the job says, not with how it is laid out."""
+        content = json.dumps(self.model_dump(mode="json"), sort_keys=True)
+        return hashlib.sha256(content.encode()).hexdigest()[:8]
+
+    def __hash__(self) -> int:
+        return hash(self.hash)
+
+
+def _folder_name(file: str) -> str:
+    return re.sub(r"[^\w .+-]+", "-", Path(file).stem).strip(" .+-") or "job"
+
+
+def load_job(path: Path, plugins: bool = False) -> Job:
+    """Read a job file, see `Job.from_text`. Raises InputError that lists every fault, or that there is no file."""
+    path = Path(path)
+    if path.is_dir():
+        raise InputError("is a folder", where=str(path), remedy=f"give the job file, such as {path / 'job.yaml'}")
+    if not path.exists():
+        beside = [item.name for item in path.parent.glob("*.y*ml")] if path.parent.is_dir() else []
+        remedy = nearest(path.name, beside) if beside else "`pzt-ident init DIR` writes a job to start from"
+        raise InputError("no such file", where=str(path), remedy=remedy)
+    try:
+        raw = path.read_bytes()
+    except OSError as error:
+        raise InputError(error.strerror or str(error), where=str(path), remedy="make it readable") from None
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        before = raw[: error.start].rpartition(b"\n")
+        line, column = raw.count(b"\n", 0, error.start) + 1, len(before[2]) + 1
+        message = f"byte 0x{raw[error.start]:02x} is not UTF-8"
+        reject(str(path), [Fault(line, column, "", message, "save the file as UTF-8")])
+    return Job.from_text(text, path.parent, str(path), plugins)
+
+
+_EXPECTED = {
+    "int_type": ("a whole number", "write a whole number, such as 5"),
+    "int_from_float": ("a whole number", "write a whole number, such as 5"),
+    "float_type": ("a number", "write a plain number, such as 0.5"),
+    "finite_number": ("a finite number", "write a plain number, such as 0.5"),
+    "string_type": ("a text", "put it in quotes"),
+    "string_pattern_mismatch": ("a name for a folder", "use letters, digits, blanks and . + - inside"),
+    "bool_type": ("true or false", "write true or false"),
+    "literal_error": ("{expected}", "write {expected}"),
+    "tuple_type": ("a list", "write it as [first, second]"),
+    "dict_type": ("a mapping", "write it as {{key: value}}"),
+    "dataclass_type": ("a mapping", "write it as {{key: value}}"),
+    "greater_than": ("above {gt:g}", "give a value above {gt:g}"),
+    "greater_than_equal": ("at least {ge:g}", "give at least {ge:g}"),
+    "less_than_equal": ("at most {le:g}", "give at most {le:g}"),
+    "too_long": ("a list of {max_length}", "give {max_length} values"),
+    "missing": ("[first, second]", "write both"),
+}
+"""What pydantic's kinds of error are in the user's words: what the value is not, and what to write."""
+
+
+def _note(document: Document, error: ValidationError) -> None:
+    """Put pydantic's complaints into the user's words and places; those of a union's members into one."""
+    wrong: dict[Loc, list[tuple[str, str]]] = {}
+    for item in error.errors(include_url=False):
+        loc, kind = item["loc"], item["type"]
+        if kind in ("extra_forbidden", "unexpected_keyword_argument"):
+            remedy = nearest(str(loc[-1]), _known_keys(loc[:-1]))
+            document.fault(loc, f"unknown key {loc[-1]!r}", remedy, at_key=True)
+        elif kind == "missing" and isinstance(loc[-1], str):
+            document.fault(loc[:-1], f"missing key {loc[-1]!r}", f"add `{loc[-1]}: ...`")
+        else:
+            expected, remedy = _EXPECTED.get(kind, (item["msg"], "see `pzt-ident init` for an example"))
+            facts = item.get("ctx", {})
+            wrong.setdefault(document.reach(loc), []).append((expected.format(**facts), remedy.format(**facts)))
+    for loc, found in wrong.items():
+        expected, remedy = (" or ".join(dict.fromkeys(column)) for column in zip(*found, strict=True))
+        document.fault(loc, f"{document.source(loc)} is not {expected}", remedy)
+
+
+_SEPARATE = {"records": 3, "parameters": 2, "stop": 2}
+"""How many steps down a part can be taken out of a section without a false alarm about the rest of it."""
+
+
+def _less(data: dict[str, Any], locs: list[Loc]) -> dict[str, Any]:
+    """The data less the keys that the places go through, the whole section where no key can be spared."""
+    rest = copy.deepcopy(data)
+    for place in {loc[: _SEPARATE.get(str(loc[0]), 1)] for loc in locs}:
+        owner: Any = rest
+        for part in place[:-1]:
+            owner = owner[part] if not isinstance(owner, dict) or part in owner else {}
+        if isinstance(owner, dict) and place[-1] in owner:
+            del owner[place[-1]]
+        else:
+            rest.pop(str(place[0]), None)
+    return rest
+
+
+def _known_keys(loc: Loc) -> list[str]:
+    """The keys that may stand in the mapping at a place, from the schema of the job."""
+    schema = Job.model_json_schema()
+    definitions, here = schema["$defs"], schema
+    for part in loc:
+        here = here["properties"][part] if part in here.get("properties", {}) else _inside(here)
+        here = next((option for option in here.get("anyOf", ()) if "$ref" in option), here)
+        if "$ref" in here:
+            here = definitions[here["$ref"].rpartition("/")[2]]
+    return list(here["properties"])
+
+
+def _inside(schema: dict[str, Any]) -> dict[str, Any]:
+    """The schema of each item of a list or mapping."""
+    return schema["items"] if "items" in schema else schema["additionalProperties"]

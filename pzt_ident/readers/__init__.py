@@ -1,5 +1,0 @@
-"""Readers of measurement files, one file a format; `read_records` is what the rest uses."""
-
-from pzt_ident.readers.read import read_records
-
-__all__ = ["read_records"]

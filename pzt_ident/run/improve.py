@@ -1,0 +1,216 @@
+"""From a job to what its model is missing, and to the job that has it: `diagnosis.json`, `improvement.json`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pzt_ident.data.noise import noise_floor
+from pzt_ident.data.signals import write_signals
+from pzt_ident.data.units import factor
+from pzt_ident.diagnosis import staircase as stairs
+from pzt_ident.diagnosis.caveats import broken, remarks, rest
+from pzt_ident.diagnosis.refit import Case, Fit, first_fit
+from pzt_ident.diagnosis.verdict import Diagnosis
+from pzt_ident.diagnosis.verdict import diagnose as judge
+from pzt_ident.files import write_json, write_text
+from pzt_ident.job.edit import edited
+from pzt_ident.job.schema import Job
+from pzt_ident.model.registry import blocks
+from pzt_ident.report.words import happening
+from pzt_ident.run.identify import (
+    Event,
+    Listen,
+    environment,
+    errors_in,
+    folder_for,
+    make_empty,
+    problem_of,
+    read,
+    recorded,
+    unit_of,
+)
+from pzt_ident.run.misfit import compare
+from pzt_ident.run.next_drive import limits_of, separating
+
+
+@contextmanager
+def begun(job: Job, out: Path | None, listen: Listen = lambda event: None) -> Iterator[tuple[Case, Path]]:
+    """The case, and a folder that holds the job, what it runs on and, in `events.jsonl`, what happens as it does.
+
+    Raises InputError where job or data are wrong.
+    """
+    records = read(job)
+    problem_of(job, records)
+    folder = folder_for(job, out)
+    make_empty(folder)
+    write_text(folder / "job.yaml", edited(job, job.effects, folder))
+    write_json(folder / "environment.json", environment(job, records))
+    case = Case(job.model, job.effects, records, job.parameters, job.rule_out, job.shared)
+    with recorded(folder, listen) as tell, np.errstate(all="ignore"):
+        case.tell = lambda event: tell(spoken(case, event))
+        yield case, folder
+        tell({"event": "done", "folder": str(folder)})
+
+
+def spoken(case: Case, event: Event) -> Event:
+    """An event with its errors in the user's unit, and in words."""
+    size = size_of(case)
+    found = event | {use: event[use] / size for use in ("identify", "validate") if event.get(use) is not None}
+    return found | {"said": happening(found, unit_of(list(case.records)))}
+
+
+def told(case: Case, step: stairs.Step) -> None:
+    case.tell({"event": "stair", **stair(case, step)})
+
+
+def diagnose(job: Job, out: Path | None = None, listen: Listen = lambda event: None) -> Path:
+    """Fit the job's model, say where it fails and what it misses; writes `diagnosis.json`, `residuals.json` and
+    `signals.nc` into the folder returned."""
+    with begun(job, out, listen) as (case, folder):
+        first = first_fit(case, job.seed)
+        told(case, stairs.Step(first))
+        found = judge(case, first)
+        content = diagnosis_of(job, case, found, folder)
+        write_signals(folder / "signals.nc", first.problem, first.point)
+        write_json(folder / "diagnosis.json", content)
+        compare(folder, folder)
+    return folder
+
+
+def improve(job: Job, out: Path | None = None, listen: Listen = lambda event: None) -> Path:
+    """Diagnose, add what is missing and diagnose again, until nothing is missing or nothing more is known.
+
+    Writes `improved.yaml`, `diagnosis.json` and `residuals.json` of the last model, `improvement.json`, and the signals
+    of the model as given and of the last one.
+    """
+    with begun(job, out, listen) as (case, folder):
+        steps, last = stairs.improve(case, first_fit(case, job.seed), partial(told, case))
+        diagnosis = diagnosis_of(job, case, last, folder)
+        for name, step in (("signals_as_given.nc", steps[0]), ("signals.nc", steps[-1])):
+            write_signals(folder / name, step.fit.problem, step.fit.point)
+        proposals = (separating(job, case, step.rivals, folder) for step in ties(steps))
+        proposed = diagnosis["next_experiment"] or next(filter(None, proposals), None)
+        content = improvement_of(job, case, steps, diagnosis) | {"next_experiment": proposed}
+        end = steps[-1].fit
+        values = case.silent(end.effects) if end.alone else None
+        write_text(folder / "improved.yaml", edited(job, end.effects, folder, steps=end.steps, values=values))
+        write_json(folder / "diagnosis.json", diagnosis)
+        write_json(folder / "improvement.json", content)
+        compare(folder, folder)
+    return folder
+
+
+def improvement_of(job: Job, case: Case, steps: list[stairs.Step], last: dict[str, Any]) -> dict[str, Any]:
+    """The content of `improvement.json`, less the next experiment."""
+    verdict, reason = last["verdict"], last["reason"]
+    if verdict in ("missing", "inconclusive"):
+        tried = "Another effect scores, but was tried and taken back, or the staircase has all its steps."
+        verdict, reason = "unexplained", f"{tried} {reason}"
+    added = [word for word in steps[-1].fit.effects if word not in job.effects]
+    if verdict != "adequate" and added:
+        reason += f" Added on the way, and not proven while that is open: {', '.join(added)}."
+    for step in ties(steps):
+        reason += f" These data cannot tell {' from '.join(step.tied)}."
+    reason += remarks(case, steps[-1].fit)
+    return {
+        "name": job.name,
+        "steps": [stair(case, step) for step in steps],
+        "verdict": verdict,
+        "reason": reason,
+        "effects": added,
+        "noise_floor": floors(case),
+        "noise_floor_source": sources(case),
+        "floor": case.floor / size_of(case),
+        "unit": unit_of(list(case.records)),
+    }
+
+
+def size_of(case: Case) -> float:
+    return factor(unit_of(list(case.records)))
+
+
+def floors(case: Case) -> dict[str, float]:
+    first = case.records[0]
+    return {
+        first.axes[a]: noise_floor(list(case.records), a).value / factor(str(first.response_units[a]))
+        for a in first.measured
+    }
+
+
+def sources(case: Case) -> dict[str, str]:
+    """What each noise floor was taken from."""
+    first = case.records[0]
+    return {first.axes[a]: noise_floor(list(case.records), a).source for a in first.measured}
+
+
+def ties(steps: list[stairs.Step]) -> list[stairs.Step]:
+    """The stairs of effects that the last model has and these data cannot tell from others."""
+    return [step for step in steps if len(step.rivals) > 1 and step.added in steps[-1].fit.effects]
+
+
+def errors_of(case: Case, fit: Fit) -> dict[str, float | None]:
+    size = size_of(case)
+    return {"identify": fit.identify / size, "validate": None if fit.validate is None else fit.validate / size}
+
+
+def by_record(case: Case, fit: Fit) -> list[dict[str, Any]]:
+    return [errors_in(record, fit.problem, fit.point) for record in fit.problem.records]
+
+
+def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
+    values = zip(step.fit.values.items(), step.fit.problem.units, strict=True)
+    return {
+        "added": step.added,
+        "removed": step.removed,
+        "class": list(step.tied),
+        "rmse": errors_of(case, step.fit),
+        "records": by_record(case, step.fit),
+        "explained": step.explained,
+        "expected": step.expected,
+        "parameters": {name: {"value": value, "unit": unit} for (name, value), unit in values},
+    }
+
+
+def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[str, Any]:
+    rivals = stairs.rivals_of(found)
+    proposed = separating(job, case, rivals, folder)
+    reason = f"{found.reason} {rest(case, found.before)}" if found.verdict == "unexplained" else found.reason
+    if len(rivals) > 1 and not proposed:
+        reason += f" No drive within {limits_of(job, case)} tells them apart: allow more under `limits`."
+    return {
+        "verdict": found.verdict,
+        "reason": reason
+        + (remarks(case, found.best.fit) if found.best and found.best.fit else "")
+        + broken(found.before),
+        "unit": unit_of(list(case.records)),
+        "noise_floor": floors(case),
+        "noise_floor_source": sources(case),
+        "rmse": errors_of(case, found.before),
+        "records": by_record(case, found.before),
+        "candidates": [
+            {
+                "effect": item.score.effect,
+                "class": found.tied if item.score.effect in found.tied else [item.score.effect],
+                "explained": item.score.within,
+                "expected": item.score.guess,
+                "units": item.score.units,
+                "visibility": item.score.visibility,
+                "power": item.score.power if np.isfinite(item.score.power) else None,
+                "rmse": errors_of(case, item.fit) if item.fit else None,
+                "records": by_record(case, item.fit) if item.fit else None,
+                "decision": item.decision,
+                "physics": (blocks[item.score.effect].__doc__ or "").splitlines()[0],
+                "look_alikes": list(blocks[item.score.effect].look_alikes),
+                "separate_by": blocks[item.score.effect].separate_by,
+                "remedy": blocks[item.score.effect].remedy,
+            }
+            for item in found.candidates
+        ],
+        "next_experiment": proposed,
+    }

@@ -1,1 +1,0 @@
-"""What runs in a browser: plain modules without a build step, and uPlot as its makers ship it."""

@@ -1,0 +1,113 @@
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pzt_ident.data.record import Channel
+from pzt_ident.data.units import plain
+
+NUMBERS = st.floats(-1e9, 1e9, allow_nan=False).filter(lambda x: x == 0 or abs(x) > 1e-9)
+HEADERS = {
+    "brackets": ["t [ms]{d}u [kV]{d}x [um]"],
+    "parentheses": ["t (ms){d}u (kV){d}x (um)"],
+    "unit line": ["t{d}u{d}x", "ms{d}kV{d}um"],
+    "quoted": ['"t [ms]"{d}"u [kV]"{d}"x [um]"'],
+    "comment": ["# made by a rig", "# t [ms]{d}u [kV]{d}x [um]"],
+    "preamble": ["Rig 3, 21.11.", "Operator: N N", "", "t [ms]{d}u [kV]{d}x [µm]"],
+}
+
+
+ROWS = st.lists(st.tuples(NUMBERS, NUMBERS), min_size=3, max_size=8).filter(lambda rows: np.ptp(rows, axis=0)[1] > 0)
+
+
+@settings(max_examples=100, deadline=None)
+@given(
+    ROWS,
+    st.sampled_from([("\t", "."), ("\t", ","), (";", "."), (";", ","), (",", "."), (" ", "."), ("   ", ",")]),
+    st.sampled_from(sorted(HEADERS)),
+    st.sampled_from(["utf-8", "utf-8-sig", "latin-1", "utf-16"]),
+    st.sampled_from(["\n", "\r\n"]),
+)
+def test_round_trip_through_any_layout(read, rows, punctuation, header, encoding, newline):
+    delimiter, decimal = punctuation
+    cells = [[repr(value).replace(".", decimal) for value in (5.0 * i, *row)] for i, row in enumerate(rows)]
+    lines = [line.format(d=delimiter) for line in HEADERS[header]] + [delimiter.join(row) for row in cells]
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "loop.dat"
+        path.write_bytes(newline.join([*lines, ""]).encode(encoding))
+        record = read(path, "u", "x", "t")
+    drive, response = np.array(rows).T
+    np.testing.assert_array_equal(record.drive[0], 1e3 * drive)
+    np.testing.assert_array_equal(record.response[0], 1e-6 * response)
+    assert record.dt == pytest.approx(5e-3)
+    assert (record.drive_units, plain(record.response_units[0])) == (("kV",), "um")
+
+
+@settings(max_examples=50, deadline=None)
+@given(ROWS, st.sampled_from(["\t", ";", ",", " "]), st.booleans())
+def test_round_trip_without_header(read, rows, delimiter, empty_first_column):
+    first = delimiter if empty_first_column and delimiter != " " else ""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "loop.csv"
+        path.write_text("\n".join(first + delimiter.join(map(repr, row)) for row in rows))
+        drive, response = (Channel(column=k + bool(first), unit="V") for k in (1, 2))
+        record = read(path, drive, response, None, sample_rate=1e3)
+    np.testing.assert_array_equal([record.drive[0], record.response[0]], np.array(rows).T)
+    assert record.dt == 1e-3
+
+
+def write(folder, text, name="loop.csv"):
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+BODY = "0,0,1\n1,1,3\n2,0,2\n"
+
+
+@pytest.mark.parametrize("name", ["x [um]", "x", "X [UM]", "X"])
+def test_a_name_may_leave_out_unit_and_case(tmp_path, read, name):
+    path = write(tmp_path, "t [s],u [V],x [um]\n" + BODY)
+    np.testing.assert_allclose(read(path, response=name).response[0], [1e-6, 3e-6, 2e-6])
+
+
+def test_micro_signs_are_one(tmp_path, read):
+    path = write(tmp_path, "t [s],u [V],x [\u00b5m]\n" + BODY)
+    np.testing.assert_allclose(read(path, response="x [\u03bcm]").response[0], [1e-6, 3e-6, 2e-6])
+
+
+def test_the_exact_header_wins_over_the_same_name(tmp_path, read):
+    path = write(tmp_path, "t [s],u [V],x [um],x [V]\n0,0,1,7\n1,1,3,8\n2,0,2,9\n")
+    assert read(path, response="x [V]").response[0].tolist() == [7, 8, 9]
+
+
+def test_the_unit_of_the_job_wins(tmp_path, read):
+    path = write(tmp_path, "t [s],u [V],x [um]\n" + BODY)
+    record = read(path, drive=Channel(name="u", unit="20 V"), response=Channel(column=3, unit="nm"))
+    np.testing.assert_allclose(record.drive[0], [0, 20, 0])
+    np.testing.assert_allclose(record.response[0], [1e-9, 3e-9, 2e-9])
+    assert (record.drive_units, record.response_units) == (("V",), ("nm",))
+
+
+def test_comments_and_empty_lines_between_the_rows_are_skipped(tmp_path, read):
+    path = write(tmp_path, "# rig 3\nt [s],u [V],x [um]\n0,0,1\n\n# bump\n1,1,3\n2,0,2\n\n")
+    assert read(path).samples == 3
+
+
+def test_a_column_of_text_does_not_disturb_the_others(tmp_path, read):
+    path = write(tmp_path, "t [s],u [V],x [um],note\n0,0,1,up\n1,1,3,\n2,0,2,down\n")
+    assert read(path).samples == 3
+
+
+def test_a_block_of_settings_with_a_table_like_shape_is_no_data(tmp_path, read):
+    path = write(tmp_path, "R,Ohm\tC,pF\tT,C\n000\t100\t+25\nu,V\tx,um\tt,s\n0\t1\t0\n1\t3\t1\n0\t2\t2\n")
+    record = read(path, "u", "x", "t")
+    assert record.drive[0].tolist() == [0, 1, 0]
+
+
+def test_the_trailing_delimiter_of_an_instrument_is_no_column(tmp_path, read):
+    path = write(tmp_path, "t [s]\tu [V]\tx [um]\t\n0\t0\t1\t\n1\t1\t3\t\n2\t0\t2\t\n")
+    assert read(path).samples == 3

@@ -1,0 +1,142 @@
+"""The staircase: pairs are found, a wrong pick is taken back, and it ends where nothing more is known."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stage
+from pzt_ident.diagnosis import staircase as improving
+from pzt_ident.diagnosis.refit import first_fit, refit
+from pzt_ident.diagnosis.refit import made as fitted
+from pzt_ident.diagnosis.score import Score
+from pzt_ident.diagnosis.staircase import Step, again, both, exchanged, explained, improve, unneeded
+from pzt_ident.diagnosis.verdict import Candidate, Diagnosis, diagnose
+from pzt_ident.model.registry import blocks
+
+PAIR = stage.EFFECTS["creep"] | stage.EFFECTS["quadratic_gain"]
+
+
+def climbed(made):
+    told = []
+    steps, last = improve(made, first_fit(made, 0), told.append)
+    assert told[0].added is None and told[0].removed is None
+    assert steps[-1].fit is last.before
+    return steps, last
+
+
+def test_at_the_noise_the_first_step_is_the_last():
+    steps, last = climbed(stage.case())
+    assert (len(steps), last.verdict) == (1, "adequate")
+    assert steps[0] == Step(steps[0].fit)
+
+
+def test_one_effect_is_one_step_down_to_the_noise():
+    steps, last = climbed(stage.case(stage.EFFECTS["quadratic_gain"]))
+    assert [step.added for step in steps] == [None, "quadratic_gain"]
+    assert steps[1].tied == ("quadratic_gain",)
+    assert steps[1].expected == pytest.approx(1, abs=0.05)
+    assert steps[1].explained == pytest.approx(1, abs=0.05)
+    assert steps[1].fit.validate == pytest.approx(stage.NOISE, rel=0.1)
+    assert last.verdict == "adequate"
+
+
+def test_two_effects_are_both_found_and_nothing_else():
+    steps, last = climbed(stage.case(PAIR))
+    assert set(steps[-1].fit.effects) == {"creep", "quadratic_gain"}
+    assert last.verdict == "adequate"
+    assert steps[-1].fit.identify == pytest.approx(stage.NOISE, rel=0.1)
+    assert steps[-1].fit.validate == pytest.approx(stage.NOISE, rel=0.1)
+    rmse = [step.fit.identify for step in steps if not step.removed]
+    assert rmse == sorted(rmse, reverse=True)
+
+
+def test_the_effects_of_the_job_stay():
+    steps, _ = climbed(stage.case(PAIR, effects=["creep"]))
+    assert [step.fit.effects for step in steps] == [("creep",), ("creep", "quadratic_gain")]
+
+
+def test_a_wrong_first_pick_is_taken_back():
+    made = stage.case(stage.EFFECTS["quadratic_gain"])
+    first = first_fit(made, 0)
+    wrong = refit(made, first, ("asymmetry",), {})
+    right = refit(made, wrong, ("asymmetry", "quadratic_gain"), {})
+    assert unneeded(made, first, replace(right, validate=0.0)) == []  # what the unseen records would miss stays
+    (back,) = unneeded(made, first, right)
+    assert (back.added, back.removed) == (None, "asymmetry")
+    assert back.fit.effects == ("quadratic_gain",)
+    assert back.fit.identify == pytest.approx(stage.NOISE, rel=0.1)
+    assert abs(back.explained) < 0.1
+
+
+def test_what_is_needed_is_not_taken_back():
+    made = stage.case(PAIR)
+    first = first_fit(made, 0)
+    one = refit(made, first, ("creep",), {"creep.ratio": 0.08, "creep.tau": 1.0})
+    two = refit(made, one, ("creep", "quadratic_gain"), {})
+    assert unneeded(made, first, two) == []
+    assert unneeded(made, two, refit(made, two, ("creep", "quadratic_gain", "drift"), {})) == []
+
+
+def test_what_a_step_explains_is_a_share_of_the_misfit():
+    made = stage.case(PAIR)
+    first = first_fit(made, 0)
+    one = refit(made, first, ("quadratic_gain",), {})
+    two = refit(made, one, ("quadratic_gain", "creep"), {"creep.ratio": 0.08, "creep.tau": 1.0})
+    floor = made.floor**2
+    share = (first.identify**2 - one.identify**2) / (first.identify**2 - floor)
+    assert explained(made, first, one) == pytest.approx(share)
+    assert explained(made, one, two) == pytest.approx(1, abs=0.05)
+    assert explained(made, one, first) < 0
+
+
+def test_what_no_effect_explains_ends_unexplained():
+    def strange(record):
+        pattern = np.sign(np.sin(0.37 * record.drive[0]) + 0.3 * np.sin(np.pi * record.time**1.5))
+        return 12 * stage.NOISE * pattern * (np.gradient(record.drive[0]) != 0)
+
+    steps, last = climbed(stage.with_response(stage.case(), strange))
+    assert last.verdict == "unexplained"
+    assert steps[-1].fit.identify > 5 * stage.NOISE
+
+
+def test_two_effects_that_hide_each_other_are_two_stairs_the_better_one_first():
+    made = stage.case(PAIR)
+    first = first_fit(made, 0)
+    found = diagnose(made, first)
+    hidden = [item for item in found.candidates if item.score.effect in ("creep", "quadratic_gain")]
+    one, two = both(made, first, first, replace(found, candidates=hidden))
+    assert {one.added, two.added} == set(two.fit.effects) == {"creep", "quadratic_gain"}
+    assert one.fit.effects == (one.added,)
+    assert first.total > one.fit.total > two.fit.total
+    assert two.fit.validate == pytest.approx(stage.NOISE, rel=0.1)
+
+
+@pytest.mark.parametrize("hopeless", [0, np.inf])
+def test_an_effect_that_rests_in_a_side_minimum_is_a_stair_once_nothing_else_is_left(monkeypatch, hopeless):
+    monkeypatch.setattr(improving, "HOPELESS", hopeless)
+    made = stage.case(stage.EFFECTS["quadratic_gain"])
+    first = first_fit(made, 0)
+    problem = made.problem(("quadratic_gain",))
+    resting = fitted(("quadratic_gain",), problem, problem.unit_point(first.values | {"quadratic_gain.curvature": 0.0}))
+    found = Diagnosis("unexplained", "", first, [Candidate(Score("quadratic_gain"), resting)], [])
+    steps = again(made, first, first, found)
+    assert [step.added for step in steps] == (["quadratic_gain"] if hopeless else [])
+    assert all(step.fit.identify == pytest.approx(stage.NOISE, rel=0.1) for step in steps)
+
+
+def test_a_proxy_is_exchanged_for_what_is_missing():
+    made = stage.case(stage.EFFECTS["quadratic_gain"])
+    first = first_fit(made, 0)
+    (step,) = exchanged(made, first, refit(made, first, ("asymmetry",), {}))
+    assert (step.added, step.removed, step.fit.effects) == ("quadratic_gain", "asymmetry", ("quadratic_gain",))
+    assert step.fit.validate == pytest.approx(stage.NOISE, rel=0.1)
+
+
+def test_what_fits_as_well_in_the_place_of_an_effect_is_told_once_all_are_known():
+    made = stage.case(PAIR)
+    steps, _ = climbed(made)
+    for step in steps:
+        if step.added in steps[-1].fit.effects:
+            assert step.tied[0] == step.added
+            assert set(step.tied[1:]) <= set(blocks[step.added].look_alikes)

@@ -1,0 +1,268 @@
+"""From a job to results on the disk, interrupted and killed on the way."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from multiprocessing import Pipe
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pzt_ident.errors import InputError, RunError
+from pzt_ident.job.schema import Job, load_job
+from pzt_ident.run.identify import read, resume, run, tasks_of
+from pzt_ident.run.pool import run_all
+from pzt_ident.run.task import read_losses, work
+
+JOB = """\
+name: small
+records:
+  - {file: identify.csv, use: identify}
+  - {file: validate.csv, use: validate, settle: 0.1 s}
+channels:
+  time: "time [s]"
+  axes:
+    x: {drive: "u_x [V]", response: "x [um]"}
+model: [bouc_wen]
+optimizers:
+  - {name: pso, population: 20, generations: 40}
+  - {name: pso_vmax, population: 20, generations: 40}
+repeats: 2
+seed: 3
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    made = tmp_path_factory.mktemp("job")
+    t = np.arange(1000) / 1000
+    rng = np.random.default_rng(0)
+    for name, u in {"identify": 50 * (1 - np.cos(6 * np.pi * t)), "validate": 80 * np.abs(np.sin(9 * t)) * t}.items():
+        lag = np.convolve(u, np.ones(40) / 40)[: u.size]
+        x = 0.08 * (0.7 * u + 0.3 * lag) + rng.normal(0, 0.01, u.size)
+        table = np.column_stack([t, u, x])
+        np.savetxt(made / f"{name}.csv", table, delimiter=",", header="time [s],u_x [V],x [um]", comments="")
+    (made / "job.yaml").write_text(JOB)
+    return made
+
+
+@pytest.fixture(scope="module")
+def finished(folder):
+    events = []
+    out = run(load_job(folder / "job.yaml"), folder / "out", workers=2, report=False, listen=events.append)
+    return out, events
+
+
+def numbers(out: Path) -> list:
+    """All that must not differ between two runs of a job: everything but the clock."""
+    result = json.loads((out / "result.json").read_text())
+    clock = ("seconds", "cpu_seconds", "polish_seconds")
+    return [{key: value for key, value in item.items() if key not in clock} for item in result["runs"]]
+
+
+def test_everything_is_on_the_disk(finished):
+    out, _ = finished
+    for name in ("job.yaml", "result.json", "history.csv", "signals.nc", "events.jsonl", "environment.json"):
+        assert (out / name).stat().st_size > 0
+    assert (out / "job.yaml").read_text() == JOB
+    assert not list(out.rglob("*.tmp"))
+
+
+def test_result_says_what_the_contract_promises(finished):
+    result = json.loads((finished[0] / "result.json").read_text())
+    assert result["unit"] == "um"
+    assert {(r["optimizer"], r["repeat"]) for r in result["runs"]} == {
+        (o, r) for o in ("pso", "pso_vmax") for r in (0, 1)
+    }
+    for item in result["runs"]:
+        assert item["rmse"]["identify"] <= item["rmse_before_polish"]["identify"]
+        assert item["evaluations"] == 800
+        assert set(item["parameters"]["bouc_wen.gain"]) >= {"value", "unit", "standard_error", "verdict"}
+    assert result["best"]["rmse"]["identify"] == min(r["rmse"]["identify"] for r in result["runs"])
+    assert result["noise_floor"]["x"] == pytest.approx(0.01, rel=0.2)
+    assert [row["optimizer"] for row in result["league"]]
+
+
+def test_signals_give_back_the_rmse(finished):
+    import h5netcdf
+
+    result = json.loads((finished[0] / "result.json").read_text())
+    with h5netcdf.File(finished[0] / "signals.nc") as file:
+        for use, skip in (("identify", 0), ("validate", 100)):
+            group = file[use]
+            residual = group["residual_x"][skip:]
+            assert np.sqrt(np.mean(residual**2)) == pytest.approx(result["best"]["rmse"][use], rel=1e-6)
+            np.testing.assert_allclose(group["model_x"][:] - group["response_x"][:], group["residual_x"][:], atol=1e-9)
+            assert group["response_x"].attrs["units"] == "um"
+
+
+def test_events_tell_the_story_in_the_users_unit(finished):
+    out, events = finished
+    lines = [json.loads(line) for line in (out / "events.jsonl").read_text().splitlines()]
+    assert lines == events
+    assert events[0]["event"] == "start" and events[-1]["event"] == "done"
+    assert events[0]["budget"] == 4 * 800
+    last = [e for e in events if e["event"] == "generation" and e["run"] == "pso-0"][-1]
+    result = json.loads((out / "result.json").read_text())
+    own = next(r for r in result["runs"] if r["run"] == "pso-0")["rmse_before_polish"]["identify"]
+    assert (last["evaluations"], last["best"]) == (800, pytest.approx(own))
+
+
+def test_a_run_killed_hard_goes_on_to_the_same_result(folder, finished, tmp_path):
+    out = tmp_path / "killed"
+    script = (
+        "from pathlib import Path; from pzt_ident.job.schema import load_job; from pzt_ident.run.identify import run\n"
+        f"if __name__ == '__main__': run(load_job(Path({str(folder / 'job.yaml')!r})), Path({str(out)!r}), workers=1)"
+    )
+    process = subprocess.Popen([sys.executable, "-c", script], start_new_session=True)
+    deadline = time.monotonic() + 60
+    told = out / "runs" / "pso-1.told"
+    while time.monotonic() < deadline and not (told.exists() and len(list(read_losses(told))) > 5):
+        time.sleep(0.002)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    assert not (out / "result.json").exists()
+    with told.open("ab") as file:
+        file.write(b"torn")
+    resume(out, workers=2, report=False)
+    assert numbers(out) == numbers(finished[0])
+
+
+def heed_ctrl_c():
+    """A shell lets what it runs in the background ignore it, and so would all that a test run there starts."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+@pytest.mark.parametrize("searching", [False, True])
+def test_ctrl_c_ends_all_processes_and_says_how_to_go_on(folder, tmp_path, searching):
+    out = tmp_path / "out"
+    (tmp_path / "job.yaml").write_text((folder / "job.yaml").read_text().replace("{file: ", f"{{file: {folder}/"))
+    edit(tmp_path / "job.yaml", "generations: 40", "generations: 1000000")
+    command = [sys.executable, "-m", "pzt_ident", "run", str(tmp_path / "job.yaml"), "--out", str(out)]
+    process = subprocess.Popen(
+        command, stderr=subprocess.PIPE, text=True, start_new_session=True, preexec_fn=heed_ctrl_c
+    )
+    while not (out / "runs" / "pso-0.told" if searching else out / "events.jsonl").exists():
+        assert process.poll() is None
+        time.sleep(0.01)
+    os.killpg(process.pid, signal.SIGINT)
+    said = process.communicate(timeout=60)[1]  # returns when the last process that could say something has ended
+    assert process.returncode == 130
+    assert said.endswith(f"`pzt-ident resume {out}` goes on from here\nError: interrupted\n")
+    assert "Traceback" not in said
+
+
+def test_bad_data_leave_nothing_behind(folder, tmp_path):
+    (tmp_path / "job.yaml").write_text(JOB)
+    with pytest.raises(InputError, match=r"identify\.csv"):
+        run(load_job(tmp_path / "job.yaml"), tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_full_folder_is_not_written_into(folder, finished):
+    with pytest.raises(InputError, match="not empty"):
+        run(load_job(folder / "job.yaml"), finished[0])
+
+
+def test_resume_needs_a_run(tmp_path):
+    with pytest.raises(InputError, match="holds no run"):
+        resume(tmp_path)
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace(old, new, 1))
+
+
+def test_resume_of_a_finished_run_searches_nothing(finished, tmp_path):
+    out, events = shutil.copytree(finished[0], tmp_path / "out"), []
+    resume(out, report=False, listen=events.append)
+    assert [event["event"] for event in events] == ["finished", "done"]
+    assert (out / "result.json").read_bytes() == (finished[0] / "result.json").read_bytes()
+
+
+def test_resume_counts_only_what_is_missing(finished, tmp_path):
+    out, events = shutil.copytree(finished[0], tmp_path / "out"), []
+    (out / "runs" / "pso-1.json").unlink()
+    resume(out, workers=1, report=False, listen=events.append)
+    assert (events[0]["runs"], events[0]["budget"]) == (["pso-1"], 800)
+    assert numbers(out) == numbers(finished[0])
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new"), [("identify.csv", "1.000000", "1.000001"), ("out/job.yaml", "seed: 3", "seed: 4")]
+)
+def test_resume_refuses_another_job_or_other_data(folder, finished, tmp_path, file, old, new):
+    made = shutil.copytree(folder, tmp_path / "job")
+    edit(made / "out" / "environment.json", str(folder), str(made))
+    assert resume(made / "out", report=False)
+    edit(made / file, old, new)
+    with pytest.raises(InputError) as caught:
+        resume(made / "out", report=False)
+    assert caught.value.where == str(made / file)
+    assert "began with" in caught.value.message or "since this run began" in caught.value.message
+
+
+def hopeless(folder: Path, polish: str) -> Job:
+    """A job in which all but very few of the candidates overflow."""
+    bounds = "parameters:\n  bouc_wen.beta: {bounds: [-60, 1]}\n  bouc_wen.gamma: {bounds: [-60, 60]}\n"
+    text = JOB.replace("model: [bouc_wen]", "model: [bouc_wen]\n" + bounds).replace("pso_vmax", "rga")
+    return Job.from_text(text + f"polish: {polish}\n", folder)
+
+
+@pytest.mark.parametrize("polish", ["true", "false"])
+def test_candidates_that_overflow_are_infinite_and_counted(folder, tmp_path, polish):
+    out = run(hopeless(folder, polish), tmp_path / "out", workers=1, report=False)
+    result = json.loads((out / "result.json").read_text())
+    assert result["failed_runs"] == []
+    for item in result["runs"]:
+        told = np.concatenate([losses for _, losses in read_losses(out / "runs" / f"{item['run']}.told")])
+        assert item["failed_simulations"] >= np.isinf(told).sum() > 100
+        assert item["rmse_before_polish"]["identify"] == pytest.approx(told.min() * 1e6)
+        assert item["rmse"]["identify"] <= item["rmse_before_polish"]["identify"]
+    for line in (out / "events.jsonl").read_text().splitlines():
+        json.loads(line, parse_constant=pytest.fail)
+
+
+def test_where_every_candidate_overflows_the_run_says_so(folder, tmp_path):
+    bounds = "parameters:\n  bouc_wen.beta: {bounds: [-400, -300]}\n  bouc_wen.gamma: {bounds: [-1, 1]}\n"
+    job = Job.from_text(JOB.replace("model: [bouc_wen]", "model: [bouc_wen]\n" + bounds), folder)
+    with pytest.raises(RunError) as caught:
+        run(job, tmp_path / "out", workers=1, report=False)
+    said = "every run failed: the simulation of each of its 800 candidates failed: narrow the bounds"
+    assert str(caught.value) == said
+
+
+def test_a_worker_ends_quietly_with_its_parent(folder, tmp_path, capfd):
+    listener, pipe = Pipe(duplex=False)
+    listener.close()
+    job = load_job(folder / "job.yaml")
+    task = tasks_of(job, read(job), tmp_path)[0]
+    handler, errors = signal.getsignal(signal.SIGINT), np.geterr()
+    work(task, job.text, folder, read(job), pipe)
+    signal.signal(signal.SIGINT, handler)
+    np.seterr(**errors)
+    assert capfd.readouterr().err == ""
+    assert not task.result.exists()
+
+
+def unlucky(number, pipe):
+    if number == 1:
+        os.kill(os.getpid(), signal.SIGKILL)
+    if number == 2:
+        sys.exit(3)
+    pipe.send({"event": "fine", "number": number})
+    pipe.send(None)
+
+
+def test_a_worker_that_dies_is_named_and_the_others_finish():
+    events = []
+    failed = run_all(unlucky, [(f"job-{i}", (i,)) for i in range(5)], 2, events.append)
+    assert failed == {"job-1": "its process was killed by signal 9", "job-2": "its process ended with exit code 3"}
+    assert {event["number"] for event in events if event["event"] == "fine"} == {0, 3, 4}

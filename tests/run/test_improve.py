@@ -1,0 +1,265 @@
+"""diagnose and improve from the command line: what they write, say and refuse."""
+
+import json
+import re
+from html import unescape
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import stage
+from pzt_ident.cli.commands import main
+from pzt_ident.job.schema import load_job
+
+LINEAR = {"bouc_wen.alpha": 0.0, "bouc_wen.beta": 0.01, "bouc_wen.gamma": 0.0}
+KNOWN = "parameters: {" + ", ".join(f"{name}: {{value: {value}}}" for name, value in LINEAR.items()) + "}\n"
+CANDIDATE = {"effect", "class", "explained", "expected", "visibility", "rmse", "decision"}
+DECISIONS = {"missing", "not missing", "cannot be seen", "too small"}
+
+
+def call(*arguments):
+    return CliRunner().invoke(main, list(map(str, arguments)))
+
+
+def read(path):
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module")
+def lagging(tmp_path_factory):
+    """A job whose records cannot tell a lag ahead of the stage from one behind it."""
+    made = stage.case(stage.EFFECTS["sensor_lag"] | LINEAR)
+    return stage.write(tmp_path_factory.mktemp("lagging"), made.records, stage.JOB + KNOWN)
+
+
+@pytest.fixture(scope="module")
+def bent(tmp_path_factory):
+    made = stage.case(stage.EFFECTS["quadratic_gain"])
+    return stage.write(tmp_path_factory.mktemp("bent"), made.records)
+
+
+@pytest.fixture(scope="module")
+def improved(bent, tmp_path_factory):
+    out = tmp_path_factory.mktemp("out") / "results" / "one"
+    answer = call("improve", bent, "--out", out)
+    assert answer.exit_code == 0, answer.output
+    return answer, out
+
+
+@pytest.fixture(scope="module")
+def diagnosed(lagging, tmp_path_factory):
+    out = tmp_path_factory.mktemp("out") / "tie"
+    answer = call("diagnose", lagging, "--out", out)
+    assert answer.exit_code == 0, answer.output
+    return answer, out
+
+
+class TestDiagnose:
+    def test_the_file_has_what_was_agreed(self, diagnosed):
+        found = read(diagnosed[1] / "diagnosis.json")
+        assert {"verdict", "reason", "unit", "noise_floor", "rmse", "candidates", "next_experiment"} <= set(found)
+        assert found["unit"] == "um"
+        assert found["noise_floor"] == {"x": pytest.approx(0.005, rel=0.1)}
+        assert set(found["rmse"]) == {"identify", "validate"}
+        for item in found["candidates"]:
+            assert set(item) >= CANDIDATE
+            assert item["decision"] in DECISIONS
+            assert item["effect"] in item["class"]
+            assert item["rmse"] is None or set(item["rmse"]) == {"identify", "validate"}
+            assert all(isinstance(value, float) for value in item["expected"].values())
+
+    def test_a_tie_is_a_class_and_is_said(self, diagnosed):
+        found = read(diagnosed[1] / "diagnosis.json")
+        assert found["verdict"] == "inconclusive"
+        best = found["candidates"][0]
+        assert best["decision"] == "missing"
+        assert {"amplifier_lag", "sensor_lag"} <= set(best["class"])
+        assert {item["effect"] for item in found["candidates"] if set(item["class"]) == set(best["class"])} == set(
+            best["class"]
+        )
+        assert "cannot tell them apart" in diagnosed[0].stdout
+
+    def test_the_drive_to_run_next_stays_within_the_limits(self, diagnosed):
+        answer, out = diagnosed
+        proposal = read(out / "diagnosis.json")["next_experiment"]
+        assert set(proposal) == {"splits", "file", "why"}
+        assert {"amplifier_lag", "sensor_lag"} <= set(proposal["splits"])
+        assert f"run {out / proposal['file']}" in answer.stdout
+        path = out / proposal["file"]
+        assert path.read_text(encoding="utf-8").splitlines()[0] == "time [s],u_x [V]"
+        time, drive = np.loadtxt(path, delimiter=",", skiprows=1).T
+        assert time[0] == 0 and time[-1] <= 30
+        assert np.allclose(np.diff(time), time[1], rtol=1e-4)
+        assert drive.min() >= 0 and drive.max() <= 120
+        assert np.abs(np.diff(drive)).max() / time[1] <= 300 * 1.001
+
+    def test_the_page_has_every_candidate_with_its_physics(self, diagnosed):
+        page = unescape((diagnosed[1] / "report.html").read_text(encoding="utf-8"))
+        found = read(diagnosed[1] / "diagnosis.json")
+        assert f'<p class="lead">{found["reason"]}</p>' in page
+        assert all(item["physics"] in page for item in found["candidates"])
+        assert f"run the drive in {found['next_experiment']['file']}" in page
+
+    def test_says_what_to_do_on_the_rig(self, diagnosed):
+        assert "on the rig: " in diagnosed[0].stdout
+        assert f"diagnosis: {diagnosed[1] / 'diagnosis.json'}" in diagnosed[0].stdout
+
+    def test_the_folder_holds_the_job_and_where_it_ran(self, diagnosed, lagging):
+        assert load_job(diagnosed[1] / "job.yaml").model == load_job(lagging).model
+        assert read(diagnosed[1] / "environment.json")["job_name"] == "small"
+
+    def test_its_events_are_lines_as_those_of_a_run(self, diagnosed):
+        lines = [json.loads(line) for line in (diagnosed[1] / "events.jsonl").read_text().splitlines()]
+        found = read(diagnosed[1] / "diagnosis.json")
+        scored = [line for line in lines if line["event"] == "scored"]
+        assert {line["effect"] for line in scored} == {item["effect"] for item in found["candidates"]}
+        assert [line["done"] for line in scored] == list(range(1, scored[0]["of"] + 1))
+        refitted = {tuple(line["effects"]): line["identify"] for line in lines if line["event"] == "refitted"}
+        best = found["candidates"][0]
+        assert refitted[(best["effect"],)] == pytest.approx(best["rmse"]["identify"])
+        assert all(line["said"] for line in lines[:-1]) and lines[-1]["event"] == "done"
+
+    def test_json_is_all_there_is(self, bent, tmp_path):
+        answer = call("diagnose", bent, "--out", tmp_path / "out", "--json")
+        assert answer.stderr == ""
+        found = json.loads(answer.stdout)
+        assert found == {"folder": str(tmp_path / "out"), "diagnosis": read(tmp_path / "out" / "diagnosis.json")}
+        assert found["diagnosis"]["verdict"] == "missing"
+        assert found["diagnosis"]["next_experiment"] is None
+        assert found["diagnosis"]["candidates"][0]["expected"] == {
+            "quadratic_gain.curvature": pytest.approx(3e-4, rel=0.1)
+        }
+
+    def test_what_nothing_explains_is_said_to_lie_somewhere(self, tmp_path):
+        def knocked(record):
+            moving = (np.gradient(record.drive[0]) != 0) & (record.time > record.time[-1] / 2)
+            return 30 * stage.NOISE * np.sin(np.arange(record.samples) ** 1.5) * moving
+
+        made = stage.with_response(stage.case(), knocked)
+        assert call("diagnose", stage.write(tmp_path, made.records), "--out", tmp_path / "out").exit_code == 0
+        found = read(tmp_path / "out" / "diagnosis.json")
+        assert found["verdict"] == "unexplained"
+        assert re.search(r"what is left, an RMSE of .* to validate\. \d+ % of the misfit lies ", found["reason"])
+
+
+class TestImprove:
+    def test_the_file_has_what_was_agreed(self, improved):
+        found = read(improved[1] / "improvement.json")
+        assert {"steps", "verdict", "effects", "noise_floor", "unit"} <= set(found)
+        assert (found["verdict"], found["effects"], found["unit"]) == ("adequate", ["quadratic_gain"], "um")
+        for step in found["steps"]:
+            assert {"added", "removed", "class", "rmse", "explained"} <= set(step)
+            assert set(step["rmse"]) == {"identify", "validate"}
+            for record in step["records"]:
+                assert record["rmse"] == {"x": pytest.approx(step["rmse"][record["use"]])}
+        assert [step["added"] for step in found["steps"]] == [None, "quadratic_gain"]
+        assert found["steps"][0]["class"] == [] and found["steps"][0]["removed"] is None
+        floor = found["noise_floor"]["x"]
+        assert found["floor"] == pytest.approx(floor)
+        assert found["steps"][0]["rmse"]["validate"] > 3 * floor
+        assert found["steps"][1]["rmse"]["validate"] == pytest.approx(floor, rel=0.1)
+
+    def test_a_tie_is_said_and_the_drive_that_tells_is_proposed(self, lagging, tmp_path):
+        answer = call("improve", lagging, "--out", tmp_path / "out")
+        found = read(tmp_path / "out" / "improvement.json")
+        assert found["verdict"] == "adequate"
+        step = next(step for step in found["steps"] if step["added"])
+        assert {"amplifier_lag", "sensor_lag"} <= set(step["class"])
+        assert f"These data cannot tell {' from '.join(step['class'])}." in found["reason"]
+        assert found["next_experiment"]["splits"] == step["class"]
+        path = tmp_path / "out" / found["next_experiment"]["file"]
+        assert path.exists() and f"run {path}" in answer.stdout
+
+    def test_the_noise_is_told_with_what_it_was_taken_from(self, improved):
+        assert read(improved[1] / "improvement.json")["noise_floor_source"] == {"x": "rest segments"}
+        assert [axis["noise_source"] for axis in read(improved[1] / "residuals.json")["axes"].values()] == [
+            "rest segments"
+        ]
+
+    def test_the_diagnosis_is_of_the_last_model(self, improved):
+        found = read(improved[1] / "diagnosis.json")
+        last = read(improved[1] / "improvement.json")["steps"][-1]
+        assert found["verdict"] == "adequate"
+        assert found["rmse"] == last["rmse"]
+        assert "quadratic_gain" not in [item["effect"] for item in found["candidates"]]
+
+    def test_the_improved_job_checks(self, improved):
+        path = improved[1] / "improved.yaml"
+        assert load_job(path).effects == ("quadratic_gain",)
+        text = path.read_text(encoding="utf-8")
+        assert text.startswith("# nested loops\nname: small\n")
+        assert "effects: [quadratic_gain] # none yet" in text
+        answer = call("check", path)
+        assert answer.exit_code == 0, answer.output
+        assert "quadratic_gain.curvature" in answer.stdout
+
+    def test_the_terminal_shows_the_staircase(self, improved):
+        answer, out = improved
+        assert "+ quadratic_gain: RMSE 0.00" in answer.stderr
+        assert [
+            line["added"] for line in map(json.loads, (out / "events.jsonl").open()) if line["event"] == "stair"
+        ] == [
+            None,
+            "quadratic_gain",
+        ]
+        lines = answer.stdout.splitlines()
+        assert any(line.startswith("as given") for line in lines)
+        assert any(line.startswith("+ quadratic_gain") and "100 %" in line for line in lines)
+        assert "adequate: " in answer.stdout
+        assert f"improved job: {out / 'improved.yaml'}" in answer.stdout
+
+    def test_the_page_shows_it_too(self, improved):
+        page = (improved[1] / "report.html").read_text(encoding="utf-8")
+        assert '<p class="lead">Added: quadratic_gain.' in page
+        content = json.loads(re.search(r'id="content">(.*?)</script>', page, re.S)[1])
+        (stairs,) = content["stairs"]
+        assert [step["name"] for step in stairs["steps"]] == ["as given", "+ quadratic_gain"]
+        assert {model["name"] for record in content["records"] for model in record["models"]} == {
+            "improved",
+            "as given",
+        }
+        assert {path.stem for path in (improved[1] / "tables").glob("*.tex")} == {"candidates", "steps", "changes"}
+
+    def test_quiet_says_nothing_and_the_folder_has_a_name(self, bent, tmp_path, monkeypatch):
+        monkeypatch.chdir(tmp_path)
+        answer = call("improve", bent, "--quiet")
+        assert (answer.exit_code, answer.output) == (0, "")
+        (folder,) = Path("results/small").iterdir()
+        assert load_job(folder / "improved.yaml").effects == ("quadratic_gain",)
+        assert call("check", folder / "improved.yaml").exit_code == 0
+
+
+@pytest.mark.parametrize("command", ["diagnose", "improve"])
+class TestRefusals:
+    def test_a_folder_with_something_in_it(self, command, bent, tmp_path):
+        (tmp_path / "mine.txt").write_text("mine")
+        answer = call(command, bent, "--out", tmp_path)
+        assert answer.exit_code == 2
+        assert f"{tmp_path}: this folder is not empty" in answer.stderr
+        assert answer.stdout == ""
+        assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]
+
+    def test_no_job(self, command, tmp_path):
+        answer = call(command, tmp_path / "job.yaml", "--out", tmp_path / "out")
+        assert answer.exit_code == 2
+        assert "no such file" in answer.stderr
+        assert not list(tmp_path.iterdir())
+
+    def test_a_wrong_job(self, command, tmp_path):
+        path = tmp_path / "job.yaml"
+        path.write_text(stage.JOB.replace("effects: []", "effects: [crep]"), encoding="utf-8")
+        answer = call(command, path, "--out", tmp_path / "out")
+        assert answer.exit_code == 2
+        assert "unknown effect 'crep'\n  did you mean 'creep'" in answer.stderr
+        assert list(tmp_path.iterdir()) == [path]
+
+    def test_missing_data(self, command, tmp_path):
+        path = tmp_path / "job.yaml"
+        path.write_text(stage.JOB, encoding="utf-8")
+        answer = call(command, path, "--out", tmp_path / "out", "--json")
+        assert answer.exit_code == 2
+        assert "identify.csv" in answer.stderr and "Traceback" not in answer.output
+        assert answer.stdout == ""
+        assert list(tmp_path.iterdir()) == [path]

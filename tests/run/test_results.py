@@ -1,0 +1,55 @@
+import json
+import shutil
+
+import numpy as np
+import pytest
+
+from pzt_ident.errors import InputError
+from pzt_ident.run.results import read_results
+
+
+@pytest.fixture
+def copy(plain, tmp_path):
+    return shutil.copytree(plain, tmp_path / "copy")
+
+
+def test_traces_are_in_the_order_of_the_records_then_axes(weird, plain):
+    assert [(trace.record, trace.use) for trace in read_results(plain).traces] == [
+        ("minor_loops.csv", "identify"),
+        ("multisine.csv", "validate"),
+    ]
+    assert [trace.axis for trace in read_results(weird).traces] == ["x", "y"]
+    assert read_results(weird).axes == ("x", "y")
+
+
+def test_residual_is_model_less_response_and_units_are_read(plain):
+    trace = read_results(plain).traces[0]
+    np.testing.assert_allclose(trace.residual, trace.model - trace.response)
+    assert (trace.drive_unit, trace.unit) == ("V", "um")
+
+
+def test_the_settling_start_is_not_scored(plain):
+    first, second = read_results(plain).traces
+    np.testing.assert_array_equal(first.scored, first.time >= 1.0)
+    assert second.scored.all()
+
+
+@pytest.mark.parametrize("name", ["result.json", "history.csv", "signals.nc", "environment.json", "job.yaml"])
+def test_a_missing_file_is_named(copy, name):
+    (copy / name).unlink()
+    with pytest.raises(InputError, match=f"{name}.*missing"):
+        read_results(copy)
+
+
+@pytest.mark.parametrize("name", ["result.json", "signals.nc"])
+def test_a_broken_file_is_named(copy, name):
+    (copy / name).write_text("{", encoding="utf-8")
+    with pytest.raises(InputError, match=name):
+        read_results(copy)
+
+
+def test_a_folder_without_a_finished_run_is_refused(copy):
+    path = copy / "result.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"best": None}))
+    with pytest.raises(InputError, match="no run finished"):
+        read_results(copy)

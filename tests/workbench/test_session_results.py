@@ -1,0 +1,51 @@
+"""The report of a step has the diagnosis and the stairs that led to it."""
+
+import json
+
+import pytest
+
+from pzt_ident.workbench.session_results import gathered
+
+from .conftest import form, measured
+
+DIAGNOSIS = {"verdict": "adequate", "reason": "It is.", "next_experiment": None}
+
+
+def fill(session, identify):
+    rmse = {"identify": identify, "validate": None}
+    best = {"rmse": rmse, "parameters": {"bouc_wen.gain": {"value": 0.1, "unit": "um/V", "verdict": "determined"}}}
+    result = {"name": "small", "unit": "um", "noise_floor": {"x": 0.3}, "best": best}
+    for name, content in (("run/result.json", result), ("diagnosis/diagnosis.json", DIAGNOSIS)):
+        (session.step() / name).parent.mkdir()
+        (session.step() / name).write_text(json.dumps(content))
+
+
+@pytest.fixture
+def begun(session):
+    measured(session.root / "data.csv")
+    session.begin(form())
+    fill(session, 0.5)
+    return session
+
+
+def test_a_first_step_has_its_diagnosis_and_no_stairs(begun):
+    assert gathered(begun) == begun.step() / "run"
+    assert json.loads((begun.step() / "run" / "diagnosis.json").read_text()) == DIAGNOSIS
+    assert not (begun.step() / "run" / "improvement.json").exists()
+
+
+def test_later_ones_have_the_stairs(begun):
+    for act, left in ((begun.add, 0.4), (begun.remove, 0.5)):
+        act("creep")
+        fill(begun, left)
+    begun.add("drift")
+    fill(begun, 0.3)
+    found = json.loads((gathered(begun) / "improvement.json").read_text())
+    assert [(step["added"], step["removed"]) for step in found["steps"]] == [
+        (None, None),
+        ("creep", None),
+        (None, "creep"),
+        ("drift", None),
+    ]
+    assert [step["explained"] for step in found["steps"]] == pytest.approx([0, 0.09 / 0.16, -0.09 / 0.07, 1])
+    assert (found["effects"], found["floor"], found["reason"]) == (["drift"], pytest.approx(0.3), "It is.")
