@@ -22,7 +22,7 @@ from baselines import first_order_hold, lsoda, numpy_population, plain_loop
 from pzt_ident.data.record import Record
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks, optimizers
-from pzt_ident.search.loop import Stop, drive
+from pzt_ident.search.loop import Stop, optimize
 from pzt_ident.search.problem import Problem
 
 HERE = Path(__file__).parent
@@ -140,7 +140,7 @@ def whole_search() -> list[tuple[str, float]]:
     functions: dict[str, Callable[[], object]] = {}
     for word in optimizers.words():
         chosen = optimizers[word].make(**settings.get(word, {})).with_budget(17_500)
-        functions[word] = lambda o=chosen: drive(o, made.dimensions, made.loss, 1, Stop(17_500), residuals)
+        functions[word] = lambda o=chosen: optimize(o, made.dimensions, made.loss, 1, Stop(17_500), residuals)
     return list(cpu(functions, 3, 1).items())
 
 
@@ -214,7 +214,7 @@ def memory() -> list[tuple[str, float]]:
 
 def peak(generations: int) -> float:
     made = problem(drives(np.arange(200) / 1e3)["general (sine, 1 Hz)"])
-    drive(
+    optimize(
         optimizers["pso"].make(population=10, generations=generations),
         made.dimensions,
         made.loss,

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
+from pzt_ident.model.optimizer import Search
 from pzt_ident.optimizers._foreign import numpy_seeded
-from pzt_ident.search.loop import Search
 
 
 @contextmanager

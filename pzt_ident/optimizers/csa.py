@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.model.optimizer import Array, Generational, Search, setting
 from pzt_ident.model.registry import optimizers
-from pzt_ident.search.loop import Array, Generational, Search, setting
 
 Bits = NDArray[np.bool_]
 

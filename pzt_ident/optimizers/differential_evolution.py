@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pzt_ident.model.optimizer import Array, Generational, Search, setting
 from pzt_ident.model.registry import optimizers
-from pzt_ident.search.loop import Array, Generational, Search, setting
 
 
 @optimizers.register

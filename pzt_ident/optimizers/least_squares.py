@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pzt_ident.model.optimizer import Array, Budgeted, Search, setting
 from pzt_ident.model.registry import optimizers
-from pzt_ident.search.loop import Array, Budgeted, Search, setting
 
 ROUNDING = float(np.finfo(np.float64).eps)
 STEP = ROUNDING**0.5  # of a forward difference

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pzt_ident.model.optimizer import Generational, Search, setting
 from pzt_ident.model.registry import optimizers
 from pzt_ident.optimizers._swarm import fly
-from pzt_ident.search.loop import Generational, Search, setting
 
 
 @optimizers.register

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.model.optimizer import Array, Generational, Search, choice, setting
 from pzt_ident.model.registry import optimizers
 from pzt_ident.optimizers._foreign import random_seeded
-from pzt_ident.search.loop import Array, Generational, Search, choice, setting
 
 
 class Fitness(NamedTuple):

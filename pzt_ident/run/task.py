@@ -20,8 +20,9 @@ from pzt_ident.data.units import factor, same_kind
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.files import write_json
 from pzt_ident.model.chain import Chain
+from pzt_ident.model.optimizer import Optimizer
 from pzt_ident.model.registry import blocks, optimizers
-from pzt_ident.search.loop import Optimizer, Outcome, State, Stop, drive
+from pzt_ident.search.loop import Outcome, State, Stop, optimize
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.uncertainty import estimates
 
@@ -118,7 +119,7 @@ def searched(task: Task, problem: Problem, size: float, tell: Tell) -> tuple[Out
                 shown = seconds
                 tell(generation_event(task, state.evaluations, rmse(problem, state.point, size), seconds))
 
-        outcome = drive(
+        outcome = optimize(
             optimizer,
             problem.dimensions,
             problem.loss,

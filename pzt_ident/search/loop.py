@@ -1,115 +1,21 @@
-"""Search the unit cube: what an optimizer is, when to stop it, and the loop that drives it."""
+"""Search the unit cube: when to stop an optimizer, and the loop that drives it."""
 
 from __future__ import annotations
 
 import math
 import time
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Generator, Iterable, Sequence
-from dataclasses import dataclass, field, fields, replace
-from typing import Any, ClassVar, Literal, NamedTuple, Self
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, fields
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pzt_ident.errors import InputError, nearest
+from pzt_ident.errors import InputError
+from pzt_ident.model.optimizer import Array, Optimizer
 from pzt_ident.model.registry import optimizers
 
-Array = NDArray[np.float64]
-Search = Generator[Array, Array, None]
 Function = Callable[[Array], Array]
-
-
-def setting(default: Any, unit: str, bounds: tuple[float, float], doc: str) -> Any:
-    """Declare a number an optimizer can be set to; bounds are inclusive."""
-    return field(default=default, metadata={"unit": unit, "bounds": bounds, "doc": doc})
-
-
-def choice(default: str, words: tuple[str, ...], doc: str) -> Any:
-    """Declare a setting that is one of a few words."""
-    return field(default=default, metadata={"unit": "", "words": words, "doc": doc})
-
-
-@dataclass(frozen=True)
-class Optimizer(ABC):
-    """Typed settings and one generator. A leaf is a frozen dataclass whose fields are made by `setting` or `choice`.
-
-    `wants` residuals: it is sent an (M, N) residual array where the problem has residuals, else losses (M,).
-    Raises InputError for a setting of the wrong type or out of its bounds.
-    """
-
-    name: ClassVar[str] = ""
-    source: ClassVar[str] = ""
-    wants: ClassVar[Literal["losses", "residuals"]] = "losses"
-
-    @property
-    @abstractmethod
-    def evaluations(self) -> int:
-        """The budget that these settings stand for."""
-
-    @abstractmethod
-    def search(self, dimensions: int, rng: np.random.Generator) -> Search:
-        """Yield candidates (M, P) in [0, 1] and be sent their losses (M,), inf for a failed one."""
-
-    @abstractmethod
-    def with_budget(self, evaluations: int) -> Self:
-        """The same settings for a budget of at least so many evaluations."""
-
-    @classmethod
-    def make(cls, **settings: Any) -> Self:
-        """As the constructor, but an unknown setting raises InputError with the nearest words."""
-        known = [item.name for item in fields(cls)]
-        for word in settings:
-            if word not in known:
-                raise InputError(f"unknown setting {word!r}", where=cls.name, remedy=nearest(word, known))
-        return cls(**settings)
-
-    def __post_init__(self) -> None:
-        for item in fields(self):
-            _check(getattr(self, item.name), item.default, item.metadata, f"{self.name}.{item.name}")
-
-
-@dataclass(frozen=True)
-class Generational(Optimizer):
-    """An optimizer whose budget is a number of generations of one population."""
-
-    population: int = setting(70, "1", (4, 100_000), "Candidates in a generation.")
-    generations: int = setting(250, "1", (1, 10_000_000), "The budget is this many times the population.")
-
-    @property
-    def evaluations(self) -> int:
-        return self.population * self.generations
-
-    def with_budget(self, evaluations: int) -> Self:
-        return replace(self, generations=math.ceil(evaluations / self.population))
-
-
-@dataclass(frozen=True)
-class Budgeted(Optimizer):
-    """An optimizer that takes as many evaluations a generation as it comes to need."""
-
-    budget: int = setting(17_500, "1", (1, 1_000_000_000), "Evaluations.")
-
-    @property
-    def evaluations(self) -> int:
-        return self.budget
-
-    def with_budget(self, evaluations: int) -> Self:
-        return replace(self, budget=evaluations)
-
-
-def _check(value: Any, default: Any, facts: Any, where: str) -> None:
-    if "words" in facts:
-        if value not in facts["words"]:
-            raise InputError(f"unknown word {value!r}", where=where, remedy=nearest(str(value), facts["words"]))
-        return
-    kinds = (int, np.integer) if isinstance(default, int) else (int, float, np.integer, np.floating)
-    low, high = facts["bounds"]
-    if isinstance(value, bool) or not isinstance(value, kinds):
-        kind = "a whole number" if isinstance(default, int) else "a number"
-        raise InputError(f"{value!r} is not {kind}", where=where, remedy=f"give {kind} from {low:g} to {high:g}")
-    if not low <= value <= high:
-        raise InputError(f"{value!r} is out of bounds", where=where, remedy=f"give a value from {low:g} to {high:g}")
 
 
 @dataclass(frozen=True)
@@ -177,7 +83,7 @@ def finite(losses: ArrayLike) -> Array:
     return np.where(np.isfinite(losses), losses, np.inf)
 
 
-def drive(
+def optimize(
     optimizer: Optimizer,
     dimensions: int,
     evaluate: Function,
@@ -288,7 +194,7 @@ def minimize(
         points = low + (high - low) * cube
         return function(points) if vectorized else np.array([function(point) for point in points], dtype=np.float64)
 
-    outcome = drive(chosen, len(low), evaluate, seed, Stop(evaluations))
+    outcome = optimize(chosen, len(low), evaluate, seed, Stop(evaluations))
     return outcome._replace(point=low + (high - low) * outcome.point)
 
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from pzt_ident.errors import InputError
 from pzt_ident.model.registry import optimizers
-from pzt_ident.search.loop import Stop, drive, minimize
+from pzt_ident.search.loop import Stop, minimize, optimize
 
 WORDS = optimizers.words()
 few = settings(max_examples=5, deadline=None)
@@ -32,7 +32,7 @@ def walk(word, dimensions, seed, evaluations=300, function=bowl, **more):
         return function(points)
 
     optimizer = optimizers[word].make().with_budget(evaluations)
-    return tried, drive(optimizer, dimensions, watched, seed, Stop(evaluations), **more)
+    return tried, optimize(optimizer, dimensions, watched, seed, Stop(evaluations), **more)
 
 
 @pytest.mark.parametrize("word", WORDS)
@@ -113,7 +113,7 @@ def test_residuals_are_worth_their_while(word):
     residuals = lambda cube: np.column_stack([10 * (x(cube)[:, 1] - x(cube)[:, 0] ** 2), 1 - x(cube)[:, 0]])  # noqa: E731
     losses = lambda cube: np.sqrt(np.mean(residuals(cube) ** 2, axis=1))  # noqa: E731
     optimizer = optimizers[word].make().with_budget(300)
-    assert drive(optimizer, 2, losses, 3, Stop(300), residuals=residuals).loss < 1e-9
+    assert optimize(optimizer, 2, losses, 3, Stop(300), residuals=residuals).loss < 1e-9
 
 
 def test_writes_nothing_and_needs_no_place_to_write(tmp_path):

@@ -14,8 +14,8 @@ from pzt_ident.data.record import Axis, Channel, Source
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import Job, load_job
 from pzt_ident.job.sections import Choice, Quantity, Setting
+from pzt_ident.model.optimizer import Generational, setting
 from pzt_ident.model.registry import blocks, optimizers
-from pzt_ident.search.loop import Generational, setting
 
 GOOD = """\
 name: stage

@@ -3,7 +3,7 @@
 import numpy as np
 
 from pzt_ident.optimizers.cma_es import CMAES, ranked
-from pzt_ident.search.loop import Stop, drive
+from pzt_ident.search.loop import Stop, optimize
 
 
 def walk(function, evaluations=240):
@@ -13,7 +13,7 @@ def walk(function, evaluations=240):
         tried.append(points.copy())
         return function(points)
 
-    drive(CMAES(budget=evaluations), 4, watched, 3, Stop(evaluations))
+    optimize(CMAES(budget=evaluations), 4, watched, 3, Stop(evaluations))
     return np.vstack(tried)
 
 

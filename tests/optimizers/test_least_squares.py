@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
 
 from pzt_ident.optimizers.least_squares import LeastSquares, bounded_step, secant
-from pzt_ident.search.loop import Stop, drive
+from pzt_ident.search.loop import Stop, optimize
 
 seeds = st.integers(0, 2**32 - 1)
 
@@ -35,7 +35,7 @@ def test_a_linear_problem_is_solved_at_once_even_on_its_bounds(seed):
     matrix, target = rng.normal(size=(12, 3)), rng.normal(size=12)
     optimizer = LeastSquares(budget=120)
     residuals = lambda points: points @ matrix.T - target  # noqa: E731
-    found = drive(
+    found = optimize(
         optimizer, 3, lambda x: np.sqrt(np.mean(residuals(x) ** 2, axis=1)), 1, Stop(120), residuals=residuals
     )
     best = lsq_linear(matrix, target, bounds=(0, 1), tol=1e-14).x

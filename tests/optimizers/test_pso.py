@@ -6,7 +6,7 @@ import pytest
 from pzt_ident.errors import InputError
 from pzt_ident.optimizers.pso import PSO
 from pzt_ident.optimizers.pso_vmax import VmaxPSO
-from pzt_ident.search.loop import Stop, drive
+from pzt_ident.search.loop import Stop, optimize
 
 
 def flight(optimizer, function, generations=40, dimensions=3, seed=4):
@@ -18,7 +18,7 @@ def flight(optimizer, function, generations=40, dimensions=3, seed=4):
         heights.append(function(points))
         return heights[-1]
 
-    drive(optimizer, dimensions, watched, seed, Stop(optimizer.population * generations))
+    optimize(optimizer, dimensions, watched, seed, Stop(optimizer.population * generations))
     return np.array(places), np.array(heights)
 
 

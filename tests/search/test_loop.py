@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from pzt_ident.errors import InputError
+from pzt_ident.model.optimizer import Generational
 from pzt_ident.model.registry import optimizers
-from pzt_ident.search.loop import Generational, Stop, drive, finite, minimize, rms
+from pzt_ident.search.loop import Stop, finite, minimize, optimize, rms
 
 
 def bowl(points):
@@ -35,7 +36,7 @@ class Walk(Generational):
 @pytest.mark.parametrize("budget", [1, 9, 10, 11, 25])
 def test_the_last_batch_is_cut_to_the_budget(budget):
     seen = []
-    outcome = drive(Walk(), 2, lambda x: (seen.append(len(x)), bowl(x))[1], 0, Stop(budget))
+    outcome = optimize(Walk(), 2, lambda x: (seen.append(len(x)), bowl(x))[1], 0, Stop(budget))
     assert sum(seen) == outcome.evaluations == budget
     assert outcome.stopped_by == "evaluations"
     assert list(outcome.history.evaluations) == list(np.cumsum(seen))
@@ -44,14 +45,14 @@ def test_the_last_batch_is_cut_to_the_budget(budget):
 
 
 def test_ends_at_the_target():
-    outcome = drive(Walk(), 2, bowl, 0, Stop(10_000, target=1e-4))
+    outcome = optimize(Walk(), 2, bowl, 0, Stop(10_000, target=1e-4))
     assert outcome.stopped_by == "target"
     assert outcome.history.best[-1] <= 1e-4 < outcome.history.best[-2]
 
 
 @pytest.mark.parametrize("value", [0.0, 3.0, -2.0, np.inf])
 def test_ends_after_generations_without_improvement(value):
-    outcome = drive(Walk(stuck=True), 2, lambda x: np.full(len(x), value), 0, Stop(10_000, stagnation=5))
+    outcome = optimize(Walk(stuck=True), 2, lambda x: np.full(len(x), value), 0, Stop(10_000, stagnation=5))
     assert outcome.stopped_by == "stagnation"
     assert len(outcome.history.best) == (6 if np.isfinite(value) else 5)
 
@@ -59,12 +60,12 @@ def test_ends_after_generations_without_improvement(value):
 def test_a_gain_below_the_tolerance_is_none():
     losses = iter(1 - 1e-6 * np.arange(100))
     stop = Stop(10_000, stagnation=4, tolerance=1e-3)
-    outcome = drive(Walk(), 2, lambda x: np.full(len(x), next(losses)), 0, stop)
+    outcome = optimize(Walk(), 2, lambda x: np.full(len(x), next(losses)), 0, stop)
     assert (outcome.stopped_by, len(outcome.history.best)) == ("stagnation", 5)
 
 
 def test_ends_when_the_time_is_up():
-    outcome = drive(Walk(), 2, bowl, 0, Stop(10_000, seconds=0.0))
+    outcome = optimize(Walk(), 2, bowl, 0, Stop(10_000, seconds=0.0))
     assert (outcome.stopped_by, outcome.evaluations) == ("seconds", 10)
 
 
@@ -75,7 +76,7 @@ def test_a_callback_sees_each_generation_and_may_end_the_search():
         states.append(state)
         return state.generation == 3
 
-    outcome = drive(Walk(), 2, bowl, 0, Stop(10_000), callback=watch)
+    outcome = optimize(Walk(), 2, bowl, 0, Stop(10_000), callback=watch)
     assert outcome.stopped_by == "callback"
     assert [state.evaluations for state in states] == [10, 20, 30]
     assert [state.loss for state in states] == list(outcome.history.best)
@@ -92,14 +93,14 @@ def test_the_losses_that_a_callback_keeps_stay_as_they_were():
             kept.append(state.losses)
             copies.append(state.losses.copy())
 
-        drive(optimizer, 3, bowl, 1, Stop(900), callback=note)
+        optimize(optimizer, 3, bowl, 1, Stop(900), callback=note)
         np.testing.assert_array_equal(np.concatenate(kept), np.concatenate(copies))
 
 
 def test_replayed_generations_are_neither_evaluated_nor_told_again():
     told, calls = [], []
-    whole = drive(Walk(), 2, bowl, 0, Stop(60), callback=lambda state: told.append(state.losses))
-    again = drive(
+    whole = optimize(Walk(), 2, bowl, 0, Stop(60), callback=lambda state: told.append(state.losses))
+    again = optimize(
         Walk(), 2, bowl, 0, Stop(60), told=told[:4], callback=lambda state: calls.append(state.generation) and None
     )
     assert calls == [5, 6]
@@ -109,21 +110,21 @@ def test_replayed_generations_are_neither_evaluated_nor_told_again():
 
 def test_a_whole_checkpoint_is_an_outcome():
     told = []
-    whole = drive(Walk(), 2, bowl, 0, Stop(25), callback=lambda state: told.append(state.losses))
-    again = drive(Walk(), 2, None, 0, Stop(25), told=told)
+    whole = optimize(Walk(), 2, bowl, 0, Stop(25), callback=lambda state: told.append(state.losses))
+    again = optimize(Walk(), 2, None, 0, Stop(25), told=told)
     np.testing.assert_array_equal(again.point, whole.point)
 
 
 def test_a_foreign_checkpoint_is_refused():
     with pytest.raises(InputError, match=r"checkpoint: losses of shape \(7,\) for 10 candidates"):
-        drive(Walk(), 2, bowl, 0, Stop(60), told=[np.ones(7)])
+        optimize(Walk(), 2, bowl, 0, Stop(60), told=[np.ones(7)])
 
 
 def test_residuals_replay_identically():
     """They are evaluated again, since losses are all that was kept."""
     residuals = lambda x: np.column_stack([x[:, 0] - 0.2, 10 * (x[:, 1] - x[:, 0] ** 2)])  # noqa: E731
     optimizer, told = optimizers["least_squares"].make(), []
-    run = lambda **more: drive(optimizer, 2, None, 3, Stop(90), residuals=residuals, **more)  # noqa: E731
+    run = lambda **more: optimize(optimizer, 2, None, 3, Stop(90), residuals=residuals, **more)  # noqa: E731
     whole = run(callback=lambda state: told.append(state.losses))
     again = run(told=told[:3])
     assert again.loss == whole.loss
@@ -133,7 +134,7 @@ def test_residuals_replay_identically():
 def test_failures_are_infinite():
     np.testing.assert_array_equal(finite([1, np.nan, np.inf, -np.inf]), [1, np.inf, np.inf, np.inf])
     np.testing.assert_allclose(rms(np.array([[3.0, 4.0], [1.0, np.nan], [np.inf, 0.0]])), [12.5**0.5, np.inf, np.inf])
-    outcome = drive(Walk(), 2, lambda x: np.full(len(x), np.nan), 0, Stop(20))
+    outcome = optimize(Walk(), 2, lambda x: np.full(len(x), np.nan), 0, Stop(20))
     assert outcome.loss == np.inf
     assert np.isnan(outcome.point).all()
 

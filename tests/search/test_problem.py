@@ -10,7 +10,7 @@ from pzt_ident.data.record import Record
 from pzt_ident.errors import InputError
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks, optimizers
-from pzt_ident.search.loop import Stop, drive
+from pzt_ident.search.loop import Stop, optimize
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.uncertainty import estimates
 
@@ -164,7 +164,7 @@ def turned(records, word):
     for sign in (1, -1):
         signed = [dataclasses.replace(record, response=sign * record.response) for record in records]
         problem = Problem(Chain([blocks[word]], ["x"], [0]), signed)
-        found = drive(optimizers["pso"].make(), problem.dimensions, problem.loss, 1, Stop(3000))
+        found = optimize(optimizers["pso"].make(), problem.dimensions, problem.loss, 1, Stop(3000))
         yield problem, problem.loss(problem.polish(found.point)[0])[0]
 
 
