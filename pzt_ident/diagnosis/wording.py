@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
 
 from pzt_ident.diagnosis.binning import Bin, Tally
-
-if TYPE_CHECKING:
-    from pzt_ident.diagnosis.locate import Dominant
+from pzt_ident.diagnosis.misfit import Dominant
 
 SPECTRAL = ("frequency", "lines")
 
