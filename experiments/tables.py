@@ -10,7 +10,7 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from pzt_ident.report.words import step_name
+from pzt_ident.run.events import step_name
 
 Result = Mapping[str, Any]
 NAMES = {

@@ -8,7 +8,8 @@ import pytest
 
 from pzt_ident.data.record import Record
 from pzt_ident.job.schema import Job, Stopping, load_job
-from pzt_ident.run.identify import read, tasks_of
+from pzt_ident.run.identify import tasks_of
+from pzt_ident.run.statement import Statement, read
 from pzt_ident.run.task import read_result, search
 
 ROOT = Path(__file__).parents[1]
@@ -33,8 +34,9 @@ def shortened(record: Record) -> Record:
 def check(job: Job, folder: Path) -> None:
     records = [shortened(record) for record in read(job)]
     assert {record.use for record in records} <= {"identify", "validate"}
-    for task in tasks_of(job, records, folder):
-        search(task, job, records, lambda event: None)
+    statement = Statement(job, records)
+    for task in tasks_of(statement, folder):
+        search(task, statement, lambda event: None)
         found = read_result(task)
         assert found["evaluations"] <= 48
         assert 0 < found["rmse"]["identify"] < float("inf")

@@ -11,7 +11,7 @@ import numpy as np
 
 from experiments.tables import number, table
 from pzt_ident.job.schema import load_job
-from pzt_ident.run.identify import problem_of, read
+from pzt_ident.run.statement import Statement
 
 HERE = Path(__file__).parent
 JOBS = {
@@ -27,7 +27,7 @@ def row(folder: Path, name: str) -> list[str]:
     """RMSE of the whole record and of its parts, the offset of the whole record removed from all."""
     said, path = JOBS[name]
     job = load_job(path)
-    problem = problem_of(job, read(job))
+    problem = Statement(job).problem
     best = json.loads((folder / name / "result.json").read_text(encoding="utf-8"))["best"]["parameters"]
     point = problem.unit_point({word: entry["value"] for word, entry in best.items()})
     (simulator,) = problem.simulators["validate"]

@@ -10,7 +10,7 @@ import matplotlib
 
 from experiments.pnzt.figure import OUT
 from experiments.pnzt.table import UNITS
-from pzt_ident.report.words import step_name
+from pzt_ident.run.events import step_name
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt

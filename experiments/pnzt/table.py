@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from experiments.tables import Result, command, number, parameters, staircase, table
-from pzt_ident.report.words import step_name
+from pzt_ident.run.events import step_name
 
 JOBS = {"homogenized_energy": "without activation", "thermal_homogenized_energy": "with activation"}
 AMPLITUDES = {"amplitudes": "turned at each end", "partial": "poled one way"}

@@ -8,8 +8,11 @@ import os
 import sys
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 from shlex import quote
+from threading import Thread
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -28,7 +31,7 @@ from pzt_ident.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from pzt_ident.cli.terminal import Listener
+    from pzt_ident.cli.progress import Listener
 
 
 @click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -59,7 +62,7 @@ def run(
         from pzt_ident.job.schema import load_job
         from pzt_ident.run.identify import run
 
-        return run(load_job(job, plugins), out, workers=workers, report=False, listen=listen)
+        return run(load_job(job, plugins), out, workers=workers, listen=listen)
 
     _identify(start, no_report, as_json, quiet)
 
@@ -75,23 +78,39 @@ def resume(folder: Path, workers: int | None, no_report: bool, plugins: bool, as
     def start(listen: Listener) -> Path:
         from pzt_ident.run.identify import resume
 
-        return resume(folder, workers=workers, report=False, listen=listen, plugins=plugins)
+        return resume(folder, workers=workers, listen=listen, plugins=plugins)
 
     _identify(start, no_report, as_json, quiet)
 
 
 def _identify(start: Callable[[Listener], Path], no_report: bool, as_json: bool, quiet: bool) -> None:
-    from pzt_ident.cli import terminal
-    from pzt_ident.report import page
-    from pzt_ident.run import misfit as compare
+    from pzt_ident.cli.progress import listening
+    from pzt_ident.cli.result_tables import show_result
 
-    with terminal.listening(silent=as_json or quiet) as listen:
-        folder = start(listen)
-        if not no_report:
-            compare.compare(folder, folder)
-            page.write_report(folder)
+    with listening(silent=as_json or quiet) as listen:
+
+        def listen_and_prepare(event: dict[str, Any]) -> None:
+            if event["event"] == "start" and not no_report:
+                _import_drawing()
+            listen(event)
+
+        folder = start(listen_and_prepare)
+        _report(folder, no_report)
     result = json.loads((folder / "result.json").read_text(encoding="utf-8"))
-    answer({"folder": str(folder), "result": result}, lambda: terminal.show_result(result, folder), as_json, quiet)
+    answer({"folder": str(folder), "result": result}, lambda: show_result(result, folder), as_json, quiet)
+
+
+def _import_drawing() -> None:
+    """Import what draws the report while the searches run: they leave this process idle."""
+    drawing = ("pandas", "matplotlib.figure", "matplotlib.backends.backend_svg", "pzt_ident.report.page")
+    Thread(target=lambda: [import_module(name) for name in drawing], daemon=True).start()
+
+
+def _report(folder: Path, no_report: bool) -> None:
+    if not no_report:
+        from pzt_ident.report.page import write_report
+
+        write_report(folder)
 
 
 @main.command()
@@ -102,26 +121,40 @@ def _identify(start: Callable[[Listener], Path], no_report: bool, as_json: bool,
 @output
 def compare(source: Path, out: Path | None, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
     """Say where the model fails: the best run in the folder DIR, or of the job file JOB, which is run first."""
-    from pzt_ident.cli import misfit_tables as atlas
-    from pzt_ident.cli import terminal
-    from pzt_ident.run.misfit import compare, draw, finished
+    from pzt_ident.cli.misfit_tables import show_misfits
+    from pzt_ident.cli.progress import listening
+    from pzt_ident.cli.table import tracked
+    from pzt_ident.report.figures import write_misfit_figures
+    from pzt_ident.run.misfit import compare
+    from pzt_ident.run.results import read_folder
 
-    with terminal.listening(silent=as_json or quiet) as listen:
-        folder = finished(source, out, listen, plugins)
-    found = compare(folder, out or folder)
-    for _ in () if no_report else terminal.tracked(draw(folder, out or folder, found), "figures", as_json or quiet):
+    folder = source
+    if not source.is_dir():
+        from pzt_ident.job.schema import load_job
+        from pzt_ident.run.identify import run
+
+        with listening(silent=as_json or quiet) as listen:
+            folder = run(load_job(source, plugins), out, listen=listen)
+    there = out or folder
+    residuals = compare(folder, there)
+    compared = replace(read_folder(folder), misfit=residuals)
+    drawn = () if no_report else write_misfit_figures(compared, there / "figures")
+    for _ in tracked(drawn, "figures", as_json or quiet):
         pass
-    answer({"folder": str(out or folder), "residuals": found}, lambda: atlas.show_misfits(found), as_json, quiet)
+    if not no_report and there == folder and (folder / "report.html").exists():
+        _report(folder, no_report)
+    facts = {"folder": str(there), "residuals": residuals}
+    answer(facts, lambda: show_misfits(residuals), as_json, quiet)
 
 
 @main.command()
 @diagnosing
 def diagnose(job: Path, **options: Any) -> None:
     """Say which physical effect the model of a job file JOB misses."""
-    from pzt_ident.cli import verdict_tables as staircase
+    from pzt_ident.cli import verdict_tables
     from pzt_ident.run.improve import diagnose
 
-    _diagnose(diagnose, "diagnosis", staircase.show_diagnosis, job, **options)
+    _diagnose(diagnose, "diagnosis", verdict_tables.show_diagnosis, job, **options)
 
 
 @main.command()
@@ -149,10 +182,10 @@ def model(**options: Any) -> None:
 @diagnosing
 def improve(job: Path, **options: Any) -> None:
     """Add what the model of a job file JOB misses, effect by effect, and watch the error fall."""
-    from pzt_ident.cli import verdict_tables as staircase
+    from pzt_ident.cli import verdict_tables
     from pzt_ident.run.improve import improve
 
-    _diagnose(improve, "improvement", staircase.show_improvement, job, **options)
+    _diagnose(improve, "improvement", verdict_tables.show_improvement, job, **options)
 
 
 def _diagnose(
@@ -166,14 +199,12 @@ def _diagnose(
     as_json: bool,
     quiet: bool,
 ) -> None:
-    from pzt_ident.cli import terminal
+    from pzt_ident.cli.progress import listening
     from pzt_ident.job.schema import load_job
-    from pzt_ident.report.page import write_report
 
-    with terminal.listening(silent=as_json or quiet) as listen:
+    with listening(silent=as_json or quiet) as listen:
         folder = work(load_job(job, plugins), out, listen)
-        if not no_report:
-            write_report(folder)
+        _report(folder, no_report)
     found = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
     answer({"folder": str(folder), name: found}, lambda: show(found, folder), as_json, quiet)
 
@@ -184,11 +215,12 @@ def _diagnose(
 @output
 def check(job: Path, plugins: bool, as_json: bool, quiet: bool) -> None:
     """Say what is in a job file JOB and its data. Writes nothing."""
-    from pzt_ident.cli import summary
+    from pzt_ident.cli.job_tables import show_job
     from pzt_ident.job.schema import load_job
+    from pzt_ident.run.summary import summary_of
 
-    found = summary.of_job(load_job(job, plugins))
-    answer(found, lambda: summary.show_job(found), as_json, quiet)
+    found = summary_of(load_job(job, plugins))
+    answer(found, lambda: show_job(found), as_json, quiet)
 
 
 @main.command("list")
@@ -196,10 +228,11 @@ def check(job: Path, plugins: bool, as_json: bool, quiet: bool) -> None:
 @output
 def list_(kind: str, as_json: bool, quiet: bool) -> None:
     """List the words that a job may use."""
-    from pzt_ident.cli import summary, terminal
+    from pzt_ident.cli.table import table
+    from pzt_ident.model.description import words
 
-    found = summary.words(kind)
-    answer(found, lambda: terminal.table(("word", "what it is"), list(found.items())), as_json, quiet)
+    found = words(kind)
+    answer(found, lambda: table(("word", "what it is"), list(found.items())), as_json, quiet)
 
 
 @main.command()
@@ -207,10 +240,11 @@ def list_(kind: str, as_json: bool, quiet: bool) -> None:
 @output
 def show(name: str, as_json: bool, quiet: bool) -> None:
     """Show what a block, effect or optimizer declares."""
-    from pzt_ident.cli import summary
+    from pzt_ident.cli.word_tables import show_word
+    from pzt_ident.model.description import description_of
 
-    found = summary.of_word(name)
-    answer(found, lambda: summary.show_word(found), as_json, quiet)
+    found = description_of(name)
+    answer(found, lambda: show_word(found), as_json, quiet)
 
 
 @main.command()
@@ -235,8 +269,8 @@ def init(folder: Path, as_json: bool, quiet: bool) -> None:
 @output
 def demo(out: Path, no_browser: bool, as_json: bool, quiet: bool) -> None:
     """Find and add what a model misses, on a measurement that ships, and open the report."""
-    from pzt_ident.cli import terminal
-    from pzt_ident.cli import verdict_tables as staircase
+    from pzt_ident.cli import verdict_tables
+    from pzt_ident.cli.progress import listening
     from pzt_ident.job.demo import hidden, show_in_browser, write_demo
     from pzt_ident.job.schema import load_job
     from pzt_ident.report.page import write_report
@@ -246,13 +280,13 @@ def demo(out: Path, no_browser: bool, as_json: bool, quiet: bool) -> None:
     job = write_demo(out)
     if not silent:
         click.echo(f"wrote {job}, which knows of no effect, and a measurement with effects hidden in it", err=True)
-    with terminal.listening(silent) as listen:
+    with listening(silent) as listen:
         folder = improve(load_job(job), out / "improved", listen)
         write_report(folder)
     found = json.loads((folder / "improvement.json").read_text(encoding="utf-8"))
 
     def say() -> None:
-        staircase.show_improvement(found, folder)
+        verdict_tables.show_improvement(found, folder)
         click.echo(f"hidden was: {', '.join(item['effect'] for item in hidden())}")
         click.echo(f"next, with the mouse: pzt-ident workbench {quote(str(job))}")
 
@@ -298,7 +332,7 @@ def report(folders: tuple[Path, ...], out: Path | None, as_json: bool, quiet: bo
 
     Several folders are put side by side, too, on a page of their own.
     """
-    from pzt_ident.cli.terminal import tracked
+    from pzt_ident.cli.table import tracked
     from pzt_ident.report.figures import write_paper_figures
     from pzt_ident.report.page import write_report
     from pzt_ident.report.side_by_side import write_side_by_side

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from pzt_ident.cli.terminal import number, table
+from pzt_ident.cli.table import number, table
 from pzt_ident.diagnosis.wording import percent
 
 Facts = dict[str, Any]

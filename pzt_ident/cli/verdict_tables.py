@@ -7,9 +7,9 @@ from typing import Any
 
 import click
 
-from pzt_ident.cli.terminal import number, table
+from pzt_ident.cli.table import number, table
 from pzt_ident.report.tables import expected
-from pzt_ident.report.words import step_name
+from pzt_ident.run.events import step_name
 
 Facts = dict[str, Any]
 

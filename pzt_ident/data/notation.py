@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 import unicodedata
+from collections.abc import Iterable
 
 MISSING = "–"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -83,6 +84,25 @@ def quantity(value: float | None, of: str, digits: int = 4) -> str:
 
 def power_of_ten(power: int) -> str:
     return "10" + str(power).translate(SUPERSCRIPTS)
+
+
+def listed(names: Iterable[str]) -> str:
+    """a, b and c."""
+    *most, last = names
+    return f"{', '.join(most)} and {last}" if most else last
+
+
+def ranges(names: Iterable[str]) -> list[str]:
+    """`weight_3 to weight_9` in the place of three and more that follow each other."""
+    runs: list[list[str]] = []
+    for name in names:
+        head, _, digits = name.rpartition("_")
+        before, _, last = runs[-1][-1].rpartition("_") if runs else ("", "", "")
+        if before == head and digits.isdigit() and last.isdigit() and int(digits) == int(last) + 1:
+            runs[-1].append(name)
+        else:
+            runs.append([name])
+    return [said for run in runs for said in ([f"{run[0]} to {run[-1]}"] if len(run) > 2 else run)]
 
 
 def _power(value: float, digits: int) -> int:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from itertools import product
 
 from pzt_ident.data.noise import noise_floor
+from pzt_ident.data.notation import listed
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis.locate import locate
 from pzt_ident.diagnosis.refit import Case, Fit
-from pzt_ident.report.words import listed
 
 
-def remarks(case: Case, fit: Fit) -> str:
+def caveats(case: Case, fit: Fit) -> str:
     """All but what is told of the records."""
     return sized(fit) + silenced(case, fit) + bounded(fit)
 
@@ -20,11 +20,7 @@ def sized(fit: Fit) -> str:
     """A sentence about each effect that adds to the response in amounts of each record: the most it adds to one."""
     problem, model = fit.problem, fit.problem.model
     theta = problem.parameters(fit.point)
-    added = {
-        simulator.record.name: simulator.added(theta)
-        for simulators in problem.simulators.values()
-        for simulator in simulators
-    }
+    added = {simulator.record.name: simulator.added(theta) for simulator in problem.every_simulator}
     said = ""
     for effect, (i, axis) in product((block.name for block in model.additions), enumerate(model.measured)):
         record, most = max(((name, own[effect][i]) for name, own in added.items()), key=lambda pair: pair[1])
@@ -62,19 +58,18 @@ def bounded(fit: Fit) -> str:
 def broken(fit: Fit) -> str:
     """A sentence about each record over which a block breaks a condition of its own equation."""
     theta = fit.problem.parameters(fit.point)
-    simulators = [simulator for simulators in fit.problem.simulators.values() for simulator in simulators]
+    simulators = fit.problem.every_simulator
     return "".join(
-        f" Record {simulator.record.name}: {each}." for simulator in simulators for each in simulator.broken(theta)
+        f" Record {simulator.record.name}: {condition}."
+        for simulator in simulators
+        for condition in simulator.broken(theta)
     )
 
 
 def rest(case: Case, fit: Fit) -> str:
     """What that which a fit leaves depends on most, a sentence for each axis."""
-    simulators = [simulator for simulators in fit.problem.simulators.values() for simulator in simulators]
-    records, theta = [simulator.record for simulator in simulators], fit.problem.parameters(fit.point)
+    records, residuals = zip(*fit.problem.errors(fit.point), strict=True)
     noise = [noise_floor(list(case.records), axis) for axis in records[0].measured]
-    found = [
-        axis for axis in locate(records, [simulator.errors(theta)[0] for simulator in simulators], noise) if axis.misfit
-    ]
-    names = [f"{axis.axis}: " if len(records[0].measured) > 1 else "" for axis in found]
-    return " ".join(f"{name}{axis.sentences[0]}" for name, axis in zip(names, found, strict=True))
+    misfits = [misfit for misfit in locate(records, residuals, noise) if misfit.misfit]
+    names = [f"{misfit.axis}: " if len(records[0].measured) > 1 else "" for misfit in misfits]
+    return " ".join(f"{name}{misfit.sentences[0]}" for name, misfit in zip(names, misfits, strict=True))

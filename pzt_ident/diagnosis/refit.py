@@ -37,7 +37,7 @@ class Case:
     """A model, its records and what is free, to which effects can be added that are not ruled out.
 
     `tell` hears of every start that was fitted, effect that was scored and model that was refitted, as it happens, from
-    any thread; errors are in units of the loss.
+    any thread; errors are in units of the loss. `given` is the problem of the model as it is, where it is made already.
     """
 
     def __init__(
@@ -49,8 +49,9 @@ class Case:
         ruled_out: Sequence[str] = (),
         shared: Sequence[str] = (),
         tell: Tell = lambda event: None,
+        given: Problem | None = None,
     ) -> None:
-        self.tell = tell
+        self.tell, self._given = tell, given
         self.words, self.effects = tuple(words), tuple(effects)
         self.ruled_out, self.shared = tuple(ruled_out), tuple(shared)
         self._at: dict[tuple[int, int], Record] = {}
@@ -59,6 +60,8 @@ class Case:
 
     def problem(self, effects: Sequence[str], steps: Sequence[int] = (), alone: bool = False) -> Problem:
         """`steps` a sample of each record, by default those of the job; `alone` as in a fit."""
+        if self._given and (tuple(effects), tuple(steps), alone) == (self.effects, (), False):
+            return self._given
         first = self.records[0]
         chain = blocks.chain((*self.words, *effects))
         silent = self.silent(effects) if alone else {}

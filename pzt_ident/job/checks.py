@@ -92,14 +92,14 @@ def _model(document: Document, items: tuple[str | Choice, ...], earlier: Earlier
     if not items:
         document.fault(("model",), "the model has no block", "list at least one, see `pzt-ident list blocks`")
     folders: dict[str, str] = {}
-    operators = [word for word in blocks.words() if word not in blocks.effects()]
+    operators = [word for word in blocks.words() if not blocks.is_effect(word)]
     for i, item in enumerate(items):
         word, at = word_of(item), document.reach(("model", i, "name"))
         if word not in blocks:
             document.fault(at, f"unknown block {word!r}", nearest(word, operators))
             continue
         folder = blocks.folder(word)
-        if word in blocks.effects():
+        if blocks.is_effect(word):
             document.fault(at, f"{word!r} is an effect", f"move it to `effects: [{word}]`")
         elif folder in folders:
             message = f"{word!r} beside {folders[folder]!r}: two blocks of {folder}"

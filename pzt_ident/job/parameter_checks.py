@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from pzt_ident.errors import InputError, nearest
+from pzt_ident.job.chain import ChainParts
 from pzt_ident.job.document import Document, Loc
 from pzt_ident.model.registry import blocks, word_of
 
 if TYPE_CHECKING:
-    from pzt_ident.data.record import Axis
-    from pzt_ident.job.sections import Choice, Setting
+    from pzt_ident.job.sections import Setting
     from pzt_ident.model.chain import Chain, Entry
 
 Earlier = Mapping[str, Any]
@@ -27,7 +27,8 @@ def check_parameters(document: Document, settings: dict[str, Setting], earlier: 
     if all(axis.response is None for axis in axes.values()):
         return
     try:
-        model = _chain((*earlier["model"], *earlier["effects"]), axes, earlier.get("shared", ()), settings)
+        parts = ChainParts.of((*earlier["model"], *earlier["effects"]), axes, earlier.get("shared", ()), settings)
+        model = document.chain.of(parts)
     except InputError:
         return  # a setting of a block, noted where it stands
     spelled = {name: entry for entry in model.entries for name in model.spellings(entry)}
@@ -53,19 +54,6 @@ def _free(model: Chain, entry: Entry, settings: Mapping[str, Setting]) -> bool:
     if setting is not None:
         return setting.bounds is not None
     return entry.parameter.value is None and not entry.parameter.linear
-
-
-def _chain(
-    items: Iterable[str | Choice],
-    axes: Mapping[str, Axis],
-    shared: Sequence[str] = (),
-    given: Collection[str] = (),
-) -> Chain:
-    """The model of the known words."""
-    from pzt_ident.model.chain import Chain
-
-    measured = [i for i, axis in enumerate(axes.values()) if axis.response is not None]
-    return Chain(list(dict.fromkeys(blocks.chain(items))), list(axes), measured, shared, given)
 
 
 def _setting(document: Document, at: Loc, setting: Setting) -> None:

@@ -9,16 +9,20 @@ import json
 import re
 from contextlib import suppress
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError, ValidationInfo, field_validator
 
 from pzt_ident.data.record import Source
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.job import checks
+from pzt_ident.job.chain import ChainParts, MadeChain
 from pzt_ident.job.document import Document, Fault, Loc, reject
 from pzt_ident.job.normalise import written_out
 from pzt_ident.job.sections import Channels, Choice, Item, Limits, Repeats, Setting, Stopping
+
+if TYPE_CHECKING:
+    from pzt_ident.model.chain import Chain
 
 
 class Job(BaseModel):
@@ -47,6 +51,7 @@ class Job(BaseModel):
 
     _text: str = PrivateAttr("")
     _folder: Path = PrivateAttr(Path())
+    _made: MadeChain = PrivateAttr(default_factory=MadeChain)
 
     @field_validator("*")
     @classmethod
@@ -70,7 +75,7 @@ class Job(BaseModel):
         job = cls._validated(document, data)
         if job is None or document.faults:
             reject(file, document.faults)
-        job._text, job._folder = text, folder
+        job._text, job._folder, job._made = text, folder, document.chain
         return job
 
     @classmethod
@@ -92,6 +97,13 @@ class Job(BaseModel):
     @property
     def folder(self) -> Path:
         return self._folder
+
+    @property
+    def chain(self) -> Chain:
+        """Its blocks and effects in signal order; made once, while the job is checked."""
+        return self._made.of(
+            ChainParts.of((*self.model, *self.effects), self.channels.axes, self.shared, self.parameters)
+        )
 
     @property
     def hash(self) -> str:

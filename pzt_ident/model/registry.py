@@ -130,8 +130,16 @@ class Blocks(Registry[Any]):
         return [self[word_of(item)].formed({} if isinstance(item, str) else item.settings) for item in known]
 
     def effects(self) -> list[str]:
-        """The words of what may be missing from a model: each says what to do about it on the rig."""
-        return [word for word in self.words() if self[word].remedy]
+        """The words of what may be missing from a model."""
+        return [word for word in self.words() if self.is_effect(word)]
+
+    def is_effect(self, word: str) -> bool:
+        """Whether a block may be missing from a model: it says what to do about it on the rig."""
+        return bool(self[word].remedy)
+
+    def kind_of(self, word: str) -> str:
+        """`effects`, or the folder of a block that a model is made of: `hysteresis`, `mechanics`."""
+        return "effects" if self.is_effect(word) else self.folder(word)
 
 
 blocks = Blocks(

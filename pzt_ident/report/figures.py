@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pzt_ident.data.signals import Trace
 from pzt_ident.files import replaced
 from pzt_ident.report import density_figures
 from pzt_ident.report import misfit_figures as misfit
@@ -18,7 +19,7 @@ from pzt_ident.report import signal_figures as signal
 from pzt_ident.report import staircase_figures as staircase
 from pzt_ident.report.style import COLUMN, PAGE, saved, style
 from pzt_ident.report.words import standing
-from pzt_ident.run.results import Results, Trace
+from pzt_ident.run.results import Results
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pzt_ident.data.notation import percent, unit
+from pzt_ident.data.signals import Array, Trace
 from pzt_ident.report.residual_figures import colour_bar
 from pzt_ident.report.style import (
     COLUMN,
@@ -28,7 +29,6 @@ from pzt_ident.report.style import (
     patch,
     width_of,
 )
-from pzt_ident.run.results import Floats, Trace
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -114,7 +114,7 @@ def map_height(width: float, misfit: Facts) -> float:
     return 8 + _foot(columns, width) + (4.2 if width == COLUMN else 6.0) * len(rows)
 
 
-def _cells(crossed: Facts) -> tuple[Floats, dict[int, str], dict[int, str]]:
+def _cells(crossed: Facts) -> tuple[Array, dict[int, str], dict[int, str]]:
     """RMSE of the cells, and numbers and labels of the rows and columns in use."""
     rmse = np.array(crossed["rmse"], dtype=float)
     rows, columns = (np.flatnonzero(np.isfinite(rmse).any(axis=way)).tolist() for way in (1, 0))

@@ -12,12 +12,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pzt_ident.data import notation as numbers
+from pzt_ident.data.notation import listed
 from pzt_ident.files import plain, write_text
 from pzt_ident.report.figures import Plate, write_page_figures
 from pzt_ident.report.inline import inline
 from pzt_ident.report.tables import make_tables, write_tables
 from pzt_ident.report.traces import packed
-from pzt_ident.report.words import findings, listed, step_name, verdict
+from pzt_ident.report.words import findings, verdict
+from pzt_ident.run.events import step_name
 from pzt_ident.run.results import Results, read_folder
 
 if TYPE_CHECKING:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.data.signals import Array, Trace
 from pzt_ident.report.signal_figures import record_panels
 from pzt_ident.report.style import (
     COLUMN,
@@ -24,7 +25,6 @@ from pzt_ident.report.style import (
     patch,
     width_of,
 )
-from pzt_ident.run.results import Floats, Trace
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -103,7 +103,7 @@ def draw_histogram(figure: Figure, traces: Sequence[Trace], noise: Mapping[str, 
         name_panel(axes, f"axis {name}", place=place if len(names) > 1 else None)
 
 
-def branches(drive: Floats) -> NDArray[np.int8]:
+def branches(drive: Array) -> NDArray[np.int8]:
     """+1 where the drive rises, -1 where it falls; a turn smaller than half a percent of its span is none."""
     turn, play, way = 0.005 * float(np.ptp(drive)), float(drive[0]), 1
     ways = np.empty(drive.size, dtype=np.int8)
@@ -114,7 +114,7 @@ def branches(drive: Floats) -> NDArray[np.int8]:
     return ways
 
 
-def banded(drive: Floats, residual: Floats, bins: int = 40) -> tuple[Floats, Floats, Floats, Floats]:
+def banded(drive: Array, residual: Array, bins: int = 40) -> tuple[Array, Array, Array, Array]:
     """Mid drive, and the 5 %, 50 % and 95 % quantiles of the residual, of each stretch of drive with five samples
     or more."""
     if drive.size == 0:
@@ -126,7 +126,7 @@ def banded(drive: Floats, residual: Floats, bins: int = 40) -> tuple[Floats, Flo
     return 0.5 * (edges[full] + edges[full + 1]), low, middle, high
 
 
-def cell_means(trace: Trace, across: int = 96, up: int = 64) -> tuple[Floats, tuple[float, float, float, float]]:
+def cell_means(trace: Trace, across: int = 96, up: int = 64) -> tuple[Array, tuple[float, float, float, float]]:
     """Mean residual of the scored samples in each cell (up, across) of the drive-response plane, and its extent."""
     drive, response, residual = (values[trace.scored] for values in (trace.drive, trace.response, trace.residual))
     counts, xs, ys = np.histogram2d(drive, response, bins=(across, up))
@@ -135,7 +135,7 @@ def cell_means(trace: Trace, across: int = 96, up: int = 64) -> tuple[Floats, tu
         return (sums / counts).T, (float(xs[0]), float(xs[-1]), float(ys[0]), float(ys[-1]))
 
 
-def _spread(axes: Axes, parts: list[Floats], colour: str) -> None:
+def _spread(axes: Axes, parts: list[Array], colour: str) -> None:
     values = np.concatenate([*parts, np.empty(0)])
     if finite := np.isfinite(values).sum():
         counts, edges = np.histogram(values[np.isfinite(values)], bins=60)

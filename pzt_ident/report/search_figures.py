@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pzt_ident.data.notation import bounds, unit
+from pzt_ident.data.signals import Array
 from pzt_ident.report.residual_figures import colour_bar
 from pzt_ident.report.style import (
     COLUMN,
@@ -25,7 +26,7 @@ from pzt_ident.report.style import (
     panels,
     width_of,
 )
-from pzt_ident.run.results import Floats, Results
+from pzt_ident.run.results import Results
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -66,7 +67,7 @@ def draw_convergence(figure: Figure, results: Results) -> None:
         name_panel(axes, f"against {cost[1]}", place=place)
 
 
-def descent(history: pd.DataFrame, cost: str, points: int = 60) -> tuple[Floats, Floats, Floats, Floats]:
+def descent(history: pd.DataFrame, cost: str, points: int = 60) -> tuple[Array, Array, Array, Array]:
     """Cost, and lower quartile, median and upper quartile of the best RMSE over the repeats at it; a repeat that has
     stopped keeps its last. Costs before the first generation of the slowest repeat are left out."""
     repeats = [own.sort_values(cost) for _, own in history.groupby("repeat")]
@@ -174,7 +175,7 @@ def _map_width(width: float, longest: int, parameters: int) -> float:
     return min(width - _names_width(longest) - 17, 11.0 * parameters, 100.0)
 
 
-def correlation(results: Results) -> tuple[list[str], Floats]:
+def correlation(results: Results) -> tuple[list[str], Array]:
     """Names and matrix, NaN where there is no correlation."""
     found = results.best.get("correlation") or {"names": [], "matrix": []}
     return found["names"], np.array(found["matrix"], dtype=float).reshape((len(found["names"]),) * 2)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from pzt_ident.data.signals import Array, Trace
 from pzt_ident.report.style import (
     COLUMN,
     INK,
@@ -25,7 +26,6 @@ from pzt_ident.report.style import (
     patch,
     width_of,
 )
-from pzt_ident.run.results import Floats, Trace
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -98,6 +98,6 @@ def _shape(width: float, records: int) -> tuple[int, int]:
 def _limits(trace: Trace, noise: float) -> tuple[float, float]:
     """Room for the scored residual and the noise floor; the start, before the model has settled, may leave it."""
     scored = trace.residual[trace.scored]
-    ends: Floats = np.append(scored[np.isfinite(scored)], [-1.2 * noise, 1.2 * noise])
+    ends: Array = np.append(scored[np.isfinite(scored)], [-1.2 * noise, 1.2 * noise])
     spare = 0.06 * float(np.ptp(ends)) or 1.0
     return float(ends.min()) - spare, float(ends.max()) + spare

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from pzt_ident.report.style import INK, MARKERS, NOISE, PALETTE, Frame, heading, key, label, panels, patch
-from pzt_ident.report.words import step_name
+from pzt_ident.run.events import step_name
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from pzt_ident.data.notation import bounds, count, number, percent, quantity, short, unit, with_error
 from pzt_ident.files import write_text
 from pzt_ident.report.latex import tabular
-from pzt_ident.report.words import step_name
+from pzt_ident.run.events import step_name
 from pzt_ident.run.results import Results
 
 if TYPE_CHECKING:

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.notation import unit
+from pzt_ident.data.signals import Array, Trace
 from pzt_ident.report.style import decimate
-from pzt_ident.run.results import Floats, Trace
 
 LEVELS = 65535
 
@@ -76,13 +76,13 @@ def shown(trace: Trace, models: list[tuple[str, Trace]], points: int) -> NDArray
     return np.unique(np.concatenate([even, *(decimate(values, bins) for values in curves)]))
 
 
-def left_out(trace: Trace, kept: NDArray[np.intp]) -> Floats:
+def left_out(trace: Trace, kept: NDArray[np.intp]) -> Array:
     """Root of the squared scored residuals of each kept point and of the samples left out before it, summed."""
     own = np.where(trace.scored & np.isfinite(trace.residual), trace.residual, 0.0) ** 2
     return np.sqrt(np.diff(np.cumsum(own)[kept], prepend=0.0))
 
 
-def quantised(values: Floats) -> dict[str, Any]:
+def quantised(values: Array) -> dict[str, Any]:
     known = np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
     low = float(known.min())
     step = float(np.ptp(known)) / LEVELS or 1.0

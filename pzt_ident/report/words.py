@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
-from pzt_ident.data.notation import count, number, percent, quantity, spelled
+from pzt_ident.data.notation import count, listed, number, quantity, ranges, spelled
 from pzt_ident.run.results import Results
 
 BETTER = 0.95  # of the run's RMSE: less than that is worth a word
@@ -136,19 +136,6 @@ def standing(results: Results) -> dict[str, list[Any]]:
     return found
 
 
-def ranges(names: Iterable[str]) -> list[str]:
-    """`weight_3 to weight_9` in the place of three and more that follow each other."""
-    runs: list[list[str]] = []
-    for name in names:
-        head, _, digits = name.rpartition("_")
-        before, _, last = runs[-1][-1].rpartition("_") if runs else ("", "", "")
-        if before == head and digits.isdigit() and last.isdigit() and int(digits) == int(last) + 1:
-            runs[-1].append(name)
-        else:
-            runs.append([name])
-    return [said for run in runs for said in ([f"{run[0]} to {run[-1]}"] if len(run) > 2 else run)]
-
-
 def _notes(results: Results) -> list[str]:
     return [f"Record {record['name']}: {note}." for record in results.result["records"] for note in record["notes"]]
 
@@ -163,28 +150,3 @@ def _failures(results: Results) -> list[str]:
         noun = "run" if len(failed) == 1 else "runs"
         said.append(f"{count(len(failed))} {noun} did not finish: {listed(entry['run'] for entry in failed)}.")
     return said
-
-
-def happening(event: Mapping[str, Any], unit: str) -> str:
-    """What a diagnosis is at, from one of its events."""
-    if event["event"] == "fitted":
-        return f"fitted from {event['done']} of {event['of']} starts"
-    if event["event"] == "scored":
-        part = f"{event['effect']} would explain {percent(event['explained'])}"
-        return f"{event['done']} of {event['of']} effects scored; {part}"
-    if event["event"] == "refitted":
-        chosen = f"with {listed(event['effects'])}" if event["effects"] else "without an effect"
-        return f"refitted {chosen}: RMSE {quantity(event['identify'], unit)}"
-    return f"{step_name(event)}: RMSE {quantity(event['rmse']['identify'], unit)}"
-
-
-def listed(names: Iterable[str]) -> str:
-    """a, b and c."""
-    *most, last = names
-    return f"{', '.join(most)} and {last}" if most else last
-
-
-def step_name(step: Mapping[str, Any]) -> str:
-    """`as given`, `+ effect`, `- effect`, or both where one takes the place of another; what the step itself says."""
-    words = [f"{sign} {step[key]}" for sign, key in (("+", "added"), ("-", "removed")) if step[key]]
-    return step.get("change") or " ".join(words) or "as given"

@@ -14,7 +14,7 @@ from pzt_ident.data.noise import noise_floor
 from pzt_ident.data.signals import write_signals
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis import staircase as stairs
-from pzt_ident.diagnosis.caveats import broken, remarks, rest
+from pzt_ident.diagnosis.caveats import broken, caveats, rest
 from pzt_ident.diagnosis.refit import Case, Fit, first_fit
 from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.diagnosis.verdict import diagnose as judge
@@ -22,78 +22,72 @@ from pzt_ident.files import write_json, write_text
 from pzt_ident.job.edit import edited
 from pzt_ident.job.schema import Job
 from pzt_ident.model.registry import blocks
-from pzt_ident.report.words import happening
-from pzt_ident.run.identify import (
-    Event,
-    Listen,
-    environment,
-    errors_in,
-    folder_for,
-    make_empty,
-    problem_of,
-    read,
-    recorded,
-    unit_of,
-)
+from pzt_ident.run.collect import errors_in
+from pzt_ident.run.events import Event, Listen, event_log, nobody, sentence
+from pzt_ident.run.folder import begin, results_folder
 from pzt_ident.run.misfit import compare
 from pzt_ident.run.next_drive import limits_of, separating
+from pzt_ident.run.statement import Statement, loss_unit
 
 
 @contextmanager
-def begun(job: Job, out: Path | None, listen: Listen = lambda event: None) -> Iterator[tuple[Case, Path]]:
+def opened_case(job: Job, out: Path | None, listen: Listen = nobody) -> Iterator[tuple[Case, Path]]:
     """The case, and a folder that holds the job, what it runs on and, in `events.jsonl`, what happens as it does.
 
     Raises InputError where job or data are wrong.
     """
-    records = read(job)
-    problem_of(job, records)
-    folder = folder_for(job, out)
-    make_empty(folder)
-    write_text(folder / "job.yaml", edited(job, job.effects, folder))
-    write_json(folder / "environment.json", environment(job, records))
-    case = Case(job.model, job.effects, records, job.parameters, job.rule_out, job.shared)
-    with recorded(folder, listen) as tell, np.errstate(all="ignore"):
-        case.tell = lambda event: tell(spoken(case, event))
+    statement, folder = Statement(job), results_folder(job, out)
+    begin(folder, job, edited(job, job.effects, folder), statement.records)
+    case = case_of(statement)
+    with event_log(folder, listen) as tell, np.errstate(all="ignore"):
+        case.tell = lambda event: tell(worded(case, event))
         yield case, folder
         tell({"event": "done", "folder": str(folder)})
 
 
-def spoken(case: Case, event: Event) -> Event:
+def case_of(statement: Statement) -> Case:
+    """The case that a job makes with its records."""
+    job = statement.job
+    records, given = statement.records, statement.problem
+    return Case(job.model, job.effects, records, job.parameters, job.rule_out, job.shared, given=given)
+
+
+def worded(case: Case, event: Event) -> Event:
     """An event with its errors in the user's unit, and in words."""
     size = size_of(case)
-    found = event | {use: event[use] / size for use in ("identify", "validate") if event.get(use) is not None}
-    return found | {"said": happening(found, unit_of(list(case.records)))}
+    in_units = event | {use: event[use] / size for use in ("identify", "validate") if event.get(use) is not None}
+    return in_units | {"said": sentence(in_units, loss_unit(case.records))}
 
 
 def told(case: Case, step: stairs.Step) -> None:
     case.tell({"event": "stair", **stair(case, step)})
 
 
-def diagnose(job: Job, out: Path | None = None, listen: Listen = lambda event: None) -> Path:
+def diagnose(job: Job, out: Path | None = None, listen: Listen = nobody) -> Path:
     """Fit the job's model, say where it fails and what it misses; writes `diagnosis.json`, `residuals.json` and
     `signals.nc` into the folder returned."""
-    with begun(job, out, listen) as (case, folder):
+    with opened_case(job, out, listen) as (case, folder):
         first = first_fit(case, job.seed)
         told(case, stairs.Step(first))
         found = judge(case, first)
         content = diagnosis_of(job, case, found, folder)
-        write_signals(folder / "signals.nc", first.problem, first.point)
+        write_signals(folder / "signals.nc", first.problem.errors(first.point))
         write_json(folder / "diagnosis.json", content)
         compare(folder, folder)
     return folder
 
 
-def improve(job: Job, out: Path | None = None, listen: Listen = lambda event: None) -> Path:
+def improve(job: Job, out: Path | None = None, listen: Listen = nobody) -> Path:
     """Diagnose, add what is missing and diagnose again, until nothing is missing or nothing more is known.
 
     Writes `improved.yaml`, `diagnosis.json` and `residuals.json` of the last model, `improvement.json`, and the signals
     of the model as given and of the last one.
     """
-    with begun(job, out, listen) as (case, folder):
+    with opened_case(job, out, listen) as (case, folder):
         steps, last = stairs.improve(case, first_fit(case, job.seed), partial(told, case))
         diagnosis = diagnosis_of(job, case, last, folder)
         for name, step in (("signals_as_given.nc", steps[0]), ("signals.nc", steps[-1])):
-            write_signals(folder / name, step.fit.problem, step.fit.point)
+            write_signals(folder / name, step.fit.problem.errors(step.fit.point))
         proposals = (separating(job, case, step.rivals, folder) for step in ties(steps))
         proposed = diagnosis["next_experiment"] or next(filter(None, proposals), None)
         content = improvement_of(job, case, steps, diagnosis) | {"next_experiment": proposed}
@@ -117,7 +111,7 @@ def improvement_of(job: Job, case: Case, steps: list[stairs.Step], last: dict[st
         reason += f" Added on the way, and not proven while that is open: {', '.join(added)}."
     for step in ties(steps):
         reason += f" These data cannot tell {' from '.join(step.tied)}."
-    reason += remarks(case, steps[-1].fit)
+    reason += caveats(case, steps[-1].fit)
     return {
         "name": job.name,
         "steps": [stair(case, step) for step in steps],
@@ -127,12 +121,12 @@ def improvement_of(job: Job, case: Case, steps: list[stairs.Step], last: dict[st
         "noise_floor": floors(case),
         "noise_floor_source": sources(case),
         "floor": case.floor / size_of(case),
-        "unit": unit_of(list(case.records)),
+        "unit": loss_unit(case.records),
     }
 
 
 def size_of(case: Case) -> float:
-    return factor(unit_of(list(case.records)))
+    return factor(loss_unit(case.records))
 
 
 def floors(case: Case) -> dict[str, float]:
@@ -186,9 +180,9 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
     return {
         "verdict": found.verdict,
         "reason": reason
-        + (remarks(case, found.best.fit) if found.best and found.best.fit else "")
+        + (caveats(case, found.best.fit) if found.best and found.best.fit else "")
         + broken(found.before),
-        "unit": unit_of(list(case.records)),
+        "unit": loss_unit(case.records),
         "noise_floor": floors(case),
         "noise_floor_source": sources(case),
         "rmse": errors_of(case, found.before),

@@ -1,4 +1,4 @@
-"""A run folder, read once: what every table, figure and page of the report is made from."""
+"""A folder of results, read once: what every table, figure and page of the report is made from."""
 
 from __future__ import annotations
 
@@ -8,40 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from pzt_ident.data.signals import Trace, read_traces
 from pzt_ident.errors import InputError
 
 if TYPE_CHECKING:
-    import h5py
     import pandas as pd
-
-Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class Trace:
-    """One measured axis of one record beside the best model, arrays of shape (samples,) in the user's units;
-    the residual is model less response.
-
-    The first `settle` seconds are simulated but not scored.
-    """
-
-    record: str
-    use: str
-    axis: str
-    time: Floats
-    drive: Floats
-    response: Floats
-    model: Floats
-    residual: Floats
-    drive_unit: str
-    unit: str
-    settle: float = 0.0
-
-    @property
-    def scored(self) -> NDArray[np.bool_]:
-        return self.time > self.time[0] + self.settle - 0.5 * float(np.diff(self.time[:2]).sum())
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,13 +123,13 @@ def read_folder(folder: Path) -> Results:
         folder,
         result,
         pd.read_csv(_there(folder / "history.csv")) if result else pd.DataFrame(),
-        _traces(_there(folder / "signals.nc"), order),
+        read_traces(_there(folder / "signals.nc"), order),
         environment,
         _there(folder / "job.yaml").read_text(encoding="utf-8"),
         _json_if_there(folder / "residuals.json"),
         diagnosis,
         _json_if_there(folder / "improvement.json"),
-        _traces(before, order) if before.exists() else (),
+        read_traces(before, order) if before.exists() else (),
     )
 
 
@@ -177,34 +149,3 @@ def _json(path: Path) -> dict[str, Any]:
         return json.loads(text)
     except ValueError as error:
         raise InputError(f"not JSON: {error}", where=str(path), remedy="run the job again") from error
-
-
-def _traces(path: Path, order: list[str]) -> tuple[Trace, ...]:
-    import h5py
-
-    try:
-        with h5py.File(path) as file:
-            groups: list[h5py.Group] = []
-            file.visititems(lambda _, item: groups.append(item) if "use" in item.attrs else None)
-            found = [trace for group in groups for trace in _group(group)]
-    except OSError as error:
-        raise InputError(f"not netCDF4: {error}", where=str(path), remedy="run the job again") from error
-    places = {name: place for place, name in reversed(list(enumerate(order)))}
-    return tuple(sorted(found, key=lambda trace: (places.get(trace.record, len(order)), trace.axis)))
-
-
-def _group(group: h5py.Group) -> list[Trace]:
-    axes = [name.removeprefix("response_") for name in group if name.startswith("response_")]
-    return [
-        Trace(
-            record=str(group.attrs["name"]),
-            use=str(group.attrs["use"]),
-            axis=axis,
-            time=group["time"][:],
-            **{kind: group[f"{kind}_{axis}"][:] for kind in ("drive", "response", "model", "residual")},
-            drive_unit=str(group[f"drive_{axis}"].attrs["units"]),
-            unit=str(group[f"response_{axis}"].attrs["units"]),
-            settle=float(np.ravel(group.attrs["settle"])[0]),
-        )
-        for axis in axes
-    ]

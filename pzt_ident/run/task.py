@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import json
-import struct
 import time
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,19 +13,20 @@ from typing import Any
 
 import numpy as np
 
-from pzt_ident.data.noise import sizes
 from pzt_ident.data.record import Record
-from pzt_ident.data.units import factor, same_kind
+from pzt_ident.data.units import factor
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.files import write_json
-from pzt_ident.model.chain import Chain
 from pzt_ident.model.optimizer import Optimizer
-from pzt_ident.model.registry import blocks, optimizers
+from pzt_ident.model.registry import optimizers
+from pzt_ident.run.checkpoint import losses_file, read_losses
+from pzt_ident.run.statement import Statement
 from pzt_ident.search.loop import Outcome, State, Stop, optimize
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.uncertainty import estimates
 
 Tell = Callable[[dict[str, Any]], None]
+SECONDS_BETWEEN_EVENTS = 0.1
 
 
 @dataclass(frozen=True)
@@ -43,79 +43,88 @@ class Task:
     folder: Path
 
     @property
-    def told(self) -> Path:
-        return self.folder / "runs" / f"{self.run}.told"
+    def checkpoint(self) -> Path:
+        return self.folder / "runs" / f"{self.run}.losses"
 
     @property
     def result(self) -> Path:
         return self.folder / "runs" / f"{self.run}.json"
 
 
-def problem_of(job: Any, records: list[Record]) -> Problem:
-    """The problem that a job states about its records."""
-    axes = records[0].axes
-    model = Chain(blocks.chain((*job.model, *job.effects)), axes, records[0].measured, job.shared, job.parameters)
-    return Problem(model, records, job.parameters, sizes(records))
+def work(task: Task, job_text: str, folder: Path, records: Sequence[Record], pipe: Any) -> None:
+    """Entry of the process: results go to the disk, events and errors through the pipe, until nobody listens."""
+    import signal
+
+    from pzt_ident.job.schema import Job
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    np.seterr(all="ignore")  # a simulation that overflows is counted, not warned about
+    with suppress(ConnectionError):
+        try:
+            search(task, Statement(Job.from_text(job_text, folder, plugins=True), records), pipe.send)
+            pipe.send(None)
+        except (InputError, RunError) as error:
+            pipe.send({"event": "failed", "run": task.run, "reason": str(error)})
+        except Exception as error:
+            pipe.send({"event": "failed", "run": task.run, "reason": f"{type(error).__name__}: {error}"})
 
 
-def unit_of(records: list[Record]) -> str:
-    """That of the loss: noise floors (1) where the responses are of different kinds."""
-    units = [str(records[0].response_units[axis]) for axis in records[0].measured]
-    return units[0] if all(same_kind(unit, units[0]) for unit in units) else "1"
+def search(task: Task, statement: Statement, tell: Tell) -> None:
+    """Search, polish, judge the parameters, and write the result; continues from the losses on the disk."""
+    result = identification(task, statement, tell)
+    write_json(task.result, result)
+    tell({"event": "run", "run": task.run, "rmse": result["rmse"], "stopped_by": result["stopped_by"]})
 
 
-def search(task: Task, job: Any, records: list[Record], tell: Tell) -> None:
-    """Search, polish, judge the parameters, and write the result; continues from the losses told so far."""
-    problem = problem_of(job, records)
-    size = factor(unit_of(records))
-    outcome, seconds, spent = searched(task, problem, size, tell)
+def identification(task: Task, statement: Statement, tell: Tell) -> dict[str, Any]:
+    """The entry of one run in `result.json`. Raises RunError where every simulation failed."""
+    problem, size = statement.problem, factor(statement.unit)
+    outcome, seconds, cpu_seconds = searched(task, problem, size, tell)
     if not np.isfinite(outcome.loss):
         raise RunError(f"the simulation of each of its {outcome.evaluations} candidates failed: narrow the bounds")
     begun, problem.failed = time.perf_counter(), 0
-    point, extra = problem.polish(outcome.point) if task.polish else (outcome.point, 0)
-    polishing = time.perf_counter() - begun
-    failed = problem.failed + sum(int(np.isinf(losses).sum()) for _, losses in read_losses(task.told))
-    found, correlation = estimates(problem, point)
-    result = {
+    point, polish_evaluations = problem.polish(outcome.point) if task.polish else (outcome.point, 0)
+    polish_seconds = time.perf_counter() - begun
+    failed = problem.failed + sum(int(np.isinf(losses).sum()) for _, losses in read_losses(task.checkpoint))
+    parameters, correlation = estimates(problem, point)
+    return {
         "run": task.run,
         "optimizer": task.optimizer,
         "repeat": task.repeat,
         "rmse": rmse(problem, point, size),
         "rmse_before_polish": rmse(problem, outcome.point, size),
-        "parameters": {item.name: {k: v for k, v in item._asdict().items() if k != "name"} for item in found},
+        "parameters": {item.name: {k: v for k, v in item._asdict().items() if k != "name"} for item in parameters},
         "fixed": fixed(problem),
         "correlation": {"names": list(problem.names), "matrix": correlation},
         "evaluations": outcome.evaluations,
-        "polish_evaluations": extra,
+        "polish_evaluations": polish_evaluations,
         "seconds": seconds,
-        "cpu_seconds": spent,
-        "polish_seconds": polishing,
+        "cpu_seconds": cpu_seconds,
+        "polish_seconds": polish_seconds,
         "failed_simulations": failed,
         "stopped_by": outcome.stopped_by,
         "point": point,
     }
-    write_json(task.result, result)
-    tell({"event": "run", "run": task.run, "rmse": result["rmse"], "stopped_by": outcome.stopped_by})
 
 
 def searched(task: Task, problem: Problem, size: float, tell: Tell) -> tuple[Outcome, float, float]:
     """The optimizer's own outcome, and the wall and CPU time that it took, s."""
     optimizer = optimizers[task.optimizer].make(**task.settings).with_budget(task.stop["evaluations"])
     warm_up(optimizer, problem)
-    generations = list(read_losses(task.told))
-    before = generations[-1][0] if generations else 0.0
+    generations = list(read_losses(task.checkpoint))
+    before = generations[-1].seconds if generations else 0.0
     begun, cpu, shown = time.perf_counter(), time.process_time(), 0.0
-    task.told.parent.mkdir(parents=True, exist_ok=True)
-    with task.told.open("r+b" if generations else "wb") as file:
-        file.truncate(sum(16 + 8 * len(losses) for _, losses in generations))
-        file.seek(0, 2)
+
+    def elapsed() -> float:
+        return before + time.perf_counter() - begun
+
+    with losses_file(task.checkpoint, generations) as append:
 
         def note(state: State) -> None:
             nonlocal shown
-            seconds = before + time.perf_counter() - begun
-            file.write(struct.pack("<dq", seconds, len(state.losses)) + state.losses.astype("<f8").tobytes())
-            file.flush()
-            if seconds - shown > 0.1 or shown == 0:
+            seconds = elapsed()
+            append(seconds, state.losses)
+            if seconds - shown > SECONDS_BETWEEN_EVENTS or shown == 0:
                 shown = seconds
                 tell(generation_event(task, state.evaluations, rmse(problem, state.point, size), seconds))
 
@@ -129,9 +138,9 @@ def searched(task: Task, problem: Problem, size: float, tell: Tell) -> tuple[Out
             callback=note,
             told=[losses for _, losses in generations],
         )
-    seconds, spent = before + time.perf_counter() - begun, time.process_time() - cpu
+    seconds, cpu_seconds = elapsed(), time.process_time() - cpu
     tell(generation_event(task, outcome.evaluations, rmse(problem, outcome.point, size), seconds))
-    return outcome, seconds, spent
+    return outcome, seconds, cpu_seconds
 
 
 def warm_up(optimizer: Optimizer, problem: Problem) -> None:
@@ -166,36 +175,6 @@ def generation_event(task: Task, evaluations: int, best: dict[str, float], secon
         "validate": best["validate"],
         "seconds": seconds,
     }
-
-
-def read_losses(path: Path) -> Iterator[tuple[float, np.ndarray]]:
-    """Seconds and losses of each whole generation on the disk; a torn last one is left out."""
-    raw = path.read_bytes() if path.exists() else b""
-    at = 0
-    while at + 16 <= len(raw):
-        seconds, count = struct.unpack_from("<dq", raw, at)
-        if count < 1 or at + 16 + 8 * count > len(raw):
-            return
-        yield seconds, np.frombuffer(raw, "<f8", count, at + 16)
-        at += 16 + 8 * count
-
-
-def work(task: Task, job_text: str, folder: Path, records: list[Record], pipe: Any) -> None:
-    """Entry of the process: results go to the disk, events and errors through the pipe, until nobody listens."""
-    import signal
-
-    from pzt_ident.job.schema import Job
-
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    np.seterr(all="ignore")  # a simulation that overflows is counted, not warned about
-    with suppress(ConnectionError):
-        try:
-            search(task, Job.from_text(job_text, folder, plugins=True), records, pipe.send)
-            pipe.send(None)
-        except (InputError, RunError) as error:
-            pipe.send({"event": "failed", "run": task.run, "reason": str(error)})
-        except Exception as error:
-            pipe.send({"event": "failed", "run": task.run, "reason": f"{type(error).__name__}: {error}"})
 
 
 def read_result(task: Task) -> dict[str, Any]:

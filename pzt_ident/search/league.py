@@ -10,7 +10,7 @@ import numpy as np
 NEAR = 1.01  # of the best RMSE that any run found
 
 
-def compare(runs: list[dict[str, Any]], histories: dict[str, np.ndarray]) -> list[dict[str, Any]]:
+def rank(runs: list[dict[str, Any]], histories: dict[str, np.ndarray]) -> list[dict[str, Any]]:
     """One row an optimizer, best first, and in each run the evaluations after which it was within one percent.
 
     histories: (generations, 3) of evaluations, seconds, best RMSE, by run. Success is the share of runs within one

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from types import SimpleNamespace
@@ -268,6 +268,19 @@ class Problem:
             found[failed], ends[failed] = self.residuals(point), np.tile(point, 2)[failed]
         apart = ends[:count] - ends[count:]
         return ((found[:count] - found[count:]) / np.where(apart > 0, apart, 1)[:, None]).T
+
+    @property
+    def every_simulator(self) -> list[Simulator]:
+        """Those of the records to identify, then of those to validate."""
+        return [simulator for simulators in self.simulators.values() for simulator in simulators]
+
+    def simulator_of(self, record: Record) -> Simulator:
+        return next(simulator for simulator in self.every_simulator if simulator.record is record)
+
+    def errors(self, point: Array) -> Iterator[tuple[Record, Array]]:
+        """Each record with model minus measurement over all its samples, (measured axes, samples), SI units."""
+        theta = self.parameters(point)
+        return ((simulator.record, simulator.errors(theta)[0]) for simulator in self.every_simulator)
 
     def polish(self, point: Array, evaluations: int = 2000) -> tuple[Array, int]:
         """Least squares from a point, with the batched Jacobian: the point reached and the simulations it took."""

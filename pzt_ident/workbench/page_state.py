@@ -10,11 +10,12 @@ from typing import Any
 
 from pzt_ident.data.notation import spelled, unit
 from pzt_ident.data.readers.formats import READERS
+from pzt_ident.data.signals import Trace
 from pzt_ident.model.registry import blocks, word_of
 from pzt_ident.report.tables import expected
 from pzt_ident.report.traces import packed
 from pzt_ident.report.words import reason
-from pzt_ident.run.results import Trace, read_results
+from pzt_ident.run.results import read_results
 from pzt_ident.workbench.guard import LARGEST_UPLOAD
 from pzt_ident.workbench.session import Session
 
@@ -118,7 +119,7 @@ def files_in(root: Path) -> list[str]:
 @cache
 def chainable() -> list[dict[str, Any]]:
     """Blocks that a model may be made of."""
-    return [described(word) for word in blocks.words() if blocks.folder(word) != "effects"]
+    return [described(word) for word in blocks.words() if not blocks.is_effect(word)]
 
 
 @cache
@@ -129,4 +130,4 @@ def effects() -> list[dict[str, Any]]:
 def described(word: str) -> dict[str, Any]:
     place = getattr(blocks[word], "place", None)
     doc = (inspect.getdoc(blocks[word]) or "").partition("\n")[0]
-    return {"name": word, "doc": doc, "place": None if place is None else int(place), "kind": blocks.folder(word)}
+    return {"name": word, "doc": doc, "place": None if place is None else int(place), "kind": blocks.kind_of(word)}

@@ -141,11 +141,11 @@ class Session:
 
     def _add(self, text: str, parent: int, change: str) -> None:
         """A new step, once its job and data are found in order."""
-        from pzt_ident.cli.summary import of_job
+        from pzt_ident.run.summary import summary_of
 
         folder = self.folder / "steps" / str(self._next)
         folder.mkdir(parents=True, exist_ok=True)  # paths of a job lead through it
-        of_job(Job.from_text(text, folder, "job.yaml"))
+        summary_of(Job.from_text(text, folder, "job.yaml"))
         write_text(folder / "job.yaml", text)
         self.steps.append({"number": self._next, "parent": parent, "change": change})
         self.at = len(self.steps)
@@ -171,7 +171,6 @@ class Session:
         search = ["resume", run, "--no-report"] if begun else ["run", job, "--out", run, "--no-report"]
         return [
             ("run", step / "run" / "result.json", search),
-            ("compare", step / "run" / "residuals.json", ["compare", run, "--no-report"]),
             ("diagnose", step / "diagnosis" / "diagnosis.json", ["diagnose", job, "--out", diagnosis, "--no-report"]),
         ]
 

@@ -8,7 +8,7 @@ from playwright.sync_api import expect
 
 from pzt_ident.report.page import write_report
 from pzt_ident.run.results import read_results
-from report.conftest import make_run
+from run_folders import make_run
 
 
 @pytest.fixture(scope="module")

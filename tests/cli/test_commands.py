@@ -16,7 +16,6 @@ from click.testing import CliRunner, Result
 
 import pzt_ident.report.page
 import pzt_ident.run.identify
-import pzt_ident.run.misfit
 from pzt_ident.cli.commands import main
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.model.registry import blocks, optimizers
@@ -91,7 +90,6 @@ def quick(monkeypatch):
 
     monkeypatch.setattr(pzt_ident.run.identify, "run", start)
     monkeypatch.setattr(pzt_ident.run.identify, "resume", start)
-    monkeypatch.setattr(pzt_ident.run.misfit, "compare", lambda folder, out: (out / "residuals.json").touch())
     monkeypatch.setattr(pzt_ident.report.page, "write_report", lambda folder: (folder / "report.html").touch())
     return calls
 
@@ -121,7 +119,7 @@ class TestRun:
     def test_hands_its_options_on(self, folder, quick):
         call("run", "job.yaml", "--out", "there", "--workers", "3", "--no-report")
         ((job, out, options),) = quick
-        assert (job.name, out, options) == ("small", Path("there"), {"workers": 3, "report": False})
+        assert (job.name, out, options) == ("small", Path("there"), {"workers": 3})
         assert not (Path("out") / "report.html").exists()
 
     def test_json_is_all_there_is(self, folder, quick):
@@ -136,8 +134,8 @@ class TestRun:
     def test_resume(self, folder, quick):
         result = call("resume", "out", "--workers", "1")
         assert result.exit_code == 0
-        assert quick == [(Path("out"), {"workers": 1, "report": False, "plugins": False})]
-        assert (Path("out") / "residuals.json").exists() and (Path("out") / "report.html").exists()
+        assert quick == [(Path("out"), {"workers": 1, "plugins": False})]
+        assert (Path("out") / "report.html").exists()
 
     def test_resume_without_a_run(self, folder):
         result = call("resume", str(folder))

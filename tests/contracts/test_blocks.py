@@ -19,7 +19,7 @@ from twins.blocks import Identity
 
 WORDS = blocks.words()
 OPERATORS = [word for word in WORDS if issubclass(blocks[word], Operator)]
-EFFECTS = [word for word in WORDS if blocks.folder(word) == "effects"]
+EFFECTS = blocks.effects()
 TERMS = [word for word in WORDS if issubclass(blocks[word], Term)]
 ADDITIONS = [word for word in WORDS if issubclass(blocks[word], Addition)]
 IN_CHAIN = [word for word in WORDS if word not in TERMS + ADDITIONS]

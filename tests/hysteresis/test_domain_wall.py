@@ -13,7 +13,8 @@ from pzt_ident.engine.simulator import Simulator
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import Job
 from pzt_ident.model.chain import Chain
-from pzt_ident.run.identify import read, run
+from pzt_ident.run.identify import run
+from pzt_ident.run.statement import read
 from pzt_ident.search.problem import Problem
 from rig import block_of, path, record, response
 from twins import domain_wall_twin as twin

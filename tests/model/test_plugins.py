@@ -12,9 +12,9 @@ from pzt_ident.diagnosis.score import applicable
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import load_job
 from pzt_ident.model.registry import blocks
-from pzt_ident.run.improve import begun
+from pzt_ident.run.improve import opened_case
 
-README = Path(__file__).parent.parent / "README.md"
+README = Path(__file__).parents[2] / "README.md"
 JOB = """\
 plugins: [cubic_gain.py]
 name: own
@@ -69,14 +69,14 @@ def test_it_is_identified_like_any_other(folder):
 def test_it_joins_the_diagnosis(folder):
     plain = folder / "plain.yaml"
     plain.write_text(JOB.replace("effects: [cubic_gain]", "effects: []"))
-    with begun(load_job(plain, plugins=True), folder / "out") as (case, _):
+    with opened_case(load_job(plain, plugins=True), folder / "out") as (case, _):
         assert "cubic_gain" in applicable(case, ())
 
 
 def test_what_the_user_rules_out_does_not(folder):
     ruled = folder / "ruled.yaml"
     ruled.write_text(JOB.replace("effects: [cubic_gain]", "rule_out: [cubic_gain, creep]"))
-    with begun(load_job(ruled, plugins=True), folder / "out") as (case, _):
+    with opened_case(load_job(ruled, plugins=True), folder / "out") as (case, _):
         assert not {"cubic_gain", "creep"} & set(applicable(case, ()))
 
 

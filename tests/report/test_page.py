@@ -8,12 +8,12 @@ from html.parser import HTMLParser
 
 import pytest
 
+from pzt_ident.data.notation import listed
 from pzt_ident.report.page import write_report
-from pzt_ident.report.words import findings, listed, reason, verdict
+from pzt_ident.report.words import findings, reason, verdict
 from pzt_ident.run.misfit import compare
 from pzt_ident.run.results import read_results
-
-from .conftest import WEIRD, make_run
+from run_folders import WEIRD, make_run
 
 SECTIONS = [
     "model",

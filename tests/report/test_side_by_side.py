@@ -10,8 +10,7 @@ from click.testing import CliRunner
 
 from pzt_ident.cli.commands import main
 from pzt_ident.report.side_by_side import labels, write_side_by_side
-
-from .conftest import make_run
+from run_folders import make_run
 
 
 @pytest.mark.parametrize(

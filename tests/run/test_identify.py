@@ -15,8 +15,10 @@ import pytest
 
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.job.schema import Job, load_job
-from pzt_ident.run.identify import read, resume, run, tasks_of
+from pzt_ident.run.identify import resume, run, tasks_of
+from pzt_ident.run.misfit import compare
 from pzt_ident.run.pool import run_all
+from pzt_ident.run.statement import Statement
 from pzt_ident.run.task import read_losses, work
 
 JOB = """\
@@ -54,7 +56,7 @@ def folder(tmp_path_factory):
 @pytest.fixture(scope="module")
 def finished(folder):
     events = []
-    out = run(load_job(folder / "job.yaml"), folder / "out", workers=2, report=False, listen=events.append)
+    out = run(load_job(folder / "job.yaml"), folder / "out", workers=2, listen=events.append)
     return out, events
 
 
@@ -67,9 +69,21 @@ def numbers(out: Path) -> list:
 
 def test_everything_is_on_the_disk(finished):
     out, _ = finished
-    for name in ("job.yaml", "result.json", "history.csv", "signals.nc", "events.jsonl", "environment.json"):
+    names = (
+        "job.yaml",
+        "result.json",
+        "residuals.json",
+        "history.csv",
+        "signals.nc",
+        "events.jsonl",
+        "environment.json",
+    )
+    for name in names:
         assert (out / name).stat().st_size > 0
     assert (out / "job.yaml").read_text() == JOB
+    residuals = (out / "residuals.json").read_text()
+    compare(out, out)
+    assert (out / "residuals.json").read_text() == residuals
     assert not list(out.rglob("*.tmp"))
 
 
@@ -121,7 +135,7 @@ def test_a_run_killed_hard_goes_on_to_the_same_result(folder, finished, tmp_path
     )
     process = subprocess.Popen([sys.executable, "-c", script], start_new_session=True)
     deadline = time.monotonic() + 60
-    told = out / "runs" / "pso-1.told"
+    told = out / "runs" / "pso-1.losses"
     while time.monotonic() < deadline and not (told.exists() and len(list(read_losses(told))) > 5):
         time.sleep(0.002)
     os.killpg(process.pid, signal.SIGKILL)
@@ -129,7 +143,7 @@ def test_a_run_killed_hard_goes_on_to_the_same_result(folder, finished, tmp_path
     assert not (out / "result.json").exists()
     with told.open("ab") as file:
         file.write(b"torn")
-    resume(out, workers=2, report=False)
+    resume(out, workers=2)
     assert numbers(out) == numbers(finished[0])
 
 
@@ -147,7 +161,7 @@ def test_ctrl_c_ends_all_processes_and_says_how_to_go_on(folder, tmp_path, searc
     process = subprocess.Popen(
         command, stderr=subprocess.PIPE, text=True, start_new_session=True, preexec_fn=heed_ctrl_c
     )
-    while not (out / "runs" / "pso-0.told" if searching else out / "events.jsonl").exists():
+    while not (out / "runs" / "pso-0.losses" if searching else out / "events.jsonl").exists():
         assert process.poll() is None
         time.sleep(0.01)
     os.killpg(process.pid, signal.SIGINT)
@@ -182,7 +196,7 @@ def edit(path: Path, old: str, new: str) -> None:
 
 def test_resume_of_a_finished_run_searches_nothing(finished, tmp_path):
     out, events = shutil.copytree(finished[0], tmp_path / "out"), []
-    resume(out, report=False, listen=events.append)
+    resume(out, listen=events.append)
     assert [event["event"] for event in events] == ["finished", "done"]
     assert (out / "result.json").read_bytes() == (finished[0] / "result.json").read_bytes()
 
@@ -190,7 +204,7 @@ def test_resume_of_a_finished_run_searches_nothing(finished, tmp_path):
 def test_resume_counts_only_what_is_missing(finished, tmp_path):
     out, events = shutil.copytree(finished[0], tmp_path / "out"), []
     (out / "runs" / "pso-1.json").unlink()
-    resume(out, workers=1, report=False, listen=events.append)
+    resume(out, workers=1, listen=events.append)
     assert (events[0]["runs"], events[0]["budget"]) == (["pso-1"], 800)
     assert numbers(out) == numbers(finished[0])
 
@@ -201,10 +215,10 @@ def test_resume_counts_only_what_is_missing(finished, tmp_path):
 def test_resume_refuses_another_job_or_other_data(folder, finished, tmp_path, file, old, new):
     made = shutil.copytree(folder, tmp_path / "job")
     edit(made / "out" / "environment.json", str(folder), str(made))
-    assert resume(made / "out", report=False)
+    assert resume(made / "out")
     edit(made / file, old, new)
     with pytest.raises(InputError) as caught:
-        resume(made / "out", report=False)
+        resume(made / "out")
     assert caught.value.where == str(made / file)
     assert "began with" in caught.value.message or "since this run began" in caught.value.message
 
@@ -218,11 +232,11 @@ def hopeless(folder: Path, polish: str) -> Job:
 
 @pytest.mark.parametrize("polish", ["true", "false"])
 def test_candidates_that_overflow_are_infinite_and_counted(folder, tmp_path, polish):
-    out = run(hopeless(folder, polish), tmp_path / "out", workers=1, report=False)
+    out = run(hopeless(folder, polish), tmp_path / "out", workers=1)
     result = json.loads((out / "result.json").read_text())
     assert result["failed_runs"] == []
     for item in result["runs"]:
-        told = np.concatenate([losses for _, losses in read_losses(out / "runs" / f"{item['run']}.told")])
+        told = np.concatenate([losses for _, losses in read_losses(out / "runs" / f"{item['run']}.losses")])
         assert item["failed_simulations"] >= np.isinf(told).sum() > 100
         assert item["rmse_before_polish"]["identify"] == pytest.approx(told.min() * 1e6)
         assert item["rmse"]["identify"] <= item["rmse_before_polish"]["identify"]
@@ -234,7 +248,7 @@ def test_where_every_candidate_overflows_the_run_says_so(folder, tmp_path):
     bounds = "parameters:\n  bouc_wen.beta: {bounds: [-400, -300]}\n  bouc_wen.gamma: {bounds: [-1, 1]}\n"
     job = Job.from_text(JOB.replace("model: [bouc_wen]", "model: [bouc_wen]\n" + bounds), folder)
     with pytest.raises(RunError) as caught:
-        run(job, tmp_path / "out", workers=1, report=False)
+        run(job, tmp_path / "out", workers=1)
     said = "every run failed: the simulation of each of its 800 candidates failed: narrow the bounds"
     assert str(caught.value) == said
 
@@ -243,9 +257,10 @@ def test_a_worker_ends_quietly_with_its_parent(folder, tmp_path, capfd):
     listener, pipe = Pipe(duplex=False)
     listener.close()
     job = load_job(folder / "job.yaml")
-    task = tasks_of(job, read(job), tmp_path)[0]
+    statement = Statement(job)
+    task = tasks_of(statement, tmp_path)[0]
     handler, errors = signal.getsignal(signal.SIGINT), np.geterr()
-    work(task, job.text, folder, read(job), pipe)
+    work(task, job.text, folder, statement.records, pipe)
     signal.signal(signal.SIGINT, handler)
     np.seterr(**errors)
     assert capfd.readouterr().err == ""

@@ -10,10 +10,11 @@ from click.testing import CliRunner, Result
 
 from pzt_ident.cli.commands import main
 from pzt_ident.data.notation import spelled
+from pzt_ident.data.signals import read_signals
 from pzt_ident.job.example import write_example
-from pzt_ident.run.misfit import misfits, read_signals
+from pzt_ident.run.misfit import compare
 from pzt_ident.run.results import read_results
-from report.conftest import make_run
+from run_folders import make_run
 
 QUICK = """\
 model: [bouc_wen]
@@ -55,7 +56,7 @@ def test_a_folder_of_results(folder, tmp_path):
 
 def test_the_rmse_is_that_of_the_scored_residual(tmp_path):
     results = read_results(make_run(tmp_path / "run", axes=("x", "y")))
-    found = misfits(results)
+    found = compare(results.folder, tmp_path)
     for axis in "xy":
         own = [trace.residual[trace.scored] for trace in results.traces if trace.axis == axis]
         assert found["axes"][axis]["rmse"] == pytest.approx(np.sqrt(np.mean(np.concatenate(own) ** 2)))

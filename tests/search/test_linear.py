@@ -10,11 +10,11 @@ from scipy.optimize import nnls
 from scipy.special import erf
 
 import smith
+from pzt_ident.data.notation import ranges
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import Job
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks
-from pzt_ident.report.words import ranges
 from pzt_ident.run.identify import run
 from pzt_ident.search.linear import solve
 from pzt_ident.search.problem import Problem

@@ -5,7 +5,7 @@ import pytest
 
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import Job
-from pzt_ident.run.identify import read
+from pzt_ident.run.statement import read
 from pzt_ident.workbench.columns import columns_of
 from pzt_ident.workbench.job_form import job_text
 from sheets import write_sheets

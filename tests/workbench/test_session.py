@@ -134,7 +134,7 @@ def test_in_a_terminal_the_log_makes_the_same_jobs(begun):
 
 def test_a_run_that_was_cut_off_goes_on(begun):
     names = [arguments[0] for _, _, arguments in begun.commands(begun.step())]
-    assert names == ["run", "compare", "diagnose"]
+    assert names == ["run", "diagnose"]
     (begun.step() / "run").mkdir()
     (begun.step() / "run" / "environment.json").write_text("{}")
     assert begun.commands(begun.step())[0][2][:2] == ["resume", "workbench/steps/1/run"]

@@ -8,7 +8,7 @@ import { ask, call, follow, opening, save } from "./session.js";
 import { decode, number } from "./signals.js";
 import { Staircase } from "./staircase.js";
 
-const STAGES = { run: "Identifying", compare: "Looking where it fails", diagnose: "Progress what is missing" };
+const STAGES = { run: "Identifying", diagnose: "Looking for what is missing" };
 const at = (id) => document.getElementById(id);
 const convergence = new Convergence(at("convergence"));
 const columns = new Columns(at("columns"), at("begin"), look, begin);

@@ -1,4 +1,4 @@
-"""What a person sees on the terminal: one live progress display, and tables."""
+"""How far a run is, on the terminal: a live bar, or a line every few seconds."""
 
 from __future__ import annotations
 
@@ -6,14 +6,15 @@ import math
 import signal
 import sys
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from pathlib import Path
 from shlex import quote
-from typing import Any, Protocol, TextIO
+from typing import Any, Protocol
 
 import click
+
+from pzt_ident.cli.table import is_terminal, number
 
 SECONDS_BETWEEN_LINES = 5.0
 
@@ -82,7 +83,7 @@ def listening(silent: bool) -> Iterator[Listener]:
     try:
         if silent:
             yield progress.take
-        elif _is_terminal(sys.stderr):
+        elif is_terminal(sys.stderr):
             with _bar(progress) as listener:
                 yield listener
         else:
@@ -93,11 +94,6 @@ def listening(silent: bool) -> Iterator[Listener]:
         raise
     finally:
         signal.signal(signal.SIGTERM, before)
-
-
-def _is_terminal(stream: TextIO | None) -> bool:
-    """Whether a person looks at it; None where the process was started with the stream closed."""
-    return stream is not None and stream.isatty()
 
 
 def _lines(progress: Progress) -> Listener:
@@ -139,10 +135,10 @@ def _said(event: Event) -> str:
         return "every run is finished: nothing is searched again"
     if event["event"] == "stair":
         return str(event["said"])
-    return _failed(event) if event["event"] == "failed" else ""
+    return failure(event) if event["event"] == "failed" else ""
 
 
-def _failed(event: Event) -> str:
+def failure(event: Event) -> str:
     return f"{event['run']} failed: {event['reason']}"
 
 
@@ -154,84 +150,3 @@ def duration(seconds: float) -> str:
     if whole < 3600:
         return f"{whole // 60} min {whole % 60} s"
     return f"{whole // 3600} h {whole % 3600 // 60} min"
-
-
-def number(value: float | None) -> str:
-    """Four digits; a dash where there is none."""
-    return "-" if value is None or not math.isfinite(value) else f"{value:.4g}"
-
-
-def table(header: Sequence[str], rows: Sequence[Row]) -> None:
-    """Columns under their headings on stdout, set by rich on a terminal and by blanks elsewhere; no word is cut."""
-    cells = [["" if cell is None else str(cell) for cell in row] for row in rows]
-    if _is_terminal(sys.stdout):
-        from rich.box import SIMPLE_HEAD
-        from rich.console import Console
-        from rich.table import Table
-        from rich.text import Text
-
-        drawn = Table(box=SIMPLE_HEAD)
-        for heading in header:
-            drawn.add_column(Text(heading))
-        for row in cells:
-            drawn.add_row(*map(Text, row))
-        console = Console()
-        least = console.measure(drawn, options=console.options.update_width(1000)).minimum
-        console.width = max(console.width, least)
-        console.print(drawn)
-        return
-    widths = [max(map(len, column)) for column in zip(header, *cells, strict=True)]
-    for row in [list(header), *cells]:
-        click.echo("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
-    click.echo()
-
-
-def show_result(result: dict[str, Any], folder: Path) -> None:
-    """The league of optimizers, the best run's parameters, the noise floor, and where the rest is."""
-    unit, best = result["unit"], result["best"]
-    table(
-        ("optimizer", "runs", f"best RMSE [{unit}]", f"median [{unit}]", f"median polished [{unit}]", "time [s]"),
-        [
-            (row["optimizer"], row["runs"], *(number(row[key]) for key in _LEAGUE), number(row["seconds_median"]))
-            for row in result["league"]
-        ],
-    )
-    table(
-        ("parameter", "value", "standard error", "unit", "verdict"),
-        [
-            (name, number(item["value"]), number(item["standard_error"]), item["unit"], item["verdict"])
-            for name, item in best["parameters"].items()
-        ],
-    )
-    click.echo(f"RMSE [{unit}]: {_uses(best['rmse'])} ({best['run']})")
-    for axis, floor in result["noise_floor"].items():
-        click.echo(f"noise floor of {axis} [{unit}]: {number(floor)}")
-    show_notes(result["records"])
-    for run in result["failed_runs"]:
-        click.echo(_failed(run))
-    page = folder / "report.html"
-    click.echo(f"report: {page}" if page.exists() else f"results: {folder}")
-
-
-def show_notes(records: Iterable[dict[str, Any]]) -> None:
-    """What there is to know of each record."""
-    for record in records:
-        for note in record["notes"]:
-            click.echo(f"{record['name']}: {note}")
-
-
-_LEAGUE = ("rmse_best", "rmse_median", "polished_rmse_median")
-
-
-def _uses(rmse: dict[str, float | None]) -> str:
-    return ", ".join(f"{number(value)} {use}" for use, value in rmse.items())
-
-
-def tracked(items: Iterable[Any], what: str, silent: bool) -> Iterator[Any]:
-    """The items, counted on a terminal while they come; nothing is said elsewhere."""
-    if silent or not _is_terminal(sys.stdout):
-        yield from items
-        return
-    from rich.progress import track
-
-    yield from track(items, what, transient=True)

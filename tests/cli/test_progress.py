@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import io
 import os
 import signal
 import sys
 
 import pytest
 
-from pzt_ident.cli import terminal
+from pzt_ident.cli import progress
+from pzt_ident.cli.progress import Progress, duration, listening
+from terminal import Terminal
 
 START = {"event": "start", "runs": ["a", "b"], "budget": 1000, "unit": "um"}
 
@@ -22,33 +23,33 @@ def generation(run: str, evaluations: int, best: float) -> dict:
 def clock(monkeypatch):
     """Seconds that pass only when told to."""
     now = [100.0]
-    monkeypatch.setattr(terminal.time, "perf_counter", lambda: now[0])
+    monkeypatch.setattr(progress.time, "perf_counter", lambda: now[0])
     return now
 
 
 def test_progress_adds_the_runs_up(clock):
-    progress = terminal.Progress()
-    progress.take(START)
-    assert str(progress) == "0 %: 0 of 1000 evaluations, best RMSE - um"
-    progress.take(generation("a", 100, 0.5))
+    state = Progress()
+    state.take(START)
+    assert str(state) == "0 %: 0 of 1000 evaluations, best RMSE - um"
+    state.take(generation("a", 100, 0.5))
     clock[0] += 10
-    progress.take(generation("b", 50, 0.2))
-    progress.take(generation("a", 150, 0.4))
-    assert str(progress) == "20 %: 200 of 1000 evaluations, best RMSE 0.2 um, 1 min 20 s left"
+    state.take(generation("b", 50, 0.2))
+    state.take(generation("a", 150, 0.4))
+    assert str(state) == "20 %: 200 of 1000 evaluations, best RMSE 0.2 um, 1 min 20 s left"
 
 
 def test_an_ended_run_has_nothing_left(clock):
-    progress = terminal.Progress()
-    progress.take(START)
-    progress.take(generation("a", 100, 0.5))
-    progress.take({"event": "failed", "run": "a", "reason": "killed"})
-    assert progress.done == 500
-    progress.take(generation("b", 500, 0.5))
-    assert str(progress).endswith("best RMSE 0.5 um, finishing")
+    state = Progress()
+    state.take(START)
+    state.take(generation("a", 100, 0.5))
+    state.take({"event": "failed", "run": "a", "reason": "killed"})
+    assert state.done == 500
+    state.take(generation("b", 500, 0.5))
+    assert str(state).endswith("best RMSE 0.5 um, finishing")
 
 
 def test_lines_are_few(clock, capsys):
-    with terminal.listening(silent=False) as listen:
+    with listening(silent=False) as listen:
         listen(START)
         for step in range(1, 101):
             clock[0] += 0.125
@@ -58,7 +59,7 @@ def test_lines_are_few(clock, capsys):
 
 
 def test_a_diagnosis_says_what_it_is_at(clock, capsys):
-    with terminal.listening(silent=False) as listen:
+    with listening(silent=False) as listen:
         for done in range(1, 101):
             clock[0] += 0.0625
             listen({"event": "scored", "said": f"{done} of 100 effects scored"})
@@ -67,7 +68,7 @@ def test_a_diagnosis_says_what_it_is_at(clock, capsys):
 
 
 def test_an_end_from_outside_is_an_interrupt(capsys):
-    with pytest.raises(KeyboardInterrupt), terminal.listening(silent=False) as listen:
+    with pytest.raises(KeyboardInterrupt), listening(silent=False) as listen:
         listen(START | {"folder": "out"})
         os.kill(os.getpid(), signal.SIGTERM)
     assert capsys.readouterr().err == "`pzt-ident resume out` goes on from here\n"
@@ -75,21 +76,16 @@ def test_an_end_from_outside_is_an_interrupt(capsys):
 
 
 def test_a_finished_run_says_so(capsys):
-    with terminal.listening(silent=False) as listen:
+    with listening(silent=False) as listen:
         listen({"event": "finished"})
     assert capsys.readouterr().err == "every run is finished: nothing is searched again\n"
 
 
 def test_silence(capsys):
-    with terminal.listening(silent=True) as listen:
+    with listening(silent=True) as listen:
         listen(START)
         listen({"event": "failed", "run": "a", "reason": "killed"})
     assert capsys.readouterr() == ("", "")
-
-
-class Terminal(io.StringIO):
-    def isatty(self) -> bool:
-        return True
 
 
 def test_a_terminal_gets_one_live_bar(monkeypatch):
@@ -97,7 +93,7 @@ def test_a_terminal_gets_one_live_bar(monkeypatch):
     monkeypatch.setattr(sys, "stderr", screen)
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("COLUMNS", "120")
-    with terminal.listening(silent=False) as listen:
+    with listening(silent=False) as listen:
         listen(START)
         listen(generation("a", 500, 0.25))
         listen({"event": "failed", "run": "b", "reason": "killed by [signal] 9"})
@@ -107,30 +103,8 @@ def test_a_terminal_gets_one_live_bar(monkeypatch):
     assert "\x1b[2K" in shown
 
 
-def test_table_columns_stand_under_their_headings(capsys):
-    terminal.table(("name", "n"), [("long name", 1), ("x", None)])
-    assert capsys.readouterr().out == "name       n\nlong name  1\nx\n\n"
-
-
-def test_table_on_a_terminal_keeps_brackets(monkeypatch):
-    screen = Terminal()
-    monkeypatch.setattr(sys, "stdout", screen)
-    terminal.table(("best [um]", "n"), [("[bold]", 1)])
-    assert "best [um]" in screen.getvalue()
-    assert "[bold]" in screen.getvalue()
-
-
-def test_table_on_a_narrow_terminal_cuts_no_word(monkeypatch):
-    screen = Terminal()
-    monkeypatch.setattr(sys, "stdout", screen)
-    monkeypatch.setenv("COLUMNS", "20")
-    words = ("x.cross_coupling.ratio", "-0.2308", "standard_error", "not-determined")
-    terminal.table(("parameter", "value", "error", "verdict"), [words])
-    assert all(word in screen.getvalue() for word in words)
-
-
 @pytest.mark.parametrize(
     ("seconds", "said"), [(0.4, "0 s"), (59.4, "59 s"), (59.6, "1 min 0 s"), (125, "2 min 5 s"), (4800, "1 h 20 min")]
 )
 def test_duration(seconds, said):
-    assert terminal.duration(seconds) == said
+    assert duration(seconds) == said

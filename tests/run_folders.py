@@ -9,8 +9,8 @@ from typing import Any
 
 import h5netcdf
 import numpy as np
-import pytest
 
+WEIRD = "<script>alert('x')</script> 100%_µ & \"q\" $a_1$.csv"
 PARAMETERS = {
     "bouc_wen.gain": (0.08195, "um/V", 0.0, 0.16, 0.00012, "determined", ""),
     "bouc_wen.alpha": (0.02114, "um/V", 0.0, 0.08, 0.00031, "determined", ""),
@@ -187,34 +187,3 @@ def make_run(
     (folder / "environment.json").write_text(json.dumps(environment), encoding="utf-8")
     (folder / "job.yaml").write_text(job, encoding="utf-8")
     return folder
-
-
-@pytest.fixture(scope="session")
-def plain(tmp_path_factory) -> Path:
-    """One axis, two records, three optimizers."""
-    return make_run(tmp_path_factory.mktemp("plain"))
-
-
-WEIRD = "<script>alert('x')</script> 100%_µ & \"q\" $a_1$.csv"
-
-
-@pytest.fixture(scope="session")
-def weird(tmp_path_factory) -> Path:
-    """Two axes, no validate record, one optimizer, one repeat, unknown noise, a failed run, markup in names."""
-    return make_run(
-        tmp_path_factory.mktemp("weird"),
-        axes=("x", "y"),
-        names=(WEIRD,),
-        uses=("identify",),
-        optimizers=("pso",),
-        repeats=1,
-        noise_floor=None,
-        failed=(("rga-0", "worker killed by <signal> 9"),),
-    )
-
-
-@pytest.fixture(scope="session")
-def long(tmp_path_factory) -> Path:
-    """Two records of 20,000 samples, six optimizers."""
-    optimizers = ("pso", "rga", "csa", "cma_es", "differential_evolution", "least_squares")
-    return make_run(tmp_path_factory.mktemp("long"), samples=20_000, repeats=5, optimizers=optimizers)

@@ -1,0 +1,50 @@
+"""What a job and its data hold, as text for the terminal."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from pzt_ident.cli.result_tables import show_notes
+from pzt_ident.cli.table import number, table, together
+
+Facts = dict[str, Any]
+
+
+def show_job(found: Facts) -> None:
+    click.echo(f"{found['name']} ({found['hash']}): {' -> '.join(found['model'])}\n")
+    table(
+        ("record", "use", "samples", "rate [Hz]", "length [s]", "not scored [s]", "file"),
+        [
+            (row["name"], row["use"], row["samples"], *(number(row[key]) for key in _TIMES), row["file"])
+            for row in found["records"]
+        ],
+    )
+    show_notes(found["records"])
+    table(
+        ("axis", "drive", "response"),
+        [(axis["name"], _range(axis, "drive"), _range(axis, "response")) for axis in found["axes"]],
+    )
+    table(
+        ("parameter", "unit", "bounds", "what it is"),
+        [(row["name"], row["unit"], _searched(row), row["doc"]) for row in together(found["parameters"])],
+    )
+    click.echo(f"runs: {' '.join(found['runs'])}, {found['evaluations']} evaluations in all")
+
+
+_TIMES = ("sample_rate", "seconds", "settle")
+
+
+def _range(axis: Facts, channel: str) -> str:
+    if axis[f"{channel}_unit"] is None:
+        return "not measured"
+    low, high = axis[f"{channel}_range"]
+    return f"{low:.4g} to {high:.4g} {axis[f'{channel}_unit']}"
+
+
+def _searched(row: Facts) -> str:
+    """What becomes of a parameter."""
+    if not {"value", "bounds"} & set(row):
+        return "solved for"
+    return "fixed at {:.4g}".format(row["value"]) if "value" in row else "{:.4g} to {:.4g}".format(*row["bounds"])

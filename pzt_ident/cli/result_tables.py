@@ -1,0 +1,53 @@
+"""The result of a run on the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import click
+
+from pzt_ident.cli.progress import failure
+from pzt_ident.cli.table import number, table
+
+
+def show_result(result: dict[str, Any], folder: Path) -> None:
+    """The league of optimizers, the best run's parameters, the noise floor, and where the rest is."""
+    unit, best = result["unit"], result["best"]
+    table(
+        ("optimizer", "runs", f"best RMSE [{unit}]", f"median [{unit}]", f"median polished [{unit}]", "time [s]"),
+        [
+            (row["optimizer"], row["runs"], *(number(row[key]) for key in _LEAGUE), number(row["seconds_median"]))
+            for row in result["league"]
+        ],
+    )
+    table(
+        ("parameter", "value", "standard error", "unit", "verdict"),
+        [
+            (name, number(item["value"]), number(item["standard_error"]), item["unit"], item["verdict"])
+            for name, item in best["parameters"].items()
+        ],
+    )
+    click.echo(f"RMSE [{unit}]: {_uses(best['rmse'])} ({best['run']})")
+    for axis, floor in result["noise_floor"].items():
+        click.echo(f"noise floor of {axis} [{unit}]: {number(floor)}")
+    show_notes(result["records"])
+    for run in result["failed_runs"]:
+        click.echo(failure(run))
+    page = folder / "report.html"
+    click.echo(f"report: {page}" if page.exists() else f"results: {folder}")
+
+
+def show_notes(records: Iterable[dict[str, Any]]) -> None:
+    """What there is to know of each record."""
+    for record in records:
+        for note in record["notes"]:
+            click.echo(f"{record['name']}: {note}")
+
+
+_LEAGUE = ("rmse_best", "rmse_median", "polished_rmse_median")
+
+
+def _uses(rmse: dict[str, float | None]) -> str:
+    return ", ".join(f"{number(value)} {use}" for use, value in rmse.items())

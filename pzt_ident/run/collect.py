@@ -1,0 +1,97 @@
+"""What all runs of a job came to: `result.json`, and the tables and curves beside it."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pzt_ident.data.noise import noise_floor
+from pzt_ident.data.record import Record
+from pzt_ident.data.signals import write_signals
+from pzt_ident.data.units import factor
+from pzt_ident.errors import RunError
+from pzt_ident.files import write_json, write_text
+from pzt_ident.run.checkpoint import read_losses
+from pzt_ident.run.folder import read_environment
+from pzt_ident.run.misfit import write_misfits
+from pzt_ident.run.statement import Statement
+from pzt_ident.run.task import Task, read_result
+from pzt_ident.search.league import rank
+from pzt_ident.search.problem import Problem
+
+
+def collect(statement: Statement, folder: Path, tasks: list[Task], failed: dict[str, str]) -> None:
+    """Tables and curves of all runs; `result.json` comes last. Raises RunError where every run failed."""
+    done = [task for task in tasks if task.run not in failed]
+    if not done:
+        raise RunError("every run failed: " + "; ".join(dict.fromkeys(failed.values())))
+    job, records, problem = statement.job, statement.records, statement.problem
+    runs = [read_result(task) for task in done]
+    histories = {task.run: history_of(task, factor(statement.unit)) for task in done}
+    league = rank(runs, histories)
+    best = min(runs, key=lambda run: run["rmse"]["identify"])
+    point = np.array(best["point"])
+    write_text(folder / "history.csv", history_text(done, histories))
+    write_signals(folder / "signals.nc", problem.errors(point))
+    floors = {records[0].axes[a]: noise_floor(records, a) for a in records[0].measured}
+    units = {records[0].axes[a]: str(records[0].response_units[a]) for a in records[0].measured}
+    result = {
+        "name": job.name,
+        "unit": statement.unit,
+        "seed": job.seed,
+        "command": read_environment(folder)["command"],
+        "created": datetime.now().astimezone().isoformat(timespec="seconds"),
+        "noise_floor": {axis: floor.value / factor(units[axis]) for axis, floor in floors.items()},
+        "noise_floor_source": {axis: floor.source for axis, floor in floors.items()},
+        "records": [facts_of(record, problem, point) for record in records],
+        "league": league,
+        "best": best,
+        "runs": [{key: value for key, value in run.items() if key != "correlation"} for run in runs],
+        "failed_runs": [{"run": name, "reason": reason} for name, reason in failed.items()],
+    }
+    write_misfits(folder, result)
+    write_json(folder / "result.json", result)
+
+
+def facts_of(record: Record, problem: Problem, point: np.ndarray) -> dict[str, Any]:
+    """What is to be known of a record, and what the model leaves of it."""
+    simulator = problem.simulator_of(record)
+    return {
+        **errors_in(record, problem, point),
+        "file": record.file,
+        "sha256": record.sha256,
+        "samples": record.samples,
+        "sample_rate": 1 / record.dt,
+        "settle": record.settle * record.dt,
+        "axes": [record.axes[a] for a in record.measured],
+        "notes": [*record.notes, *simulator.broken(problem.parameters(point))],
+    }
+
+
+def errors_in(record: Record, problem: Problem, point: np.ndarray) -> dict[str, Any]:
+    """RMSE of each measured axis of a record, each in its own unit."""
+    simulator = problem.simulator_of(record)
+    rmse = np.sqrt(simulator.squares(problem.parameters(point))[0] / simulator.scored)
+    sizes = [factor(str(record.response_units[a])) for a in record.measured]
+    by_axis = {record.axes[a]: rmse[i] / sizes[i] for i, a in enumerate(record.measured)}
+    return {"name": record.name, "use": record.use, "rmse": by_axis}
+
+
+def history_of(task: Task, size: float) -> np.ndarray:
+    """(generations, 3): evaluations so far, seconds so far, best RMSE so far in the user's unit."""
+    rows, evaluations, best = [], 0, np.inf
+    for seconds, losses in read_losses(task.checkpoint):
+        evaluations, best = evaluations + len(losses), min(best, losses.min())
+        rows.append((evaluations, seconds, best / size))
+    return np.array(rows)
+
+
+def history_text(done: list[Task], histories: dict[str, np.ndarray]) -> str:
+    lines = ["optimizer,repeat,generation,evaluations,seconds,best"]
+    for task in done:
+        for generation, (evaluations, seconds, best) in enumerate(histories[task.run], 1):
+            lines.append(f"{task.optimizer},{task.repeat},{generation},{evaluations:.0f},{seconds:.6g},{best:.9g}")
+    return "\n".join(lines) + "\n"

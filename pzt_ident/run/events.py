@@ -1,0 +1,54 @@
+"""What happens in a run as it does: kept in `events.jsonl`, told to a listener, and put into words."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+from pzt_ident.data.notation import listed, percent, quantity
+from pzt_ident.files import plain
+
+Event = dict[str, Any]
+Listen = Callable[[Event], None]
+
+
+def nobody(event: Event) -> None:
+    """The listener that takes no notice."""
+
+
+@contextmanager
+def event_log(folder: Path, listen: Listen) -> Iterator[Listen]:
+    """A listener that keeps each event as a line of `events.jsonl` and tells it on; any thread may call it."""
+    one_at_a_time = Lock()
+    with (folder / "events.jsonl").open("a", encoding="utf-8") as log:
+
+        def tell(event: Event) -> None:
+            with one_at_a_time:
+                log.write(json.dumps(plain(event)) + "\n")
+                log.flush()
+                listen(event)
+
+        yield tell
+
+
+def sentence(event: Mapping[str, Any], unit: str) -> str:
+    """What a diagnosis is at, from one of its events."""
+    if event["event"] == "fitted":
+        return f"fitted from {event['done']} of {event['of']} starts"
+    if event["event"] == "scored":
+        part = f"{event['effect']} would explain {percent(event['explained'])}"
+        return f"{event['done']} of {event['of']} effects scored; {part}"
+    if event["event"] == "refitted":
+        chosen = f"with {listed(event['effects'])}" if event["effects"] else "without an effect"
+        return f"refitted {chosen}: RMSE {quantity(event['identify'], unit)}"
+    return f"{step_name(event)}: RMSE {quantity(event['rmse']['identify'], unit)}"
+
+
+def step_name(step: Mapping[str, Any]) -> str:
+    """`as given`, `+ effect`, `- effect`, or both where one takes the place of another; what the step itself says."""
+    words = [f"{sign} {step[key]}" for sign, key in (("+", "added"), ("-", "removed")) if step[key]]
+    return step.get("change") or " ".join(words) or "as given"

@@ -1,0 +1,91 @@
+"""The folder of a run: where it is, what it begins with, and what is needed to go on with it."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import sys
+from collections.abc import Sequence
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from pzt_ident.data.record import Record
+from pzt_ident.errors import InputError
+from pzt_ident.files import write_json, write_text
+from pzt_ident.job.schema import Job
+
+PACKAGES = ("pzt-ident", "numpy", "scipy", "numba", "pandas", "pyswarms", "deap", "cma")
+
+
+def results_folder(job: Job, out: Path | None) -> Path:
+    """Where the results of a job go: `out`, else `results/<name>/<time>-<hash>`."""
+    return out or Path("results") / job.name / f"{datetime.now():%Y%m%d-%H%M%S}-{job.hash}"
+
+
+def begin(folder: Path, job: Job, text: str, records: Sequence[Record]) -> None:
+    """Make the folder of a run and put the job's text and the environment into it.
+
+    Raises InputError where that cannot be, or something is in it.
+    """
+    make_empty(folder)
+    write_text(folder / "job.yaml", text)
+    write_json(folder / "environment.json", environment(job, records))
+
+
+def make_empty(folder: Path) -> None:
+    """Make the folder. Raises InputError where that cannot be, or something is in it."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        full = any(folder.iterdir())
+    except OSError as error:
+        remedy = "give another folder with --out"
+        raise InputError(error.strerror or str(error), where=str(folder), remedy=remedy) from None
+    if full:
+        raise InputError("this folder is not empty", where=str(folder), remedy="give another --out, or resume it")
+
+
+def environment(job: Job, records: Sequence[Record]) -> dict[str, Any]:
+    """Where this ran and on what: enough to run it again, and to go on with nothing else."""
+    return {
+        "python": platform.python_version(),
+        "platform": platform.platform(),
+        "cpu": platform.processor() or platform.machine(),
+        "cores": os.cpu_count(),
+        "packages": {name: _version(name) for name in PACKAGES},
+        "command": " ".join(["pzt-ident", *sys.argv[1:]]),
+        "data": {record.name: record.sha256 for record in records},
+        "job_hash": job.hash,
+        "job_name": job.name,
+        "job_folder": str(job.folder.resolve()),
+    }
+
+
+def _version(package: str) -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "not installed"
+
+
+def read_environment(folder: Path) -> dict[str, Any]:
+    """The environment of the run in a folder. Raises InputError where there is none."""
+    try:
+        return dict(json.loads((folder / "environment.json").read_text(encoding="utf-8")))
+    except (OSError, ValueError):
+        remedy = "give the folder that `pzt-ident run` wrote"
+        raise InputError("holds no run", where=str(folder), remedy=remedy) from None
+
+
+def check_unchanged(job: Job, records: Sequence[Record], begun: dict[str, Any], folder: Path) -> None:
+    """Raises InputError where job or data are not those of the environment that a run began with."""
+    remedy = "undo the change, or start a new run"
+    if job.hash != begun["job_hash"]:
+        raise InputError("is not the job that this run began with", where=str(folder / "job.yaml"), remedy=remedy)
+    for record in records:
+        if record.sha256 != begun["data"][record.name]:
+            where = str(job.folder / record.file)
+            raise InputError("has changed since this run began", where=where, remedy=remedy)

@@ -1,0 +1,71 @@
+"""What a job and its data hold, and what a run of it would do."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from pzt_ident.data.record import Record
+from pzt_ident.data.units import factor
+from pzt_ident.job.schema import Job
+from pzt_ident.run.identify import tasks_of
+from pzt_ident.run.statement import Statement
+from pzt_ident.search.problem import Problem
+
+Facts = dict[str, Any]
+
+
+def summary_of(job: Job) -> Facts:
+    """Records, axes, parameters and optimizers of a job. Raises InputError on whatever is wrong with its data."""
+    statement = Statement(job)
+    records, problem = statement.records, statement.problem
+    tasks = tasks_of(statement, job.folder)
+    return {
+        "name": job.name,
+        "hash": job.hash,
+        "model": [block.name for block in problem.model.blocks],
+        "records": [_record(record) for record in records],
+        "axes": [_axis(records, axis) for axis in range(len(records[0].axes))],
+        "parameters": _parameters(problem),
+        "runs": [task.run for task in tasks],
+        "evaluations": sum(task.stop["evaluations"] for task in tasks),
+    }
+
+
+def _record(record: Record) -> Facts:
+    return {
+        "name": record.name,
+        "use": record.use,
+        "samples": record.samples,
+        "sample_rate": 1 / record.dt,
+        "seconds": record.samples * record.dt,
+        "settle": record.settle * record.dt,
+        "file": record.file,
+        "notes": list(record.notes),
+    }
+
+
+def _axis(records: list[Record], axis: int) -> Facts:
+    first = records[0]
+    channels = {"drive": first.drive_units[axis], "response": first.response_units[axis]}
+    facts: Facts = {"name": first.axes[axis]}
+    for channel, unit in channels.items():
+        facts[f"{channel}_unit"] = unit
+        if unit is not None:
+            values = [getattr(record, channel)[axis] / factor(unit) for record in records]
+            facts[f"{channel}_range"] = [float(min(map(np.min, values))), float(max(map(np.max, values)))]
+    return facts
+
+
+def _parameters(problem: Problem) -> list[Facts]:
+    bounds = dict(zip(problem.names, zip(problem.lower, problem.upper, strict=True), strict=True))
+    found = []
+    for entry, unit, value in zip(problem.model.entries, problem.all_units, problem.theta, strict=True):
+        facts: Facts = {"name": entry.name, "unit": unit, "doc": entry.parameter.doc}
+        if entry.name in bounds:
+            facts["bounds"] = [float(bound) for bound in bounds[entry.name]]
+        elif np.isfinite(value):
+            facts["value"] = float(value / factor(unit))
+        found.append(facts)
+    return found

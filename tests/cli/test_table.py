@@ -1,0 +1,28 @@
+"""Tables on the terminal."""
+
+import sys
+
+from pzt_ident.cli.table import table
+from terminal import Terminal
+
+
+def test_table_columns_stand_under_their_headings(capsys):
+    table(("name", "n"), [("long name", 1), ("x", None)])
+    assert capsys.readouterr().out == "name       n\nlong name  1\nx\n\n"
+
+
+def test_table_on_a_terminal_keeps_brackets(monkeypatch):
+    screen = Terminal()
+    monkeypatch.setattr(sys, "stdout", screen)
+    table(("best [um]", "n"), [("[bold]", 1)])
+    assert "best [um]" in screen.getvalue()
+    assert "[bold]" in screen.getvalue()
+
+
+def test_table_on_a_narrow_terminal_cuts_no_word(monkeypatch):
+    screen = Terminal()
+    monkeypatch.setattr(sys, "stdout", screen)
+    monkeypatch.setenv("COLUMNS", "20")
+    words = ("x.cross_coupling.ratio", "-0.2308", "standard_error", "not-determined")
+    table(("parameter", "value", "error", "verdict"), [words])
+    assert all(word in screen.getvalue() for word in words)
