@@ -36,6 +36,7 @@ def read_records(
     tables: dict[object, Table] = {}
     records = _named([_record(Finder(source, folder, tables), axes, time) for source in sources])
     _check_kinds(records)
+    records = [_as_first(record, records[0]) for record in records]
     fitted = [record for record in records if record.use == "identify"]
     return [replace(r, notes=r.notes + _leaks(r, fitted)) if r.use == "validate" else r for r in records]
 
@@ -140,6 +141,11 @@ def _notes(source: Source) -> tuple[str, ...]:
     if source.decimate == 1:
         return ()
     return (f"decimated by {source.decimate} behind a zero-phase low-pass, which rounds the corners of the drive",)
+
+
+def _as_first(record: Record, first: Record) -> Record:
+    """The record with the units of the first one, so that every number of an axis is in one."""
+    return replace(record, drive_units=first.drive_units, response_units=first.response_units)
 
 
 def _check_kinds(records: Sequence[Record]) -> None:

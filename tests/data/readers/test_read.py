@@ -102,6 +102,7 @@ def test_a_record_says_what_is_different_in_it(tmp_path):
     np.testing.assert_array_equal(second.response[1], 1e-6 * arrays["z"][:, 0])
     files = [(tmp_path / name).read_bytes() for name in ("u_1.npy", "y_1.npy")]
     assert first.sha256 == hashlib.sha256(b"".join(files)).hexdigest()
+    assert first.response_units == second.response_units == ("m", "m")
 
 
 @given(st.floats(-1e3, 1e3), st.floats(-1, 1), st.integers(2, 12), st.integers(50, 300))
