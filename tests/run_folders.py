@@ -169,6 +169,8 @@ def make_run(
     result = {
         "name": "x-axis",
         "unit": unit,
+        "units": dict.fromkeys(axes, unit),
+        "floor": noise_floor,
         "seed": 7,
         "noise_floor": dict.fromkeys(axes, noise_floor),
         "noise_floor_source": dict.fromkeys(axes, "rest segments"),

@@ -32,6 +32,7 @@ class Progress:
 
     budget: int = 0
     unit: str = ""
+    together: str = ""
     best: float = math.inf
     folder: str = ""
     activity: str = ""
@@ -41,6 +42,7 @@ class Progress:
     def take(self, event: Event) -> None:
         if event["event"] == "start":
             self.budget, self.unit, self.folder = event["budget"], event["unit"], event.get("folder", "")
+            self.together = event["together"]
             self.evaluations = dict.fromkeys(event["runs"], 0)
         elif event["event"] == "generation":
             self.evaluations[event["run"]] = event["evaluations"]
@@ -68,7 +70,7 @@ class Progress:
         left = self.seconds_left()
         ahead = "finishing" if self.done >= self.budget else "" if left is None else f"{duration(left)} left"
         share = f"{100 * self.done / self.budget:.0f} %: {self.done} of {self.budget} evaluations"
-        said = f"{share}, best RMSE {number(self.best)} {self.unit}"
+        said = f"{share}, best RMSE{self.together} {number(self.best)} {self.unit}"
         return f"{said}, {ahead}" if ahead else said
 
 

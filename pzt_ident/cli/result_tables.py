@@ -10,13 +10,15 @@ import click
 
 from pzt_ident.cli.progress import failure
 from pzt_ident.cli.table import number, table
+from pzt_ident.data.over_axes import together, weighed
 
 
 def show_result(result: dict[str, Any], folder: Path) -> None:
     """The league of optimizers, the best run's parameters, the noise floor, and where the rest is."""
     unit, best = result["unit"], result["best"]
+    error = f"RMSE{together(result['units'])} [{unit}]"
     table(
-        ("optimizer", "runs", f"best RMSE [{unit}]", f"median [{unit}]", f"median polished [{unit}]", "time [s]"),
+        ("optimizer", "runs", f"best {error}", f"median [{unit}]", f"median polished [{unit}]", "time [s]"),
         [
             (row["optimizer"], row["runs"], *(number(row[key]) for key in _LEAGUE), number(row["seconds_median"]))
             for row in result["league"]
@@ -29,14 +31,24 @@ def show_result(result: dict[str, Any], folder: Path) -> None:
             for name, item in best["parameters"].items()
         ],
     )
-    click.echo(f"RMSE [{unit}]: {_uses(best['rmse'])} ({best['run']})")
-    for axis, floor in result["noise_floor"].items():
-        click.echo(f"noise floor of {axis} [{unit}]: {number(floor)}")
+    click.echo(f"{error}: {uses(best['rmse'])} ({best['run']})")
+    show_floors(result)
     show_notes(result["records"])
     for run in result["failed_runs"]:
         click.echo(failure(run))
     page = folder / "report.html"
     click.echo(f"report: {page}" if page.exists() else f"results: {folder}")
+
+
+def show_floors(facts: dict[str, Any]) -> None:
+    """The noise floor of each axis and, of several, that of all together and what it counts."""
+    units = facts["units"]
+    for axis, floor in facts["noise_floor"].items():
+        click.echo(f"noise floor of {axis} [{units[axis]}]: {number(floor)}")
+    if len(units) > 1:
+        click.echo(f"noise floor{together(units)} [{facts['unit']}]: {number(facts['floor'])}")
+    for sentence in weighed(units):
+        click.echo(sentence)
 
 
 def show_notes(records: Iterable[dict[str, Any]]) -> None:
@@ -49,5 +61,5 @@ def show_notes(records: Iterable[dict[str, Any]]) -> None:
 _LEAGUE = ("rmse_best", "rmse_median", "polished_rmse_median")
 
 
-def _uses(rmse: dict[str, float | None]) -> str:
+def uses(rmse: dict[str, float | None]) -> str:
     return ", ".join(f"{number(value)} {use}" for use, value in rmse.items())

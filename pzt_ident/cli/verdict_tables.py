@@ -7,7 +7,9 @@ from typing import Any
 
 import click
 
+from pzt_ident.cli.result_tables import show_floors, uses
 from pzt_ident.cli.table import number, table
+from pzt_ident.data.over_axes import together
 from pzt_ident.report.tables import expected
 from pzt_ident.run.events import step_name
 
@@ -16,7 +18,7 @@ Facts = dict[str, Any]
 
 def show_diagnosis(found: Facts, folder: Path) -> None:
     """The candidates that were refitted or come next, and the verdict."""
-    unit = found["unit"]
+    unit, error = found["unit"], f"RMSE{together(found['units'])}"
     rows = [
         (
             item["effect"],
@@ -30,9 +32,10 @@ def show_diagnosis(found: Facts, folder: Path) -> None:
         for item in found["candidates"]
         if item["rmse"] or item["explained"] > 0.01
     ]
-    table(("effect", "explains", "expected", "visible", f"identify [{unit}]", f"validate [{unit}]", "decision"), rows)
-    floor = ", ".join(f"{number(value)} ({axis})" for axis, value in found["noise_floor"].items())
-    click.echo(f"RMSE [{unit}]: {number(found['rmse']['identify'])} identify, noise floor {floor}")
+    errors = (f"{error}, identify [{unit}]", f"validate [{unit}]")
+    table(("effect", "explains", "expected", "visible", *errors, "decision"), rows)
+    click.echo(f"{error} [{unit}]: {uses(found['rmse'])}")
+    show_floors(found)
     click.echo(found["reason"])
     _advise(found, folder)
     click.echo(f"diagnosis: {folder / 'diagnosis.json'}")
@@ -54,7 +57,7 @@ def _propose(proposal: Facts, folder: Path) -> None:
 
 def show_improvement(found: Facts, folder: Path) -> None:
     """The staircase, the verdict, and where the improved job is."""
-    unit, floor = found["unit"], found["floor"]
+    unit, floor, error = found["unit"], found["floor"], f"RMSE{together(found['units'])}"
     rows = [
         (
             step_name(step),
@@ -68,10 +71,18 @@ def show_improvement(found: Facts, folder: Path) -> None:
         for step in found["steps"]
     ]
     table(
-        ("step", f"identify [{unit}]", f"validate [{unit}]", "in floors", "expected", "explained", "these data say"),
+        (
+            "step",
+            f"{error}, identify [{unit}]",
+            f"validate [{unit}]",
+            "in floors",
+            "expected",
+            "explained",
+            "these data say",
+        ),
         rows,
     )
-    click.echo(f"noise floor [{unit}]: {number(floor)}")
+    show_floors(found)
     click.echo(f"{found['verdict']}: {found['reason']}")
     if found["next_experiment"]:
         _propose(found["next_experiment"], folder)

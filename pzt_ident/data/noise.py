@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.record import Record
-from pzt_ident.data.units import same_kind
+from pzt_ident.data.units import common_unit, factor, of_one_kind
 
 Array = NDArray[np.float64]
 
@@ -69,12 +69,32 @@ def sizes(records: list[Record]) -> Array:
     """What the errors of each measured axis are weighed by: nothing where responses are of one kind, else their noise
     floors, so that a polarization and a displacement count by what their noise lets see; at least WHOLE of the span,
     since an integrated charge is smooth far below what any model reaches."""
-    units = [str(records[0].response_units[axis]) for axis in records[0].measured]
-    if all(same_kind(unit, units[0]) for unit in units):
-        return np.ones(len(units))
+    if of_one_kind(list(records[0].units.values())):
+        return np.ones(len(records[0].measured))
     spans = np.array([max(np.ptp(record.response[axis]) for record in records) for axis in records[0].measured])
     floors = np.array([noise_floor(records, axis).value for axis in records[0].measured])
     return np.maximum(floors, WHOLE * spans)
+
+
+def pooled_floor(records: list[Record]) -> float:
+    """Noise floor of all measured axes together, in units of the loss."""
+    floors = np.array([noise_floor(records, axis).value for axis in records[0].measured])
+    return float(np.sqrt(np.mean(np.square(floors / sizes(records)))))
+
+
+def facts(records: list[Record]) -> dict[str, Any]:
+    """Units and noise floors as the files of a result have them: of each axis by its name, and `unit` and `floor` of
+    what is over all axes."""
+    units = records[0].units
+    found = {records[0].axes[axis]: noise_floor(records, axis) for axis in records[0].measured}
+    unit = common_unit(list(units.values()))
+    return {
+        "unit": unit,
+        "units": units,
+        "noise_floor": {axis: floor.value / factor(units[axis]) for axis, floor in found.items()},
+        "noise_floor_source": {axis: floor.source for axis, floor in found.items()},
+        "floor": pooled_floor(records) / factor(unit),
+    }
 
 
 def quantiser(response: Array) -> float:

@@ -60,8 +60,8 @@ def count(value: float | None) -> str:
     return MISSING if value is None or math.isnan(value) else f"{round(value):,}".replace(",", "\u202f")
 
 
-def percent(share: float | None) -> str:
-    return MISSING if share is None or math.isnan(share) else f"{100 * share:.0f}\u00a0%"
+def percent(share: float | None, decimals: int = 0) -> str:
+    return MISSING if share is None or math.isnan(share) else f"{100 * share:.{decimals}f}\u00a0%"
 
 
 def unit(text: str) -> str:

@@ -96,6 +96,11 @@ class Record:
         return tuple(i for i, unit in enumerate(self.response_units) if unit is not None)
 
     @property
+    def units(self) -> dict[str, str]:
+        """The unit of the response of each measured axis."""
+        return {axis: unit for axis, unit in zip(self.axes, self.response_units, strict=True) if unit is not None}
+
+    @property
     def time(self) -> NDArray[np.float64]:
         return self.start + self.dt * np.arange(self.samples, dtype=np.float64)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Sequence
 from functools import lru_cache
 
 from pzt_ident.errors import InputError, nearest
@@ -103,6 +104,16 @@ def dimension(unit: str) -> Dimension:
 def same_kind(a: str, b: str) -> bool:
     """Whether values in one unit can be given in the other."""
     return dimension(a) == dimension(b)
+
+
+def of_one_kind(units: Sequence[str]) -> bool:
+    """Whether values in these units can be added up."""
+    return all(same_kind(unit, units[0]) for unit in units)
+
+
+def common_unit(units: Sequence[str]) -> str:
+    """That of a number over responses in these units: the first one, 1 where they are of different kinds."""
+    return units[0] if of_one_kind(units) else "1"
 
 
 def unscaled(unit: str) -> str:

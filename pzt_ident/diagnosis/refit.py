@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.noise import noise_floor, sizes
+from pzt_ident.data.noise import pooled_floor, sizes
 from pzt_ident.data.record import Record
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.model.block import Coupling
@@ -94,8 +94,7 @@ class Case:
     @cached_property
     def floor(self) -> float:
         """Noise floor of all measured axes together, in units of the loss."""
-        found = [noise_floor(list(self.records), axis).value for axis in self.records[0].measured]
-        return float(np.sqrt(np.mean(np.square(found / self.sizes))))
+        return pooled_floor(list(self.records))
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from pzt_ident.data import notation as numbers
 from pzt_ident.data.notation import listed
+from pzt_ident.data.over_axes import together
 from pzt_ident.files import plain, write_text
 from pzt_ident.report.figures import Plate, write_page_figures
 from pzt_ident.report.inline import inline
@@ -49,6 +50,7 @@ def write_report(folder: Path) -> Path:
         "result": results.result,
         "tables": tables,
         "figures": sections,
+        "together": together(results.units),
         "verdict": verdict(results),
         "misfits": list(results.misfit.get("axes", {}).values()),
         "findings": findings(results),
@@ -70,7 +72,8 @@ def stairs(results: Results, place: str) -> dict[str, Any]:
     """The steps of an improvement as the page draws them, into the element with the id `place`."""
     found = results.improvement
     steps = [{"name": step_name(step), **step["rmse"]} for step in found["steps"]]
-    return {"place": place, "steps": steps, "floor": found["floor"], "unit": numbers.unit(found["unit"])}
+    said = {"unit": numbers.unit(found["unit"]) or "1", "together": together(results.units)}
+    return {"place": place, "steps": steps, "floor": found["floor"], **said}
 
 
 def rendered(name: str, title: str, content: dict[str, Any], **words: Any) -> str:

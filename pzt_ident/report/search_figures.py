@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pzt_ident.data.notation import bounds, unit
+from pzt_ident.data.over_axes import together
 from pzt_ident.data.signals import Array
 from pzt_ident.report.residual_figures import colour_bar
 from pzt_ident.report.style import (
@@ -63,7 +64,7 @@ def draw_convergence(figure: Figure, results: Results) -> None:
         axes.set_xscale("log")
         axes.set_yscale("log")
         log_ticks(axes.xaxis, cost[1], cost[2], axes.get_xlim())
-        log_ticks(axes.yaxis, "best RMSE so far", results.unit, axes.get_ylim())
+        log_ticks(axes.yaxis, f"best RMSE so far{together(results.units)}", results.unit, axes.get_ylim())
         name_panel(axes, f"against {cost[1]}", place=place)
 
 
@@ -191,13 +192,10 @@ def _dot(place: int) -> dict[str, Any]:
 
 
 def _levels(results: Results) -> list[tuple[str, float, dict[str, Any]]]:
-    """Horizontal lines: the best result of all runs, after its polish, and the noise floor of each axis; a zero has
-    no place on a logarithmic axis."""
-    best = results.best["rmse"]["identify"]
-    floors = {axis: floor for axis, floor in results.result["noise_floor"].items() if floor}
-    names = {axis: "noise floor" if len(floors) == 1 else f"noise floor {axis}" for axis in floors}
-    noise = [(names[axis], floor, _NOISE) for axis, floor in floors.items()]
-    return [("best, polished", best, _BEST)] * (best > 0) + noise
+    """Horizontal lines: the best result of all runs, after its polish, and the noise floor; a zero has no place on a
+    logarithmic axis."""
+    best, floor = results.best["rmse"]["identify"], results.floor or 0.0
+    return [("best, polished", best, _BEST)] * (best > 0) + [("noise floor", floor, _NOISE)] * (floor > 0)
 
 
 def _bounds(entry: Mapping[str, Any]) -> str:

@@ -11,7 +11,7 @@ from pzt_ident.files import write_text
 from pzt_ident.report.page import POINTS, rendered, stairs
 from pzt_ident.report.tables import Cell, Table, table, write_tables
 from pzt_ident.report.traces import packed
-from pzt_ident.report.words import verdict
+from pzt_ident.report.words import listed, together, verdict
 from pzt_ident.run.results import Results, read_folder
 
 
@@ -26,8 +26,7 @@ def write_side_by_side(folders: Sequence[Path], page: Path) -> Path:
     improved = {name: own for name, own in results.items() if own.improvement}
     drawn = [stairs(own, f"stairs-{place}") | {"title": name} for place, (name, own) in enumerate(improved.items())]
     models = {name: own.traces for name, own in results.items()}
-    floors = next(iter(results.values())).floors
-    content = {"records": packed(models, POINTS[0]), "floors": floors, "stairs": drawn}
+    content = {"records": packed(models, POINTS[0]), "floors": shared_floors(results), "stairs": drawn}
     verdicts = {name: verdict(own) for name, own in results.items()}
     words: dict[str, Any] = {"results": results, "tables": tables, "stairs": drawn, "verdicts": verdicts}
     write_text(page, rendered("side_by_side.html", "Side by side", content, lead=lead(results), **words))
@@ -47,11 +46,21 @@ def labels(folders: Sequence[Path]) -> list[str]:
 def lead(results: dict[str, Results]) -> str:
     """Which result leaves the least, on records the fit never saw where all have such."""
     use = "identify" if any(own.rmse["validate"] is None for own in results.values()) else "validate"
-    if len({own.unit for own in results.values()}) > 1:
-        return "The responses are in different units: their errors cannot be ranked."
+    if len({(own.unit, *own.units) for own in results.values()}) > 1:
+        return "The responses are of different axes or in different units: their errors cannot be ranked."
     best = min(results, key=lambda name: results[name].rmse[use] or 0.0)
     where = "on records the fit never saw" if use == "validate" else "on the records it was fitted to"
-    return f"{best} leaves least {where}: {quantity(results[best].rmse[use], results[best].unit, 3)} RMS."
+    size = f"{quantity(results[best].rmse[use], results[best].unit, 3)} RMS{together(results[best].units)}"
+    return f"{best} leaves least {where}: {size}."
+
+
+def shared_floors(results: dict[str, Results]) -> dict[str, float | None]:
+    """The noise floor of each axis on which the results agree, in its unit."""
+    found: dict[str, set[tuple[str, float | None]]] = {}
+    for own in results.values():
+        for axis, floor in own.floors.items():
+            found.setdefault(axis, set()).add((own.units[axis], floor))
+    return {axis: next(iter(pairs))[1] for axis, pairs in found.items() if len(pairs) == 1}
 
 
 def summary(results: dict[str, Results]) -> Table:
@@ -62,7 +71,8 @@ def summary(results: dict[str, Results]) -> Table:
             "job": own.name,
             **own.rmse,
             "unit": own.unit,
-            "noise_floor": max((value or 0.0 for value in own.floors.values()), default=0.0) or None,
+            "axes": f"{listed(own.units)}{' together' * (len(own.units) > 1)}",
+            "noise_floor": own.floor or None,
             "run": own.result["best"]["run"] if own.result else "",
             "seconds": own.result["best"]["seconds"] if own.result else None,
             "effects": ", ".join(own.improvement.get("effects", ())),
@@ -75,12 +85,13 @@ def summary(results: dict[str, Results]) -> Table:
         "identify": lambda row: number(row["identify"]),
         "validate": lambda row: number(row["validate"]),
         "noise floor": lambda row: number(row["noise_floor"], 3),
-        "unit": lambda row: unit(row["unit"]),
+        "unit": lambda row: unit(row["unit"]) or "1",
+        "of axis": lambda row: row["axes"],
         "best run": lambda row: row["run"],
         "time [s]": lambda row: number(row["seconds"], 3),
         "effects added": lambda row: row["effects"],
     }
-    return table("results", rows, cells, {"result", "job", "unit", "best run", "effects added"}, {})
+    return table("results", rows, cells, {"result", "job", "unit", "of axis", "best run", "effects added"}, {})
 
 
 def parameters(results: dict[str, Results]) -> Table:

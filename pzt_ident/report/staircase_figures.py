@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from pzt_ident.data.over_axes import together
 from pzt_ident.report.style import INK, MARKERS, NOISE, PALETTE, Frame, heading, key, label, panels, patch
 from pzt_ident.run.events import step_name
 
@@ -38,4 +39,4 @@ def draw(figure: Figure, improvement: dict[str, Any]) -> None:
     axes.set_xticks(list(places), [step_name(step) for step in steps], rotation=12 if len(steps) > 3 else 0)
     axes.set_xlim(-0.4, len(steps) - 0.4)
     axes.set_ylim(0, None)
-    label(axes.yaxis, "RMSE", improvement["unit"], axes.get_ylim())
+    label(axes.yaxis, f"RMSE{together(improvement.get('units', {}))}", improvement["unit"], axes.get_ylim())

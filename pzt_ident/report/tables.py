@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pzt_ident.data.notation import bounds, count, number, percent, quantity, short, unit, with_error
+from pzt_ident.data.over_axes import together
 from pzt_ident.files import write_text
 from pzt_ident.report.latex import tabular
 from pzt_ident.run.events import step_name
@@ -48,16 +49,15 @@ def write_tables(tables: Mapping[str, Table], folder: Path) -> None:
 def league(results: Results) -> Table:
     """One row an optimizer: its own result before the polish, what it cost, and the result after the polish."""
     rmse = ("rmse_median", "rmse_lower_quartile", "rmse_upper_quartile", "rmse_best", "polished_rmse_median")
-    of = unit(results.unit)
     cells: dict[str, Cell] = {
         "optimizer": lambda row: row["optimizer"],
         "runs": lambda row: count(row["runs"]),
-        f"RMSE median [{of}]": lambda row: number(row["rmse_median"]),
-        f"quartiles [{of}]": lambda row: (
+        pooled("RMSE median", results): lambda row: number(row["rmse_median"]),
+        pooled("quartiles", results): lambda row: (
             f"{number(row['rmse_lower_quartile'])} to {number(row['rmse_upper_quartile'])}"
         ),
-        f"best [{of}]": lambda row: number(row["rmse_best"]),
-        f"median after polish [{of}]": lambda row: number(row["polished_rmse_median"]),
+        pooled("best", results): lambda row: number(row["rmse_best"]),
+        pooled("median after polish", results): lambda row: number(row["polished_rmse_median"]),
         "time [s]": lambda row: number(row["seconds_median"], 3),
         "evaluations": lambda row: count(row["evaluations"]),
         "evaluations to 1\u00a0%": lambda row: count(row["evaluations_to_1_percent_median"]),
@@ -69,7 +69,7 @@ def league(results: Results) -> Table:
         )
         cells["sign test p"] = lambda row: number(row["sign_test"], 2) if row.get("pairs") else "–"
     return table(
-        "league", results.result["league"], cells, {"optimizer"}, _units(results, *rmse, s=("seconds_median",))
+        "league", results.result["league"], cells, {"optimizer"}, _heads(results, *rmse, s=("seconds_median",))
     )
 
 
@@ -85,13 +85,12 @@ def runs(results: Results) -> Table:
         }
         for run in results.result["runs"]
     ]
-    of = unit(results.unit)
     cells: dict[str, Cell] = {
         "run": lambda row: row["run"],
-        f"identify [{of}]": lambda row: number(row["identify"]),
-        f"validate [{of}]": lambda row: number(row["validate"]),
-        f"identify before polish [{of}]": lambda row: number(row["identify_before_polish"]),
-        f"validate before polish [{of}]": lambda row: number(row["validate_before_polish"]),
+        pooled("identify", results): lambda row: number(row["identify"]),
+        pooled("validate", results): lambda row: number(row["validate"]),
+        pooled("identify before polish", results): lambda row: number(row["identify_before_polish"]),
+        pooled("validate before polish", results): lambda row: number(row["validate_before_polish"]),
         "evaluations": lambda row: count(row["evaluations"]),
         "in the polish": lambda row: count(row["polish_evaluations"]),
         "evaluations to 1\u00a0%": lambda row: count(row["evaluations_to_1_percent"]),
@@ -100,8 +99,8 @@ def runs(results: Results) -> Table:
         "failed simulations": lambda row: count(row["failed_simulations"]),
         "stopped by": lambda row: row["stopped_by"],
     }
-    units = _units(results, *flat, s=("seconds", "cpu_seconds"))
-    return table("runs", rows, cells, {"run", "stopped by"}, units)
+    heads = _heads(results, *flat, s=("seconds", "cpu_seconds"))
+    return table("runs", rows, cells, {"run", "stopped by"}, heads)
 
 
 def parameters(results: Results) -> Table:
@@ -136,7 +135,7 @@ def records(results: Results) -> Table:
         for record in results.result["records"]
     ]
     errors: dict[str, Cell] = {
-        f"RMSE {axis} [{unit(results.unit)}]": lambda row, key=f"rmse_{axis}": number(row[key])  # type: ignore[misc]
+        f"RMSE {axis} [{unit(results.units[axis]) or 1}]": lambda row, key=f"rmse_{axis}": number(row[key])  # type: ignore[misc]
         for axis in axes
     }
     cells: dict[str, Cell] = {
@@ -149,8 +148,9 @@ def records(results: Results) -> Table:
         "file": lambda row: row["file"],
         "SHA-256": lambda row: row["sha256"][:16],
     }
-    units = _units(results, *(f"rmse_{axis}" for axis in axes), s=("settle",), Hz=("sample_rate",))
-    return table("records", rows, cells, {"record", "use", "file", "SHA-256"}, units)
+    heads = {f"rmse_{axis}": f"rmse_{axis} [{results.units[axis]}]" for axis in axes}
+    heads |= _heads(results, s=("settle",), Hz=("sample_rate",))
+    return table("records", rows, cells, {"record", "use", "file", "SHA-256"}, heads)
 
 
 def candidates(results: Results) -> Table:
@@ -164,7 +164,6 @@ def candidates(results: Results) -> Table:
         }
         for item in results.diagnosis["candidates"]
     ]
-    of = unit(results.unit)
     cells: dict[str, Cell] = {
         "effect": lambda row: row["effect"],
         "decision": lambda row: row["decision"],
@@ -172,12 +171,12 @@ def candidates(results: Results) -> Table:
         "expected": lambda row: row["expected"],
         "visibility": lambda row: number(row["visibility"], 2),
         "cannot be told from": lambda row: row["alike"],
-        f"identify [{of}]": lambda row: number(row["identify"]),
-        f"validate [{of}]": lambda row: number(row["validate"]),
+        pooled("identify", results): lambda row: number(row["identify"]),
+        pooled("validate", results): lambda row: number(row["validate"]),
         "what it is": lambda row: row["physics"],
     }
     words = {"effect", "decision", "expected", "cannot be told from", "what it is"}
-    return table("candidates", rows, cells, words, _units(results, "identify", "validate"))
+    return table("candidates", rows, cells, words, _heads(results, "identify", "validate"))
 
 
 def expected(values: Mapping[str, float], units: Mapping[str, str], most: int = 3) -> str:
@@ -205,17 +204,16 @@ def steps(results: Results) -> Table:
         for step in results.improvement["steps"]
     ]
     rows[0]["explained"] = None
-    of = unit(results.unit)
     cells: dict[str, Cell] = {
         "step": lambda row: row["step"],
-        f"identify [{of}]": lambda row: number(row["identify"]),
-        f"validate [{of}]": lambda row: number(row["validate"]),
+        pooled("identify", results): lambda row: number(row["identify"]),
+        pooled("validate", results): lambda row: number(row["validate"]),
         "noise floors": lambda row: number(row["floors"], 3),
         "expected to explain": lambda row: percent(row["expected"]),
         "explained": lambda row: percent(row["explained"]),
         "these data say": lambda row: row["class"],
     }
-    return table("steps", rows, cells, {"step", "these data say"}, _units(results, "identify", "validate"))
+    return table("steps", rows, cells, {"step", "these data say"}, _heads(results, "identify", "validate"))
 
 
 def changes(results: Results) -> Table:
@@ -240,18 +238,24 @@ def changes(results: Results) -> Table:
 
 
 def table(
-    name: str, rows: list[dict[str, Any]], cells: dict[str, Cell], words: set[str], units: dict[str, str]
+    name: str, rows: list[dict[str, Any]], cells: dict[str, Cell], words: set[str], heads: dict[str, str]
 ) -> Table:
     import pandas as pd
 
     text = pd.DataFrame([{title: str(cell(row)) for title, cell in cells.items()} for row in rows], columns=list(cells))
-    data = pd.DataFrame(rows).rename(columns={key: f"{key} [{of}]" for key, of in units.items()})
+    data = pd.DataFrame(rows).rename(columns=heads)
     return Table(name, data, text, frozenset(words))
 
 
-def _units(results: Results, *keys: str, **others: tuple[str, ...]) -> dict[str, str]:
-    """The unit of each heading: the run's own for `keys`."""
-    return dict.fromkeys(keys, results.unit) | {key: of for of, names in others.items() for key in names}
+def pooled(name: str, results: Results) -> str:
+    """The heading of a number over all axes, as it is printed."""
+    return f"{name}{together(results.units)} [{unit(results.unit) or 1}]"
+
+
+def _heads(results: Results, *keys: str, **others: tuple[str, ...]) -> dict[str, str]:
+    """Headings with units: `keys` are over all axes, the others go by their unit."""
+    own = {key: f"{key} [{of}]" for of, names in others.items() for key in names}
+    return {key: f"{key}{together(results.units)} [{results.unit}]" for key in keys} | own
 
 
 def _pair(rmse: Mapping[str, float | None]) -> tuple[float | None, float | None]:

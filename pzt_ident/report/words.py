@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from pzt_ident.data.notation import count, listed, number, quantity, ranges, spelled
+from pzt_ident.data.over_axes import together
 from pzt_ident.run.results import Results
 
 BETTER = 0.95  # of the run's RMSE: less than that is worth a word
@@ -41,7 +42,8 @@ def _better(results: Results) -> str:
     if found > BETTER * run:
         return ""
     here, there = (quantity(value, results.unit, 3) for value in (found, run))
-    return f" Fitted again from other starts it leaves {here}, not the run's {there}: search longer."
+    both = together(results.units)
+    return f" Fitted again from other starts it leaves {here}{both}, not the run's {there}: search longer."
 
 
 def _in_unit(found: re.Match[str], floor: float, unit: str) -> str:
@@ -57,13 +59,15 @@ def left(results: Results) -> str:
         "validate": "on records the fit never saw",
         "identify": "on the records it was fitted to, and no record was kept back to judge it on",
     }[use]
-    return f"The model leaves {quantity(rmse[use], results.unit, 3)} RMS {where}{_over_noise(results, use)}."
+    size = f"{quantity(rmse[use], results.unit, 3)} RMS{together(results.units)}"
+    return f"The model leaves {size} {where}{_over_noise(results, use)}."
 
 
 def findings(results: Results) -> list[str]:
     """Sentences on what a reader must know beside the verdict: parameters not found, what is special about a record,
     simulations and runs failed."""
     diagnosed = [*_advice(results)] if results.diagnosis else []
+    diagnosed += weighed(results.units)
     run = [*_parameters(results), *_notes(results), *_failures(results)] if results.result else []
     return [spelled(sentence) for sentence in diagnosed + run]
 
@@ -87,16 +91,14 @@ def _over_noise(results: Results, use: str) -> str:
     floor = {axis: value for axis, value in known.items() if value}
     if not floor:
         return "" if 0 in known.values() else "; the noise floor is not known"
-    if len(floor) == 1:
+    if len(known) == 1:
         (value,) = floor.values()
         ratio = number(results.rmse[use] / value, 2)  # type: ignore[operator]
         return f", {ratio}\u00a0times the noise floor of {quantity(value, results.unit, 2)}"
-    if not results.result:
-        return "; the noise floors are " + listed(
-            f"{quantity(value, results.unit, 2)} ({axis})" for axis, value in floor.items()
-        )
-    records = [record["rmse"] for record in results.result["records"] if record["use"] == use]
+    records = [record["rmse"] for record in results.records if record["use"] == use]
     ratios = sorted(rmse[axis] / floor[axis] for rmse in records for axis in floor if rmse.get(axis) is not None)
+    if not ratios:
+        return ""
     return (
         f"; axis by axis and record by record, {number(ratios[0], 2)} to {number(ratios[-1], 2)} times the noise floor"
     )

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from pzt_ident.data.noise import noise_floor
+from pzt_ident.data.noise import facts
 from pzt_ident.data.record import Record
 from pzt_ident.data.signals import write_signals
 from pzt_ident.data.units import factor
@@ -36,16 +36,12 @@ def collect(statement: Statement, folder: Path, tasks: list[Task], failed: dict[
     point = np.array(best["point"])
     write_text(folder / "history.csv", history_text(done, histories))
     write_signals(folder / "signals.nc", problem.errors(point))
-    floors = {records[0].axes[a]: noise_floor(records, a) for a in records[0].measured}
-    units = {records[0].axes[a]: str(records[0].response_units[a]) for a in records[0].measured}
     result = {
         "name": job.name,
-        "unit": statement.unit,
+        **facts(records),
         "seed": job.seed,
         "command": read_environment(folder)["command"],
         "created": datetime.now().astimezone().isoformat(timespec="seconds"),
-        "noise_floor": {axis: floor.value / factor(units[axis]) for axis, floor in floors.items()},
-        "noise_floor_source": {axis: floor.source for axis, floor in floors.items()},
         "records": [facts_of(record, problem, point) for record in records],
         "league": league,
         "best": best,
@@ -75,8 +71,7 @@ def errors_in(record: Record, problem: Problem, point: np.ndarray) -> dict[str, 
     """RMSE of each measured axis of a record, each in its own unit."""
     simulator = problem.simulator_of(record)
     rmse = np.sqrt(simulator.squares(problem.parameters(point))[0] / simulator.scored)
-    sizes = [factor(str(record.response_units[a])) for a in record.measured]
-    by_axis = {record.axes[a]: rmse[i] / sizes[i] for i, a in enumerate(record.measured)}
+    by_axis = {axis: error / factor(unit) for (axis, unit), error in zip(record.units.items(), rmse, strict=True)}
     return {"name": record.name, "use": record.use, "rmse": by_axis}
 
 

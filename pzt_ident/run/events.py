@@ -10,6 +10,8 @@ from threading import Lock
 from typing import Any
 
 from pzt_ident.data.notation import listed, percent, quantity
+from pzt_ident.data.over_axes import together
+from pzt_ident.data.units import common_unit
 from pzt_ident.files import plain
 
 Event = dict[str, Any]
@@ -35,8 +37,9 @@ def event_log(folder: Path, listen: Listen) -> Iterator[Listen]:
         yield tell
 
 
-def sentence(event: Mapping[str, Any], unit: str) -> str:
-    """What a diagnosis is at, from one of its events."""
+def sentence(event: Mapping[str, Any], units: Mapping[str, str]) -> str:
+    """What a diagnosis is at, from one of its events; units: that of each axis."""
+    unit, error = common_unit([*units.values()]), f"RMSE{together(units)}"
     if event["event"] == "fitted":
         return f"fitted from {event['done']} of {event['of']} starts"
     if event["event"] == "scored":
@@ -44,8 +47,8 @@ def sentence(event: Mapping[str, Any], unit: str) -> str:
         return f"{event['done']} of {event['of']} effects scored; {part}"
     if event["event"] == "refitted":
         chosen = f"with {listed(event['effects'])}" if event["effects"] else "without an effect"
-        return f"refitted {chosen}: RMSE {quantity(event['identify'], unit)}"
-    return f"{step_name(event)}: RMSE {quantity(event['rmse']['identify'], unit)}"
+        return f"refitted {chosen}: {error} {quantity(event['identify'], unit)}"
+    return f"{step_name(event)}: {error} {quantity(event['rmse']['identify'], unit)}"
 
 
 def step_name(step: Mapping[str, Any]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from pzt_ident.data.over_axes import together
 from pzt_ident.data.units import factor, same_kind
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import Job
@@ -48,7 +49,8 @@ def _search(statement: Statement, folder: Path, tasks: list[Task], workers: int 
     with event_log(folder, listen) as tell:
         if missing or not (folder / "result.json").exists():
             runs, budget = [task.run for task in missing], sum(task.stop["evaluations"] for task in missing)
-            tell({"event": "start", "runs": runs, "budget": budget, "unit": statement.unit, "folder": str(folder)})
+            size = {"budget": budget, "unit": statement.unit, "together": together(statement.records[0].units)}
+            tell({"event": "start", "runs": runs, **size, "folder": str(folder)})
             job = statement.job
             arguments = [(task.run, (task, job.text, job.folder, statement.records)) for task in missing]
             collect(statement, folder, tasks, run_all(work, arguments, workers, tell))

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from pzt_ident.data.noise import noise_floor
 from pzt_ident.data.signals import write_signals
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis import staircase as stairs
@@ -56,11 +55,11 @@ def worded(case: Case, event: Event) -> Event:
     """An event with its errors in the user's unit, and in words."""
     size = size_of(case)
     in_units = event | {use: event[use] / size for use in ("identify", "validate") if event.get(use) is not None}
-    return in_units | {"said": sentence(in_units, loss_unit(case.records))}
+    return in_units | {"said": sentence(in_units, case.records[0].units)}
 
 
 def told(case: Case, step: stairs.Step) -> None:
-    case.tell({"event": "stair", **stair(case, step)})
+    case.tell({"event": "stair", "units": case.records[0].units, **stair(case, step)})
 
 
 def diagnose(job: Job, out: Path | None = None, listen: Listen = nobody) -> Path:
@@ -127,20 +126,6 @@ def improvement_of(job: Job, case: Case, steps: list[stairs.Step], last: dict[st
 
 def size_of(case: Case) -> float:
     return factor(loss_unit(case.records))
-
-
-def floors(case: Case) -> dict[str, float]:
-    first = case.records[0]
-    return {
-        first.axes[a]: noise_floor(list(case.records), a).value / factor(str(first.response_units[a]))
-        for a in first.measured
-    }
-
-
-def sources(case: Case) -> dict[str, str]:
-    """What each noise floor was taken from."""
-    first = case.records[0]
-    return {first.axes[a]: noise_floor(list(case.records), a).source for a in first.measured}
 
 
 def ties(steps: list[stairs.Step]) -> list[stairs.Step]:

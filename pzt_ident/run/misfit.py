@@ -42,6 +42,7 @@ def misfits(folder: Path, job: str, facts: dict[str, Any], names: Sequence[str])
         "job": job,
         "run": facts["best"]["run"] if "best" in facts else None,
         "unit": facts["unit"],
+        "units": records[0].units,
         "axes": {misfit.axis: asdict(misfit) for misfit in locate(records, residuals, floors(facts, records[0]))},
     }
 

@@ -42,18 +42,41 @@ class Results:
         return self.result.get("command") or self.environment["command"]
 
     @property
+    def facts(self) -> dict[str, Any]:
+        """What a run and a diagnosis both have."""
+        return self.result or self.diagnosis
+
+    @property
     def unit(self) -> str:
-        return (self.result or self.diagnosis)["unit"]
+        """That of numbers over all axes together."""
+        return self.facts["unit"]
+
+    @property
+    def units(self) -> dict[str, str]:
+        """That of each axis, of older results as their signals have it."""
+        return self.facts.get("units") or {trace.axis: trace.unit for trace in self.traces}
 
     @property
     def floors(self) -> dict[str, float | None]:
         """The noise floor of each axis, in the axis' own unit."""
-        return (self.result or self.diagnosis)["noise_floor"]
+        return self.facts["noise_floor"]
+
+    @property
+    def floor(self) -> float | None:
+        """The noise floor of all axes together; of older results that of an axis alone."""
+        alone = [*self.floors.values()] if len(self.floors) == 1 else [None]
+        return self.facts.get("floor", *alone)
 
     @property
     def noise_sources(self) -> dict[str, str]:
         """What the noise floor of each axis was taken from."""
-        return (self.result or self.diagnosis).get("noise_floor_source", {})
+        return self.facts.get("noise_floor_source", {})
+
+    @property
+    def records(self) -> list[dict[str, Any]]:
+        """Of each record the RMSE that the last model leaves of each axis, in the axis' own unit."""
+        last = self.improvement["steps"][-1] if self.improvement else {}
+        return last.get("records") or self.facts.get("records", [])
 
     @property
     def next_experiment(self) -> dict[str, Any] | None:

@@ -8,7 +8,7 @@ from functools import cached_property
 from pzt_ident.data.noise import sizes
 from pzt_ident.data.readers import read_records
 from pzt_ident.data.record import Record
-from pzt_ident.data.units import same_kind
+from pzt_ident.data.units import common_unit
 from pzt_ident.job.schema import Job
 from pzt_ident.search.problem import Problem
 
@@ -39,6 +39,5 @@ def read(job: Job) -> list[Record]:
 
 
 def loss_unit(records: Sequence[Record]) -> str:
-    """That of the loss: noise floors (1) where the responses are of different kinds."""
-    units = [str(records[0].response_units[axis]) for axis in records[0].measured]
-    return units[0] if all(same_kind(unit, units[0]) for unit in units) else "1"
+    """That of the loss."""
+    return common_unit([*records[0].units.values()])

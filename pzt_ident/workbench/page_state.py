@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from pzt_ident.data.notation import spelled, unit
+from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.data.readers.formats import READERS
 from pzt_ident.data.signals import Trace
 from pzt_ident.model.registry import blocks, word_of
@@ -39,7 +40,7 @@ def state(session: Session) -> dict[str, Any]:
         "stage": session.stage,
         "since": session.since,
         "failure": session.failure,
-        "unit": unit_of(session),
+        **over_axes(session),
         "job": job_of(session) if step else None,
         "result": read(step / "run" / "result.json") if step else None,
         "misfit": read(step / "run" / "residuals.json") if step else None,
@@ -55,20 +56,25 @@ def about(session: Session, entry: dict[str, Any]) -> dict[str, Any]:
     return entry | rmse
 
 
-def unit_of(session: Session) -> str:
-    """That of the errors, from the newest step that has a result."""
+def over_axes(session: Session) -> dict[str, str]:
+    """The unit of errors over all axes, what stands behind their name and what they count, from the newest step that
+    has a result."""
     found = (read(session.step(entry["number"]) / "run" / "result.json") for entry in reversed(session.steps))
-    return next((result["unit"] for result in found if result), "")
+    newest: dict[str, Any] = next(filter(None, found), {})
+    units = newest.get("units", {})
+    unit = newest["unit"] or "1" if newest else ""
+    return {"unit": unit, "together": together(units), "weighed": " ".join(weighed(units))}
 
 
 def diagnosis_of(step: Path) -> dict[str, Any] | None:
     """The diagnosis, with what each effect would be as it is printed."""
-    found = read(step / "diagnosis" / "diagnosis.json")
-    if not found:
+    path = step / "diagnosis" / "diagnosis.json"
+    if not path.exists():
         return None
+    found = json.loads(path.read_text(encoding="utf-8"))
     for item in found["candidates"]:
         item["would_be"] = expected(item["expected"], item["units"])
-    return found | {"reason": reason(found["reason"], read_results(step / "run"))}
+    return printed(found) | {"reason": reason(found["reason"], read_results(step / "run"))}
 
 
 def job_of(session: Session) -> dict[str, Any]:
@@ -104,7 +110,7 @@ def read(path: Path) -> Any:
 def printed(found: Any, key: str = "") -> Any:
     """The units in it, and those in its sentences, as they are printed."""
     if isinstance(found, dict):
-        return {word: printed(item, word) for word, item in found.items()}
+        return {word: printed(item, "unit" if key == "units" else word) for word, item in found.items()}
     if isinstance(found, list):
         return [printed(item, key) for item in found]
     return SPELLED[key](found) if key in SPELLED and isinstance(found, str) else found

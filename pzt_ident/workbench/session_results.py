@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import shutil
 from itertools import pairwise
 from pathlib import Path
@@ -27,9 +26,8 @@ def gathered(session: Session) -> Path:
             if (step / "diagnosis" / name).exists():
                 shutil.copy(step / "diagnosis" / name, run / name)
         done = [(entry, found) for entry in session.chain() if (found := result_of(session, entry))]
-        floor = floor_of(done[-1][1])
-        if len(done) > 1 and floor:
-            write_json(run / "improvement.json", improvement(done, floor, read(diagnosis)))
+        if len(done) > 1 and done[-1][1]["floor"]:
+            write_json(run / "improvement.json", improvement(done, read(diagnosis)))
     return run
 
 
@@ -43,15 +41,10 @@ def read(path: Path) -> dict[str, Any]:
     return dict(json.loads(path.read_text(encoding="utf-8")))
 
 
-def floor_of(result: dict[str, Any]) -> float:
-    """The noise floor of all axes together."""
-    floors = [value or 0.0 for value in result["noise_floor"].values()]
-    return math.sqrt(sum(value**2 for value in floors) / len(floors))
-
-
-def improvement(done: list[Done], floor: float, diagnosis: dict[str, Any]) -> dict[str, Any]:
+def improvement(done: list[Done], diagnosis: dict[str, Any]) -> dict[str, Any]:
     """The content of `improvement.json`, from the steps and their results."""
     last = done[-1][1]
+    floor = last["floor"]
     steps = [stair(*done[0]), *(stair(*now, before, floor) for (_, before), now in pairwise(done))]
     return {
         "name": last["name"],
@@ -59,9 +52,7 @@ def improvement(done: list[Done], floor: float, diagnosis: dict[str, Any]) -> di
         "verdict": diagnosis["verdict"],
         "reason": diagnosis["reason"],
         "effects": effects(done),
-        "noise_floor": last["noise_floor"],
-        "floor": floor,
-        "unit": last["unit"],
+        **{key: last[key] for key in ("unit", "units", "noise_floor", "noise_floor_source", "floor")},
         "next_experiment": diagnosis["next_experiment"],
     }
 

@@ -39,6 +39,8 @@ repeats: 2
 
 RESULT = {
     "unit": "um",
+    "units": {"x": "um"},
+    "floor": 0.0289,
     "league": [
         {"optimizer": "pso", "runs": 2, "rmse_best": 0.1234567, "rmse_median": 0.2, "polished_rmse_median": 0.12}
         | {"seconds_median": 0.5}
@@ -83,7 +85,16 @@ def quick(monkeypatch):
         calls.append((source, *arguments, options))
         out = Path("out")
         out.mkdir(exist_ok=True)
-        listen({"event": "start", "runs": ["pso-0", "pso-1"], "budget": 1600, "unit": "um", "folder": "out"})
+        listen(
+            {
+                "event": "start",
+                "runs": ["pso-0", "pso-1"],
+                "budget": 1600,
+                "unit": "um",
+                "together": "",
+                "folder": "out",
+            }
+        )
         listen({"event": "failed", "run": "pso-0", "reason": "its process was killed by signal 9"})
         (out / "result.json").write_text(json.dumps(RESULT))
         return out
@@ -327,7 +338,9 @@ class TestErrors:
     def failing(self, folder, monkeypatch):
         def set_error(error):
             def start(*arguments, listen, **options):
-                listen({"event": "start", "runs": ["pso-0"], "budget": 10, "unit": "um", "folder": "out"})
+                listen(
+                    {"event": "start", "runs": ["pso-0"], "budget": 10, "unit": "um", "together": "", "folder": "out"}
+                )
                 raise error
 
             monkeypatch.setattr(pzt_ident.run.identify, "run", start)

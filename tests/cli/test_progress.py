@@ -12,7 +12,7 @@ from pzt_ident.cli import progress
 from pzt_ident.cli.progress import Progress, duration, listening
 from terminal import Terminal
 
-START = {"event": "start", "runs": ["a", "b"], "budget": 1000, "unit": "um"}
+START = {"event": "start", "runs": ["a", "b"], "budget": 1000, "unit": "um", "together": ""}
 
 
 def generation(run: str, evaluations: int, best: float) -> dict:

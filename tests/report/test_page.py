@@ -9,6 +9,7 @@ from html.parser import HTMLParser
 import pytest
 
 from pzt_ident.data.notation import listed
+from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.report.page import write_report
 from pzt_ident.report.words import findings, reason, verdict
 from pzt_ident.run.misfit import compare
@@ -128,8 +129,8 @@ def test_verdict_on_unseen_records(plain):
 
 def test_verdict_without_validation_and_noise(weird):
     assert verdict(read_results(weird)).replace("\u00a0", " ") == (
-        "The model leaves 0.302 µm RMS on the records it was fitted to, and no record was kept back to judge it on; "
-        "the noise floor is not known."
+        "The model leaves 0.302 µm RMS (x and y together) on the records it was fitted to, and no record was kept back "
+        "to judge it on; the noise floor is not known."
     )
     assert "1 run did not finish: rga-0." in findings(read_results(weird))
 
@@ -206,3 +207,11 @@ def test_a_better_fit_than_the_runs_is_told(plain):
     for share, told in ((0.5, True), (0.99, False)):
         found = replace(results, diagnosis={"rmse": {"identify": share * run}})
         assert ("search longer" in reason("The model is adequate.", found)) is told
+
+
+def test_what_is_over_axes_says_so_and_what_it_counts():
+    assert (together({"x": "um"}), weighed({"x": "um"}), weighed({"x": "um", "y": "nm"})) == ("", [], [])
+    assert together({"x": "um", "y": "nm", "z": "m"}) == " (x, y and z together)"
+    assert weighed({"p": "uC/cm2", "d": "nm"}) == [
+        "An RMSE of p and d together counts each in its noise floor, or in 0.5\u00a0% of its span if more."
+    ]

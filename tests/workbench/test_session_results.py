@@ -14,7 +14,8 @@ DIAGNOSIS = {"verdict": "adequate", "reason": "It is.", "next_experiment": None}
 def fill(session, identify):
     rmse = {"identify": identify, "validate": None}
     best = {"rmse": rmse, "parameters": {"bouc_wen.gain": {"value": 0.1, "unit": "um/V", "verdict": "determined"}}}
-    result = {"name": "small", "unit": "um", "noise_floor": {"x": 0.3}, "best": best}
+    floor = {"noise_floor": {"x": 0.3}, "noise_floor_source": {"x": "rest segments"}, "floor": 0.3}
+    result = {"name": "small", "unit": "um", "units": {"x": "um"}, **floor, "best": best}
     for name, content in (("run/result.json", result), ("diagnosis/diagnosis.json", DIAGNOSIS)):
         (session.step() / name).parent.mkdir()
         (session.step() / name).write_text(json.dumps(content))

@@ -45,7 +45,7 @@ export class Staircase {
       put(this.svg, "line", { x1: area.left, x2: area.right, y1: y, y2: y, class: "rule" });
       put(this.svg, "text", { x: area.left - 6, y: y + 4, class: "end" }, String(value));
     }
-    put(this.svg, "text", { x: 0, y: area.size }, `RMSE [${this.content.unit}]`);
+    put(this.svg, "text", { x: 0, y: area.size }, `RMSE${this.content.together} [${this.content.unit}]`);
     if (!this.content.floor) return;
     const y = this.toY(this.content.floor, area);
     put(this.svg, "rect", { x: area.left, y, width: area.right - area.left, height: area.bottom - y, class: "floor" });
@@ -67,6 +67,6 @@ export class Staircase {
   }
 }
 
-function said({ steps, unit }) {
-  return "RMSE by step: " + steps.map((step) => `${step.name} ${USES.filter((use) => Number.isFinite(step[use])).map((use) => `${use} ${number(step[use])} ${unit}`).join(", ")}`).join("; ");
+function said({ steps, unit, together }) {
+  return `RMSE${together} by step: ` + steps.map((step) => `${step.name} ${USES.filter((use) => Number.isFinite(step[use])).map((use) => `${use} ${number(step[use])} ${unit}`).join(", ")}`).join("; ");
 }

@@ -13,7 +13,7 @@ export class Convergence {
   }
 
   clear() {
-    Object.assign(this, { runs: new Map(), unit: "", best: Infinity, validate: null, done: 0, budget: 0 });
+    Object.assign(this, { runs: new Map(), unit: "", together: "", best: Infinity, validate: null, done: 0, budget: 0 });
     this.plot?.destroy();
     this.plot = null;
   }
@@ -21,7 +21,7 @@ export class Convergence {
   take(event) {
     if (event.event === "start") {
       this.clear();
-      Object.assign(this, { unit: event.unit, budget: event.budget });
+      Object.assign(this, { unit: event.unit, together: event.together, budget: event.budget });
     }
     if (event.event !== "generation") return;
     const run = this.runs.get(event.run) ?? this.runs.set(event.run, []).get(event.run);
@@ -54,7 +54,7 @@ export class Convergence {
       padding: [null, 30, null, null],
       cursor: { drag: { x: false, y: false } },
       scales: { x: { time: false }, y: { distr: 3 } },
-      axes: [axis("evaluations of the model", { size: 32 }), axis(`RMSE [${this.unit}]`, { size: 62, values: (_, values) => values.map((value) => (value === null ? "" : tick(value))) })],
+      axes: [axis("evaluations of the model", { size: 32 }), axis(`RMSE${this.together} [${this.unit}]`, { size: 62, values: (_, values) => values.map((value) => (value === null ? "" : tick(value))) })],
       series: [{}, ...names.map((label, place) => ({
         label, stroke: () => colour(COLOURS[place % 5]), width: 1.5, spanGaps: true, paths: uPlot.paths.stepped({ align: 1 }), points: { show: false },
       }))],

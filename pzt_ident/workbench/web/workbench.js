@@ -93,7 +93,7 @@ function buttons(begun) {
 
 function status() {
   const seconds = state?.stage ? Math.max(0, Math.round(Date.now() / 1000 - state.since)) : 0;
-  const share = state?.stage === "run" && Number.isFinite(convergence.best) ? `, ${Math.round((100 * convergence.done) / convergence.budget)} %, best RMSE ${number(convergence.best)}${convergence.done < convergence.budget ? "" : ", finishing"}` : "";
+  const share = state?.stage === "run" && Number.isFinite(convergence.best) ? `, ${Math.round((100 * convergence.done) / convergence.budget)} %, best RMSE${convergence.together} ${number(convergence.best)}${convergence.done < convergence.budget ? "" : ", finishing"}` : "";
   const said = state?.stage === "diagnose" && asking.said ? `; ${asking.said}` : "";
   at("status").textContent = state?.stage ? `${STAGES[state.stage]}: ${seconds} s${share}${said}` : "";
 }
@@ -103,10 +103,11 @@ function words(begun) {
   at("advice").replaceChildren();
   if (!begun) at("verdict").textContent = columns.records.length ? "Is this what was measured?" : "Drop a measurement: voltage in, displacement out.";
   else if (diagnosis) at("verdict").textContent = diagnosis.reason;
-  else if (result) at("verdict").textContent = `The model leaves ${number(result.best.rmse.validate ?? result.best.rmse.identify)} ${result.unit} RMS${result.best.rmse.validate === null ? "" : " on records the fit never saw"}.`;
+  else if (result) at("verdict").textContent = `The model leaves ${number(result.best.rmse.validate ?? result.best.rmse.identify)} ${result.unit} RMS${state.together}${result.best.rmse.validate === null ? "" : " on records the fit never saw"}.`;
   else at("verdict").textContent = state.stage ? "Identifying the model." : state.failure ? "Not finished." : "Ready to run.";
   for (const { run, reason } of result?.failed_runs ?? []) element(at("advice"), "span", { class: "warn" }, `${run} failed: ${reason}. `);
   if (result?.best.rmse.validate === null) at("advice").append("No record is kept back to judge the model on: a second one, dropped beside the first, would show whether it holds. ");
+  at("advice").append(state.weighed);
   if (!diagnosis) return;
   const missing = diagnosis.candidates.filter((item) => item.decision === "missing");
   for (const item of missing) addButton(at("advice"), item.effect, "strong");
@@ -168,14 +169,14 @@ async function upload(list) {
 
 /** The staircase, its last stair live while the search runs. */
 function fall() {
-  const floors = Object.values(state.result?.noise_floor ?? state.diagnosis?.noise_floor ?? {});
-  if (floors.length) fall.floor = Math.max(...floors);
+  fall.floor = state.result?.floor ?? state.diagnosis?.floor ?? fall.floor;
   const steps = state.steps.map(({ change, identify, validate }) => ({ name: change, identify, validate, note: identify === null ? "not run" : "" }));
   const last = steps.at(-1);
   if (state.stage === "run" && last.identify === null && Number.isFinite(convergence.best))
     Object.assign(last, { identify: convergence.best, validate: convergence.validate, live: true, note: "so far" });
   else if (state.stage === "run") last.note = "begins";
-  const content = { steps, floor: fall.floor, unit: state.unit || convergence.unit };
+  const { unit, together } = state.unit ? state : convergence;
+  const content = { steps, floor: fall.floor, unit, together };
   if (stairs) stairs.show(content);
   else stairs = new Staircase(at("stairs"), content);
   at("converging").hidden = !convergence.runs.size;
@@ -185,7 +186,7 @@ function fall() {
 function others() {
   at("others").replaceChildren();
   for (const { number: step, change, identify } of state.others) {
-    const left = identify === null ? "not run" : `leaves ${number(identify)} ${state.unit}`;
+    const left = identify === null ? "not run" : `leaves ${number(identify)} ${state.unit}${state.together}`;
     const made = element(at("others"), "button", { type: "button" }, `${step}: ${change} (${left})`);
     made.addEventListener("click", () => act("back", { step }));
     at("others").append(" ");
@@ -219,7 +220,7 @@ function candidates() {
       row(at("effects"), "td", [effect, share(explained)]);
   }
   if (!diagnosis) return;
-  row(at("effects"), "th", ["effect", "", "decision", "explains", "would be", "visible", `identify after it [${diagnosis.unit}]`, "validate", "cannot be told from", "what it is"]);
+  row(at("effects"), "th", ["effect", "", "decision", "explains", "would be", "visible", `identify after it${state.together} [${state.unit}]`, "validate", "cannot be told from", "what it is"]);
   for (const item of diagnosis.candidates) {
     const rmse = ["identify", "validate"].map((use) => (item.rmse ? number(item.rmse[use]) : ""));
     const alike = item.class.filter((word) => word !== item.effect).join(", ");
