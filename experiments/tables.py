@@ -87,13 +87,20 @@ def parameters(result: Result) -> str:
 
 def records(result: Result) -> str:
     """RMSE of the best run, by record and axis, and the noise floor."""
-    unit = result["unit"]
+    units, floors = result.get("units", {}), result["noise_floor"]
+    several = len(set(units.values())) > 1
     rows = [
-        [f"{record['name']} ({record['use']})", axis, number(rmse), number(result["noise_floor"][axis], 3)]
+        [
+            f"{record['name']} ({record['use']})",
+            f"{axis} [{units[axis]}]" if several else axis,
+            number(rmse),
+            number(floors[axis], 3),
+        ]
         for record in result["records"]
         for axis, rmse in record["rmse"].items()
     ]
-    return table(["record", "axis", f"RMSE [{unit}]", f"noise floor [{unit}]"], rows)
+    unit = "" if several else f" [{result['unit']}]"
+    return table(["record", "axis", f"RMSE{unit}", f"noise floor{unit}"], rows)
 
 
 def staircase(improvement: Result) -> str:
