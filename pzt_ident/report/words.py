@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from pzt_ident.data.notation import count, listed, number, quantity, ranges, spelled
-from pzt_ident.data.over_axes import together
+from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.run.results import Results
 
 BETTER = 0.95  # of the run's RMSE: less than that is worth a word

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from pzt_ident.data.noise import facts
 from pzt_ident.data.signals import write_signals
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis import staircase as stairs
@@ -117,10 +118,7 @@ def improvement_of(job: Job, case: Case, steps: list[stairs.Step], last: dict[st
         "verdict": verdict,
         "reason": reason,
         "effects": added,
-        "noise_floor": floors(case),
-        "noise_floor_source": sources(case),
-        "floor": case.floor / size_of(case),
-        "unit": loss_unit(case.records),
+        **facts(list(case.records)),
     }
 
 
@@ -167,9 +165,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
         "reason": reason
         + (caveats(case, found.best.fit) if found.best and found.best.fit else "")
         + broken(found.before),
-        "unit": loss_unit(case.records),
-        "noise_floor": floors(case),
-        "noise_floor_source": sources(case),
+        **facts(list(case.records)),
         "rmse": errors_of(case, found.before),
         "records": by_record(case, found.before),
         "candidates": [

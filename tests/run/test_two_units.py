@@ -20,7 +20,7 @@ from pzt_ident.report.tables import make_tables
 from pzt_ident.report.words import left
 from pzt_ident.run.results import read_folder
 from pzt_ident.workbench import page_state as view
-from pzt_ident.workbench.session import Bench
+from pzt_ident.workbench.session import Session
 from pzt_ident.workbench.session_results import gathered
 from workbench.conftest import form
 
@@ -253,7 +253,7 @@ def step(made, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name in ("first", "second"):
         shutil.copy(folder / f"job/{name}.csv", tmp_path)
-    bench = Bench(tmp_path, tmp_path / "workbench")
+    bench = Session(tmp_path, tmp_path / "workbench")
     channels = {
         axis: {
             "drive": {"header": f"u_{axis} [V]", "number": number, "unit": "V"},
