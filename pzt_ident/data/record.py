@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -121,3 +121,11 @@ def between(drive: NDArray[np.float64], times: int, periodic: bool, smooth: bool
     from scipy.interpolate import CubicSpline
 
     return np.asarray(CubicSpline(np.arange(drive.size), drive)(np.minimum(grid, drive.size - 1)))
+
+
+def rises_with(records: Sequence[Record], axis: int) -> float:
+    """Correlation of an axis' response with its drive over all records, 0 where one of them is constant."""
+    moves = [(record.drive[axis], record.response[axis]) for record in records]
+    drive, response = (np.concatenate([signal - signal.mean() for signal in part]) for part in zip(*moves, strict=True))
+    size = np.sqrt((drive @ drive) * (response @ response))
+    return float(drive @ response / size) if size > 0 else 0.0

@@ -5,26 +5,23 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
-from types import SimpleNamespace
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pzt_ident.data.record import Record
+from pzt_ident.data.record import Record, rises_with
 from pzt_ident.data.units import factor
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.errors import InputError
 from pzt_ident.model.chain import Chain, Entry
+from pzt_ident.search.feasibility import check_feasible, check_units
 from pzt_ident.search.linear import Linear
-from pzt_ident.search.unit_agreement import agree
 
 Array = NDArray[np.float64]
 
 
 CLEAR = 0.5  # correlation above which a response rises with its drive
-SMALL, LARGE = 1e-3, 5.0  # of the drive's span, between which it can tell of a field
 
 
 class ParameterSpec(Protocol):
@@ -70,15 +67,13 @@ class Problem:
         self.simulators = {
             use: [Simulator(model, r) for r in records if r.use == use] for use in ("identify", "validate")
         }
-        self._settle(identify, specs or {})
-        self._enough(identify)
-        self._possible()
-        self._seen(identify)
+        self._assign(identify, specs or {})
+        check_feasible(self, identify)
 
-    def _settle(self, identify: list[Record], specs: Mapping[str, ParameterSpec]) -> None:
+    def _assign(self, identify: list[Record], specs: Mapping[str, ParameterSpec]) -> None:
         """Which parameters are free, within which bounds, and what the others are fixed to."""
         count = len(self.model.entries)
-        agree(self.model, identify[0], self._unit)
+        check_units(self.model, identify[0], self._unit)
         self.all_units = [self._unit(entry, identify[0]) for entry in self.model.entries]
         self._factor = np.array([factor(unit) for unit in self.all_units])
         self.theta = np.full(count, np.nan)
@@ -100,7 +95,7 @@ class Problem:
                 upper.append(high)
         self.free = np.array(free, dtype=int)
         entries = [self.model.entries[column] for column in linear]
-        turn = [np.sign(follows(identify, entry.axis)) or 1.0 for entry in entries]
+        turn = [np.sign(rises_with(identify, entry.axis)) or 1.0 for entry in entries]
         units = np.array([sign * self._size(entry, identify) for sign, entry in zip(turn, entries, strict=True)])
         self.linear = Linear(self.model, linear, units, self._scaled)
         self.names = tuple(self.model.names[column] for column in free)
@@ -121,7 +116,7 @@ class Problem:
         """Declared bounds in SI units; those of a gain also with the other sign, unless the response rises with the
         drive: an inverting amplifier turns it round, and so does a drive above the resonance."""
         low, high = entry.parameter.bounds
-        if entry.parameter.unit == "response/drive" and follows(records, entry.axis) <= CLEAR:
+        if entry.parameter.unit == "response/drive" and rises_with(records, entry.axis) <= CLEAR:
             low, high = min(low, -high), max(high, -low)
         return np.array([low, high]) * self._size(entry, records)
 
@@ -145,45 +140,18 @@ class Problem:
             size *= one ** ((-1 if joint == "/" else 1) * int(power or 1))
         return size
 
-    def _enough(self, identify: list[Record]) -> None:
-        for record in identify:
-            free = self.dimensions + self.linear.columns.size
-            if record.samples - record.settle <= free:
-                raise InputError(
-                    f"{record.samples - record.settle} scored samples for {free} free parameters",
-                    where=record.file or record.name,
-                    remedy="give a longer stretch, a shorter `settle`, or fix parameters",
-                )
+    def parameters_at(self, values: Array) -> Array:
+        """All parameters in SI units, the free ones at `values` (free,) in the user's units: (parameters,)."""
+        theta = self.theta.copy()
+        theta[self.free] = values * self._factor[self.free]
+        return theta
 
-    def _possible(self) -> None:
-        """Raises InputError where a block refuses the bounds."""
-        least, most = self.theta.copy(), self.theta.copy()
-        least[self.free], most[self.free] = (bound * self._factor[self.free] for bound in (self.lower, self.upper))
-        for block, axis in product(self.model.blocks, self.model.measured):
-            if refuse := getattr(block, "refuse", None):
-                columns = self.model.columns(block, axis, axis) or {}
-                refuse(*(SimpleNamespace(**{word: end[c] for word, c in columns.items()}) for end in (least, most)))
-
-    def _seen(self, identify: list[Record]) -> None:
-        """Raises InputError where the drive is far from all that the job lets a parameter be: the numbers of one of
-        them are in another unit, such as V for V/m, or the drive never leaves the linear range."""
-        for column, entry in enumerate(self.model.entries):
-            if entry.word not in entry.block.seen:
-                continue
-            place, of = np.flatnonzero(self.free == column), self._factor[column]
-            known = self.theta[column] / of
-            low, high = (self.lower[place[0]], self.upper[place[0]]) if place.size else (known, known)
-            span = max(float(np.ptp(record.drive[entry.axis])) for record in identify) / of
-            if not SMALL * span < high or not low < LARGE * span:
-                unit = self.all_units[column]
-                says = "nothing switches: the response is linear" if low > span else "everything switches at once"
-                remedy = (
-                    "are they in the same unit? A drive in volts over 20 mm has the unit `50 V/m`. Else drive further, "
-                    "or let the parameter be of the size of the drive"
-                )
-                problem = f"at least {low:g} {unit}" if low > span else f"at most {high:g} {unit}"
-                problem = f"is {problem} beside a drive of {span:.3g} {unit} peak to peak, so {says}"
-                raise InputError(problem, where=entry.name, remedy=remedy)
+    def range_of(self, column: int) -> tuple[float, float]:
+        """Bounds of a parameter in the user's units; twice its value where it is fixed."""
+        place = np.flatnonzero(self.free == column)
+        if place.size:
+            return float(self.lower[place[0]]), float(self.upper[place[0]])
+        return (float(self.theta[column] / self._factor[column]),) * 2
 
     @property
     def scored(self) -> int:
@@ -304,11 +272,3 @@ class Problem:
         )
         better = self.loss(found.x)[0] < self.loss(point)[0]
         return (found.x if better else np.asarray(point)), int(found.nfev + each * found.njev)
-
-
-def follows(records: Sequence[Record], axis: int) -> float:
-    """Correlation of an axis' response with its drive over all records, 0 where one of them is constant."""
-    moves = [(record.drive[axis], record.response[axis]) for record in records]
-    drive, response = (np.concatenate([signal - signal.mean() for signal in part]) for part in zip(*moves, strict=True))
-    size = np.sqrt((drive @ drive) * (response @ response))
-    return float(drive @ response / size) if size > 0 else 0.0

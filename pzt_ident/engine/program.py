@@ -1,0 +1,170 @@
+"""The kernel's program for a chain of blocks on one record, and the layout of its scratch."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pzt_ident.data.record import Record
+from pzt_ident.engine.precomputed import Precomputation
+from pzt_ident.model.block import TILES, Bank, Beside, Block, Coupling, Modes, Operator, Place, Shift, asked
+from pzt_ident.model.chain import Chain
+
+Array = NDArray[np.float64]
+
+
+class Program:
+    """`steps` are rows of (address, row of the scratch, row of signals, tile, first sample), in signal order; `rows`
+    is the number of rows of the scratch, WIDTH numbers each.
+
+    Where what a block's `prepare` is given comes from: `given` pairs a row of the scratch with a column of theta,
+    `known` with a number that is the same for every candidate, `precomputed` are those that a bank works out by NumPy,
+    with the rows (branches, words) that they go to.
+    """
+
+    def __init__(self, model: Chain, record: Record) -> None:
+        from pzt_ident.engine.lanes import Variant
+
+        self.model, self.record = model, record
+        self.steps: list[tuple[int, ...]] = []
+        self.given: list[tuple[int, int]] = []
+        self.known: list[tuple[int, float]] = []
+        self.precomputed: list[tuple[Precomputation, NDArray[np.int64]]] = []
+        self.rows = 0
+        self._fresh = set(range(len(model.axes)))  # axes whose tile does not hold a signal yet
+        last = max((i for i, block in enumerate(model.blocks) if issubclass(block, Coupling | Modes)), default=-1)
+        for number, block in enumerate(model.blocks):
+            if issubclass(block, Coupling | Modes):
+                for axis in range(len(model.axes)):
+                    self._keep(number, axis)
+                self._fill(set(self._fresh))
+                self._add(block, 0, Variant(axes=len(model.axes)))
+                continue
+            for axis in range(len(model.axes)):
+                if axis in model.measured or number < last:
+                    self._keep(number, axis)
+                    self._append(block, axis)
+        self._fill(self._fresh & set(model.measured))
+
+    @property
+    def substeps(self) -> int:
+        """Steps of the simulation in a sample."""
+        return self.model.oversample * self.record.steps
+
+    def _append(self, block: type[Block], axis: int) -> None:
+        """A block of one axis, in the variant that the others around it ask for."""
+        from pzt_ident.engine.lanes import Variant
+
+        operator = block.place == Place.OPERATOR
+        readout = operator and self.model.reads_out
+        terms = issubclass(block, Operator) and bool(self.model.terms(block))
+        driven = axis in self._fresh and issubclass(block, Operator) and not (readout or terms)
+        if not (driven or issubclass(block, Shift)):
+            self._fill(self._fresh & {axis})
+        self._fresh.discard(axis)
+        self._add(block, axis, Variant(driven, readout, terms))
+
+    def _keep(self, number: int, axis: int) -> None:
+        """Ahead of the first block of a stage, put aside what a readout or a path beside the mechanics needs of it."""
+        from pzt_ident.engine.kernel import address, keep_force, keep_prompt
+
+        blocks = self.model.blocks
+        beside = any(issubclass(block, Beside) for block in blocks)
+        stages = [(keep_prompt, Place.READOUT, self.model.reads_out), (keep_force, Place.GUIDE, beside)]
+        for keep, first, needed in stages:
+            enters = blocks[number].place >= first and (number == 0 or blocks[number - 1].place < first)
+            if enters and needed:
+                self._fill(self._fresh & {axis})
+                self.steps.append((address(keep), 0, 2 * axis, TILES * axis, 0))
+
+    def _fill(self, axes: set[int]) -> None:
+        from pzt_ident.engine.kernel import address, fill
+
+        self.steps += [(address(fill), 0, 2 * axis, TILES * axis, 0) for axis in sorted(axes)]
+        self._fresh -= axes
+
+    def _add(self, block: type[Block], axis: int, variant: Any) -> None:
+        """The step of a block, and where each of its copies (branches, or pairs of axes) has its parameters from."""
+        from pzt_ident.engine.lanes import compile_block
+
+        form = self.model.form(block)
+        compiled = compile_block(form, variant)  # type: ignore[arg-type]
+        tile = TILES * axis + (1 if block.place == Place.READOUT and self.model.reads_out else 0)
+        self.steps.append((compiled.address, self.rows, 2 * axis, tile, 0))
+        words = (*form.arguments(), *(asked(block.terms) if variant.terms else ()))  # type: ignore[attr-defined]
+        row = self.rows + compiled.layout.first_given
+        for one, other in self._places(block, axis):
+            row = self._place(block, one, other, words, row)
+        self.rows += compiled.layout.rows
+
+    def _places(self, block: type[Block], axis: int) -> list[tuple[int, int]]:
+        """The axes, or ordered pairs of axes, that have parameters of their own."""
+        if issubclass(block, Coupling):
+            axes = range(len(self.model.axes))
+            return [(a, b) for a in axes for b in axes if b != a]
+        own = self.model.measured[0] if issubclass(block, Modes) else axis
+        return [(own, own)]
+
+    def _place(self, block: type[Block], axis: int, other: int, words: tuple[str, ...], row: int) -> int:
+        """Parameters of a block on one axis, or pair of axes, from a row of the scratch on; the row behind them."""
+        columns = self.model.columns(block, axis, other)
+        known = self._known(block, axis)
+        branches = range(block.branches) if issubclass(block, Bank | Modes) else [0]
+        if issubclass(block, Bank) and block.solved:
+            rows = [[row + branch * len(words) + words.index(word) for word in block.solved] for branch in branches]
+            self.precomputed.append((Precomputation(block, columns or {}, known), np.array(rows)))
+        for branch in branches:
+            for word in words:
+                column = columns.get(word) if columns else None
+                if column is None:
+                    self.known.append((row, (known | {"branch": branch}).get(word, 0.0)))
+                else:
+                    self.given.append((row, column[branch] if isinstance(column, list) else column))
+                row += 1
+            if issubclass(block, Modes):
+                row = self._weigh(block, branch, row)
+        return row
+
+    def _known(self, block: type[Block], axis: int) -> dict[str, float]:
+        """What `prepare` may ask for beside the parameters of the model."""
+        drive = self.record.drive[axis]
+        nulls = {p.name: p.null for p in block.parameters().values() if p.null is not None}
+        span, peak = float(np.ptp(drive)), float(np.abs(drive).max())
+        return nulls | block.numbers() | {"dt": self.record.dt / self.substeps, "span": span, "peak": peak}
+
+    def _weigh(self, block: type[Modes], mode: int, row: int) -> int:
+        """What push and motion of each axis count for a mode: their own, 1 for the push of the first axis, 0 for one
+        that is not measured. From a row of the scratch on; the row behind them."""
+        for word, axis in product(block.weights, range(len(self.model.axes))):
+            columns = self.model.columns(block, axis, axis)
+            if columns is None or word not in columns:
+                self.known.append((row, 0.0 if columns is None else 1.0))
+            else:
+                self.given.append((row, columns[word][mode]))  # type: ignore[index]
+            row += 1
+        return row
+
+    def scratch(self, theta: Array, rows: int) -> Array:
+        """What every block's `prepare` is given, in lanes: (groups, rows * WIDTH)."""
+        from pzt_ident.engine.kernel import WIDTH, aligned
+
+        groups = -(-theta.shape[0] // WIDTH)
+        lanes = np.minimum(np.arange(groups * WIDTH), theta.shape[0] - 1).reshape(groups, 1, WIDTH)
+        scratch = aligned(groups, rows, WIDTH)
+        given, columns, known, values = self._sources
+        scratch[:, given] = theta[lanes, columns]
+        scratch[:, known] = values
+        for precompute, places in self.precomputed:
+            scratch[:, places] = precompute(theta)[lanes[:, 0]].transpose(0, 2, 3, 1)
+        return scratch.reshape(groups, -1)
+
+    @cached_property
+    def _sources(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], Array]:
+        """Rows that come from columns of theta, and rows that hold the same number for every candidate."""
+        rows, columns = np.array(self.given, dtype=np.int64).reshape(-1, 2).T
+        known, values = np.array(self.known, dtype=float).reshape(-1, 2).T
+        return rows, columns[:, None], known.astype(np.int64), values[:, None]
