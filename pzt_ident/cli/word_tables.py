@@ -15,6 +15,8 @@ def show_word(found: Facts) -> None:
     click.echo(f"{found['name']} ({found['kind']})\n\n{found['doc']}\n")
     if source := found.get("source"):
         click.echo(f"{source}\n")
+    if not found.get("convergent", True):
+        click.echo("It comes near an optimum, but does not converge to it.\n")
     if "settings" in found:
         table(
             ("setting", "default", "from - to", "unit", "what it is"),

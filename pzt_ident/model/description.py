@@ -95,4 +95,5 @@ def _declared(block: type[Any]) -> list[Facts]:
 def _optimizer(name: str) -> Facts:
     item = optimizers[name]
     settings = [{"name": setting.name, "default": setting.default, **setting.metadata} for setting in fields(item)]
-    return {"name": name, "kind": "optimizer", "doc": inspect.getdoc(item), "source": item.source, "settings": settings}
+    facts = {"name": name, "kind": "optimizer", "doc": inspect.getdoc(item), "source": item.source}
+    return facts | {"convergent": item.convergent, "settings": settings}

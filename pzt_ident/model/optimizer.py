@@ -32,12 +32,15 @@ class Optimizer(ABC):
     """Typed settings and one generator. A leaf is a frozen dataclass whose fields are made by `setting` or `choice`.
 
     `wants` residuals: it is sent an (M, N) residual array where the problem has residuals, else losses (M,).
+    `convergent`: its steps shrink towards an optimum, so that in 6000 evaluations it comes within 1e-4 of the bottom of
+    |x - c|^2 in 4 dimensions; one that is not, within 1e-2.
     Raises InputError for a setting of the wrong type or out of its bounds.
     """
 
     name: ClassVar[str] = ""
     source: ClassVar[str] = ""
     wants: ClassVar[Literal["losses", "residuals"]] = "losses"
+    convergent: ClassVar[bool] = True
 
     @property
     @abstractmethod

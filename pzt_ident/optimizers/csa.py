@@ -24,6 +24,7 @@ class CSA(Generational):
     """
 
     source = "de Castro & Von Zuben (2002), IEEE Trans. Evol. Comput. 6, 239; Lin & Lin (2012), section III-C"
+    convergent = False
 
     bits: int = setting(16, "bit", (2, 52), "Code length of a coordinate.")
     selected: float = setting(0.3, "1", (0, 1), "Share of the population that is cloned.")

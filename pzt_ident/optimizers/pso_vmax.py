@@ -17,6 +17,7 @@ class VmaxPSO(Generational):
     """Particle swarm without inertia weight: v <- v + c1 r1 (p - x) + c2 r2 (g - x), |v| <= vmax, x <- x + v."""
 
     source = "Kennedy & Eberhart (1995), Proc. ICNN, 1942; Lin & Lin (2012), Eq. 14-15"
+    convergent = False
 
     c1: float = setting(2.8, "1", (0, 10), "Pull towards a particle's own best.")
     c2: float = setting(1.3, "1", (0, 10), "Pull towards the swarm's best.")
