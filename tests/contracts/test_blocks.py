@@ -53,11 +53,6 @@ CHAINS = [
 ]
 SPAN = np.array([0.0, 100.0])
 LANES = WIDTH + 4  # candidates of which some are in a second group
-CATALOGUE = """
-creep thermal_relaxation rate_dependence amplifier_lag sensor_lag slew_limit delay asymmetry quadratic_gain saturation
-distributed_memory amplitude_gain cross_coupling kinematic_coupling resonance load_mass viscous_damping cubic_stiffness
-friction drift periodic_disturbance encoder_cyclic_error
-"""
 
 
 def legs(levels, points):
@@ -119,7 +114,7 @@ def test_declarations_are_complete(word):
 def test_effect_says_what_else_it_may_be_and_what_to_do(word):
     effect = blocks[word]
     assert {"look_alikes", "separate_by", "remedy"} <= set(vars(effect))
-    assert set(effect.look_alikes) <= set(CATALOGUE.split()) - {word}
+    assert set(effect.look_alikes) <= set(EFFECTS) - {word}
     for sentence in (effect.separate_by, effect.remedy):
         assert re.fullmatch(r"[A-Z].{30,}[a-z%]\.", sentence)
 
@@ -301,5 +296,6 @@ def test_nothing_before_the_settling_or_constant_is_scored(words):
 
 def test_kinds_are_all_there():
     """What the laws above are shown on."""
+    assert [word for word in WORDS if blocks.folder(word) == "effects"] == EFFECTS
     kinds = {Operator, Bank, Relays, Coupling, Modes, Shift, Beside, Term, Addition}
     assert {kind for kind in kinds if any(issubclass(blocks[word], kind) for word in WORDS)} == kinds
