@@ -15,6 +15,7 @@ from functools import cache
 from typing import Any, ClassVar
 
 from pzt_ident.errors import InputError, nearest
+from pzt_ident.model.contract import called
 from pzt_ident.model.parameter import Form, Parameter, Setting
 
 TILES = 3  # signals that an axis carries: its own, what drives its operator's prompt response, and its mechanics
@@ -78,6 +79,7 @@ class Block:
     experiment that tells them apart, and what to do about it on the rig.
     """
 
+    kind: ClassVar[str] = "block"  # by which its functions are known, contract.KINDS
     name: ClassVar[str] = ""
     place: ClassVar[Place]
     oversample: ClassVar[int] = 1
@@ -184,6 +186,8 @@ class Operator(Block):
     fade(*coefficients) -> the share of h that is left after a sample.
     """
 
+    kind = "operator"
+
 
 class Bank(Block):
     """Branches in parallel under one input: `step` is one branch and returns its contribution to the total.
@@ -199,14 +203,15 @@ class Bank(Block):
     chooses the size, count(*settings) -> branches; it raises InputError where settings do not go together.
     """
 
+    kind = "bank"
     branches: ClassVar[int]
     solved: ClassVar[tuple[str, ...]] = ()
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
         count = getattr(cls, "count", None)
-        if count and set(asked(count)) <= set(cls.settings()):
-            cls.branches = count(*(cls.setting(word) for word in asked(count)))
+        if inspect.isfunction(count) and set(asked(count)) <= set(cls.settings()):
+            cls.branches = called(cls, "count", *(cls.setting(word) for word in asked(count)))
 
 
 class Relays(Block):
@@ -225,6 +230,7 @@ class Relays(Block):
     output(u, total, *shared) -> y.
     """
 
+    kind = "relays"
     coercives: ClassVar[int] = 64
     interactions: ClassVar[int] = 64
     columns: ClassVar[int] = 256  # spacings that the table of `leave` covers
@@ -234,14 +240,20 @@ class Relays(Block):
 class Term(Block):
     """An effect inside the equation of other blocks, which is written there: parameters of theirs name it."""
 
+    kind = "term"
+
 
 class Shift(Block):
     """A delay: y(t) = u(t - prepare(...)[0] samples) of the drive, which is linear between its samples."""
+
+    kind = "shift"
 
 
 class Beside(Block):
     """A path beside the mechanics: step(*states, x, f, *coefficients) -> (*states, y), from f, the force that the
     mechanics is driven by, and x, what comes out of it; start(f, *coefficients) is under the first force."""
+
+    kind = "beside"
 
 
 class Addition(Block):
@@ -250,6 +262,8 @@ class Addition(Block):
     basis(t, *parameters) -> (b_1, b_2, ...), arrays over t, s from the start of the record. The amounts, parameters
     of each record, are taken in closed form together with the offset, on any record.
     """
+
+    kind = "addition"
 
 
 class Modes(Block):
@@ -260,14 +274,18 @@ class Modes(Block):
     step(*states, p, *coefficients) -> (*states, q). `weights` are the words of enters and leaves.
     """
 
+    kind = "modes"
     branches: ClassVar[int]
     weights: ClassVar[tuple[str, str]]
 
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
-        cls.branches = cls.setting("modes")
+        if "modes" in cls.settings():
+            cls.branches = cls.setting("modes")
 
 
 class Coupling(Block):
     """Acts across axes: step(y, other, *coefficients) -> y, once for each other axis; `other` and the first y are the
     inputs. Its parameters exist once for each ordered pair of axes."""
+
+    kind = "coupling"

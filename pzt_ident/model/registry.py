@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
 
 from pzt_ident.errors import InputError, nearest
+from pzt_ident.model.contract import check
 
 T = TypeVar("T", bound=type[Any])
 
@@ -29,6 +30,8 @@ class Registry(Generic[T]):
         self._items: dict[str, T] = {}
 
     def register(self, item: T) -> T:
+        """Raises InputError for a class that breaks the contract of its kind."""
+        check(item, self.group)
         item.name = item.__module__.rpartition(".")[2]
         self._items[item.name] = item
         return item

@@ -1,0 +1,147 @@
+"""What a block declares beside its functions: parameters, settings, its place, and what an effect says of itself."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+from enum import IntEnum
+from typing import Any
+
+from pzt_ident.data.units import factor
+from pzt_ident.errors import InputError, nearest
+from pzt_ident.model.parameter import Form, Parameter, Setting
+
+STANDS_FOR = {"drive": "V", "response": "m", "first": "m"}
+WORDS = {"scale": ("linear", "log"), "each": ("axis", "stage", "later axis")}
+
+
+def fault(item: Any, where: str, message: str, remedy: str) -> InputError:
+    return InputError(message, where=".".join(filter(None, (item.__name__, where))), remedy=remedy)
+
+
+def declared(block: Any, kinds: type[Any] | tuple[type[Any], ...]) -> dict[str, Any]:
+    """What a block and what it is derived from declare of some kinds, by its word in the class."""
+    owned = [item for owner in reversed(block.__mro__) for item in vars(owner).items()]
+    return {word: item for word, item in owned if isinstance(item, kinds)}
+
+
+def parameters(block: Any) -> dict[str, Parameter]:
+    """By the words that `prepare` has for them: a counted one once."""
+    return declared(block, Parameter)
+
+
+def check_docstring(item: Any) -> None:
+    text = vars(item).get("__doc__") or ""
+    if not text.strip() or text.startswith(f"{item.__name__}("):  # the latter is what dataclass writes
+        raise fault(item, "", "has no docstring", "say in its first line what it is")
+
+
+def check_place(block: Any) -> None:
+    place = getattr(block, "place", None)
+    if not isinstance(place, IntEnum):
+        said = "has no `place`" if place is None else f"has {place!r} for its `place`"
+        raise fault(block, "place", said, "say where it stands in the signal chain, such as `place = Place.READOUT`")
+
+
+def check_words(block: Any, taken: Iterable[str]) -> None:
+    """A parameter or setting must not hide what every block has, nor be one object under two names."""
+    for word, item in declared(block, Parameter | Setting | Form).items():  # type: ignore[arg-type]
+        if word in taken:
+            raise fault(block, word, f"{word!r} is a word of every block of this kind", "rename the parameter")
+        if isinstance(item, Parameter) and item.name != word:
+            said = f"is the same object as the parameter {item.name!r}"
+            raise fault(block, word, said, "declare it anew, or copy it with dataclasses.replace")
+
+
+def check_settings(block: Any) -> None:
+    for word, item in block.settings().items():
+        if isinstance(item, Setting) and not _ordered(item.bounds):
+            raise fault(block, word, f"bounds {item.bounds!r} are no range", "give (least, most), the lesser first")
+        item.check(item.value, f"{block.__name__}.{word}")
+    for word in (*block.seen, *block.trials):
+        if word not in parameters(block):
+            listed = "seen" if word in block.seen else "trials"
+            raise fault(block, listed, f"unknown parameter {word!r}", nearest(word, parameters(block)))
+
+
+def _ordered(bounds: Any) -> bool:
+    return (
+        isinstance(bounds, tuple)
+        and len(bounds) == 2
+        and all(isinstance(end, int | float) and math.isfinite(end) for end in bounds)
+        and bounds[0] < bounds[1]
+    )
+
+
+def check_parameters(block: Any) -> None:
+    for word, item in parameters(block).items():
+        _check_numbers(block, word, item)
+        _check_unit(block, word, item)
+        for fact, known in WORDS.items():
+            if getattr(item, fact) not in known:
+                said = f"unknown {fact} {getattr(item, fact)!r}"
+                raise fault(block, word, said, nearest(str(getattr(item, fact)), known))
+        if item.effect and item.null is None:
+            raise fault(block, word, "belongs to an effect, but has no null", "give the value at which it is not there")
+        if item.smooth is not None and item.smooth not in parameters(block):
+            raise fault(block, word, f"unknown parameter {item.smooth!r}", nearest(item.smooth, parameters(block)))
+
+
+def _check_numbers(block: Any, word: str, item: Parameter) -> None:
+    if not _ordered(item.bounds):
+        remedy = "give (least, most), finite and the lesser first"
+        raise fault(block, word, f"bounds {item.bounds!r} are no range", remedy)
+    low, high = item.bounds
+    if item.scale == "log" and low <= 0:
+        raise fault(block, word, f"a log scale from {low:g}", "give a lower bound above 0, or a linear scale")
+    for fact in ("null", "value"):
+        number = getattr(item, fact)
+        if number is not None and not (isinstance(number, int | float) and low <= number <= high):
+            said = f"{fact} {number!r} is out of its bounds ({low:g}, {high:g})"
+            raise fault(block, word, said, f"give {fact} a number from {low:g} to {high:g}")
+
+
+def _check_unit(block: Any, word: str, item: Parameter) -> None:
+    if not isinstance(item.unit, str):
+        raise fault(block, word, f"unit {item.unit!r} is no text", "write it as in a job file; '1' for a plain number")
+    try:
+        factor(re.sub(r"\b(drive|response|first)(?=\b|\d)", lambda found: STANDS_FOR[found[0]], item.unit))
+    except InputError as error:
+        remedy = f"{error.remedy}; `drive`, `response` and `first` stand for units of the data"
+        raise fault(block, word, error.message, remedy) from None
+
+
+def check_counts(block: Any, branched: bool, many: bool) -> None:
+    """Of branches, and of parameters that each branch has its own of. many: a count needs no branches."""
+    for word, item in parameters(block).items():
+        if isinstance(item.count, str) and item.count not in block.settings():
+            remedy = nearest(item.count, block.settings()) if block.settings() else "declare it as a Setting"
+            raise fault(block, word, f"is counted by the unknown setting {item.count!r}", remedy)
+    branches = getattr(block, "branches", None)
+    if branched and (not isinstance(branches, int) or branches < 1):
+        said = "has no `branches`" if branches is None else f"has {branches!r} `branches`"
+        raise fault(block, "branches", said, "say how many with a whole number, `count` or a setting")
+    for word, item in parameters(block).items():
+        count = block.setting(item.count) if isinstance(item.count, str) else item.count
+        if count is not None and not many and count != branches:
+            said = f"there are {count} of it for {branches if branched else 'no'} branches"
+            raise fault(block, word, said, "count one a branch" if branched else "leave out `count`")
+
+
+def check_effect(block: Any, term: bool, kinds: tuple[type, ...]) -> None:
+    """What is an effect, having a remedy, says how to tell it. kinds: the classes that declare nothing of their own."""
+    own = {word for base in block.__mro__ if base not in kinds for word in vars(base)}
+    if isinstance(block.look_alikes, str) or not all(isinstance(word, str) for word in block.look_alikes):
+        raise fault(block, "look_alikes", f"{block.look_alikes!r} are no words", 'write them as a tuple, `("creep",)`')
+    if not block.remedy:
+        if block.look_alikes or block.separate_by or term:
+            raise fault(block, "remedy", "is an effect without `remedy`", "say what to do about it on the rig")
+        return
+    if "look_alikes" not in own:
+        remedy = 'name the effects that leave the same trace, `look_alikes = ("creep",)`, or `()` where none does'
+        raise fault(block, "look_alikes", "is an effect without look-alikes", remedy)
+    if not block.separate_by:
+        raise fault(block, "separate_by", "is an effect without `separate_by`", "say which experiment tells it apart")
+    if not term and all(item.null is None for item in parameters(block).values()):
+        raise fault(block, "", "is an effect without a null", "give a parameter the `null` at which it is not there")
