@@ -16,8 +16,10 @@ from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, NamedTuple
 
+from pzt_ident.engine.lanes.refusal import refusal
 from pzt_ident.files import cache_folder
 from pzt_ident.model.block import Bank, Beside, Block, Coupling, Modes, Operator, Place, Relays, Shift, asked
+from pzt_ident.model.contract import tried
 
 TEMPLATES = Path(__file__).parent
 FUNCTIONS = (
@@ -82,7 +84,7 @@ def compile_block(block: type[Block], variant: Variant = Variant()) -> Compiled:
     path = cache_folder() / f"{block.__name__.lower()}_{template}_{key}.py"
     if not path.exists():
         write(path, render(text, block, layout, variant, kernel))
-    return Compiled(load(path, block).tile.address, layout)
+    return Compiled(compiled(path, block).tile.address, layout)
 
 
 def template_of(block: type[Block], variant: Variant) -> str:
@@ -106,20 +108,19 @@ def relays_room(block: type[Relays]) -> int:
 
 def layout_of(block: type[Block], variant: Variant) -> Layout:
     """Counted by asking the block itself, with parameters in the middle of their bounds."""
-    known = {p.name: sum(p.bounds) / 2 for p in block.parameters().values()} | {"dt": 1e-3, "branch": 0}
-    known |= block.numbers() | {"span": 1.0, "peak": 1.0} | dict.fromkeys(getattr(block, "solved", ()), 0.5)
-    prepared = block.prepare(*(known[word] for word in block.arguments()))  # type: ignore[attr-defined]
-    operator, stateless = issubclass(block, Operator), issubclass(block, Coupling | Shift | Relays)
-    parts = [len(part) for part in prepared] if operator or issubclass(block, Relays) else [0, 0, len(prepared)]
-    example = () if operator else prepared
-    states = 0 if stateless else len(block.start(0.0, *example))  # type: ignore[attr-defined]
+    groups = tried(block)
+    operator, relays = issubclass(block, Operator), issubclass(block, Relays)
+    names = ("shared", "along", "against") if operator else ("shape", "energy", "shared")
+    whole = groups.get("coefficients", ())
+    parts = [len(groups[name]) for name in names] if operator or relays else [0, 0, len(whole)]
+    states = len(groups.get("states", ()))
     axes = variant.axes
     copies = (
         block.branches if issubclass(block, Bank | Modes) else axes * (axes - 1) if issubclass(block, Coupling) else 1
     )
     work = 7 if operator else 3 if rests(block) else relays_room(block) if issubclass(block, Relays) else 0
     asking = asked(block.terms) if variant.terms else ()  # type: ignore[attr-defined]
-    terms = len(block.terms(*(known[word] for word in asking))) if variant.terms else 0  # type: ignore[attr-defined]
+    terms = len(groups["terms"]) if variant.terms else 0
     given = len(block.arguments()) + (2 * axes if issubclass(block, Modes) else 0)
     return Layout(states, sum(parts), given, copies, work, parts[0], parts[1], terms, len(asking))
 
@@ -158,6 +159,18 @@ def write(path: Path, text: str) -> None:
     with tempfile.NamedTemporaryFile("w", dir=path.parent, suffix=".tmp", delete=False) as file:
         file.write(text)
     os.replace(file.name, path)
+
+
+def compiled(path: Path, block: type[Block]) -> Any:
+    """Raises InputError for an author's function that numba cannot compile."""
+    from numba.core.errors import NumbaError
+
+    try:
+        return load(path, block)
+    except NumbaError as error:
+        own = functions(block)
+        called = {helper for function in own.values() for helper in helpers(function)}
+        raise refusal(block, str(error), own, called) from None
 
 
 def load(path: Path, block: type[Block]) -> Any:
