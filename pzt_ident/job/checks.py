@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pzt_ident.data import units
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.job.document import Document, Loc
 from pzt_ident.job.parameter_checks import Earlier, check_parameters
+from pzt_ident.model.contract import check_loaded
 from pzt_ident.model.registry import blocks, optimizers, word_of
 
 if TYPE_CHECKING:
@@ -118,6 +120,12 @@ def _plugins(document: Document, files: tuple[str, ...], earlier: Earlier) -> No
             blocks.plug(document.folder / file)
         except InputError as error:
             document.fault(("plugins", i), error.message, error.remedy)
+    for i, word in enumerate(Path(file).stem for file in files):
+        if document.plugins and word in blocks:
+            try:
+                check_loaded(blocks[word], blocks)
+            except InputError as error:
+                document.fault(("plugins", i), f"{error.where}: {error.message}", error.remedy)
 
 
 def _rule_out(document: Document, words: tuple[str, ...], earlier: Earlier) -> None:

@@ -90,6 +90,24 @@ def test_a_job_elsewhere_still_finds_its_files(folder):
 
 
 @pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ('("saturation",)', '("saturaton",)', ["CubicGain.look_alikes: unknown effect 'saturaton'", "'saturation'?"]),
+        ("null=0", 'null=0, effect="crep"', ["CubicGain.bend: unknown effect 'crep'", "'creep'?"]),
+        ("return u + bend * u * u * u", "return cube(u)", ["CubicGain.step: raises TypeError in line"]),
+        ("prepare(bend)", "prepare(bent)", ["CubicGain.prepare: asks for 'bent'", "'bend'?"]),
+    ],
+)
+def test_what_a_file_breaks_is_said_of_the_job(folder, old, new, expected):
+    recipe = (folder / "cubic_gain.py").read_text()
+    assert old in recipe
+    (folder / "cubic_gain.py").write_text(recipe.replace(old, new) + "\n\ndef cube():\n    return 0.0\n")
+    said = call("check", folder / "job.yaml", "--plugins")
+    assert said.exit_code == 2
+    assert all(part in said.stderr for part in expected), said.stderr
+
+
+@pytest.mark.parametrize(
     ("name", "text", "said"),
     [
         ("own.py", "x = 1", "registers no block"),
