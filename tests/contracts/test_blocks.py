@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pzt_ident.data.units import is_unit
 from pzt_ident.engine.kernel import WIDTH
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.model.block import Addition, Bank, Beside, Coupling, Modes, Operator, Place, Relays, Shift, Term
@@ -97,16 +96,10 @@ def made(words, drive, count=3, seed=1, **more):
 @pytest.mark.parametrize("word", WORDS)
 def test_declarations_are_complete(word):
     block = blocks[word]
-    assert issubclass(block, Term) or isinstance(block.place, Place)
     assert "=" in block.__doc__ or "<-" in block.__doc__, "the equation"
     assert word == block.name == block.__module__.rpartition(".")[2]
     for name, declared in block.parameters().items():
-        low, high = declared.bounds
-        assert is_unit(re.sub("drive|response", lambda word: {"drive": "V", "response": "m"}[word[0]], declared.unit))
-        assert low < high and (low > 0 or declared.scale == "linear")
-        assert all(low <= value <= high for value in (declared.null, declared.value) if value is not None)
         assert re.fullmatch(r"[A-Z].{8,}\.", declared.doc), name
-        assert declared.effect is None or declared.null is not None, name
         assert (declared.count is not None) == (name != declared.name)
 
 
