@@ -16,6 +16,7 @@ from pzt_ident.model.contract.declared import (
     check_counts,
     check_docstring,
     check_effect,
+    check_facts,
     check_parameters,
     check_place,
     check_settings,
@@ -52,7 +53,10 @@ def check_block(block: Any) -> None:
     check_docstring(block)
     if kind != "term":
         check_place(block)
+    check_facts(block)
     check_settings(block)
+    if kind == "modes" and len(getattr(block, "weights", ())) != 2:
+        raise fault(block, "weights", "does not name two `weights`", "name the parameters of enters and leaves")
     check_parameters(block)
     check_asked(block)
     check_counts(block, kind in BRANCHED, kind == "addition")

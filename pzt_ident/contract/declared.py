@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from enum import IntEnum
 from typing import Any
 
@@ -13,7 +13,19 @@ from pzt_ident.errors import InputError, nearest
 from pzt_ident.model.parameter import Form, Parameter, Setting
 
 STANDS_FOR = {"drive": "V", "response": "m", "first": "m"}
+TYPES = {"unit": str, "doc": str, "effect": str | None, "count": int | str | None, "smooth": str | None}
 WORDS = {"scale": ("linear", "log"), "each": ("axis", "stage", "later axis")}
+TEXT, COUNT = "a text", "a whole number from 1 on"
+TUPLE = 'a tuple of words, such as `("creep",)`'
+FACTS = {
+    TUPLE: ("look_alikes", "seen", "solved", "weights"),
+    TEXT: ("separate_by", "remedy", "broken"),
+    COUNT: ("oversample",),
+    "a tuple of numbers": ("sizes",),
+    "a table by parameter": ("trials",),
+    "a table of blocks by word": ("forms",),
+}
+"""What the facts are that a block may declare."""
 
 
 def fault(item: Any, where: str, message: str, remedy: str) -> InputError:
@@ -54,18 +66,36 @@ def check_words(block: Any, taken: Iterable[str]) -> None:
             raise fault(block, word, said, "declare it anew, or copy it with dataclasses.replace")
 
 
+def check_facts(block: Any) -> None:
+    fits: dict[str, Callable[[Any], bool]] = {
+        TUPLE: lambda value: isinstance(value, tuple) and all(isinstance(word, str) for word in value),
+        TEXT: lambda value: isinstance(value, str),
+        COUNT: lambda value: isinstance(value, int) and value > 0,
+        "a tuple of numbers": lambda value: isinstance(value, tuple) and all(isinstance(x, int | float) for x in value),
+        "a table by parameter": lambda value: isinstance(value, Mapping),
+        "a table of blocks by word": lambda value: (
+            isinstance(value, Mapping) and all(isinstance(form, type) for form in value.values())
+        ),
+    }
+    for due, words in FACTS.items():
+        for word in words:
+            value = getattr(block, word, None)
+            if hasattr(block, word) and not fits[due](value):
+                raise fault(block, word, f"{value!r} is not {due}", f"give {due}")
+
+
 def check_settings(block: Any) -> None:
     for word, item in block.settings().items():
-        if isinstance(item, Setting) and not _ordered(item.bounds):
+        if isinstance(item, Setting) and not ordered(item.bounds):
             raise fault(block, word, f"bounds {item.bounds!r} are no range", "give (least, most), the lesser first")
         item.check(item.value, f"{block.__name__}.{word}")
-    for word in (*block.seen, *block.trials):
-        if word not in parameters(block):
-            listed = "seen" if word in block.seen else "trials"
-            raise fault(block, listed, f"unknown parameter {word!r}", nearest(word, parameters(block)))
+    for listed in ("seen", "trials", "weights"):
+        for word in getattr(block, listed, ()):
+            if word not in parameters(block):
+                raise fault(block, listed, f"unknown parameter {word!r}", nearest(word, parameters(block)))
 
 
-def _ordered(bounds: Any) -> bool:
+def ordered(bounds: Any) -> bool:
     return (
         isinstance(bounds, tuple)
         and len(bounds) == 2
@@ -76,6 +106,11 @@ def _ordered(bounds: Any) -> bool:
 
 def check_parameters(block: Any) -> None:
     for word, item in parameters(block).items():
+        for fact, kind in TYPES.items():
+            if not isinstance(getattr(item, fact), kind):
+                raise fault(
+                    block, word, f"{fact} {getattr(item, fact)!r} is no such thing", f"see `{fact}` of Parameter"
+                )
         _check_numbers(block, word, item)
         _check_unit(block, word, item)
         for fact, known in WORDS.items():
@@ -89,7 +124,7 @@ def check_parameters(block: Any) -> None:
 
 
 def _check_numbers(block: Any, word: str, item: Parameter) -> None:
-    if not _ordered(item.bounds):
+    if not ordered(item.bounds):
         remedy = "give (least, most), finite and the lesser first"
         raise fault(block, word, f"bounds {item.bounds!r} are no range", remedy)
     low, high = item.bounds
@@ -103,8 +138,6 @@ def _check_numbers(block: Any, word: str, item: Parameter) -> None:
 
 
 def _check_unit(block: Any, word: str, item: Parameter) -> None:
-    if not isinstance(item.unit, str):
-        raise fault(block, word, f"unit {item.unit!r} is no text", "write it as in a job file; '1' for a plain number")
     try:
         factor(re.sub(r"\b(drive|response|first)(?=\b|\d)", lambda found: STANDS_FOR[found[0]], item.unit))
     except InputError as error:
@@ -132,8 +165,6 @@ def check_counts(block: Any, branched: bool, many: bool) -> None:
 def check_effect(block: Any, term: bool, kinds: tuple[type, ...]) -> None:
     """What is an effect, having a remedy, says how to tell it. kinds: the classes that declare nothing of their own."""
     own = {word for base in block.__mro__ if base not in kinds for word in vars(base)}
-    if isinstance(block.look_alikes, str) or not all(isinstance(word, str) for word in block.look_alikes):
-        raise fault(block, "look_alikes", f"{block.look_alikes!r} are no words", 'write them as a tuple, `("creep",)`')
     if not block.remedy:
         if block.look_alikes or block.separate_by or term:
             raise fault(block, "remedy", "is an effect without `remedy`", "say what to do about it on the rig")

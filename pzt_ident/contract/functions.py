@@ -135,11 +135,20 @@ def _members(block: Any, token: str, word: str, functions: Mapping[str, Owed], g
     for other, item in functions.items():
         if other != word and token in item.arguments:
             names = named(block, other)
-            if len(names) >= size + sum(not one.startswith("*") for one in item.arguments):
-                return list(names[:size] if token == item.arguments[0] else names[len(names) - size :])
-    own, (input_, *_) = named(block, word), (one for one in functions[word].arguments if not one.startswith("*"))
-    ahead = own[: own.index(input_)][-size:] if input_ in own and token == functions[word].arguments[0] else ()
-    return [*ahead, *(f"{token[1:].removesuffix('s')} {i + 1}" for i in range(len(ahead), size))]
+            own = names[:size] if token == item.arguments[0] else names[len(names) - size :]
+            if len(own) == size and not set(own) & set(item.arguments):
+                return list(own)
+    known = _beside(named(block, word), token, functions[word].arguments)[:size]
+    return [*known, *(f"{token[1:].removesuffix('s')} {i + 1}" for i in range(len(known), size))]
+
+
+def _beside(names: tuple[str, ...], token: str, arguments: tuple[str, ...]) -> tuple[str, ...]:
+    """The names of a function's own that stand where a group does: ahead of or behind what is given beside it."""
+    fixed = [one for one in arguments if not one.startswith("*")]
+    edge = fixed[0] if token == arguments[0] else fixed[-1]
+    if edge not in names:
+        return ()
+    return names[: names.index(edge)] if token == arguments[0] else names[names.index(edge) + 1 :]
 
 
 def _misfit(block: Any, word: str, names: Iterable[str], expected: list[str], groups: Known) -> InputError:
@@ -147,7 +156,7 @@ def _misfit(block: Any, word: str, names: Iterable[str], expected: list[str], gr
     missing = [name for name in expected if name not in takes]
     surplus = [name for name in takes if name not in expected]
     short = len(takes) < len(expected)
-    of = (missing if short else surplus) or (expected if short else takes)[-1:]
+    of = takes[:1] if takes[:1] == ["self"] else (missing if short else surplus) or (expected if short else takes)[-1:]
     said = f"takes ({', '.join(takes)}), but is given ({', '.join(expected)}): "
     said += " and ".join(f"{name!r}" for name in of) + (" missing" if short else " too many")
     counts = ", ".join(f"{len(own)} {group}" for group, own in groups.items())

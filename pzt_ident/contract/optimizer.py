@@ -7,7 +7,7 @@ from dataclasses import MISSING, fields
 from typing import Any
 
 from pzt_ident.errors import InputError, nearest
-from pzt_ident.model.contract.declared import check_docstring, fault
+from pzt_ident.model.contract.declared import check_docstring, fault, ordered
 
 WANTS = ("losses", "residuals")
 BUDGET = 1000
@@ -38,6 +38,9 @@ def _check_field(item: Any, one: Any) -> None:
     if one.default is MISSING or not {"bounds", "words"} & set(one.metadata):
         remedy = f"write `{one.name}: float = setting(...)`, or `choice(...)` for a word"
         raise fault(item, one.name, "is made by neither `setting` nor `choice`", remedy)
+    bounds, words = one.metadata.get("bounds", (0, 1)), one.metadata.get("words", ())
+    if not ordered(bounds) or not isinstance(words, tuple):
+        raise fault(item, one.name, f"{words or bounds!r} is no range or tuple", "give (least, most), or all the words")
 
 
 def _check_budget(item: Any, made: Any) -> None:
@@ -63,8 +66,8 @@ def _check_search(item: Any, made: Any) -> None:
 def _tried(item: Any, where: str, function: Any, *arguments: Any) -> Any:
     try:
         return function(*arguments)
-    except InputError:
-        raise
+    except InputError as error:
+        raise fault(item, error.where.rpartition(".")[2], error.message, error.remedy) from None
     except Exception as error:
         said = f"raises {type(error).__name__}: {error}"
         raise fault(item, where, said, "it is called with the default settings") from error
