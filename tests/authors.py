@@ -4,9 +4,10 @@ HEAD = """
 from dataclasses import dataclass, field
 from math import exp, pi
 import numpy as np
-from pzt_ident.model.block import Addition, Bank, Beside, Block, Coupling, Modes, Operator, Place, Relays, Shift, Term, sin
+from pzt_ident.model.block import Addition, Bank, Beside, Block, Coupling, Modes, Operator, Place
+from pzt_ident.model.block import Relays, Shift, Term, sin
 from pzt_ident.model.parameter import Form, Parameter, Setting
-from pzt_ident.search.loop import Budgeted, Generational, Optimizer, choice, setting
+from pzt_ident.model.optimizer import Budgeted, Generational, Optimizer, choice, setting
 """
 GAIN = '''
 class Gain(Block):

@@ -7,10 +7,10 @@ import sys
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from pzt_ident.model.contract import check, check_loaded
 
 from authors import ADDITION, BANK, BESIDE, COUPLING, GAIN, GOOD, HEAD, MODES, OPERATOR, RELAYS, SHIFT, WALK, made
 from pzt_ident.errors import InputError
+from pzt_ident.model.contract import check, check_loaded
 from pzt_ident.model.registry import blocks, optimizers
 
 

@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pzt_ident.cli.commands import main
-from pzt_ident.cli.summary import of_word
 from pzt_ident.errors import InputError
+from pzt_ident.model.description import description_of
 from pzt_ident.model.registry import optimizers
 from pzt_ident.search.loop import Stop, minimize, optimize
 
@@ -113,7 +113,7 @@ def test_says_where_it_comes_from(word):
 def test_says_whether_it_converges(word):
     shown = CliRunner().invoke(main, ["show", word]).stdout
     assert ("does not converge" in shown) == (not optimizers[word].convergent)
-    assert of_word(word)["convergent"] == optimizers[word].convergent
+    assert description_of(word)["convergent"] == optimizers[word].convergent
 
 
 @pytest.mark.parametrize("word", [word for word in WORDS if optimizers[word].wants == "residuals"])

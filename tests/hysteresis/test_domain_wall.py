@@ -13,6 +13,7 @@ from pzt_ident.engine.simulator import Simulator
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import Job
 from pzt_ident.model.chain import Chain
+from pzt_ident.report.page import write_report
 from pzt_ident.run.identify import run
 from pzt_ident.run.statement import read
 from pzt_ident.search.problem import Problem
@@ -150,7 +151,7 @@ def test_a_job_says_that_its_walls_run_away(tmp_path):
     folder = run(job, tmp_path / "out", workers=1)
     (note,) = json.loads((folder / "result.json").read_text())["records"][0]["notes"]
     assert "condition (9)" in note
-    assert "Record loop: at" in (folder / "report.html").read_text()
+    assert "Record loop: at" in write_report(folder).read_text()
     case = Case(job.model, (), read(job), job.parameters)
     assert "Record loop: at" in broken(first_fit(case, 0))
 

@@ -15,6 +15,7 @@ from pzt_ident.errors import InputError
 from pzt_ident.job.schema import Job
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks
+from pzt_ident.report.page import write_report
 from pzt_ident.run.identify import run
 from pzt_ident.search.linear import solve
 from pzt_ident.search.problem import Problem
@@ -183,13 +184,13 @@ def test_from_a_job_to_the_report_and_back(measured, tmp_path):
     assert found["parameters"]["homogenized_energy.interaction"]["value"] == pytest.approx(6120, rel=0.05)
     still = [name for name, entry in found["parameters"].items() if entry["verdict"] == "not moved"]
     assert still == [f"homogenized_energy.weight_{k}" for k in range(17, 25)]
-    page = (folder / "report.html").read_text()
+    page = write_report(folder).read_text()
     assert "No record moves the 8 of 4125 to 5875" in page.replace("\u2009", "").replace(",", "")
     assert (folder / "figures" / "density-homogenized-energy-weight-180mm.svg").exists()
     again = fixed | {name: {"value": entry["value"]} for name, entry in found["parameters"].items()}
     width = again["homogenized_energy.interaction"]["value"]
     again["homogenized_energy.interaction"] = {"bounds": [width * (1 - 1e-9), width * (1 + 1e-9)]}
-    second = run(Job.from_text(JOB.format(parameters=json.dumps(again)), tmp_path), tmp_path / "again", report=False)
+    second = run(Job.from_text(JOB.format(parameters=json.dumps(again)), tmp_path), tmp_path / "again")
     rmse = json.loads((second / "result.json").read_text())["best"]["rmse"]["identify"]
     assert rmse == pytest.approx(found["rmse"]["identify"], rel=1e-9)
 
