@@ -1,4 +1,4 @@
-"""`python -m pzt_ident.cli.child_process`: the command line, ended when whoever started it is gone."""
+"""The command line, ended when whoever started it is gone."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ def obey() -> None:
     os.kill(os.getpid(), signal.SIGTERM)
 
 
-if __name__ == "__main__":
+def main() -> None:
     from pzt_ident.cli.commands import main
 
     Thread(target=obey, daemon=True).start()

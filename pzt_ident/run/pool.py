@@ -28,10 +28,35 @@ def context() -> Any:
     made.set_forkserver_preload(
         ["pzt_ident.run.task", "pzt_ident.job.schema", "pzt_ident.engine.kernel", "scipy.optimize"]
     )
-    resource_tracker.ensure_running()  # it lets Ctrl-C through
-    with masked():  # neither does the server hear of it
-        forkserver.ensure_running()
+    with apart():
+        resource_tracker.ensure_running()  # it lets Ctrl-C through
+        with masked():  # neither does the server hear of it
+            forkserver.ensure_running()
     return made
+
+
+def search_path() -> list[str]:
+    """Where this process looks for modules, less the working folder of a notebook or of `python -c`: a `numpy.py`
+    beside the data would be run."""
+    return [place for place in sys.path if place]
+
+
+_starting = threading.Lock()
+
+
+@contextmanager
+def apart() -> Iterator[None]:
+    """Started inside, a process has this one's search path, less the working folder."""
+    with _starting:
+        path, flag = sys.path, os.environ.get("PYTHONSAFEPATH")
+        sys.path, os.environ["PYTHONSAFEPATH"] = search_path(), "1"
+        try:
+            yield
+        finally:
+            sys.path = path
+            del os.environ["PYTHONSAFEPATH"]
+            if flag is not None:
+                os.environ["PYTHONSAFEPATH"] = flag
 
 
 @contextmanager
@@ -113,7 +138,8 @@ def started(made: Any, entry: Callable[..., None], name: str, arguments: tuple[A
     """Our end of its pipe, and the process."""
     ours, theirs = made.Pipe(duplex=False)
     process = made.Process(target=entry, args=(*arguments, theirs), name=name, daemon=True)
-    process.start()
+    with apart():
+        process.start()
     theirs.close()
     return ours, process
 

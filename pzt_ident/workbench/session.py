@@ -24,6 +24,7 @@ from pzt_ident.errors import InputError, RunError
 from pzt_ident.files import write_json, write_text
 from pzt_ident.job.edit import edited
 from pzt_ident.job.schema import Job, load_job
+from pzt_ident.run.pool import search_path
 from pzt_ident.workbench.job_form import job_text, places
 
 SECONDS_TO_STOP = 8.0
@@ -216,7 +217,7 @@ class Session:
         self.version += 1
         self.log(join(["pzt-ident", *arguments]))
         self.process = await asyncio.create_subprocess_exec(
-            *(sys.executable, "-m", "pzt_ident.cli.child_process", *arguments, "--quiet"),
+            *command([*arguments, "--quiet"]),
             cwd=self.root,
             stdin=asyncio.subprocess.PIPE,  # open as long as this process lives
             stdout=asyncio.subprocess.DEVNULL,
@@ -246,3 +247,9 @@ class Session:
         if not done and self.process and self.process.returncode is None:
             os.killpg(self.process.pid, signal.SIGKILL)
             await asyncio.wait([self.task])
+
+
+def command(arguments: Sequence[str]) -> list[str]:
+    """What to start for `pzt-ident` with these arguments: it looks for modules where this process does."""
+    said = f"import sys; sys.path[:] = {search_path()}; from pzt_ident.cli.child_process import main; main()"
+    return [sys.executable, "-P", "-c", said, *arguments]

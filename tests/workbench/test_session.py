@@ -3,7 +3,6 @@
 import asyncio
 import json
 import subprocess
-import sys
 from shlex import split
 
 import pytest
@@ -13,7 +12,7 @@ from pzt_ident.cli.commands import main
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import Job, load_job
 from pzt_ident.workbench.job_form import job_text
-from pzt_ident.workbench.session import Session
+from pzt_ident.workbench.session import Session, command
 
 from .conftest import alone, form, measured
 
@@ -220,8 +219,8 @@ def test_a_session_that_was_cut_off_says_so(begun):
 
 
 def test_a_command_ends_with_what_started_it(tmp_path):
-    command = [sys.executable, "-m", "pzt_ident.cli.child_process", "workbench", "--no-browser"]
-    process = subprocess.Popen(command, cwd=tmp_path, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    line = command(["workbench", "--no-browser"])
+    process = subprocess.Popen(line, cwd=tmp_path, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
     assert process.stdout.readline().startswith(b"workbench: ")
     process.stdin.close()
     assert process.wait(20) != 0

@@ -1,0 +1,71 @@
+"""Files beside the data that are named like modules: none of them is run."""
+
+import subprocess
+import sys
+import sysconfig
+from importlib.metadata import packages_distributions
+from pathlib import Path
+
+import pytest
+
+from pzt_ident.workbench.session import Bench
+from workbench.conftest import alone
+
+JOB = """\
+records: [{file: data.csv, use: identify}]
+channels:
+  time: time [s]
+  axes: {x: {drive: "u [V]", response: "x [um]"}}
+model: [bouc_wen]
+optimizers: [{name: pso, population: 4, generations: 3}, {name: cma_es, budget: 40}]
+polish: false
+"""
+ARGUMENTS = ["run", "job.yaml", "--out", "out", "--no-report", "--quiet"]
+NOTEBOOK = """\
+import sys
+from pathlib import Path
+
+import h5netcdf, multiprocessing.popen_forkserver, multiprocessing.resource_tracker, pandas
+from pzt_ident.job.schema import load_job
+from pzt_ident.run.identify import run
+from pzt_ident.cli.summary import of_job
+
+job = load_job(Path("job.yaml"))
+of_job(job)  # imports what the notebook's own process takes
+sys.path.insert(0, "")
+run(job, Path("out"), report=False)
+assert sys.path[0] == ""
+"""
+SCRIPT = [str(Path(sysconfig.get_path("scripts")) / "pzt-ident"), *ARGUMENTS]
+
+
+@pytest.fixture
+def baited(tmp_path):
+    """A job beside its data and a file for every module that there is, each of which leaves its name in `ran`."""
+    (tmp_path / "job.yaml").write_text(JOB, encoding="utf-8")
+    rows = [f"{i / 100},{50 - abs(50 - i % 100)},{4 - abs(4 - i / 12.5 % 8):.3f}" for i in range(300)]
+    (tmp_path / "data.csv").write_text("time [s],u [V],x [um]\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    for name in {*sys.stdlib_module_names, *packages_distributions(), "sitecustomize", "usercustomize"}:
+        if name.isidentifier():
+            text = f"with open({str(tmp_path / 'ran')!r}, 'a') as ran: ran.write({name + ' '!r})\n"
+            (tmp_path / f"{name}.py").write_text(text, encoding="utf-8")
+    return tmp_path
+
+
+def ran(folder):
+    return (folder / "ran").read_text().split() if (folder / "ran").exists() else []
+
+
+@pytest.mark.parametrize("line", [SCRIPT, [sys.executable, "-P", "-c", NOTEBOOK]], ids=["script", "notebook"])
+def test_no_file_beside_the_data_is_run(baited, line):
+    done = subprocess.run(line, cwd=baited, capture_output=True, text=True, timeout=60)
+    assert (ran(baited), done.returncode) == ([], 0), done.stderr
+    assert (baited / "out" / "result.json").exists()
+
+
+def test_nor_by_a_command_of_the_workbench(baited):
+    bench = Bench(baited, baited / "workbench")
+    bench.folder.mkdir()
+    alone(bench._call("run", ARGUMENTS))
+    assert ran(baited) == []
+    assert (baited / "out" / "result.json").exists()
