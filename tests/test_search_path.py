@@ -69,3 +69,11 @@ def test_nor_by_a_command_of_the_workbench(baited):
     alone(bench._call("run", ARGUMENTS))
     assert ran(baited) == []
     assert (baited / "out" / "result.json").exists()
+
+
+def test_nor_as_a_module_once_python_has_found_it(baited):
+    for path in baited.glob("*.py"):
+        if path.stem not in ("json", "numpy", "click", "pydantic"):
+            path.unlink()
+    subprocess.run([sys.executable, "-m", "pzt_ident", "check", "job.yaml", "--json"], cwd=baited, check=True)
+    assert ran(baited) == []
