@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from shlex import quote
@@ -34,6 +35,7 @@ class Group(click.Group):
     """Turns errors into one clear line: exit code 2 for bad input, 1 for a failure, 130 for an interrupt."""
 
     def invoke(self, ctx: click.Context) -> Any:
+        warnings.formatwarning = lambda message, *place, **more: f"Warning: {message}\n"
         try:
             return super().invoke(ctx)
         except (click.ClickException, click.exceptions.Exit, click.Abort):

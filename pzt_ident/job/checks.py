@@ -145,7 +145,7 @@ def _effects(document: Document, words: tuple[str, ...], earlier: Earlier) -> No
         if word in words[:i]:
             document.fault(at, f"duplicate effect {word!r}", "keep one of the two")
         elif word not in known and word in blocks:
-            document.fault(at, f"{word!r} is not an effect", f"move it to `model: [{word}]`")
+            document.fault(at, f"{blocks[word].name!r} is not an effect", f"move it to `model: [{word}]`")
         elif word not in known:
             document.fault(at, f"unknown effect {word!r}", nearest(word, known))
         elif word in blocks and "model" in earlier and word not in terms and _is(word, "Term"):

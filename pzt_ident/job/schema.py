@@ -167,8 +167,11 @@ def _note(document: Document, error: ValidationError) -> None:
     """Put pydantic's complaints into the user's words and places; those of a union's members into one."""
     wrong: dict[Loc, list[tuple[str, str]]] = {}
     for item in error.errors(include_url=False):
-        loc, kind = item["loc"], item["type"]
-        if kind in ("extra_forbidden", "unexpected_keyword_argument"):
+        loc, kind, raised = item["loc"], item["type"], item.get("ctx", {}).get("error")
+        if isinstance(raised, InputError):
+            said = ": ".join(part for part in (raised.where, raised.message) if part)
+            document.fault(loc, said, raised.remedy)
+        elif kind in ("extra_forbidden", "unexpected_keyword_argument"):
             remedy = nearest(str(loc[-1]), _known_keys(loc[:-1]))
             document.fault(loc, f"unknown key {loc[-1]!r}", remedy, at_key=True)
         elif kind == "missing" and isinstance(loc[-1], str):

@@ -6,11 +6,12 @@ import importlib
 import importlib.util
 import pkgutil
 import sys
+import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, NoReturn, Protocol, TypeVar
 
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.model.contract import check
@@ -22,7 +23,7 @@ class Registry(Generic[T]):
     """Classes by their file's name. Folders are imported word by word at the first look-up; others add theirs by
     entry points of `group`, or by `register` in a file of theirs.
 
-    Raises InputError with the nearest words for an unknown one.
+    Raises InputError with the nearest words for an unknown one, and for a word that several claim.
     """
 
     def __init__(self, kind: str, packages: tuple[str, ...], group: str) -> None:
@@ -30,14 +31,18 @@ class Registry(Generic[T]):
         self._items: dict[str, T] = {}
 
     def register(self, item: T) -> T:
-        """Raises InputError for a class that breaks the contract of its kind."""
+        """Raises InputError for a class that breaks the contract of its kind, or whose word is taken."""
+        package, _, word = item.__module__.rpartition(".")
+        taken = word in self._files() or self._items.get(word, item).__module__ != item.__module__
+        if taken and package not in self.packages:
+            self._refuse(word, item.__module__, "rename the module")
         check(item, self.group)
-        item.name = item.__module__.rpartition(".")[2]
-        self._items[item.name] = item
+        item.name = word
+        self._items[word] = item
         return item
 
     def __getitem__(self, word: str) -> T:
-        if word not in self._items:
+        if word not in self._items or word in self._entries:
             self._load(word)
         if word not in self._items:
             raise InputError(f"unknown {self.kind} {word!r}", remedy=nearest(word, self.words()))
@@ -47,15 +52,22 @@ class Registry(Generic[T]):
         return word in self.words()
 
     def __iter__(self) -> Iterator[T]:
-        return (self[word] for word in self.words())
+        return (self[word] for word in self.usable())
 
     def words(self) -> list[str]:
         """Every known word, without importing what stands behind it."""
-        return sorted(set(self._items) | set(self._files()) | {entry.name for entry in self._entries})
+        return sorted({*self._items, *self._files(), *self._entries})
 
-    def folder(self, word: str) -> str:
-        """The last part of the package that the word's class was declared in, for example `effects`."""
-        return self[word].__module__.rpartition(".")[0].rpartition(".")[2]
+    def usable(self) -> list[str]:
+        """The words that something stands behind; warns of what an entry point spoils."""
+        found = []
+        for word in self.words():
+            try:
+                self._load(word)
+                found.append(word)
+            except InputError as error:
+                warnings.warn(str(error), stacklevel=2)
+        return found
 
     def _files(self) -> dict[str, str]:
         found = {}
@@ -66,15 +78,40 @@ class Registry(Generic[T]):
         return found
 
     @cached_property
-    def _entries(self) -> tuple[EntryPoint, ...]:
-        return tuple(entry_points(group=self.group))
+    def _entries(self) -> dict[str, list[EntryPoint]]:
+        found: dict[str, list[EntryPoint]] = {}
+        for entry in entry_points(group=self.group):
+            found.setdefault(entry.name, []).append(entry)
+        return found
 
     def _load(self, word: str) -> None:
-        if path := self._files().get(word):
+        path, entries = self._files().get(word), self._entries.get(word, [])
+        for entry in entries if path else entries[1:]:
+            self._refuse(word, said(entry), "give the entry point another name, or uninstall it")
+        if path:
             importlib.import_module(path)
-        for entry in self._entries:
-            if entry.name == word:
-                self._items[word] = entry.load()
+        for entry in entries:
+            item = loaded(entry)
+            if self._items.setdefault(word, item) is not item:
+                self._refuse(word, said(entry), "give the entry point another name, or uninstall it")
+
+    def _refuse(self, word: str, where: str, remedy: str) -> NoReturn:
+        owner = "a built-in" if word in self._files() else "another"
+        raise InputError(f"{word!r} is taken by {owner} {self.kind}", where=where, remedy=remedy)
+
+
+def said(entry: EntryPoint) -> str:
+    by = f" of {entry.dist.name} {entry.dist.version}" if entry.dist else ""
+    return f"entry point `{entry.name} = {entry.value}`{by}"
+
+
+def loaded(entry: EntryPoint) -> Any:
+    """What it stands for. Raises InputError where that fails."""
+    try:
+        return entry.load()
+    except Exception as error:
+        message = error.message if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
+        raise InputError(message, where=said(entry), remedy="mend its package, or uninstall it") from error
 
 
 class Choice(Protocol):
@@ -102,11 +139,19 @@ class Blocks(Registry[Any]):
             return
         if not path.is_file():
             raise InputError("no such file", where=where, remedy="give the Python file of an effect")
-        if word in self.words() or not word.isidentifier():
-            raise InputError(f"{word!r} cannot name an effect", where=where, remedy="rename the file")
-        self._execute(module, path)
-        if word not in self._items:
-            raise InputError("registers no block", where=where, remedy="decorate its class with `@blocks.register`")
+        if not word.isidentifier():
+            remedy = "rename the file: letters, digits and _, no digit first"
+            raise InputError(f"{word!r} is no word for an effect", where=where, remedy=remedy)
+        if word in self.words():
+            self._refuse(word, where, "rename the file")
+        try:
+            self._execute(module, path)
+            if word not in self._items:
+                raise InputError("registers no block", where=where, remedy="decorate its class with `@blocks.register`")
+        except InputError:
+            sys.modules.pop(module, None)
+            self._items.pop(word, None)
+            raise
 
     def _execute(self, module: str, path: Path) -> None:
         spec = importlib.util.spec_from_file_location(module, path.resolve())
@@ -115,8 +160,9 @@ class Blocks(Registry[Any]):
         sys.modules[module] = made = importlib.util.module_from_spec(spec)
         try:
             spec.loader.exec_module(made)
+        except InputError:
+            raise
         except Exception as error:
-            del sys.modules[module]
             raise InputError(f"{type(error).__name__}: {error}", where=str(path), remedy="mend the file") from error
 
     def chain(self, items: Iterable[str | Choice]) -> list[Any]:
@@ -134,7 +180,7 @@ class Blocks(Registry[Any]):
 
     def effects(self) -> list[str]:
         """The words of what may be missing from a model."""
-        return [word for word in self.words() if self.is_effect(word)]
+        return [word for word in self.usable() if self.is_effect(word)]
 
     def is_effect(self, word: str) -> bool:
         """Whether a block may be missing from a model: it says what to do about it on the rig."""

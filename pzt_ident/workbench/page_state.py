@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 import json
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -122,13 +121,11 @@ def files_in(root: Path) -> list[str]:
     return sorted(path.name for path in found if path.suffix.lower() in DATA and not path.is_symlink())
 
 
-@cache
 def chainable() -> list[dict[str, Any]]:
     """Blocks that a model may be made of."""
-    return [described(word) for word in blocks.words() if not blocks.is_effect(word)]
+    return [described(word) for word in blocks.usable() if not blocks.is_effect(word)]
 
 
-@cache
 def effects() -> list[dict[str, Any]]:
     return [described(word) for word in blocks.effects()]
 

@@ -112,7 +112,8 @@ def test_what_a_file_breaks_is_said_of_the_job(folder, old, new, expected):
     [
         ("own.py", "x = 1", "registers no block"),
         ("own.py", "1 / 0", "ZeroDivisionError"),
-        ("creep.py", "", "cannot name an effect"),
+        ("creep.py", "", "'creep' is taken by a built-in block or effect"),
+        ("my-gain.py", "", "'my-gain' is no word for an effect"),
         ("none.py", None, "no such file"),
     ],
 )
@@ -128,3 +129,89 @@ def test_a_word_that_rules_out_nothing(folder):
     (folder / "job.yaml").write_text(JOB + "rule_out: [crep]\n")
     with pytest.raises(InputError, match="unknown effect 'crep'"):
         load_job(folder / "job.yaml", plugins=True)
+
+
+def test_a_file_that_was_mended_is_read_again(tmp_path):
+    path = tmp_path / "own.py"
+    for text, said in (("x = 1", "registers no block"), ("1 / 0", "ZeroDivisionError"), (OWN + "1 / 0", "Zero")):
+        path.write_text(text)
+        with pytest.raises(InputError, match=said):
+            blocks.plug(path)
+    path.write_text(OWN)
+    blocks.plug(path)
+    assert "own" in blocks
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "own.py").write_text(OWN)
+    with pytest.raises(InputError, match="'own' is taken by another block or effect"):
+        blocks.plug(tmp_path / "other" / "own.py")
+    del blocks._items["own"], sys.modules["pzt_ident_plugins.own"]
+
+
+OWN = "from pzt_ident.effects.creep import Creep\nfrom pzt_ident.model.registry import blocks\n"
+OWN += "@blocks.register\nclass Own(Creep): pass\n"
+
+
+@pytest.fixture
+def installed(tmp_path, monkeypatch):
+    """A distribution with these entry points and modules; `own` is one of an effect."""
+
+    def install(name, entries, **modules):
+        about = tmp_path / f"{name}-1.0.dist-info"
+        about.mkdir()
+        (about / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
+        (about / "entry_points.txt").write_text("[pzt_ident.model.block]\n" + entries)
+        for module, text in modules.items():
+            (tmp_path / f"{module}.py").write_text(text)
+            monkeypatch.delitem(sys.modules, module, raising=False)
+
+    monkeypatch.syspath_prepend(tmp_path)
+    before = dict(blocks._items)
+    monkeypatch.delitem(vars(blocks), "_entries", raising=False)
+    yield install
+    vars(blocks).pop("_entries", None)
+    blocks._items.clear()
+    blocks._items.update(before)
+
+
+def test_an_entry_point_brings_an_effect(installed):
+    installed("mylab", "own = own:Own\n", own=OWN)
+    assert "own" in blocks.effects() and call("show", "own").exit_code == 0
+    assert blocks.folder("own") == "effects"
+
+
+def test_no_entry_point_replaces_a_built_in_effect(installed):
+    installed("mylab", "creep = own:Own\n", own=OWN)
+    shown = call("show", "creep")
+    assert (shown.exit_code, shown.stdout) == (2, "")
+    assert "`creep = own:Own` of mylab 1.0: 'creep' is taken by a built-in block or effect" in shown.stderr
+    assert "own" not in sys.modules
+    with pytest.warns(UserWarning, match="is taken by a built-in"):
+        assert "drift" in blocks.effects()
+
+
+def test_no_module_replaces_a_built_in_effect(installed):
+    installed("mylab", "fine = creep:Own\n", creep=OWN)
+    with pytest.raises(InputError, match=r"`fine = creep:Own` of mylab 1\.0: 'creep' is taken by a built-in"):
+        blocks["fine"]
+    assert blocks["creep"].__module__ == "pzt_ident.effects.creep"
+
+
+def test_two_entry_points_of_one_word_are_both_refused(installed):
+    installed("mylab", "own = own:Own\n", own=OWN)
+    installed("yourlab", "own = other:Own\n", other=OWN)
+    with pytest.raises(InputError, match="'own' is taken by another block or effect"):
+        blocks["own"]
+
+
+def test_an_entry_point_that_fails_leaves_the_others(installed, folder):
+    installed("mylab", "own = missing_module:Own\n")
+    said = call("show", "own")
+    assert said.exit_code == 2
+    assert "`own = missing_module:Own` of mylab 1.0: ModuleNotFoundError: No module named" in said.stderr
+    with pytest.warns(UserWarning, match="missing_module"):
+        assert call("list", "effects").exit_code == 0
+        (folder / "job.yaml").write_text(JOB.replace("plugins: [cubic_gain.py]\n", "").replace("cubic_gain", "creep"))
+        assert call("check", folder / "job.yaml").exit_code == 0
+        (folder / "job.yaml").write_text(JOB.replace("plugins: [cubic_gain.py]\n", "").replace("cubic_gain", "own"))
+        said = call("check", folder / "job.yaml")
+    assert said.exit_code == 2 and "job.yaml" in said.stderr and "of mylab 1.0: ModuleNotFoundError" in said.stderr
