@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from pzt_ident.cli import options as shell
 from pzt_ident.cli.options import (
     EXISTING,
     Group,
@@ -225,6 +226,7 @@ def check(job: Path, plugins: bool, as_json: bool, quiet: bool) -> None:
 
 @main.command("list")
 @click.argument("kind", type=click.Choice(["blocks", "effects", "optimizers"]))
+@shell.plugging
 @output
 def list_(kind: str, as_json: bool, quiet: bool) -> None:
     """List the words that a job may use."""
@@ -237,6 +239,7 @@ def list_(kind: str, as_json: bool, quiet: bool) -> None:
 
 @main.command()
 @click.argument("name")
+@shell.plugging
 @output
 def show(name: str, as_json: bool, quiet: bool) -> None:
     """Show what a block, effect or optimizer declares."""
@@ -256,11 +259,8 @@ def init(folder: Path, as_json: bool, quiet: bool) -> None:
 
     written = write_example(folder)
     job = folder / "job.yaml"
-
-    def say() -> None:
-        click.echo("".join(f"wrote {path}\n" for path in written) + f"next: pzt-ident run {quote(str(job))}")
-
-    answer({"written": [str(path) for path in written], "job": str(job)}, say, as_json, quiet)
+    said = "".join(f"wrote {path}\n" for path in written) + f"next: pzt-ident run {quote(str(job))}"
+    answer({"written": [str(path) for path in written], "job": str(job)}, lambda: click.echo(said), as_json, quiet)
 
 
 @main.command()
@@ -276,8 +276,7 @@ def demo(out: Path, no_browser: bool, as_json: bool, quiet: bool) -> None:
     from pzt_ident.report.page import write_report
     from pzt_ident.run.improve import improve
 
-    silent = as_json or quiet
-    job = write_demo(out)
+    silent, job = as_json or quiet, write_demo(out)
     if not silent:
         click.echo(f"wrote {job}, which knows of no effect, and a measurement with effects hidden in it", err=True)
     with listening(silent) as listen:

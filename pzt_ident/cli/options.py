@@ -73,6 +73,22 @@ def trusting(command: Command) -> Command:
     return click.option("--plugins", is_flag=True, help=said)(command)
 
 
+def plugging(command: Command) -> Command:
+    """--plugins of a command that reads no job."""
+
+    def load(ctx: click.Context, option: click.Parameter, paths: tuple[Path, ...]) -> None:
+        from pzt_ident.job.schema import load_plugins
+
+        for path in () if ctx.resilient_parsing else paths:
+            load_plugins(path)
+
+    said = "Load this Python file, or those of this job's `plugins`: they run as code. Can be given several times."
+    several = click.option(
+        "--plugins", metavar="JOB-or-FILE", type=EXISTING, multiple=True, callback=load, expose_value=False, help=said
+    )
+    return several(command)
+
+
 def searching(command: Command) -> Command:
     """--workers and --no-report."""
     command = reporting(command)

@@ -20,6 +20,7 @@ from pzt_ident.job.chain import ChainParts, MadeChain
 from pzt_ident.job.document import Document, Fault, Loc, reject
 from pzt_ident.job.normalise import written_out
 from pzt_ident.job.sections import Channels, Choice, Item, Limits, Repeats, Setting, Stopping
+from pzt_ident.model.registry import blocks
 
 if TYPE_CHECKING:
     from pzt_ident.model.chain import Chain
@@ -68,15 +69,20 @@ class Job(BaseModel):
         Raises InputError that lists every fault.
         """
         document = Document(text, file, folder, plugins)
-        if not isinstance(document.data, dict):
-            kind = "empty" if document.data is None else "a list" if isinstance(document.data, list) else "one value"
-            reject(file, [Fault(1, 1, "", f"the job is {kind}", "write `name: ...`, `records: ...` and so on")])
-        data = {"name": _folder_name(file)} | written_out(document)
-        job = cls._validated(document, data)
+        job = cls._read(document)
         if job is None or document.faults:
             reject(file, document.faults)
         job._text, job._folder, job._made = text, folder, document.chain
         return job
+
+    @classmethod
+    def _read(cls, document: Document) -> Job | None:
+        """The job, or None with every fault noted."""
+        if not isinstance(document.data, dict):
+            kind = "empty" if document.data is None else "a list" if isinstance(document.data, list) else "one value"
+            advice = "write `name: ...`, `records: ...` and so on"
+            reject(document.file, [Fault(1, 1, "", f"the job is {kind}", advice)])
+        return cls._validated(document, {"name": _folder_name(document.file)} | written_out(document))
 
     @classmethod
     def _validated(cls, document: Document, data: dict[str, Any]) -> Job | None:
@@ -122,6 +128,23 @@ def _folder_name(file: str) -> str:
 def load_job(path: Path, plugins: bool = False) -> Job:
     """Read a job file, see `Job.from_text`. Raises InputError that lists every fault, or that there is no file."""
     path = Path(path)
+    return Job.from_text(_text_of(path), path.parent, str(path), plugins)
+
+
+def load_plugins(path: Path) -> None:
+    """Load a file of code, or those that a job lists, whatever else may be wrong with the job."""
+    if path.suffix == ".py":
+        blocks.plug(path)
+        return
+    document = Document(_text_of(path), str(path), path.parent, plugins=True)
+    Job._read(document)
+    if faults := [fault for fault in document.faults if fault.key.startswith("plugins")]:
+        reject(str(path), faults)
+    if not document.data.get("plugins"):
+        raise InputError("lists no `plugins`", where=str(path), remedy="give a job that does, or the Python file")
+
+
+def _text_of(path: Path) -> str:
     if path.is_dir():
         raise InputError("is a folder", where=str(path), remedy=f"give the job file, such as {path / 'job.yaml'}")
     if not path.exists():
@@ -133,13 +156,12 @@ def load_job(path: Path, plugins: bool = False) -> Job:
     except OSError as error:
         raise InputError(error.strerror or str(error), where=str(path), remedy="make it readable") from None
     try:
-        text = raw.decode("utf-8-sig")
+        return raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         before = raw[: error.start].rpartition(b"\n")
         line, column = raw.count(b"\n", 0, error.start) + 1, len(before[2]) + 1
         message = f"byte 0x{raw[error.start]:02x} is not UTF-8"
         reject(str(path), [Fault(line, column, "", message, "save the file as UTF-8")])
-    return Job.from_text(text, path.parent, str(path), plugins)
 
 
 _EXPECTED = {

@@ -1,5 +1,6 @@
 """An effect in a file of the user's: joins the catalogue where it is asked for, and only there."""
 
+import json
 import re
 import sys
 from pathlib import Path
@@ -78,6 +79,45 @@ def test_what_the_user_rules_out_does_not(folder):
     ruled.write_text(JOB.replace("effects: [cubic_gain]", "rule_out: [cubic_gain, creep]"))
     with opened_case(load_job(ruled, plugins=True), folder / "out") as (case, _):
         assert not {"cubic_gain", "creep"} & set(applicable(case, ()))
+
+
+@pytest.mark.parametrize("source", ["cubic_gain.py", "job.yaml", "broken.yaml"])
+def test_it_is_listed_and_shown(folder, source):
+    (folder / "broken.yaml").write_text(JOB.replace("bouc_wen", "bouc_wenn"))
+    assert "cubic_gain" in json.loads(call("list", "effects", "--json", "--plugins", folder / source).stdout)
+    shown = call("show", "cubic_gain", "--plugins", folder / source)
+    assert shown.stdout.startswith("cubic_gain (effects)\n")
+    assert "To do: Linearise the drive" in shown.stdout
+
+
+def test_it_is_neither_without_its_file(folder):
+    assert "cubic_gain" not in json.loads(call("list", "effects", "--json").stdout)
+    assert "unknown word 'cubic_gain'" in call("show", "cubic_gain").stderr
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("none.py", None, "none.py: no such file"),
+        ("none.yaml", None, "none.yaml: no such file"),
+        ("job.yaml", "name: own\n", "job.yaml: lists no `plugins`\n  give a job that does"),
+        ("job.yaml", "- own\n", "job.yaml:1:1: the job is a list"),
+        ("job.yaml", "plugins: own.py\n", "job.yaml:1:10: plugins: 'own.py' is not a list"),
+        ("job.yaml", "plugins: [own.py]\n", "job.yaml:1:11: plugins[0]: no such file"),
+    ],
+)
+def test_what_brings_no_code_is_said(tmp_path, name, text, said):
+    if text is not None:
+        (tmp_path / name).write_text(text)
+    ended = call("show", "creep", "--plugins", tmp_path / name)
+    assert ended.exit_code == 2 and said in ended.stderr
+
+
+def test_completion_in_a_shell_runs_no_code(folder):
+    (folder / "cubic_gain.py").write_text("raise SystemExit('ran')")
+    words = {"COMP_WORDS": f"pzt-ident show --plugins {folder / 'cubic_gain.py'} ", "COMP_CWORD": "4"}
+    ended = CliRunner().invoke(main, [], prog_name="pzt-ident", env={"_PZT_IDENT_COMPLETE": "bash_complete"} | words)
+    assert ended.exit_code == 0 and "ran" not in ended.output
 
 
 def test_a_job_elsewhere_still_finds_its_files(folder):
