@@ -301,8 +301,9 @@ def demo(out: Path, no_browser: bool, as_json: bool, quiet: bool) -> None:
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen at.")
 @click.option("--allow-network", is_flag=True, help="Let --host be one that other machines can reach.")
 @click.option("--no-browser", is_flag=True, help="Do not open the browser.")
+@trusting
 def workbench(
-    source: Path | None, out: Path | None, port: int, host: str, allow_network: bool, no_browser: bool
+    source: Path | None, out: Path | None, port: int, host: str, allow_network: bool, no_browser: bool, plugins: bool
 ) -> None:
     """See and do all of it in the browser, on a job, a measurement, or one that you drop onto the page.
 
@@ -319,7 +320,7 @@ def workbench(
             show_in_browser(address)
 
     with suppress(KeyboardInterrupt):
-        serve(source, folder, host, port, allow_network, ready)
+        serve(source, folder, host, port, allow_network, ready, plugins)
 
 
 @main.command()

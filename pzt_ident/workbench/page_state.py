@@ -27,6 +27,7 @@ def state(session: Session) -> dict[str, Any]:
     """Everything but the signals; empty parts where there is nothing yet."""
     chain = session.chain()
     step = session.step() if chain else None
+    job = job_of(session) if step else None  # read first: it may bring blocks
     return {
         "version": session.version,
         "folder": session.relative(session.folder),
@@ -40,7 +41,7 @@ def state(session: Session) -> dict[str, Any]:
         "since": session.since,
         "failure": session.failure,
         **over_axes(session),
-        "job": job_of(session) if step else None,
+        "job": job,
         "result": read(step / "run" / "result.json") if step else None,
         "misfit": read(step / "run" / "residuals.json") if step else None,
         "diagnosis": diagnosis_of(step) if step else None,

@@ -14,9 +14,17 @@ from pzt_ident.workbench.session import Session
 LOOPBACK = ("127.0.0.1", "localhost", "::1")
 
 
-def serve(source: Path | None, folder: Path, host: str, port: int, exposed: bool, ready: Callable[[str], None]) -> None:
+def serve(
+    source: Path | None,
+    folder: Path,
+    host: str,
+    port: int,
+    exposed: bool,
+    ready: Callable[[str], None],
+    plugins: bool = False,
+) -> None:
     """Serve until interrupted; `ready` is told the address with its token. `source` is a job, or a file of data that
-    the page opens with.
+    the page opens with. With `plugins`, the files of code that jobs name are loaded.
 
     Raises InputError where the host is another machine's and `exposed` is not set, or the port is taken.
     """
@@ -26,7 +34,7 @@ def serve(source: Path | None, folder: Path, host: str, port: int, exposed: bool
         remedy = "add --allow-network if whoever can reach it may read and run everything in this folder"
         raise InputError(f"{host} can be reached from other machines", where="--host", remedy=remedy)
     root = Path.cwd()
-    session = Session(root, folder)
+    session = Session(root, folder, plugins)
     given = opened(session, source, root) if source else ""
     bound = bind(host, port)
     number = bound.getsockname()[1]

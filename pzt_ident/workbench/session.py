@@ -32,9 +32,11 @@ CUT_OFF = "This was ended before it was finished. Run goes on from here."
 
 
 class Session:
-    """One session in `folder`, which lies in `root`; `version` counts what has happened, so that a page can follow."""
+    """One session in `folder`, which lies in `root`; `version` counts what has happened, so that a page can follow.
+    `plugins`: whether files of code that its jobs name are loaded."""
 
-    def __init__(self, root: Path, folder: Path) -> None:
+    def __init__(self, root: Path, folder: Path, plugins: bool = False) -> None:
+        self.plugins = plugins
         self.root, self.folder, self.version = root.resolve(), folder.resolve(), 0
         self.stage, self.since, self.failure = "", 0.0, ""
         self.closing: Callable[[], bool] = lambda: False
@@ -62,7 +64,7 @@ class Session:
         return self.folder / "steps" / str(number or self.at)
 
     def job(self) -> Job:
-        return load_job(self.step() / "job.yaml")
+        return load_job(self.step() / "job.yaml", self.plugins)
 
     def chain(self) -> list[dict[str, Any]]:
         """The steps from the first to the one shown."""
@@ -81,7 +83,7 @@ class Session:
 
     def open(self, path: Path) -> None:
         """A first step from a job file of the user's. Raises InputError where the session began with another."""
-        job, first = load_job(path), self.folder / "steps" / "1"
+        job, first = load_job(path, self.plugins), self.folder / "steps" / "1"
         text = edited(job, job.effects, first)
         if not self.steps:
             self._add(text, parent=0, change="as given")
@@ -118,12 +120,16 @@ class Session:
         before, folder = self.step(), self.folder / "steps" / str(self._next)
         self._add(edited(self.job(), effects, folder, words), self.at, change)
         paths = [self.relative(place / "job.yaml") for place in (before, folder)]
-        self.log(join(["pzt-ident", command, paths[0], *said, "-o", paths[1]]))
+        self.log(join(["pzt-ident", command, paths[0], *said, "-o", paths[1], *self._trust]))
 
     def undo(self) -> None:
         """Back to the step before, from the first one to the measurement; what was made stays in its folder."""
         if self.at:
             self.go(self.steps[self.at - 1]["parent"])
+
+    @property
+    def _trust(self) -> list[str]:
+        return ["--plugins"] if self.plugins else []
 
     @property
     def _next(self) -> int:
@@ -146,7 +152,7 @@ class Session:
 
         folder = self.folder / "steps" / str(self._next)
         folder.mkdir(parents=True, exist_ok=True)  # paths of a job lead through it
-        summary_of(Job.from_text(text, folder, "job.yaml"))
+        summary_of(Job.from_text(text, folder, "job.yaml", self.plugins))
         write_text(folder / "job.yaml", text)
         self.steps.append({"number": self._next, "parent": parent, "change": change})
         self.at = len(self.steps)
@@ -169,10 +175,11 @@ class Session:
         """What fills a step: a name, the file that comes last, and the arguments of `pzt-ident`."""
         job, run, diagnosis = (self.relative(step / name) for name in ("job.yaml", "run", "diagnosis"))
         begun = (step / "run" / "environment.json").exists()
-        search = ["resume", run, "--no-report"] if begun else ["run", job, "--out", run, "--no-report"]
+        search = ["resume", run] if begun else ["run", job, "--out", run]
+        rest = ["--no-report", *self._trust]
         return [
-            ("run", step / "run" / "result.json", search),
-            ("diagnose", step / "diagnosis" / "diagnosis.json", ["diagnose", job, "--out", diagnosis, "--no-report"]),
+            ("run", step / "run" / "result.json", [*search, *rest]),
+            ("diagnose", step / "diagnosis" / "diagnosis.json", ["diagnose", job, "--out", diagnosis, *rest]),
         ]
 
     def _traces(self) -> list[Path]:

@@ -3,6 +3,7 @@
 import asyncio
 import json
 import subprocess
+import sys
 from shlex import split
 
 import pytest
@@ -11,7 +12,9 @@ from click.testing import CliRunner
 from pzt_ident.cli.commands import main
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import Job, load_job
+from pzt_ident.model.registry import blocks
 from pzt_ident.workbench.job_form import job_text
+from pzt_ident.workbench.page_state import state
 from pzt_ident.workbench.session import Session, command
 
 from .conftest import alone, form, measured
@@ -92,6 +95,46 @@ def test_a_block_keeps_its_settings(client, session):
     assert client.get("/api/state").json()["job"]["model"] == ["bouc_wen", "rod_reduced"]
     session.choose(["prandtl_ishlinskii", "rod_reduced"])
     assert "elements: 4" in session.job().text
+
+
+OWN = """
+from pzt_ident.effects.creep import Creep
+from pzt_ident.model.registry import blocks
+@blocks.register
+class Slow(Creep):
+    "Mine."
+"""
+
+
+@pytest.fixture
+def own(session):
+    """A job with an effect of the user's in it, that cannot be read without its file."""
+    measured(session.root / "data.csv")
+    (session.root / "slow.py").write_text(OWN)
+    (session.root / "job.yaml").write_text(
+        "plugins: [slow.py]\n" + job_text(form()).replace("effects: []", "effects: [slow]")
+    )
+    yield session.root / "job.yaml"
+    blocks._items.pop("slow", None)
+    sys.modules.pop("pzt_ident_plugins.slow", None)
+
+
+def test_a_file_of_code_waits_to_be_asked_for(session, own):
+    with pytest.raises(InputError, match=r"slow\.py would run as code\n  read it, then add --plugins"):
+        session.open(own)
+    said = CliRunner().invoke(main, ["workbench", "job.yaml", "--no-browser"])
+    assert said.exit_code == 2 and "would run as code" in said.stderr and session.chain() == []
+
+
+def test_the_users_own_effects_are_listed_and_handed_on(session, own):
+    trusting = Session(session.root, session.folder, plugins=True)
+    trusting.open(own)
+    trusting.remove("slow")
+    assert "slow" in {item["name"] for item in state(trusting)["effects"]}
+    assert "slow" not in {item["name"] for item in state(trusting)["blocks"]}
+    assert all(line[-1] == "--plugins" for _, _, line in trusting.commands(trusting.step()))
+    assert trusting.said()[-1].endswith("--plugins")
+    assert trusting.job().plugins == ("../../../slow.py",)
 
 
 def test_a_session_is_of_one_job(begun):
