@@ -32,11 +32,11 @@ class Registry(Generic[T]):
 
     def register(self, item: T) -> T:
         """Raises InputError for a class that breaks the contract of its kind, or whose word is taken."""
+        check(item, self.group)
         package, _, word = item.__module__.rpartition(".")
         taken = word in self._files() or self._items.get(word, item).__module__ != item.__module__
         if taken and package not in self.packages:
             self._refuse(word, item.__module__, "rename the module")
-        check(item, self.group)
         item.name = word
         self._items[word] = item
         return item
@@ -185,6 +185,10 @@ class Blocks(Registry[Any]):
     def is_effect(self, word: str) -> bool:
         """Whether a block may be missing from a model: it says what to do about it on the rig."""
         return bool(self[word].remedy)
+
+    def folder(self, word: str) -> str:
+        """The last part of the package that the word's class was declared in, for example `hysteresis`."""
+        return str(self[word].__module__.rpartition(".")[0].rpartition(".")[2])
 
     def kind_of(self, word: str) -> str:
         """`effects`, or the folder of a block that a model is made of: `hysteresis`, `mechanics`."""

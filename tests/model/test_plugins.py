@@ -188,7 +188,7 @@ def test_a_file_that_was_mended_is_read_again(tmp_path):
 
 
 OWN = "from pzt_ident.effects.creep import Creep\nfrom pzt_ident.model.registry import blocks\n"
-OWN += "@blocks.register\nclass Own(Creep): pass\n"
+OWN += "@blocks.register\nclass Own(Creep):\n    '''Creep of one's own.'''\n"
 
 
 @pytest.fixture
@@ -199,7 +199,7 @@ def installed(tmp_path, monkeypatch):
         about = tmp_path / f"{name}-1.0.dist-info"
         about.mkdir()
         (about / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
-        (about / "entry_points.txt").write_text("[pzt_ident.model.block]\n" + entries)
+        (about / "entry_points.txt").write_text("[pzt_ident.block]\n" + entries)
         for module, text in modules.items():
             (tmp_path / f"{module}.py").write_text(text)
             monkeypatch.delitem(sys.modules, module, raising=False)

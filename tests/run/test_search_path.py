@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from pzt_ident.workbench.session import Bench
+from pzt_ident.workbench.session import Session
 from workbench.conftest import alone
 
 JOB = """\
@@ -64,7 +64,7 @@ def test_no_file_beside_the_data_is_run(baited, line):
 
 
 def test_nor_by_a_command_of_the_workbench(baited):
-    bench = Bench(baited, baited / "workbench")
+    bench = Session(baited, baited / "workbench")
     bench.folder.mkdir()
     alone(bench._call("run", ARGUMENTS))
     assert ran(baited) == []
