@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -94,7 +94,7 @@ def _model(document: Document, items: tuple[str | Choice, ...], earlier: Earlier
     if not items:
         document.fault(("model",), "the model has no block", "list at least one, see `pzt-ident list blocks`")
     folders: dict[str, str] = {}
-    operators = [word for word in blocks.words() if not blocks.is_effect(word)]
+    operators = [word for word in blocks.usable() if not blocks.is_effect(word)]
     for i, item in enumerate(items):
         word, at = word_of(item), document.reach(("model", i, "name"))
         if word not in blocks:
@@ -116,16 +116,23 @@ def _plugins(document: Document, files: tuple[str, ...], earlier: Earlier) -> No
         if not document.plugins:
             document.fault(("plugins", i), f"{file} would run as code", "read it, then add --plugins to the command")
             continue
-        try:
-            blocks.plug(document.folder / file)
-        except InputError as error:
-            document.fault(("plugins", i), error.message, error.remedy)
+        path = document.folder / file
+        with _noted(document, ("plugins", i), str(path)):
+            blocks.plug(path)
     for i, word in enumerate(Path(file).stem for file in files):
         if document.plugins and word in blocks:
-            try:
+            with _noted(document, ("plugins", i)):
                 check_loaded(blocks[word], blocks)
-            except InputError as error:
-                document.fault(("plugins", i), f"{error.where}: {error.message}", error.remedy)
+
+
+@contextmanager
+def _noted(document: Document, at: Loc, known: str = "") -> Iterator[None]:
+    """An error becomes a fault at a place, with where it was found unless that is known."""
+    try:
+        yield
+    except InputError as error:
+        where = "" if error.where in ("", known) else f"{error.where}: "
+        document.fault(at, where + error.message, error.remedy)
 
 
 def _rule_out(document: Document, words: tuple[str, ...], earlier: Earlier) -> None:

@@ -216,7 +216,7 @@ def installed(tmp_path, monkeypatch):
 def test_an_entry_point_brings_an_effect(installed):
     installed("mylab", "own = own:Own\n", own=OWN)
     assert "own" in blocks.effects() and call("show", "own").exit_code == 0
-    assert blocks.folder("own") == "effects"
+    assert blocks.kind_of("own") == "effects"
 
 
 def test_no_entry_point_replaces_a_built_in_effect(installed):

@@ -28,10 +28,10 @@ from pathlib import Path
 import h5netcdf, multiprocessing.popen_forkserver, multiprocessing.resource_tracker, pandas
 from pzt_ident.job.schema import load_job
 from pzt_ident.run.identify import run
-from pzt_ident.cli.summary import of_job
+from pzt_ident.run.summary import summary_of
 
 job = load_job(Path("job.yaml"))
-of_job(job)  # imports what the notebook's own process takes
+summary_of(job)  # imports what the notebook's own process takes
 sys.path.insert(0, "")
 run(job, Path("out"), report=False)
 assert sys.path[0] == ""
