@@ -127,8 +127,9 @@ def covariance_of(jacobian: Array, residual: Array, blocks: int = 40) -> Array:
     sums = np.array([part.sum(axis=0) for part in parts])
     meat = sums.T @ sums
     white = residual @ residual / max(1, residual.size - s.size)
-    meat = np.maximum(np.diag(meat), white)  # an unseen direction has no gradient of its own
-    return (vt.T / seen**2 * meat) @ vt
+    meat += np.diag(np.maximum(white - np.diag(meat), 0))  # an unseen direction has no gradient of its own
+    turn = vt.T / seen
+    return turn @ meat @ turn.T
 
 
 def flat_share(problem: Problem, point: Array, steps: int = 24) -> Array:

@@ -1,0 +1,87 @@
+"""Standard errors against closed forms, and against the scatter of estimates under repeated noise."""
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+from pzt_ident.model.chain import Chain
+from pzt_ident.model.registry import blocks
+from pzt_ident.search.problem import FixedValue, Problem
+from pzt_ident.search.uncertainty import covariance_of, estimates
+from rig import record
+
+BLOCKS, LENGTH = 40, 10
+ALTERNATING = np.repeat(np.resize([1.0, -1.0], BLOCKS), LENGTH)
+CAMPAIGNS = 400
+SCATTER = 4 / np.sqrt(2 * CAMPAIGNS)  # four standard errors of a standard deviation from so many estimates
+
+
+def errors(covariance):
+    return np.sqrt(np.diag(covariance))
+
+
+def test_what_stays_the_same_over_a_block_counts_once_a_block():
+    """The mean of 40 blocks of 10 equal residuals +-3 is known to 3 / sqrt(40), not to 3 / sqrt(400)."""
+    (found,) = errors(covariance_of(np.ones((BLOCKS * LENGTH, 1)), 3 * ALTERNATING))
+    assert found == pytest.approx(3 / np.sqrt(BLOCKS), rel=1e-12)
+
+
+@pytest.mark.parametrize("size", [1.0, 50.0])
+def test_what_cancels_within_a_block_counts_as_white_noise(size):
+    residual = 3 * np.resize([1.0, -1.0], BLOCKS * LENGTH)
+    (found,) = errors(covariance_of(np.full((residual.size, 1), size), residual))
+    assert found == pytest.approx(3 / np.sqrt(residual.size - 1) / size, rel=1e-12)
+
+
+def test_parameters_that_share_samples_have_the_errors_of_the_means_that_they_stand_for():
+    """One is the mean of the quiet half, the other what the loud half has more: half the blocks hold +-3, half +-1."""
+    loud = np.repeat([1.0, 0.0], BLOCKS * LENGTH // 2)
+    found = covariance_of(np.column_stack([loud, np.ones_like(loud)]), (1 + 2 * loud) * ALTERNATING)
+    each = BLOCKS / 2
+    np.testing.assert_allclose(found, np.array([[9 + 1, -1], [-1, 1]]) / each, rtol=1e-9)
+
+
+def test_a_direction_that_no_sample_shows_is_unknown_and_spoils_no_other():
+    ones = np.ones(BLOCKS * LENGTH)
+    found = errors(covariance_of(np.column_stack([ones, 0 * ones]), 3 * ALTERNATING))
+    assert found[0] == pytest.approx(3 / np.sqrt(BLOCKS), rel=1e-9)
+    assert found[1] > 1e6
+
+
+def coloured(rng, size, memory):
+    """AR(1) noise of unit variance that has run in."""
+    return np.sqrt(1 - memory**2) * lfilter([1], [1, -memory], rng.normal(size=size + 200))[200:]
+
+
+@pytest.mark.parametrize("memory", [0.0, 0.8])
+def test_errors_are_the_scatter_of_estimates_over_campaigns(memory):
+    """A block of 50 samples misses what AR(1) noise of memory m carries over its ends, 2 m / (1 - m^2) / 50 of the
+    variance, and three parameters take 3 of 40 degrees of freedom: 9 % less. Errors of white noise would be a third."""
+    t = np.linspace(-1, 1, 2000)
+    jacobian = np.column_stack([np.ones(t.size), t + 0.9, np.sin(7 * t) + t])
+    solve, rng = np.linalg.pinv(jacobian), np.random.default_rng(8)
+    found, told = [], []
+    for _ in range(CAMPAIGNS):
+        noise = coloured(rng, t.size, memory)
+        found.append(solve @ noise)
+        told.append(np.diag(covariance_of(jacobian, noise - jacobian @ found[-1])))
+    ratio = np.sqrt(np.mean(told, axis=0)) / np.std(found, axis=0)
+    assert np.all(np.abs(ratio - 1) < 0.09 + SCATTER)
+    white = np.sqrt(np.diag(np.linalg.inv(jacobian.T @ jacobian))) / np.std(found, axis=0)
+    np.testing.assert_allclose(white, np.sqrt((1 - memory) / (1 + memory)), rtol=SCATTER)
+
+
+def test_the_error_of_a_gain_is_that_of_the_slope_of_a_straight_line():
+    """sigma / |u - mean u|, in the user's units, whatever the bounds are; 40 block sums know it to a ninth."""
+    noise, drive = 2e-8, np.linspace(0, 100, 4000)
+    response = 1e-7 * drive + np.random.default_rng(4).normal(0, noise, drive.size)
+    straight = {
+        f"bouc_wen.{word}": FixedValue(value) for word, value in (("alpha", 0.0), ("beta", 0.01), ("gamma", 0.0))
+    }
+    problem = Problem(Chain([blocks["bouc_wen"]], "x", [0]), [record(drive, response=[response])], straight)
+    point, _ = problem.polish(np.array([0.5]))
+    (gain,) = estimates(problem, point)[0]
+    assert (gain.name, gain.unit, gain.verdict) == ("bouc_wen.gain", "m/V", "determined")
+    expected = noise / np.linalg.norm(drive - drive.mean())
+    assert gain.standard_error == pytest.approx(expected, rel=0.35)
+    assert abs(gain.value - 1e-7) < 4 * expected
