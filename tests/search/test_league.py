@@ -82,6 +82,7 @@ def test_costs_are_medians_and_evaluations_the_most_of_any_run():
         ((None, None, None, None), None, 0),
         ((70, None, None, None), None, 0.25),
         ((70, 10, None, None), None, 0.5),
+        ((70, 10, None), 40, 2 / 3),
         ((70, 10, 30, None), 30, 0.75),
         ((0, 10, 30, 90), 20, 1),
     ],

@@ -34,6 +34,42 @@ def test_rows_time_and_start(path, read):
     assert (record.drive[0, 0], record.samples, record.settle) == (150, 250, 25)
 
 
+@pytest.mark.parametrize(
+    ("settle", "decimate", "samples"),
+    [
+        (0.0, 4, 0),
+        (0.29, 1, 29),
+        (0.244, 1, 24),
+        (0.246, 1, 25),
+        (0.25, 4, 6),
+        (0.27, 4, 7),
+        (0.4, 10, 4),
+        (1.0, 3, 33),
+    ],
+)
+def test_settle_is_the_nearest_number_of_the_samples_that_are_left(path, read, settle, decimate, samples):
+    """Of 10 ms each in the file, after the cut to rows, whatever the clock reads."""
+    for rows in (None, (100, 300)):
+        record = read(path, rows=rows, settle=settle, decimate=decimate)
+        assert record.settle == samples
+        assert record.dt == pytest.approx(0.01 * decimate)
+
+
+def test_settle_leaves_at_least_one_decimated_sample(path, read, problem):
+    """400 samples of 10 ms, decimated by 4: 99.25 samples round to 99 of 100, 99.75 leave nothing."""
+    record = read(path, settle=3.97, decimate=4)
+    assert (record.settle, record.samples) == (99, 100)
+    assert "settle 3.99 s leaves nothing of 4 s" in problem(path, settle=3.99, decimate=4).message
+
+
+@pytest.mark.parametrize(("settle", "first"), [(0.0, 0), (0.5, 50), (1.5, 150), (2.0, None)])
+def test_only_scored_samples_that_are_fitted_validate_nothing(path, settle, first):
+    axes = {"x": Axis(Channel("u"), Channel("x"))}
+    sources = [Source("loop.txt", name="fit", rows=(0, 200)), Source("loop.txt", "validate", settle=settle)]
+    notes = read_records(sources, axes, Channel("t"), path.parent)[1].notes
+    assert [note.split(" are ")[0] for note in notes] == [f"rows {first} to 200"] * (first is not None)
+
+
 def test_what_a_record_carries(path, read):
     record = read(path, use="validate", run_in=2)
     assert (record.name, record.use, record.file, record.run_in) == ("loop", "validate", "loop.txt", 2)

@@ -1,0 +1,177 @@
+"""What an effect must remove, of which records, and which of several is taken: by hand, the noise floor being 1."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from pzt_ident.diagnosis import verdict
+from pzt_ident.diagnosis.refit import Fit
+from pzt_ident.diagnosis.score import Score, misfit
+from pzt_ident.diagnosis.verdict import adequate, alike, diagnose, earns, least, pair, reaches, unseen
+
+CASE = SimpleNamespace(floor=1.0, tell=lambda event: None)
+FAR = 10.0  # an error that nobody takes for noise
+
+
+def fit(identify, validate=None, effects=(), dimensions=4):
+    return Fit(tuple(effects), SimpleNamespace(dimensions=dimensions), np.zeros(0), identify, validate)
+
+
+def above(left, validate=None):
+    """A fit that leaves so much above the noise, root mean square."""
+    return fit(np.hypot(1, left), validate)
+
+
+def without(before, gone):
+    """An error of which so much is gone, root mean square; below zero is more."""
+    return float(np.sqrt(before**2 - np.sign(gone) * gone**2))
+
+
+SMALL = above(1.0, FAR)
+
+
+def test_the_misfit_is_what_is_above_the_noise_and_never_less_than_could_be_told_from_it():
+    assert misfit(CASE, above(3.0)) == pytest.approx(9)
+    assert misfit(CASE, fit(1.0)) == misfit(CASE, fit(0.5)) == pytest.approx(0.09)
+
+
+@pytest.mark.parametrize(("first", "enough"), [(1.0, 0.6), (19.0, 0.6), (21.0, 0.63), (100.0, 3.0)])
+def test_enough_is_six_tenths_of_the_noise_or_three_percent_of_the_first_misfit(first, enough):
+    assert least(CASE, above(first)) == pytest.approx(enough)
+
+
+@pytest.mark.parametrize("first", [1.0, 40.0])
+@pytest.mark.parametrize(("share", "earned"), [(1.02, True), (0.98, False), (-1.02, False)])
+def test_an_effect_removes_enough_of_the_records_that_were_fitted(first, share, earned):
+    before, gone = above(1.5, FAR), share * max(0.6, 0.03 * first)
+    after = fit(without(before.identify, gone), 0.5 * FAR)
+    assert earns(CASE, above(first), before, after) == earned
+
+
+@pytest.mark.parametrize(("share", "earned"), [(0.151, True), (0.149, False)])
+def test_an_effect_removes_a_share_of_what_is_left_of_the_records_that_were_fitted(share, earned):
+    before = above(FAR, FAR)
+    after = fit(without(before.identify, FAR * np.sqrt(share)), 0.5 * FAR)
+    assert earns(CASE, before, before, after) == earned
+
+
+@pytest.mark.parametrize("first", [1.0, 40.0])
+@pytest.mark.parametrize(("share", "earned"), [(2.0, True), (0.51, True), (0.49, False), (0.0, False), (-0.51, False)])
+def test_an_effect_removes_half_as_much_of_the_records_that_were_not_fitted(first, share, earned):
+    before, gone = above(2.0, FAR), share * max(0.6, 0.03 * first)
+    after = fit(1.0, without(FAR, gone))
+    assert earns(CASE, above(first), before, after) == earned
+
+
+def test_where_all_records_were_fitted_they_alone_decide():
+    assert earns(CASE, SMALL, above(2.0), fit(1.0))
+    assert not earns(CASE, SMALL, above(2.0), above(2.0))
+
+
+@pytest.mark.parametrize("wrong", ["before", "after", "fitted", None])
+@pytest.mark.parametrize("first", [1.0, 40.0])
+def test_records_that_show_nothing_are_at_the_noise_before_and_after(first, wrong):
+    noise = np.hypot(1, max(0.6, 0.03 * first))
+    before, after, fitted = (noise * (1.001 if wrong == word else 0.999) for word in ("before", "after", "fitted"))
+    ahead, behind = above(2.0, before), fit(fitted, after)
+    assert unseen(CASE, above(first), ahead, behind) == (wrong is None)
+    assert earns(CASE, above(first), ahead, behind) == (wrong is None)
+
+
+def test_records_that_are_not_there_are_not_at_the_noise():
+    assert not unseen(CASE, SMALL, above(2.0), fit(1.0))
+
+
+@pytest.mark.parametrize("first", [1.0, 40.0])
+@pytest.mark.parametrize(
+    ("fitted", "unfitted", "fine"),
+    [(0.99, 0.99, True), (0.99, None, True), (1.01, 0.0, False), (1.01, None, False), (0.99, 1.01, False)],
+)
+def test_an_adequate_model_leaves_little_above_the_noise_and_thrice_that_of_what_it_never_saw(
+    first, fitted, unfitted, fine
+):
+    enough = max(0.6, 0.03 * first)
+    model = above(fitted * enough, unfitted and np.hypot(1, unfitted * 3 * enough))
+    assert adequate(CASE, above(first), model) == fine
+    assert reaches(CASE, above(first), model) == (fitted < 1)
+
+
+def test_the_total_is_root_mean_square_over_both_uses():
+    assert fit(1.0, 7.0).total == fit(7.0, 1.0).total == pytest.approx(5)
+    assert fit(3.0).total == 3
+
+
+@pytest.fixture
+def judged(monkeypatch):
+    """What is said of a model that leaves 30 of both uses, given the fits with each of some effects."""
+
+    def of(fits):
+        scores = [Score(word, explained=0.9, power=3.0) for word in fits]
+        monkeypatch.setattr(verdict, "Scorer", lambda case, before: None)
+        monkeypatch.setattr(verdict, "scored", lambda case, before, scorer: scores)
+        monkeypatch.setattr(verdict, "faulty", lambda case, first, before: "")
+        monkeypatch.setattr(verdict, "doubted", lambda case, first, before, items: None)
+        monkeypatch.setattr(verdict, "refits", lambda case, before, items: [given(item) for item in items])
+
+        def given(item):
+            item.fit = fits[item.score.effect]
+
+        return diagnose(CASE, fit(30.0, 30.0))
+
+    return of
+
+
+def test_the_effect_that_is_best_on_both_uses_is_taken_not_the_one_that_fits_best(judged):
+    """Totals 5 and 4.5; of the records that were fitted alone the first would be best."""
+    found = judged({"creep": fit(1.0, 7.0, ["creep"]), "saturation": fit(4.5, 4.5, ["saturation"])})
+    assert [item.score.effect for item in found.candidates] == ["saturation", "creep"]
+    assert (found.verdict, found.tied) == ("missing", ["saturation"])
+    assert [item.score.effect for item in found.passing] == ["saturation", "creep"]
+
+
+def test_an_effect_that_the_other_records_do_not_show_is_not_taken_however_well_it_fits(judged):
+    found = judged({"creep": fit(1.0, 30.0, ["creep"]), "saturation": fit(20.0, 20.0, ["saturation"])})
+    assert (found.verdict, found.tied) == ("missing", ["saturation"])
+    assert [item.score.effect for item in found.passing] == ["saturation"]
+
+
+@pytest.mark.parametrize(("apart", "verdict", "tied"), [(0.19, "inconclusive", 2), (0.21, "missing", 1)])
+def test_fits_less_than_a_fifth_of_the_noise_apart_are_a_tie_and_the_simpler_one_leads(judged, apart, verdict, tied):
+    """Apart in root mean square, of both uses; no look-alikes."""
+    best = fit(2.0, 2.0, ["creep"], dimensions=7)
+    next_best = fit(np.hypot(2.0, apart), np.hypot(2.0, apart), ["saturation"], dimensions=5)
+    found = judged({"creep": best, "saturation": next_best})
+    assert (found.verdict, len(found.tied)) == (verdict, tied)
+    assert found.tied[0] == ("saturation" if tied == 2 else "creep")
+
+
+@pytest.mark.parametrize(("total", "apart", "close"), [(2.0, 0.39, True), (2.0, 0.41, False)])
+def test_look_alikes_are_a_tie_where_they_are_twice_as_far_apart(total, apart, close):
+    best, rival = (
+        fit(total, total, ["amplifier_lag"]),
+        fit(np.hypot(total, apart), np.hypot(total, apart), ["sensor_lag"]),
+    )
+    assert alike(CASE, "amplifier_lag", best, rival) == close
+    stranger = fit(rival.identify, rival.validate, ["saturation"])
+    assert not alike(CASE, "amplifier_lag", best, stranger)
+
+
+@pytest.mark.parametrize(("share", "close"), [(1.009, True), (1.011, False)])
+def test_far_above_the_noise_look_alikes_are_a_tie_to_one_percent(share, close):
+    best, rival = fit(50.0, 50.0, ["amplifier_lag"]), fit(50.0 * share, 50.0 * share, ["sensor_lag"])
+    assert alike(CASE, "amplifier_lag", best, rival) == close
+
+
+def test_of_pairs_that_earn_the_best_on_both_uses_is_taken(monkeypatch):
+    """Of creep and drift the fit is best where it was fitted, but the other records do not show it."""
+    fits = {
+        ("creep", "drift"): fit(1.0, 30.0),
+        ("creep", "delay"): fit(2.0, 9.0),
+        ("drift", "delay"): fit(5.0, 5.0),
+    }
+    monkeypatch.setattr(verdict, "refit", lambda case, before, effects, guess: fits[effects])
+    items = [verdict.Candidate(Score(word, explained=0.5)) for word in ("creep", "drift", "delay")]
+    before = fit(30.0, 30.0)
+    assert pair(CASE, before, before, items) is fits["drift", "delay"]
+    assert pair(CASE, before, before, items[:2]) is None
