@@ -1,13 +1,19 @@
 """The drive that tells rivals apart: what sets them apart the most, within what the rig may do."""
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import rig
 import stage
+from pzt_ident.diagnosis import next_experiment
 from pzt_ident.diagnosis.next_experiment import Reach, propose, protocols, respond
-from pzt_ident.diagnosis.refit import first_fit, refit
+from pzt_ident.diagnosis.refit import Case, first_fit, refit
+from pzt_ident.diagnosis.refit import made as fit_at
 
 LINEAR = {"bouc_wen.alpha": 0.0, "bouc_wen.beta": 0.01, "bouc_wen.gamma": 0.0}
 REACH = Reach(0.0, 100.0, 1e5, 60.0)
@@ -122,3 +128,107 @@ def test_a_response_is_about_its_mean(made, rivals):
     response = respond(made, rivals["delay"], dt, drive)
     assert response.shape == drive.shape[1:]
     assert response.mean() == pytest.approx(0, abs=1e-15)
+
+
+@pytest.fixture
+def proposed(monkeypatch):
+    """The proposal among drives of which each sets three rivals at these places, in noise floors of 2: the distances of
+    one and two, one and three, two and three are the differences."""
+    wave = np.resize([1.0, -1.0], 100)
+
+    def of(**places):
+        made = SimpleNamespace(records=[rig.record(wave)], floor=2.0)
+        drives = [(name, name, 1e-3, np.array([own]) * np.ones((1, 100))) for own, name in enumerate(places)]
+        monkeypatch.setattr(next_experiment, "protocols", lambda reaches, axis: drives)
+
+        def respond(case, fit, dt, drive):
+            return 2.0 * list(places.values())[int(drive[0, 0])][fit] * wave
+
+        monkeypatch.setattr(next_experiment, "respond", respond)
+        rivals = {word: place for place, word in enumerate(("one", "two", "three"))}
+        return propose(made, rivals, [REACH])
+
+    return of
+
+
+def test_what_the_closest_two_are_apart_is_what_a_drive_is_worth(proposed):
+    """3.5, 3.5 and 7 against 3, 4 and 7, and against 3, 40 and 43, which would win without the cap."""
+    found = proposed(far=(0, 3, 43), even=(0, 3.5, 7), near=(0, 3, 7))
+    assert found.name == "even"
+    assert found.apart == pytest.approx(3.5)
+    assert found.splits == ("one", "two", "three")
+
+
+def test_telling_all_apart_a_little_is_more_than_telling_one_of_them_by_far(proposed):
+    """2 + 2 + 3 of three at most each, against 0 + 3 + 3."""
+    assert proposed(one=(0, 0, 50), all=(0, 2, 4)).name == "all"
+
+
+def test_the_sum_goes_before_the_closest_two(proposed):
+    """1 + 3 + 3 against 1.5 + 1.5 + 3: each pair counts up to three."""
+    found = proposed(even=(0, 1.5, 3), most=(0, 1, 4))
+    assert (found.name, found.apart) == ("most", pytest.approx(1))
+
+
+@pytest.mark.parametrize(("place", "told"), [(0.29, False), (0.31, True)])
+def test_three_tenths_of_the_noise_are_told_apart(proposed, place, told):
+    assert (proposed(only=(0, place, place / 2)) is not None) == told
+
+
+def test_pairs_that_are_not_told_apart_count_nothing(proposed):
+    """0.29 + 0.29 + 0.58 against 0 + 0.6 + 0.6."""
+    assert proposed(little=(0, 0.29, 0.58), two=(0, 0, 0.6)).name == "two"
+
+
+def test_of_drives_that_are_as_good_the_first_is_taken_and_one_that_fails_is_not(proposed):
+    assert proposed(fails=(0, np.inf, 9), first=(0, 4, 8), second=(0, 4, 8)).name == "first"
+
+
+@pytest.mark.parametrize(
+    ("alike", "measured", "own", "axis"),
+    [("uvv", 0, [0, 1], 0), ("uvv", 1, [0, 1], 1), ("uvv", 2, [0, 1], 1), ("uuv", 2, [0, 2], 1), ("uvu", 1, [0, 1], 1)],
+)
+def test_a_drive_has_the_reach_of_its_first_axis_and_the_measured_one_leads(monkeypatch, alike, measured, own, axis):
+    drives = dict(zip("uv", np.random.default_rng(0).uniform(0, 1, (2, 50)), strict=True))
+    asked = []
+    monkeypatch.setattr(next_experiment, "protocols", lambda reaches, axis: asked.append((reaches, axis)) or [])
+    reaches = [Reach(0.0, size, 1.0, 1.0) for size in (1.0, 2.0, 3.0)]
+    made = SimpleNamespace(records=[rig.record(*(drives[word] for word in alike), measured=[measured])], floor=1.0)
+    assert propose(made, {}, reaches) is None
+    assert asked == [([reaches[i] for i in own], axis)]
+
+
+def test_axes_that_are_driven_alike_move_together_and_others_stay(monkeypatch):
+    u, v = np.random.default_rng(0).uniform(0, 1, (2, 50))
+    made = SimpleNamespace(records=[rig.record(u, v, u)], floor=1.0)
+    moves = np.array([[1.0, 2.0], [3.0, 4.0]])
+    monkeypatch.setattr(next_experiment, "protocols", lambda reaches, axis: [("it", "why", 1e-3, moves)])
+    monkeypatch.setattr(next_experiment, "respond", lambda case, fit, dt, drive: fit * np.ones(2))
+    found = propose(made, {"one": 0.0, "two": 1.0}, [REACH] * 3)
+    np.testing.assert_array_equal(found.drive, moves[[0, 1, 0]])
+
+
+STRAIGHT = {f"bouc_wen.{word}": value for word, value in (("alpha", 0.0), ("beta", 0.01), ("gamma", 0.0))}
+
+
+def test_responses_are_in_units_of_the_loss_of_the_first_measured_axis():
+    """y and z are measured, in sizes of 3 and 5: the drive of y counts, whatever the others do."""
+    drive = np.array([np.resize([0.0, top], 40) for top in (5.0, 10.0, 20.0)])
+    record = rig.record(*drive, measured=[1, 2])
+    made = Case(["bouc_wen"], (), [replace(record, response=1e-7 * drive)], stage.specs(STRAIGHT))
+    made.sizes = np.array([3.0, 5.0])
+    problem = made.problem(())
+    fit = fit_at((), problem, problem.unit_point(dict(zip(problem.names, (1e-7, 3e-7), strict=True))))
+    expected = 1e-7 / 3 * (drive[1] - drive[1].mean())
+    np.testing.assert_allclose(respond(made, fit, 1e-3, drive), expected, rtol=1e-6)
+
+
+def test_a_protocol_runs_at_its_own_sample_time():
+    """A lag of 20 ms under a step, sampled at 1 ms, which the records with their 5 s would not show."""
+    step = np.repeat([0.0, 100.0], 200)
+    lag = STRAIGHT | {"amplifier_lag.tau": 20e-3}
+    made = Case(["bouc_wen", "amplifier_lag"], (), [rig.record(step, response=[1e-7 * step], dt=5.0)], stage.specs(lag))
+    problem = made.problem(())
+    found = respond(made, fit_at((), problem, problem.unit_point({"bouc_wen.gain": 1e-7})), 1e-3, step[None])
+    after = 1e-3 * (np.arange(200) + 0.5)  # the step is a ramp over a sample
+    np.testing.assert_allclose(found[200:] - found[0], 1e-5 * (1 - np.exp(-after / 20e-3)), atol=1e-8)
