@@ -10,8 +10,14 @@ import pytest
 from click.testing import CliRunner
 
 import stage
+from pzt_ident import improve as improvement
 from pzt_ident.cli.commands import main
+from pzt_ident.diagnosis import refit
+from pzt_ident.diagnosis import staircase as stairs
+from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.job.schema import load_job
+from pzt_ident.run.identify import problem_of
+from pzt_ident.run.identify import read as read_data
 
 LINEAR = {"bouc_wen.alpha": 0.0, "bouc_wen.beta": 0.01, "bouc_wen.gamma": 0.0}
 KNOWN = "parameters: {" + ", ".join(f"{name}: {{value: {value}}}" for name, value in LINEAR.items()) + "}\n"
@@ -229,6 +235,69 @@ class TestImprove:
         (folder,) = Path("results/small").iterdir()
         assert load_job(folder / "improved.yaml").effects == ("quadratic_gain",)
         assert call("check", folder / "improved.yaml").exit_code == 0
+
+
+COUPLED = """\
+name: coupled
+records:
+  - {file: one.csv, use: identify}
+  - {file: two.csv, use: validate, settle: 0.1 s}
+channels:
+  time: "t [s]"
+  axes:
+    x: {drive: "u_x [V]", response: "x [um]"}
+    y: {drive: "u_y [V]"}
+model: [bouc_wen, lumped]
+effects: [kinematic_coupling]
+parameters:
+  lumped.mass: {value: 0.15}
+  lumped.damping: {value: 70}
+  lumped.stiffness: {value: 7e+7}
+"""
+
+
+@pytest.fixture
+def coupled(tmp_path):
+    """x and y are driven by ramps between chance levels, x alone is measured."""
+    rng = np.random.default_rng(3)
+    time = 5e-3 * np.arange(300)
+    for name in ("one", "two"):
+        u, v = (np.interp(np.arange(300), np.arange(0, 301, 25), rng.uniform(0, 100, 13)) for _ in "xy")
+        table = np.column_stack([time, u, v, 0.1 * u + 0.03 * v])
+        np.savetxt(tmp_path / f"{name}.csv", table, delimiter=",", header="t [s],u_x [V],u_y [V],x [um]", comments="")
+    (tmp_path / "job.yaml").write_text(COUPLED, encoding="utf-8")
+    return load_job(tmp_path / "job.yaml")
+
+
+@pytest.mark.parametrize("alone", [True, False])
+@pytest.mark.parametrize("steps", [(1, 1), (1, 3), (2, 1)])
+def test_the_improved_job_is_the_model_that_was_told_of(coupled, tmp_path, monkeypatch, alone, steps):
+    """A lag on both axes or on the measured one alone, at chance parameters and any steps: the job that is written
+    gives the RMSE that is written, for both uses, with the parameters that are written."""
+    effects, out = ("kinematic_coupling", "amplifier_lag"), tmp_path / "deep" / "out"
+
+    def climbed(case, first, tell):
+        problem = case.problem(effects, steps, alone)
+        point = np.random.default_rng(5).uniform(0.3, 0.9, problem.dimensions)
+        end = refit.made(effects, problem, point, alone=alone)
+        return [stairs.Step(first), stairs.Step(end, "amplifier_lag")], Diagnosis("adequate", "Said.", end, [], [])
+
+    def as_given(case, seed):
+        problem = case.problem(case.effects)
+        return refit.made(case.effects, problem, np.full(problem.dimensions, 0.5))
+
+    monkeypatch.setattr(improvement, "first_fit", as_given)
+    monkeypatch.setattr(improvement.stairs, "improve", climbed)
+    improvement.improve(coupled, out)
+    told, made = read(out / "improvement.json")["steps"][-1], load_job(out / "improved.yaml")
+    problem = problem_of(made, read_data(made))
+    assert made.effects == effects
+    assert tuple(record.steps for record in problem.records) == steps
+    assert problem.names == tuple(told["parameters"])
+    assert ("y.amplifier_lag.tau" in made.parameters) == alone
+    point = problem.unit_point({name: item["value"] for name, item in told["parameters"].items()})
+    for use in ("identify", "validate"):
+        assert 1e6 * problem.loss(point, use)[0] == pytest.approx(told["rmse"][use], rel=1e-6)
 
 
 @pytest.mark.parametrize("command", ["diagnose", "improve"])
