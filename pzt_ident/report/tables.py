@@ -123,7 +123,7 @@ def parameters(results: Results) -> Table:
 
 
 def records(results: Results) -> Table:
-    """One row a record: its use, size, RMSE of the best run per axis, and the hash of its file."""
+    """One row a record: its use, size, RMSE of the best run per axis in its own unit, and the hash of its file."""
     keys = ("name", "use", "samples", "sample_rate", "settle")
     axes = list(dict.fromkeys(axis for record in results.result["records"] for axis in record["rmse"]))
     rows = [

@@ -1,5 +1,6 @@
 import json
 import re
+from dataclasses import replace
 
 import pandas as pd
 import pytest
@@ -39,6 +40,45 @@ def test_nothing_is_a_dash_in_print_and_empty_in_csv(weird):
 def test_every_axis_has_its_rmse(weird):
     records = make_tables(read_results(weird))["records"]
     assert records.text[["RMSE x [µm]", "RMSE y [µm]"]].iloc[0].tolist() == ["0.3000", "0.3100"]
+
+
+def test_an_axis_has_its_rmse_in_its_own_unit(weird):
+    results = read_results(weird)
+    other = {"x": "um", "y": "nm"}
+    traces = tuple(replace(trace, unit=other[trace.axis]) for trace in results.traces)
+    records = make_tables(replace(results, traces=traces))["records"]
+    assert records.text[["RMSE x [µm]", "RMSE y [nm]"]].iloc[0].tolist() == ["0.3000", "0.3100"]
+    assert records.data[["rmse_x [um]", "rmse_y [nm]"]].iloc[0].tolist() == [0.3, 0.31]
+
+
+UNITS = {
+    "league": {"rmse_median", "rmse_lower_quartile", "rmse_upper_quartile", "rmse_best", "polished_rmse_median"},
+    "runs": {"identify", "validate", "identify_before_polish", "validate_before_polish"},
+    "records": {"rmse_x"},
+}
+SECONDS = {"league": {"seconds_median"}, "runs": {"seconds", "cpu_seconds"}, "records": {"settle"}}
+
+
+@pytest.mark.parametrize("name", UNITS)
+def test_columns_have_the_unit_of_what_they_hold_and_counts_and_shares_none(written, name):
+    headings = [heading.partition(" [") for heading in written[name].data.columns]
+    units = {word: unit.removesuffix("]") for word, _, unit in headings if unit}
+    rate = {"sample_rate": "Hz"} if name == "records" else {}
+    assert units == dict.fromkeys(UNITS[name], "um") | dict.fromkeys(SECONDS[name], "s") | rate
+
+
+def test_the_league_says_what_is_in_its_result(plain, written):
+    """Each number under its own heading."""
+    first = json.loads((plain / "result.json").read_text())["league"][0]
+    row = written["league"].text.iloc[0]
+    for heading, word in (
+        ("RMSE median", "rmse_median"),
+        ("best", "rmse_best"),
+        ("median after polish", "polished_rmse_median"),
+    ):
+        assert float(row[f"{heading} [µm]"]) == pytest.approx(first[word], rel=1e-3)
+    quartiles = [float(part) for part in row["quartiles [µm]"].split(" to ")]
+    assert quartiles == pytest.approx([first["rmse_lower_quartile"], first["rmse_upper_quartile"]], rel=1e-3)
 
 
 def test_verdicts_are_words_in_the_table(written):
