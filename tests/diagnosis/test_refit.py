@@ -250,6 +250,17 @@ def test_an_effect_kept_off_an_axis_leaves_it_as_it_is_without(effect):
     rig.assert_close(responses[0][:, 0], responses[1][:, 0])
 
 
+def test_what_keeps_an_effect_off_is_its_null_on_the_axes_without_a_response():
+    """Where nothing couples them there is nothing to keep off, and what the job has or says of is left to it."""
+    made = seen_through_a_coupling()
+    assert made.silent(("amplifier_lag",)) == {"y.amplifier_lag.tau": 0.0}
+    assert made.silent(()) == {}
+    assert refit.Case(COUPLED, ("amplifier_lag",), made.records, made.specs).silent(("amplifier_lag",)) == {}
+    told = made.specs | stage.specs({"amplifier_lag.tau": 1.0})
+    assert refit.Case(COUPLED, (), made.records, told).silent(("amplifier_lag",)) == {}
+    assert refit.Case(("bouc_wen", "lumped"), (), made.records, made.specs).silent(("amplifier_lag",)) == {}
+
+
 @pytest.mark.parametrize("alone", [True, False])
 def test_an_axis_without_response_has_an_effect_where_that_fits_better(alone):
     blank, effects = seen_through_a_coupling(), ("amplifier_lag",)
