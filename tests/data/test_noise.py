@@ -100,3 +100,99 @@ def test_responses_of_different_kinds_are_weighed_by_their_noise(noise):
         mixed, response=mixed.response + np.array([[0], [1]]) * (1e-2 * drive - mixed.response)
     )
     assert sizes([smooth])[1] == pytest.approx(5e-3 * 2e-2, rel=1e-3)
+
+
+def rising(samples, rest=0):
+    return np.concatenate([np.linspace(0, 100, samples), np.full(rest, 100.0)])
+
+
+def white(samples, size=1.0, seed=0):
+    return np.random.default_rng(seed).normal(0, size, samples)
+
+
+def test_rest_is_better_evidence_than_repeated_periods():
+    drive = np.tile(np.concatenate([rising(300, 300), rising(300, 300)[::-1]]), 5)
+    assert noise_floor([record(drive, drive + white(drive.size))], 0).source == "rest segments"
+    moving = np.tile(np.concatenate([rising(300), rising(300)[::-1]]), 5)
+    assert noise_floor([record(moving, moving + white(moving.size))], 0).source == "repeated periods"
+
+
+def test_what_is_not_scored_is_no_evidence():
+    drive = np.concatenate([np.zeros(1000), rising(1000, 2000)])
+    loud = np.where(np.arange(drive.size) < 1000, 100, 1)
+    assert noise_floor([record(drive, loud * white(4000), settle=1000)], 0).value == pytest.approx(1, rel=0.1)
+    drive = white(4000, seed=1)
+    again = [record(drive, loud * white(4000, seed=seed), settle=settle) for seed, settle in ((2, 0), (3, 1000))]
+    assert noise_floor(again, 0).value == pytest.approx(1, rel=0.1)
+    assert noise_floor(again[::-1], 0).value == pytest.approx(1, rel=0.1)
+
+
+def test_rests_count_by_how_long_they_last():
+    """2 s of 1 and 10 s of 3: the mean square is (2 + 90) / 12, whatever the samples are."""
+    short = record(rising(500, 2000), white(2500))
+    long = dataclasses.replace(record(rising(500, 1000), white(1500, 3, seed=1)), dt=1e-2)
+    assert noise_floor([short, long], 0).value == pytest.approx(np.sqrt(92 / 12), rel=0.05)
+
+
+def test_the_start_of_a_rest_is_left_to_settle():
+    drive, settling = rising(500, 3000), 1000 * np.exp(-np.arange(3000) / 50)
+    response = np.append(np.zeros(500), settling) + white(3500)
+    assert noise_floor([record(drive, response)], 0).value == pytest.approx(1, rel=0.1)
+
+
+@pytest.mark.parametrize(("samples", "found"), [(124, 0), (125, 1)])
+def test_a_rest_has_a_hundred_steps_after_its_first_fifth(samples, found):
+    drive = np.concatenate([rising(300), np.full(samples - 1, 100.0), 100 - rising(300)[1:]])
+    assert len(resting(drive[None], white(drive.size))) == found
+
+
+def test_a_rest_is_one_of_all_drives():
+    still, moving = np.zeros(1000), white(1000, seed=1)
+    assert len(resting(np.array([still, still]), white(1000))) == 1
+    assert resting(np.array([still, moving]), white(1000)) == []
+
+
+def test_records_are_measured_again_where_all_drives_and_the_sample_time_are_the_same():
+    one, two, other = (white(1000, seed=seed) for seed in (1, 2, 3))
+    more = {"axes": ("x", "y"), "drive_units": ("V", "V"), "response_units": ("m", None)}
+    first = record([one, two], [white(1000), np.full(1000, np.nan)], **more)
+    again = dataclasses.replace(first, response=first.response + 1e-3 * white(1000, seed=5))
+    assert noise_floor([first, again], 0).source == "repeated records"
+    for change in ({"dt": 2e-3}, {"drive": np.array([one, other])}, {"drive": np.array([other, two])}):
+        assert "weak" in noise_floor([first, dataclasses.replace(again, **change)], 0).source
+
+
+def test_a_knock_in_one_period_is_not_noise():
+    drive = np.tile(np.concatenate([rising(300), rising(300)[::-1]]), 6)
+    knock = 300 * ((np.arange(drive.size) > 1900) & (np.arange(drive.size) < 2100))
+    assert noise_floor([record(drive, knock + white(drive.size))], 0).value == pytest.approx(1, rel=0.1)
+
+
+def test_a_rest_that_is_quieter_than_the_quantiser_has_the_noise_of_the_quantiser():
+    """One value in fifty is a step higher: 0.14 steps of scatter."""
+    drive, step = rising(500, 3000), 1e-9
+    flips = np.random.default_rng(2).random(3500) < 0.02
+    found = noise_floor([record(drive, step * flips)], 0)
+    assert (found.source, found.value) == ("quantiser", pytest.approx(step / np.sqrt(12)))
+
+
+def test_the_finest_quantiser_of_several_records_counts():
+    drive = np.tile(np.concatenate([rising(300), rising(300)[::-1]]), 4)
+    steps = ((0.5, 1.0), (2.0, 0.7))
+    records = [record(scale * drive, np.round(scale * drive / step) * step) for step, scale in steps]
+    for each in (records, records[::-1]):
+        assert noise_floor(each, 0).value == pytest.approx(0.5 / np.sqrt(12))
+
+
+def test_few_values_off_a_grid_and_a_ramp_are_not_quantised():
+    assert quantiser(np.resize([0.0, 1.0, 2.5], 300)) == 0
+    assert quantiser(np.resize([0.0, 1.0, 3.0], 300)) == 1
+    assert quantiser(np.arange(300.0)) == 0
+
+
+def test_the_widest_record_sets_the_least_size():
+    drive = np.tile(np.concatenate([rising(300), rising(300)[::-1]]), 4)
+    more = {"axes": ("x", "y"), "drive_units": ("V", "V"), "response_units": ("um", "uC/cm2")}
+    records = [record([top * drive] * 2, [top * drive, 7 * top * drive], **more) for top in (1.0, 0.3)]
+    for each in (records, records[::-1]):
+        assert sizes(each) == pytest.approx(5e-3 * 100 * np.array([1, 7]))

@@ -255,3 +255,30 @@ def test_parseval(samples, seed):
     energy, freedom = power(values)
     assert energy.sum() == pytest.approx((values**2).sum())
     assert freedom.sum() == samples
+
+
+def test_each_axis_has_its_own_residual_unit_and_floor():
+    """0.1 um of x above no noise, 300 nm of y above 200 nm."""
+    both = replace(record(other=OTHER), response_units=("um", "nm"))
+    both = replace(both, response=np.vstack([1e-7 * TRIANGLE, 1e-7 * OTHER]))
+    residuals = np.array([0.1e-6, 300e-9])[:, None] * np.ones((2, TIME.size))
+    x, y = locate([both], [residuals], [SILENT, Floor(200e-9, "told")])
+    assert (x.axis, x.unit, x.rmse, x.misfit) == ("x", "um", pytest.approx(0.1), pytest.approx(0.1))
+    assert (y.axis, y.unit, y.rmse, y.noise_floor) == ("y", "nm", pytest.approx(300), pytest.approx(200))
+    assert y.misfit == pytest.approx(np.sqrt(300**2 - 200**2))
+    assert (x.noise_source, y.noise_source) == ("none", "told")
+
+
+@pytest.mark.parametrize(("settle", "excess"), [(0, 0.3), (7900, 4 * np.sqrt(2 / 100))])
+@pytest.mark.parametrize("more", [0.98, 1.02])
+def test_an_excess_is_more_than_chance_and_than_the_error_of_the_floor(settle, excess, more):
+    """Of many samples 0.3 of the squared floor, of 100 samples four standard deviations of their mean square."""
+    size = 0.05 * np.sqrt(1 + more * excess)
+    axis = found([size + 0 * TIME], [record(settle=settle)], Floor(0.05e-6, "told"))
+    assert axis.misfit == pytest.approx(0.05 * np.sqrt(more * excess) if more > 1 else 0)
+
+
+def test_a_part_below_the_noise_is_said_to_be():
+    axis = found([np.where(FALLING, 1.0, 0.01)], floor=Floor(0.05e-6, "told"))
+    below = {part.label: part.below_noise for part in view(axis, "branch").bins}
+    assert (below["falling"], below["rising"]) == (False, True)
