@@ -289,3 +289,25 @@ def test_no_mechanics_moves_a_charge():
     model = Chain([blocks["bouc_wen"], blocks["lumped"]], TWO["axes"], [0, 1])
     with pytest.raises(InputError, match="'lumped' would move the response of axis y, which is in uC/cm2"):
         Problem(model, [record])
+
+
+def test_records_are_pooled_by_their_scored_samples_each_about_its_own_mean():
+    """Gains that are 1e-7 and 2e-3 too high on two axes: the errors are those of the drives, by hand."""
+    straight = {f"{axis}.bouc_wen.{word}": spec(value=0.0) for axis in "xy" for word in ("alpha", "gamma")}
+    straight |= {f"{axis}.bouc_wen.beta": spec(value=0.01) for axis in "xy"}
+    straight |= {"x.bouc_wen.gain": spec(value=0.3), "y.bouc_wen.gain": spec(value=0.5)}  # um/V, uC/cm2/V: 5e-3 C/m2/V
+    model, rng, records = Chain([blocks["bouc_wen"]], "xy", (0, 1)), np.random.default_rng(6), []
+    for name, use, samples, settle in (("a", "identify", 300, 0), ("b", "identify", 100, 40), ("c", "validate", 80, 9)):
+        drive = rng.uniform(0, 10, (2, samples)) * (3 if name == "b" else 1)
+        response = np.array([[2e-7], [3e-3]]) * drive + rng.normal(size=(2, 1))
+        records.append(Record(name, use, 1e-3, drive, response, settle=settle, **TWO))
+    sizes, point = np.array([1e-8, 1e-2]), np.zeros((1, 0))
+    problem = Problem(model, records, straight, sizes)
+    for use in ("identify", "validate"):
+        own = [record.drive[:, record.settle :] for record in records if record.use == use]
+        squares = sum(np.square(drive - drive.mean(axis=1, keepdims=True)).sum(axis=1) for drive in own)
+        rmse = np.array([1e-7, 2e-3]) * np.sqrt(squares / sum(drive.shape[1] for drive in own))
+        np.testing.assert_allclose(problem.by_axis(point, use)[0], rmse, rtol=1e-6)
+        assert problem.loss(point, use)[0] == pytest.approx(np.sqrt(np.mean((rmse / sizes) ** 2)), rel=1e-6)
+    assert problem.scored == 2 * (300 + 60)
+    assert np.linalg.norm(problem.residuals(point)) == pytest.approx(problem.loss(point)[0], rel=1e-6)
