@@ -282,3 +282,25 @@ def test_a_part_below_the_noise_is_said_to_be():
     axis = found([np.where(FALLING, 1.0, 0.01)], floor=Floor(0.05e-6, "told"))
     below = {part.label: part.below_noise for part in view(axis, "branch").bins}
     assert (below["falling"], below["rising"]) == (False, True)
+
+
+@pytest.mark.parametrize(("count", "least"), [(10, 0.25), (2, 0.75)])
+@pytest.mark.parametrize("more", [-0.01, 0.01])
+def test_a_dominant_part_has_a_share_beyond_that_of_its_samples(count, least, more):
+    """0.15 more than a tenth, or one and a half times a half."""
+    part = least + more
+    sizes = [np.sqrt(part), *[np.sqrt((1 - part) / (count - 1))] * (count - 1)]
+    axis = found([size + 0 * TIME for size in sizes], [record(f"{i}", settle=7000) for i in range(count)])
+    most = view(axis, "record").dominant
+    assert (most is not None) == (more > 0)
+    assert most is None or (most.first, most.last, most.share) == (0, 0, pytest.approx(part))
+
+
+def test_what_is_due_to_a_record_is_not_said_of_its_branch():
+    """One record only rises and has 9 of 14 parts of the squares, five only fall."""
+    ramp = np.linspace(0, 100, TIME.size)
+    records = [record("up", drive=ramp), *[record(f"down {i}", drive=ramp[::-1].copy()) for i in range(5)]]
+    axis = found([(0.3 if i == 0 else 0.1) + 0 * TIME for i in range(6)], records)
+    assert view(axis, "record").dominant.share == pytest.approx(9 / 14)
+    assert share(axis, "branch", "rising") == pytest.approx(9 / 14, abs=2e-3)
+    assert view(axis, "branch").dominant is None
