@@ -221,3 +221,16 @@ def test_what_another_form_has_is_said_to_be_its(old, new, says):
 
 def test_counted_names_in_a_row_are_said_in_one():
     assert ranges(["a.w_1", "a.w_2", "a.w_3", "b.w_4", "a.w_9", "c"]) == ["a.w_1 to a.w_3", "b.w_4", "a.w_9", "c"]
+
+
+def test_neighbours_are_smoothed_by_their_second_differences():
+    """Normal equations by hand: the weight counts in squares of the middle one of the columns' sizes, 2."""
+    sizes, measured, weight = np.diag([1.0, 2.0, 4.0]), np.array([3.0, 1.0, 20.0]), 0.3
+    bend = np.array([1.0, -2.0, 1.0])
+    found = solve(lambda values: values @ sizes - measured, np.ones(3), [np.arange(3)], weight)
+    expected = np.linalg.solve(sizes @ sizes + weight * 2**2 * np.outer(bend, bend), sizes @ measured)
+    assert expected.min() > 0
+    np.testing.assert_allclose(found.values, expected, rtol=1e-9)
+    np.testing.assert_allclose(
+        solve(lambda values: values @ sizes - measured, np.ones(3), [], weight).values, [3, 0.5, 5]
+    )
