@@ -61,6 +61,6 @@ def test_a_form_that_is_no_part_of_the_registry_is_told_too(plug):
 
 
 def test_a_file_that_breaks_the_contract_is_not_plugged(plug):
-    with pytest.raises(InputError, match=r"own_gain.py: .*Gain.prepare: asks for 'tua'"):
+    with pytest.raises(InputError, match=r"^Gain.prepare: asks for 'tua'"):
         plug(GAIN.replace("tau, dt)", "tua, dt)"))
     assert "own_gain" not in blocks

@@ -3,15 +3,13 @@
 from dataclasses import replace
 
 import numpy as np
-import pandas as pd
 import pytest
 
 import rig
-from pzt_ident.data.signals import write_signals
+from pzt_ident.data.signals import read_signals, read_traces, write_signals
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks
-from pzt_ident.run.misfit import misfits, read_signals
-from pzt_ident.run.results import Results, _traces
+from pzt_ident.run.misfit import misfits
 from pzt_ident.search.problem import FixedValue, Problem
 
 AXES, DRIVES, RESPONSES = ("y", "v", "x"), ("mV", "kV", "V"), ("nm", None, "um")
@@ -46,13 +44,13 @@ def path(tmp_path_factory):
     linear |= {f"{axis}.bouc_wen.gain": FixedValue(MODEL[axis] / METRES[axis] * VOLTS[axis]) for axis in "xy"}
     problem = Problem(Chain([blocks["bouc_wen"]], AXES, (0, 2), given=linear), RECORDS, linear)
     path = tmp_path_factory.mktemp("signals") / "signals.nc"
-    write_signals(path, problem, np.zeros(0))
+    write_signals(path, problem.errors(np.zeros(0)))
     return path
 
 
 @pytest.fixture(scope="module")
 def traces(path):
-    return {(trace.record, trace.axis): trace for trace in _traces(path, ORDER)}
+    return {(trace.record, trace.axis): trace for trace in read_traces(path, ORDER)}
 
 
 @pytest.mark.parametrize("record", RECORDS, ids=ORDER)
@@ -93,9 +91,7 @@ def test_records_come_back_in_si_units_each_axis_with_its_residual(path):
 def test_the_misfit_of_an_axis_is_that_of_its_own_residual_and_floor(path):
     floors = {"x": 0.01, "y": 20.0}  # um, nm
     result = {"best": {"run": "pso-0"}, "unit": "um", "noise_floor": floors}
-    found = misfits(Results(path.parent, result, pd.DataFrame(), _traces(path, ORDER), {"job_name": "hand"}, ""))[
-        "axes"
-    ]
+    found = misfits(path.parent, "hand", result, ORDER)["axes"]
     for axis, floor in floors.items():
         scored = np.concatenate([residual(record, axis)[SETTLE:] for record in RECORDS]) / METRES[axis]
         assert found[axis]["unit"] == RESPONSES[AXES.index(axis)]

@@ -45,8 +45,7 @@ def test_every_axis_has_its_rmse(weird):
 def test_an_axis_has_its_rmse_in_its_own_unit(weird):
     results = read_results(weird)
     other = {"x": "um", "y": "nm"}
-    traces = tuple(replace(trace, unit=other[trace.axis]) for trace in results.traces)
-    records = make_tables(replace(results, traces=traces))["records"]
+    records = make_tables(replace(results, result=results.result | {"units": other}))["records"]
     assert records.text[["RMSE x [µm]", "RMSE y [nm]"]].iloc[0].tolist() == ["0.3000", "0.3100"]
     assert records.data[["rmse_x [um]", "rmse_y [nm]"]].iloc[0].tolist() == [0.3, 0.31]
 

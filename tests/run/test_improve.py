@@ -10,14 +10,13 @@ import pytest
 from click.testing import CliRunner
 
 import stage
-from pzt_ident import improve as improvement
 from pzt_ident.cli.commands import main
 from pzt_ident.diagnosis import refit
 from pzt_ident.diagnosis import staircase as stairs
 from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.job.schema import load_job
-from pzt_ident.run.identify import problem_of
-from pzt_ident.run.identify import read as read_data
+from pzt_ident.run import improve as improvement
+from pzt_ident.run.statement import Statement
 
 LINEAR = {"bouc_wen.alpha": 0.0, "bouc_wen.beta": 0.01, "bouc_wen.gamma": 0.0}
 KNOWN = "parameters: {" + ", ".join(f"{name}: {{value: {value}}}" for name, value in LINEAR.items()) + "}\n"
@@ -290,7 +289,7 @@ def test_the_improved_job_is_the_model_that_was_told_of(coupled, tmp_path, monke
     monkeypatch.setattr(improvement.stairs, "improve", climbed)
     improvement.improve(coupled, out)
     told, made = read(out / "improvement.json")["steps"][-1], load_job(out / "improved.yaml")
-    problem = problem_of(made, read_data(made))
+    problem = Statement(made).problem
     assert made.effects == effects
     assert tuple(record.steps for record in problem.records) == steps
     assert problem.names == tuple(told["parameters"])

@@ -33,7 +33,7 @@ from pzt_ident.run.summary import summary_of
 job = load_job(Path("job.yaml"))
 summary_of(job)  # imports what the notebook's own process takes
 sys.path.insert(0, "")
-run(job, Path("out"), report=False)
+run(job, Path("out"))
 assert sys.path[0] == ""
 """
 SCRIPT = [str(Path(sysconfig.get_path("scripts")) / "pzt-ident"), *ARGUMENTS]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import binomtest
 
-from pzt_ident.search.league import by_repeat, compare, paired, row
+from pzt_ident.search.league import by_repeat, paired, rank, row
 
 
 @pytest.mark.parametrize("ahead", range(6))
@@ -100,7 +100,7 @@ def test_one_percent_is_of_the_best_that_any_run_found_polished_or_not():
         "pso-0": history((10, 1.5), (30, 1.011)),
         "pso-1": history((10, 1.02), (20, 1.0101), (30, 1.0099), (40, 1.009)),
     }
-    first, second = compare(runs, histories)
+    first, second = rank(runs, histories)
     assert [own["evaluations_to_1_percent"] for own in runs] == [None, None, None, 30]
     assert (first["optimizer"], first["success"], first["evaluations_to_1_percent_median"]) == ("pso", 0.5, None)
     assert (second["optimizer"], second["success"]) == ("rga", 0)
@@ -108,7 +108,7 @@ def test_one_percent_is_of_the_best_that_any_run_found_polished_or_not():
 
 def test_the_best_may_be_unpolished():
     runs = [run("pso", 0, 1.0, 1.5), run("rga", 0, 1.2)]
-    compare(runs, {"pso-0": history((10, 1.0)), "rga-0": history((10, 1.2))})
+    rank(runs, {"pso-0": history((10, 1.0)), "rga-0": history((10, 1.2))})
     assert [own["evaluations_to_1_percent"] for own in runs] == [10, None]
 
 
@@ -120,7 +120,7 @@ def test_the_leader_has_the_least_median_of_its_own_results_and_is_what_all_are_
         for name, each in own.items()
         for i, value in enumerate(each)
     ]
-    rows = compare(runs, {each["run"]: history((1, 9.0)) for each in runs})
+    rows = rank(runs, {each["run"]: history((1, 9.0)) for each in runs})
     assert [each["optimizer"] for each in rows] == ["pso", "rga"]
     assert [(each["leader_ahead"], each["pairs"]) for each in rows] == [(0, 0), (2, 3)]
     assert rows[1]["sign_test"] == 1.0
