@@ -20,6 +20,7 @@ import numpy as np
 from baselines import first_order_hold, lsoda, numpy_population, plain_loop
 
 from pzt_ident.data.record import Record
+from pzt_ident.engine.simulator import simulate
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks, optimizers
 from pzt_ident.search.loop import Stop, optimize
@@ -65,7 +66,7 @@ def problem(u: np.ndarray, words: tuple[str, ...] = BASE) -> Problem:
     model, stage = (Chain([blocks[word] for word in chain], ["x"], [0]) for chain in (words, BASE))
     blank = Record("r", "identify", 1e-3, u[None], u[None] * 1e-7, response_units=("um",))
     truth = np.array([[TRUTH[entry.word] for entry in stage.entries]])
-    y = np.round(stage.simulate(blank, truth)[0] / 1e-7) * 1e-7
+    y = np.round(simulate(stage, blank, truth)[0] / 1e-7) * 1e-7
     record = Record("r", "identify", 1e-3, u[None], y, response_units=("um",))
     specs = {name: SimpleNamespace(bounds=b, value=None) for name, b in BOUNDS.items() if name in model.names}
     return Problem(model, [record], specs)

@@ -147,3 +147,8 @@ class Simulator:
 
     def _fine(self, drive: Array) -> Array:
         return between(drive, self.substeps, bool(self.record.run_in), smooth=self.model.oversample > 1)
+
+
+def simulate(model: Chain, record: Record, theta: Array) -> Array:
+    """Responses without their free offset, in SI units: (candidates, measured axes, samples)."""
+    return Simulator(model, record).simulate(theta)

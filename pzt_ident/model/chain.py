@@ -1,4 +1,4 @@
-"""Blocks in signal order, simulated for many candidates at once."""
+"""Blocks in signal order, and the parameters that each has on each axis."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.record import Record
 from pzt_ident.model.block import Addition, Block, Coupling, Modes, Place, Term, asked
 from pzt_ident.model.parameter import Parameter
 
@@ -153,9 +152,3 @@ class Chain:
             if entry.block is block and (stage or (entry.axis, entry.other) == (axis, other)):
                 found[entry.word] = column
         return found
-
-    def simulate(self, record: Record, theta: Array) -> Array:
-        """Responses without their free offset, in SI units: (candidates, measured axes, samples)."""
-        from pzt_ident.engine.simulator import Simulator
-
-        return Simulator(self, record).simulate(theta)

@@ -12,6 +12,7 @@ import stage
 from pzt_ident.diagnosis import refit
 from pzt_ident.diagnosis.caveats import bounded, silenced
 from pzt_ident.diagnosis.refit import descend, elsewhere, first_fit, made, stepped
+from pzt_ident.engine.simulator import simulate
 from pzt_ident.model.block import Addition, Block, Coupling, Place
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.parameter import Parameter
@@ -184,7 +185,7 @@ def test_a_solver_too_coarse_for_what_is_left_is_blamed_on_no_effect(plain, monk
     made = refit.Case((*plain.words, "coarse"), (), plain.records, {})
     fit = first_fit(made, 0)
     problem = fit.problem
-    response = problem.model.simulate(problem.records[0], problem.parameters(fit.point))[0, 0]
+    response = simulate(problem.model, problem.records[0], problem.parameters(fit.point))[0, 0]
     half_a_step = np.gradient(response) / 2 / refit.FINEST  # by which Euler's lag is too short
     assert fit.steps == (refit.FINEST, refit.FINEST)
     assert refit.step_errors(made, fit)[0] == pytest.approx(np.std(half_a_step), rel=0.1)
@@ -244,7 +245,7 @@ def test_an_effect_kept_off_an_axis_leaves_it_as_it_is_without(effect):
     known = dict(zip(one.names, rig.candidates(one, made.records[0].drive, 4, 1).T, strict=True)) | silent
     apart = {name: known.get(name, known.get(name.partition(".")[2])) for name in both.names}
     responses = [
-        each.simulate(made.records[0], np.stack([np.broadcast_to(values[name], 4) for name in each.names], axis=1))
+        simulate(each, made.records[0], np.stack([np.broadcast_to(values[name], 4) for name in each.names], axis=1))
         for each, values in ((one, known), (both, apart))
     ]
     rig.assert_close(responses[0][:, 0], responses[1][:, 0])
@@ -268,7 +269,7 @@ def test_an_axis_without_response_has_an_effect_where_that_fits_better(alone):
     known = stage.STAGE | {"kinematic_coupling.ratio": 0.3, "amplifier_lag.tau": 3e-3, "y.amplifier_lag.tau": 0.0}
     theta = np.array([[known[name] for name in stage_of.model.names]])
     noise = np.random.default_rng(4).normal(0, stage.NOISE, 600)
-    case = seen_through_a_coupling(stage_of.model.simulate(blank.records[0], theta)[0, 0] + noise)
+    case = seen_through_a_coupling(simulate(stage_of.model, blank.records[0], theta)[0, 0] + noise)
     found = refit.refit(case, first_fit(case, 0), effects, {"amplifier_lag.tau": 1.0})
     assert found.alone == alone
     assert found.identify == pytest.approx(stage.NOISE, rel=0.1)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from pzt_ident.data.record import Record
+from pzt_ident.engine.simulator import simulate
 from pzt_ident.errors import InputError
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks, optimizers
@@ -34,7 +35,7 @@ def made(words, truth, noise=0.0, offset=3e-6, **more):
     for use, u in drives.items():
         blank = Record(use, use, 1e-3, u[None], np.zeros((1, u.size)) + u * 1e-7, response_units=("um",), **more)
         si = [(truth | NONE)[name] * (1e-6 if name.endswith("gain") else 1) for name in model.names]
-        y = model.simulate(blank, np.array([si]))[0] + offset + rng.normal(0, noise, (1, u.size))
+        y = simulate(model, blank, np.array([si]))[0] + offset + rng.normal(0, noise, (1, u.size))
         records.append(Record(use, use, 1e-3, u[None], y, response_units=("um",), **more))
     return model, records
 
