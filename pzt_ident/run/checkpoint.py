@@ -1,4 +1,4 @@
-"""The losses of a search, generation by generation, on the disk: replayed, they give back its optimizer's state."""
+"""The losses of a search, generation by generation: replayed, they give back its optimizer's state."""
 
 from __future__ import annotations
 
@@ -19,6 +19,51 @@ class Generation(NamedTuple):
     seconds: float
     losses: np.ndarray
 
+    @property
+    def raw(self) -> bytes:
+        return HEAD.pack(self.seconds, len(self.losses)) + self.losses.astype("<f8").tobytes()
+
+
+class Checkpoint:
+    """The generations of a search so far, in memory and, where a path is given, on the disk."""
+
+    def __init__(self, path: Path | None = None) -> None:
+        self.path = path
+        self.generations = list(read_losses(path)) if path else []
+
+    @property
+    def seconds(self) -> float:
+        return self.generations[-1].seconds if self.generations else 0.0
+
+    @property
+    def failures(self) -> int:
+        """Candidates whose simulation failed."""
+        return sum(int(np.isinf(losses).sum()) for _, losses in self.generations)
+
+    @contextmanager
+    def appending(self) -> Iterator[Callable[[float, np.ndarray], None]]:
+        """What appends a generation, on the disk behind those that the file holds whole."""
+        if self.path is None:
+            yield lambda seconds, losses: self.generations.append(Generation(seconds, losses))
+            return
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        with self.path.open("r+b" if self.generations else "wb") as file:
+            file.truncate(sum(len(generation.raw) for generation in self.generations))
+            file.seek(0, 2)
+
+            def append(seconds: float, losses: np.ndarray) -> None:
+                generation = Generation(seconds, losses)
+                file.write(generation.raw)
+                file.flush()
+                self.generations.append(generation)
+
+            yield append
+
+    def save(self, path: Path) -> None:
+        """Write all generations into a file that `Checkpoint(path)` reads."""
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(b"".join(generation.raw for generation in self.generations))
+
 
 def read_losses(path: Path) -> Iterator[Generation]:
     """Each whole generation on the disk; a torn last one is left out."""
@@ -30,18 +75,3 @@ def read_losses(path: Path) -> Iterator[Generation]:
             return
         yield Generation(seconds, np.frombuffer(raw, "<f8", count, at + HEAD.size))
         at += HEAD.size + 8 * count
-
-
-@contextmanager
-def losses_file(path: Path, generations: list[Generation]) -> Iterator[Callable[[float, np.ndarray], None]]:
-    """What appends a generation behind those that the file holds whole."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("r+b" if generations else "wb") as file:
-        file.truncate(sum(HEAD.size + 8 * len(losses) for _, losses in generations))
-        file.seek(0, 2)
-
-        def append(seconds: float, losses: np.ndarray) -> None:
-            file.write(HEAD.pack(seconds, len(losses)) + losses.astype("<f8").tobytes())
-            file.flush()
-
-        yield append

@@ -78,7 +78,7 @@ def errors_in(record: Record, problem: Problem, point: np.ndarray) -> dict[str, 
 def history_of(task: Task, size: float) -> np.ndarray:
     """(generations, 3): evaluations so far, seconds so far, best RMSE so far in the user's unit."""
     rows, evaluations, best = [], 0, np.inf
-    for seconds, losses in read_losses(task.checkpoint):
+    for seconds, losses in read_losses(task.losses):
         evaluations, best = evaluations + len(losses), min(best, losses.min())
         rows.append((evaluations, seconds, best / size))
     return np.array(rows)

@@ -19,7 +19,7 @@ from pzt_ident.errors import InputError, RunError
 from pzt_ident.files import write_json
 from pzt_ident.model.optimizer import Optimizer
 from pzt_ident.model.registry import optimizers
-from pzt_ident.run.checkpoint import losses_file, read_losses
+from pzt_ident.run.checkpoint import Checkpoint
 from pzt_ident.run.statement import Statement
 from pzt_ident.search.loop import Outcome, State, Stop, optimize
 from pzt_ident.search.problem import Problem
@@ -43,7 +43,7 @@ class Task:
     folder: Path
 
     @property
-    def checkpoint(self) -> Path:
+    def losses(self) -> Path:
         return self.folder / "runs" / f"{self.run}.losses"
 
     @property
@@ -71,31 +71,27 @@ def work(task: Task, job_text: str, folder: Path, records: Sequence[Record], pip
 
 def search(task: Task, statement: Statement, tell: Tell) -> None:
     """Search, polish, judge the parameters, and write the result; continues from the losses on the disk."""
-    result = identification(task, statement, tell)
+    result = identification(task, statement, Checkpoint(task.losses), tell)
     write_json(task.result, result)
     tell({"event": "run", "run": task.run, "rmse": result["rmse"], "stopped_by": result["stopped_by"]})
 
 
-def identification(task: Task, statement: Statement, tell: Tell) -> dict[str, Any]:
+def identification(task: Task, statement: Statement, checkpoint: Checkpoint, tell: Tell) -> dict[str, Any]:
     """The entry of one run in `result.json`. Raises RunError where every simulation failed."""
     problem, size = statement.problem, factor(statement.unit)
-    outcome, seconds, cpu_seconds = searched(task, problem, size, tell)
+    outcome, seconds, cpu_seconds = searched(task, problem, size, checkpoint, tell)
     if not np.isfinite(outcome.loss):
         raise RunError(f"the simulation of each of its {outcome.evaluations} candidates failed: narrow the bounds")
     begun, problem.failed = time.perf_counter(), 0
     point, polish_evaluations = problem.polish(outcome.point) if task.polish else (outcome.point, 0)
     polish_seconds = time.perf_counter() - begun
-    failed = problem.failed + sum(int(np.isinf(losses).sum()) for _, losses in read_losses(task.checkpoint))
-    parameters, correlation = estimates(problem, point)
+    failed = problem.failed + checkpoint.failures
     return {
         "run": task.run,
         "optimizer": task.optimizer,
         "repeat": task.repeat,
-        "rmse": rmse(problem, point, size),
+        **what_is_known(statement, point),
         "rmse_before_polish": rmse(problem, outcome.point, size),
-        "parameters": {item.name: {k: v for k, v in item._asdict().items() if k != "name"} for item in parameters},
-        "fixed": fixed(problem),
-        "correlation": {"names": list(problem.names), "matrix": correlation},
         "evaluations": outcome.evaluations,
         "polish_evaluations": polish_evaluations,
         "seconds": seconds,
@@ -103,22 +99,35 @@ def identification(task: Task, statement: Statement, tell: Tell) -> dict[str, An
         "polish_seconds": polish_seconds,
         "failed_simulations": failed,
         "stopped_by": outcome.stopped_by,
+    }
+
+
+def what_is_known(statement: Statement, point: np.ndarray) -> dict[str, Any]:
+    """Of a model at a point of the cube: RMSE, its parameters and what the data determine of them."""
+    problem = statement.problem
+    parameters, correlation = estimates(problem, point)
+    return {
+        "rmse": rmse(problem, point, factor(statement.unit)),
+        "parameters": {item.name: {k: v for k, v in item._asdict().items() if k != "name"} for item in parameters},
+        "fixed": fixed(problem),
+        "correlation": {"names": list(problem.names), "matrix": correlation},
         "point": point,
     }
 
 
-def searched(task: Task, problem: Problem, size: float, tell: Tell) -> tuple[Outcome, float, float]:
+def searched(
+    task: Task, problem: Problem, size: float, checkpoint: Checkpoint, tell: Tell
+) -> tuple[Outcome, float, float]:
     """The optimizer's own outcome, and the wall and CPU time that it took, s."""
     optimizer = optimizers[task.optimizer].make(**task.settings).with_budget(task.stop["evaluations"])
     warm_up(optimizer, problem)
-    generations = list(read_losses(task.checkpoint))
-    before = generations[-1].seconds if generations else 0.0
+    before, known = checkpoint.seconds, [losses for _, losses in checkpoint.generations]
     begun, cpu, shown = time.perf_counter(), time.process_time(), 0.0
 
     def elapsed() -> float:
         return before + time.perf_counter() - begun
 
-    with losses_file(task.checkpoint, generations) as append:
+    with checkpoint.appending() as append:
 
         def note(state: State) -> None:
             nonlocal shown
@@ -136,7 +145,7 @@ def searched(task: Task, problem: Problem, size: float, tell: Tell) -> tuple[Out
             Stop(**task.stop),
             residuals=lambda points: problem.residuals(points) * np.sqrt(problem.scored),
             callback=note,
-            told=[losses for _, losses in generations],
+            told=known,
         )
     seconds, cpu_seconds = elapsed(), time.process_time() - cpu
     tell(generation_event(task, outcome.evaluations, rmse(problem, outcome.point, size), seconds))

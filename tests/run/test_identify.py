@@ -15,11 +15,12 @@ import pytest
 
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.job.schema import Job, load_job
+from pzt_ident.run.checkpoint import read_losses
 from pzt_ident.run.identify import resume, run, tasks_of
 from pzt_ident.run.misfit import compare
 from pzt_ident.run.pool import run_all
 from pzt_ident.run.statement import Statement
-from pzt_ident.run.task import read_losses, work
+from pzt_ident.run.task import work
 
 JOB = """\
 name: small
