@@ -32,7 +32,9 @@ class Fault:
     remedy: str = field(compare=False)
 
     def error(self, file: str) -> InputError:
-        where = f"{file}:{self.line}:{self.column}" + (f": {self.key}" if self.key else "")
+        """With its place in the file; of a text that is in no file, with its key alone."""
+        place = f"{file}:{self.line}:{self.column}" if file else ""
+        where = ": ".join(part for part in (place, self.key) if part)
         return InputError(self.message, where=where, remedy=self.remedy)
 
 
@@ -41,7 +43,7 @@ def reject(file: str, faults: Sequence[Fault]) -> NoReturn:
     errors = [fault.error(file) for fault in sorted(set(faults))]
     if len(errors) == 1:
         raise errors[0]
-    raise InputError("\n".join([f"{file} has {len(errors)} faults", *map(str, errors)]))
+    raise InputError("\n".join([f"{file or 'the job'} has {len(errors)} faults", *map(str, errors)]))
 
 
 class Document:

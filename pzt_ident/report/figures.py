@@ -48,13 +48,20 @@ def plates(results: Results) -> list[Plate]:
     ]
 
 
-def render(plate: Plate, width: float, forms: Sequence[str]) -> dict[str, bytes]:
-    """A plate drawn `width` mm wide, as the content of a file of each form, svg or pdf."""
+def drawn(plate: Plate, width: float, kind: type[Figure] | None = None) -> Figure:
+    """A plate `width` mm wide, on a figure of this kind."""
     from matplotlib.figure import Figure
 
     with style():
-        figure = Figure(figsize=(width / 25.4, plate.height(width) / 25.4))
+        figure = (kind or Figure)(figsize=(width / 25.4, plate.height(width) / 25.4))
         plate.draw(figure)
+    return figure
+
+
+def render(plate: Plate, width: float, forms: Sequence[str]) -> dict[str, bytes]:
+    """A plate drawn `width` mm wide, as the content of a file of each form, svg or pdf."""
+    figure = drawn(plate, width)
+    with style():
         return {form: saved(figure, form) for form in forms}
 
 

@@ -62,6 +62,12 @@ def estimates(problem: Problem, point: Array) -> tuple[list[Estimate], Array]:
     return found + solved(problem, point), correlation
 
 
+def covariance(problem: Problem, point: Array) -> Array:
+    """Covariance of the free parameters in the user's units, (free, free)."""
+    slope = (problem.physical(point + 1e-6) - problem.physical(point - 1e-6))[0] / 2e-6
+    return covariance_of(problem.jacobian(point), problem.residuals(point)[0]) * np.outer(slope, slope)
+
+
 def solved(problem: Problem, point: Array) -> list[Estimate]:
     """Of the parameters that the response is linear in; those at zero are held there for their errors."""
     theta = problem.parameters(point)[0]

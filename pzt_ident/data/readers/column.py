@@ -35,8 +35,10 @@ class Column:
 
 @dataclass(frozen=True)
 class Table:
-    """What one file holds: columns, numbered from 1, and scalars that only their name finds (a sample rate)."""
+    """What one file holds: columns, numbered from 1, and scalars that only their name finds (a sample rate). `content`
+    is that of a table which was made of arrays, not of a file."""
 
     path: Path
     columns: Sequence[Column]
     scalars: Sequence[Column] = ()
+    content: bytes | None = None

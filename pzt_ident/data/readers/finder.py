@@ -29,7 +29,7 @@ class Finder:
     source: Source
     folder: Path
     tables: dict[object, Table]
-    used: dict[Path, None] = field(default_factory=dict)
+    used: dict[Path, Table] = field(default_factory=dict)
 
     @property
     def where(self) -> str:
@@ -76,8 +76,8 @@ class Finder:
     def hash(self) -> str:
         """SHA-256 of the files used, one after the other."""
         digest = sha256()
-        for path in self.used:
-            digest.update(path.read_bytes())
+        for path, table in self.used.items():
+            digest.update(path.read_bytes() if table.content is None else table.content)
         return digest.hexdigest()
 
     def check(self, axes: Mapping[str, Axis]) -> None:
@@ -101,7 +101,7 @@ class Finder:
         key = (path, self.source.table, self.source.sheet)
         if key not in self.tables:
             self.tables[key] = open_table(path, self.source)
-        self.used[path] = None
+        self.used[path] = self.tables[key]
         where = f"{path}: {label}"
         return *pick(self.tables[key], self.source, channel, where), where
 

@@ -25,15 +25,20 @@ SHORTEST = 3
 
 
 def read_records(
-    sources: Sequence[Source], axes: Mapping[str, Axis], time: Channel | None, folder: Path
+    sources: Sequence[Source],
+    axes: Mapping[str, Axis],
+    time: Channel | None,
+    folder: Path,
+    arrays: Mapping[str, Table] | None = None,
 ) -> list[Record]:
     """The records of a job, in its order; paths are relative to `folder`, `${VAR}` in them is an environment variable.
 
     A record goes by its name, else by its file's; names that occur twice are numbered. A record to validate that
-    holds samples of one to identify has a note of it. Raises InputError on whatever is wrong with a file, naming file,
+    holds samples of one to identify has a note of it. `arrays` are tables in the place of files, by the file's name in
+    the source. Raises InputError on whatever is wrong with a file, naming file,
     channel and row.
     """
-    tables: dict[object, Table] = {}
+    tables: dict[object, Table] = {(folder / file, None, None): table for file, table in (arrays or {}).items()}
     records = _named([_record(Finder(source, folder, tables), axes, time) for source in sources])
     _check_kinds(records)
     records = [_as_first(record, records[0]) for record in records]

@@ -1,0 +1,111 @@
+"""Identify a model from records, and read a fit again."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pzt_ident.api.fit import Fit
+from pzt_ident.api.model import Model
+from pzt_ident.api.record import Record
+from pzt_ident.api.statement import job_text, named_apart, sections_of, statement_of
+from pzt_ident.errors import InputError
+from pzt_ident.job.schema import Job
+from pzt_ident.run.checkpoint import Checkpoint
+from pzt_ident.run.events import nobody
+from pzt_ident.run.folder import check_unchanged, read_environment
+from pzt_ident.run.identify import tasks_of
+from pzt_ident.run.results import read_results
+from pzt_ident.run.statement import Statement
+from pzt_ident.run.task import identification
+
+Bounds = Mapping[str, tuple[float, float]]
+
+
+def identify(
+    model: Model | str,
+    train: Record | Sequence[Record],
+    *,
+    validate: Record | Sequence[Record] | None = None,
+    bounds: Bounds | None = None,
+    fixed: Mapping[str, float] | None = None,
+    optimizer: str | Mapping[str, Any] = "pso",
+    seed: int = 0,
+    evaluations: int | None = None,
+    repeats: int = 1,
+    polish: bool = True,
+    name: str = "fit",
+) -> Fit:
+    """Find the parameters of a model that leave the least RMSE of the records `train`.
+
+    validate: records that the fit never sees, to judge it on. bounds, fixed: (low, high) or value of parameters by
+    name, such as `bouc_wen.alpha`, with the axis in front where there are several, in the units of the data.
+    optimizer: its word, or `{"name": "pso", "population": 40}`. evaluations: its budget, by default its own. repeats:
+    searches, of which the best is taken; the fit is a function of the seed. polish: least squares at the end.
+
+    Raises InputError with the sentences of the command line, RunError where every simulation failed.
+    """
+    chain = Model(model) if isinstance(model, str) else model
+    records = {"identify": _listed(train), "validate": _listed(validate)}
+    if not records["identify"]:
+        raise InputError("no record to identify from", where="train", remedy="give at least one")
+    named_apart(records)
+    chosen = {"name": optimizer} if isinstance(optimizer, str) else dict(optimizer)
+    sections = {
+        "parameters": _parameters(bounds or {}, fixed or {}),
+        "optimizers": [chosen],
+        "repeats": repeats,
+        "seed": seed,
+        "polish": polish,
+        "stop": {"evaluations": evaluations} if evaluations else {},
+    }
+    statement = statement_of(job_text(name, chain, records, sections), records)
+    runs = []
+    with np.errstate(all="ignore"):
+        for task in tasks_of(statement, Path()):
+            checkpoint = Checkpoint()
+            runs.append((identification(task, statement, checkpoint, nobody), checkpoint))
+    return Fit(statement, chain, records, sections, runs)
+
+
+def load(folder: str | Path, *, plugins: bool = False) -> Fit:
+    """Read the fit of a folder that `Fit.save` or `pzt-ident run` wrote. plugins: load the files of code that its job
+    names.
+
+    Raises InputError where the folder holds no finished run, or its data have changed.
+    """
+    folder = Path(folder)
+    results, begun = read_results(folder), read_environment(folder)
+    home = folder if (folder / "data").is_dir() else Path(begun["job_folder"])
+    job = Job.from_text(results.job, home, str(folder / "job.yaml"), plugins)
+    found = Statement(job)
+    check_unchanged(job, found.records, begun, folder)
+    records = {
+        use: tuple(Record.of(record) for record in found.records if record.use == use)
+        for use in ("identify", "validate")
+    }
+    tasks = {task.run: task for task in tasks_of(found, folder)}
+    finished = [json.loads(tasks[run["run"]].result.read_text(encoding="utf-8")) for run in results.result["runs"]]
+    runs = [(run, Checkpoint(tasks[run["run"]].losses)) for run in finished]
+    chain, sections = Model.of(job), sections_of(job)
+    return Fit(statement_of(job_text(job.name, chain, records, sections), records), chain, records, sections, runs)
+
+
+def _listed(records: Record | Sequence[Record] | None) -> tuple[Record, ...]:
+    return () if records is None else (records,) if not isinstance(records, Sequence) else tuple(records)
+
+
+def _parameters(bounds: Bounds, fixed: Mapping[str, float]) -> dict[str, Any]:
+    """The section `parameters` of a job. Raises InputError where one is both bounded and fixed."""
+    if both := sorted(set(bounds) & set(fixed)):
+        raise InputError(f"{both[0]!r} has bounds and a value", where="fixed", remedy="keep one of the two")
+    limits = {name: {"bounds": [_number(end) for end in ends]} for name, ends in bounds.items()}
+    return limits | {name: {"value": _number(value)} for name, value in fixed.items()}
+
+
+def _number(value: Any) -> Any:
+    return float(value) if isinstance(value, int | float | np.number) and not isinstance(value, bool) else value

@@ -1,0 +1,81 @@
+"""A fit gone on from, with other effects: between what a user has and what the diagnosis fits."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from pzt_ident.api.fit import Fit
+from pzt_ident.api.record import Record
+from pzt_ident.api.statement import job_text, statement_of
+from pzt_ident.diagnosis import refit as diagnosis
+from pzt_ident.diagnosis.refit import Case
+from pzt_ident.diagnosis.score import Scorer
+from pzt_ident.errors import InputError, nearest
+from pzt_ident.model.registry import blocks
+from pzt_ident.run.checkpoint import Checkpoint
+from pzt_ident.run.improve import case_of
+from pzt_ident.run.statement import Statement
+from pzt_ident.run.task import what_is_known
+
+
+def with_effect(fit: Fit, effect: str) -> Fit:
+    """The fit with an effect more. Raises InputError where it is unknown, there already, or does not fit the model."""
+    if effect in fit.model.effects:
+        raise InputError(f"{effect!r} is in the model already", where="add", remedy="add another effect")
+    if effect not in blocks.effects():
+        raise InputError(f"unknown effect {effect!r}", where="add", remedy=nearest(effect, blocks.effects()))
+    effects = (*fit.model.effects, effect)
+    restated(fit, effects)  # refused before anything is fitted
+    with np.errstate(all="ignore"):
+        case = case_of(fit.statement)
+        before = as_given(case, fit)
+        score = Scorer(case, before).score(effect)
+        return from_refit(fit, case, diagnosis.refit(case, before, effects, score.guess))
+
+
+def as_given(case: Case, fit: Fit) -> diagnosis.Fit:
+    """A fit as the diagnosis goes on from it."""
+    return diagnosis.made(case.effects, case.problem(case.effects), fit.point)
+
+
+def from_refit(fit: Fit, case: Case, refit: diagnosis.Fit) -> Fit:
+    """What the diagnosis fitted to the records of a fit, as a fit."""
+    silent = case.silent(refit.effects) if refit.alone else {}
+    statement, records, sections = restated(fit, refit.effects, refit.steps, silent)
+    point = statement.problem.unit_point(refit.values)
+    known = what_is_known(statement, point)
+    checkpoint = Checkpoint()
+    with checkpoint.appending() as append:
+        append(0.0, np.array([refit.identify]))
+    run: dict[str, Any] = {
+        "run": f"{fit.best['optimizer']}-0",
+        "optimizer": fit.best["optimizer"],
+        "repeat": 0,
+        **known,
+        "rmse_before_polish": known["rmse"],
+        "evaluations": 1,
+        "polish_evaluations": 0,
+        **dict.fromkeys(("seconds", "cpu_seconds", "polish_seconds"), 0.0),
+        "failed_simulations": 0,
+        "stopped_by": "refit",
+    }
+    return Fit(statement, fit.model.with_effects(refit.effects), records, sections, [(run, checkpoint)])
+
+
+def restated(
+    fit: Fit, effects: tuple[str, ...], steps: tuple[int, ...] = (), values: dict[str, float] | None = None
+) -> tuple[Statement, dict[str, tuple[Record, ...]], dict[str, Any]]:
+    """What a fit's job states with other effects, `steps` a sample of each record and some parameters fixed to values:
+    with its records and sections."""
+    names = [record.name for record in fit.statement.records]
+    counts = dict(zip(names, steps or [record.steps for record in fit.statement.records], strict=True))
+    records = {
+        use: tuple(record.with_steps(counts[record.name]) for record in group) for use, group in fit.records.items()
+    }
+    chosen = next(item for item in fit.sections["optimizers"] if item["name"] == fit.best["optimizer"])
+    fixed = {name: {"value": value} for name, value in (values or {}).items()}
+    sections = fit.sections | {"optimizers": [chosen], "repeats": 1, "parameters": fit.sections["parameters"] | fixed}
+    text = job_text(fit.statement.job.name, fit.model.with_effects(effects), records, sections)
+    return statement_of(text, records), records, sections
