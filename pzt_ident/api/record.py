@@ -79,9 +79,9 @@ class Record:
         drives, responses = (
             {"x": columns} if isinstance(columns, str) else dict(columns or {}) for columns in (drive, response)
         )
-        stamps = _column(frame, time) if isinstance(time, str) and time in frame.columns else time
-        if isinstance(time, str) and stamps is not time:
-            stamps = stamps * factor(_header_unit(time, "s"))
+        stamps: Any = time
+        if isinstance(time, str) and time in frame.columns:
+            stamps = _column(frame, time) * factor(_header_unit(time, "s"))
         signals = [{axis: _column(frame, column) for axis, column in side.items()} for side in (drives, responses)]
         units = [{axis: _header_unit(column) for axis, column in side.items()} for side in (drives, responses)]
         return cls(stamps, signals[0], signals[1] or None, drive=units[0], response=units[1], **more)
