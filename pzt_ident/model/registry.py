@@ -129,10 +129,12 @@ def word_of(item: str | Choice) -> str:
 
 class Blocks(Registry[Any]):
     def plug(self, path: Path) -> None:
-        """Run a file of the user's, which registers the block that it is named like.
+        """Run a file of the user's, which registers the block that it is named like, or declares a reader of files.
 
         Raises InputError where there is no such file, it fails, it registers nothing, or its name is taken.
         """
+        from pzt_ident.data.readers.registry import readers
+
         word, where = path.stem, str(path)
         module = f"pzt_ident_plugins.{word}"
         if module in sys.modules and sys.modules[module].__file__ == str(path.resolve()):
@@ -146,7 +148,7 @@ class Blocks(Registry[Any]):
             self._refuse(word, where, "rename the file")
         try:
             self._execute(module, path)
-            if word not in self._items:
+            if word not in self._items and not readers.add_declared(sys.modules[module]):
                 raise InputError("registers no block", where=where, remedy="decorate its class with `@blocks.register`")
         except InputError:
             sys.modules.pop(module, None)

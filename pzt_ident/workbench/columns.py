@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from pzt_ident.data.readers.column import Column, Table
-from pzt_ident.data.readers.formats import open_table, parts_of
+from pzt_ident.data.readers.open import open_table, parts_of
+from pzt_ident.data.readers.table import Column, Table
 from pzt_ident.data.record import Source
 from pzt_ident.data.units import FREQUENCY, TIME, dimension, factor, is_unit
 from pzt_ident.errors import InputError

@@ -9,7 +9,7 @@ from typing import Any
 
 from pzt_ident.data.notation import spelled, unit
 from pzt_ident.data.over_axes import together, weighed
-from pzt_ident.data.readers.formats import READERS
+from pzt_ident.data.readers.registry import readers
 from pzt_ident.data.signals import Trace
 from pzt_ident.model.registry import blocks, word_of
 from pzt_ident.report.tables import expected
@@ -19,7 +19,6 @@ from pzt_ident.run.results import read_results
 from pzt_ident.workbench.guard import LARGEST_UPLOAD
 from pzt_ident.workbench.session import Session
 
-DATA = tuple(READERS)
 SPELLED = {"unit": unit} | dict.fromkeys(("reason", "why", "said", "sentences"), spelled)
 
 
@@ -119,7 +118,8 @@ def printed(found: Any, key: str = "") -> Any:
 def files_in(root: Path) -> list[str]:
     """Data files right in a folder, if there is one."""
     found = root.iterdir() if root.is_dir() else ()
-    return sorted(path.name for path in found if path.suffix.lower() in DATA and not path.is_symlink())
+    suffixes = readers.suffixes()
+    return sorted(path.name for path in found if path.suffix.lower() in suffixes and not path.is_symlink())
 
 
 def chainable() -> list[dict[str, Any]]:

@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.readers.column import Table
 from pzt_ident.data.readers.decimate import decimated
-from pzt_ident.data.readers.finder import Finder
 from pzt_ident.data.readers.signal import Signal
+from pzt_ident.data.readers.source_channels import Finder
+from pzt_ident.data.readers.table import Table
 from pzt_ident.data.readers.timebase import stretch
 from pzt_ident.data.record import Axis, Channel, Record, Source
 from pzt_ident.data.units import same_kind, unscaled

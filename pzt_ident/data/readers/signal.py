@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.readers.column import Column
+from pzt_ident.data.readers.table import Column
 from pzt_ident.data.units import factor
 from pzt_ident.errors import InputError
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from pzt_ident.data.readers.formats import READERS
+from pzt_ident.data.readers.registry import readers
 from pzt_ident.data.record import Channel
 from sheets import write_sheets
 
@@ -168,7 +168,7 @@ def test_the_content_decides_where_the_name_says_only_data(tmp_path, read):
     assert_the_loop(read(path, Channel(column=1, unit="V"), Channel(column=2, unit="um"), None, sample_rate=1 / DT))
 
 
-@pytest.mark.parametrize("suffix", sorted(READERS))
+@pytest.mark.parametrize("suffix", sorted(readers.suffixes()))
 def test_a_damaged_file_of_any_format_is_an_input_error(tmp_path, problem, suffix):
     path = tmp_path / f"broken{suffix}"
     path.write_bytes(b"\x00\x01 neither text nor anything else" * 20)

@@ -8,9 +8,12 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from pzt_ident.data.readers.column import Column, Table
+from pzt_ident.data.readers.table import Column, Table
 from pzt_ident.data.record import Source
 from pzt_ident.errors import InputError
+
+SUFFIXES = (".parquet",)
+MAGIC = (b"PAR1",)
 
 
 def read(path: Path, source: Source) -> Table:

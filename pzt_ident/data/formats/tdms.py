@@ -9,8 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.readers.column import Column, Table
+from pzt_ident.data.readers.table import Column, Table
 from pzt_ident.data.record import Source
+
+SUFFIXES = (".tdms",)
+MAGIC = (b"TDSm",)
 
 
 def read(path: Path, source: Source) -> Table:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.readers.column import Column, Table
+from pzt_ident.data.readers.table import Column, Table
 from pzt_ident.data.record import Channel, Source
 from pzt_ident.data.units import plain
 from pzt_ident.errors import InputError, nearest

@@ -12,10 +12,10 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from pzt_ident.data.readers.column import Column, Table
-from pzt_ident.data.readers.formats import open_table
-from pzt_ident.data.readers.pick import pick
+from pzt_ident.data.readers.open import open_table
+from pzt_ident.data.readers.select import pick
 from pzt_ident.data.readers.signal import Signal, signal
+from pzt_ident.data.readers.table import Column, Table
 from pzt_ident.data.readers.timebase import Grid, check_rate, grid_of, rate_of
 from pzt_ident.data.record import Axis, Channel, Source
 from pzt_ident.data.units import FREQUENCY, MASS, TIME, dimension

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from pzt_ident.data.readers.column import Table
-from pzt_ident.data.readers.text import parse
+from pzt_ident.data.formats.text import parse
+from pzt_ident.data.readers.table import Table
 from pzt_ident.data.record import Source
 from pzt_ident.errors import InputError, nearest
+
+SUFFIXES = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
+MAGIC = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
 
 
 def parts(path: Path) -> tuple[str, dict[str, str]]:

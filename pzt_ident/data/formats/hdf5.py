@@ -9,8 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.readers.column import Column, Table
+from pzt_ident.data.readers.table import Column, Table
 from pzt_ident.data.record import Source
+
+SUFFIXES = (".h5", ".hdf5", ".nc")
+MAGIC = (b"\x89HDF\r\n\x1a\n",)
 
 
 def read(path: Path, source: Source) -> Table:

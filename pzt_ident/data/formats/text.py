@@ -15,23 +15,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.readers import analyser
-from pzt_ident.data.readers.column import Column, Table
-from pzt_ident.data.readers.sniff import COMMENTS, GAPS, sniff
+from pzt_ident.data.formats import _analyser
+from pzt_ident.data.formats._layout import COMMENTS, GAPS, sniff
+from pzt_ident.data.readers.table import Column, Table
 from pzt_ident.data.record import Source
 from pzt_ident.errors import InputError
+
+SUFFIXES = (".csv", ".tsv", ".txt", ".dat")
 
 
 def read(path: Path, source: Source) -> Table:
     """The columns of a text file, of a file with several tables those of `source.table`."""
     lines = lines_of(path)
-    first, chosen = analyser.table(lines, source.table, str(path))
+    first, chosen = _analyser.table(lines, source.table, str(path))
     return Table(path, parse(chosen, str(path), "line", first))
 
 
 def parts(path: Path) -> tuple[str, dict[str, str]]:
     """The numbers of the tables of an analyser's export, with what they are called."""
-    return "table", analyser.titles(lines_of(path))
+    return "table", _analyser.titles(lines_of(path))
 
 
 def lines_of(path: Path) -> list[str]:

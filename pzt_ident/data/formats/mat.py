@@ -10,15 +10,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.readers.column import Column, Table
+from pzt_ident.data.readers.table import Column, Table
 from pzt_ident.data.record import Source
+
+SUFFIXES = (".mat",)
+MAGIC = (b"MATLAB ",)
 
 
 def read(path: Path, source: Source) -> Table:
     with path.open("rb") as file:
         version = file.read(10)
     if version == b"MATLAB 7.3":
-        from pzt_ident.data.readers import hdf5
+        from pzt_ident.data.formats import hdf5
 
         return hdf5.tables(path, transposed=True)
     from scipy.io import loadmat

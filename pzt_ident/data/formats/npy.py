@@ -7,8 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from pzt_ident.data.readers.column import Column, Table
+from pzt_ident.data.readers.table import Column, Table
 from pzt_ident.data.record import Source
+
+SUFFIXES = (".npy",)
+MAGIC = (b"\x93NUMPY",)
 
 
 def read(path: Path, source: Source) -> Table:
