@@ -11,6 +11,7 @@ from pzt_ident.data import units
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.job.document import Document, Loc
 from pzt_ident.job.parameter_checks import Earlier, check_parameters
+from pzt_ident.job.plugins import plug
 from pzt_ident.model.contract import check_loaded
 from pzt_ident.model.registry import blocks, optimizers, word_of
 
@@ -118,7 +119,7 @@ def _plugins(document: Document, files: tuple[str, ...], earlier: Earlier) -> No
             continue
         path = document.folder / file
         with _noted(document, ("plugins", i), str(path)):
-            blocks.plug(path)
+            plug(path)
     for i, word in enumerate(Path(file).stem for file in files):
         if document.plugins and word in blocks:
             with _noted(document, ("plugins", i)):

@@ -19,8 +19,8 @@ from pzt_ident.job import checks
 from pzt_ident.job.chain import ChainParts, MadeChain
 from pzt_ident.job.document import Document, Fault, Loc, reject
 from pzt_ident.job.normalise import written_out
+from pzt_ident.job.plugins import plug
 from pzt_ident.job.sections import Channels, Choice, Item, Limits, Repeats, Setting, Stopping
-from pzt_ident.model.registry import blocks
 
 if TYPE_CHECKING:
     from pzt_ident.model.chain import Chain
@@ -134,7 +134,7 @@ def load_job(path: Path, plugins: bool = False) -> Job:
 def load_plugins(path: Path) -> None:
     """Load a file of code, or those that a job lists, whatever else may be wrong with the job."""
     if path.suffix == ".py":
-        blocks.plug(path)
+        plug(path)
         return
     document = Document(_text_of(path), str(path), path.parent, plugins=True)
     Job._read(document)

@@ -7,10 +7,11 @@ import importlib.util
 import pkgutil
 import sys
 import warnings
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
+from types import ModuleType
 from typing import Any, Generic, NoReturn, Protocol, TypeVar
 
 from pzt_ident.errors import InputError, nearest
@@ -128,13 +129,12 @@ def word_of(item: str | Choice) -> str:
 
 
 class Blocks(Registry[Any]):
-    def plug(self, path: Path) -> None:
-        """Run a file of the user's, which registers the block that it is named like, or declares a reader of files.
+    def plug(self, path: Path, is_other: Callable[[ModuleType], bool] = lambda module: False) -> None:
+        """Run a file of the user's, which registers the block that it is named like. `is_other`: whether a module that
+        registers none is something else than a block, such as a reader of files.
 
         Raises InputError where there is no such file, it fails, it registers nothing, or its name is taken.
         """
-        from pzt_ident.data.readers.registry import readers
-
         word, where = path.stem, str(path)
         module = f"pzt_ident_plugins.{word}"
         if module in sys.modules and sys.modules[module].__file__ == str(path.resolve()):
@@ -148,7 +148,7 @@ class Blocks(Registry[Any]):
             self._refuse(word, where, "rename the file")
         try:
             self._execute(module, path)
-            if word not in self._items and not readers.add_declared(sys.modules[module]):
+            if word not in self._items and not is_other(sys.modules[module]):
                 raise InputError("registers no block", where=where, remedy="decorate its class with `@blocks.register`")
         except InputError:
             sys.modules.pop(module, None)

@@ -91,7 +91,7 @@ class Readers:
         added = [reader for reader in self._added if reader.file != getattr(module, "__file__", None)]
         self._added = [*added, _free_reader(module, [*self._installed, *added])]
 
-    def add_declared(self, module: ModuleType) -> bool:
+    def add_declared(self, module: Any) -> bool:
         """Add the reader that a user's file declares; False where it declares none. Raises InputError as `add`."""
         if not hasattr(module, "SUFFIXES"):
             return False
