@@ -1,6 +1,5 @@
-"""Readers of file formats, one file each, found by being here.
+"""Readers of file formats, one file a format; a file in this folder is found without being listed anywhere.
 
-In: the path of a file that begins or is named as the reader declares. Out: its columns (`Table`), none of them loaded.
-A reader declares SUFFIXES, and MAGIC where the format has first bytes of its own, and imports heavy libraries in its
-functions alone.
+In: the path of a file. Out: its columns (`Table`), none of them loaded yet. A reader declares SUFFIXES, and MAGIC where
+the format has first bytes of its own, and imports heavy libraries inside its functions.
 """

@@ -19,7 +19,7 @@ GAPS = frozenset(("", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--"))
 
 @dataclass(frozen=True)
 class Layout:
-    """`start`: index of the first line of numbers; `names`: one header text a column, empty where there is none.
+    """`start`: index of the first line of numbers; `width`: columns; `names`: the header text of each column, or "".
 
     The delimiter " " stands for any white space.
     """
@@ -37,12 +37,12 @@ class Layout:
         return line.split() if self.delimiter == " " else line.split(self.delimiter)
 
     def splitter(self, lines: Iterable[str]) -> Callable[[str], list[str]]:
-        """`split`, or where no line has quotes the same without a look for them."""
+        """`split`, without its search for quotes where no line has any."""
         if any('"' in line for line in lines):
             return self.split
         return methodcaller("split", None if self.delimiter == " " else self.delimiter)
 
-    def number(self, cell: str) -> bool:
+    def is_number(self, cell: str) -> bool:
         """Whether a cell holds a number, a gap included."""
         try:
             float(cell.replace(self.decimal, "."))
@@ -51,8 +51,8 @@ class Layout:
         return True
 
 
-def sniff(lines: Sequence[str], where: str, delimiter: str | None = None) -> Layout:
-    """The layout of the table in `lines`, judged by up to 100 lines from the middle on.
+def detect_layout(lines: Sequence[str], where: str, delimiter: str | None = None) -> Layout:
+    """The layout of the table in `lines`, judged by up to 100 lines from the middle of the file on.
 
     Raises InputError where there are no two lines of numbers.
     """
@@ -62,7 +62,7 @@ def sniff(lines: Sequence[str], where: str, delimiter: str | None = None) -> Lay
     rows = [layout.split(line) for line in sample]
     width = Counter(map(len, rows)).most_common(1)[0][0] if rows else 0
     full = [row for row in rows if len(row) == width]
-    numeric = [k for k in range(width) if 2 * sum(layout.number(row[k]) for row in full) > len(full)]
+    numeric = [k for k in range(width) if 2 * sum(layout.is_number(row[k]) for row in full) > len(full)]
     start = _start(lines, filled, layout, width, numeric)
     if start is None:
         raise InputError("holds no table of numbers", where=where, remedy="is it the right file, sheet or table?")
@@ -71,13 +71,13 @@ def sniff(lines: Sequence[str], where: str, delimiter: str | None = None) -> Lay
 
 
 def _punctuation(sample: Sequence[str], delimiter: str | None) -> Layout:
-    choices = [Layout(mark, decimal) for mark in ([delimiter] if delimiter else DELIMITERS) for decimal in ".,"]
+    layouts = [Layout(mark, decimal) for mark in ([delimiter] if delimiter else DELIMITERS) for decimal in ".,"]
 
-    def numbers_less_words(layout: Layout) -> int:
+    def numbers_minus_words(layout: Layout) -> int:
         cells = (cell for line in sample for cell in layout.split(line) if cell.strip())
-        return sum(1 if layout.number(cell) else -1 for cell in cells)
+        return sum(1 if layout.is_number(cell) else -1 for cell in cells)
 
-    return max((layout for layout in choices if layout.delimiter != layout.decimal), key=numbers_less_words)
+    return max((layout for layout in layouts if layout.delimiter != layout.decimal), key=numbers_minus_words)
 
 
 def _start(
@@ -85,41 +85,43 @@ def _start(
 ) -> int | None:
     """The first of two lines of numbers, or a line above it that is no header."""
 
-    def clean(i: int) -> bool:
+    def is_complete(i: int) -> bool:
         row = layout.split(lines[i])
         return (
-            len(row) == width and any(row[k].strip() for k in numeric) and all(layout.number(row[k]) for k in numeric)
+            len(row) == width
+            and any(row[k].strip() for k in numeric)
+            and all(layout.is_number(row[k]) for k in numeric)
         )
 
-    def partly(i: int) -> bool:
+    def is_partial(i: int) -> bool:
         row = layout.split(lines[i])
-        numbers = [cell.strip() != "" and layout.number(cell) for cell in row]
-        return len(row) == width and any(numbers) and not _units(row)
+        numbers = [cell.strip() != "" and layout.is_number(cell) for cell in row]
+        return len(row) == width and any(numbers) and not _are_units(row)
 
-    kept: list[int] = []
+    rows: list[int] = []
     for i in (i for i in filled if not lines[i].startswith(COMMENTS)):
-        kept.append(i)
-        if len(kept) > 1 and clean(kept[-1]) and clean(kept[-2]):
+        rows.append(i)
+        if len(rows) > 1 and is_complete(rows[-1]) and is_complete(rows[-2]):
             break
     else:
         return None
-    at = len(kept) - 2
-    while at > 0 and partly(kept[at - 1]):
-        at -= 1
-    return kept[at]
+    start = len(rows) - 2
+    while start > 0 and is_partial(rows[start - 1]):
+        start -= 1
+    return rows[start]
 
 
 def _names(above: Sequence[str], layout: Layout, width: int) -> tuple[str, ...]:
-    """Header texts from the lines above the numbers, joined with the units of a second header line."""
+    """Header texts from the lines `above` the numbers, joined with the units of a second header line."""
     last = _fields(above[-1], layout, width) if above else []
-    first = _fields(above[-2], layout, width) if len(above) > 1 and _units(last) else []
-    if _words(first, width):
+    first = _fields(above[-2], layout, width) if len(above) > 1 and _are_units(last) else []
+    if _are_names(first, width):
         return tuple(f"{name} [{unit.strip('[]()- ')}]" for name, unit in zip(first, last, strict=True))
-    return tuple(last) if _words(last, width) else ("",) * width
+    return tuple(last) if _are_names(last, width) else ("",) * width
 
 
 def _fields(line: str, layout: Layout, width: int) -> list[str]:
-    """The cells of a header line, by the delimiter of the numbers or another one that fits their count."""
+    """The cells of a header line, by the delimiter of the numbers or another one that gives as many cells."""
     for delimiter in (layout.delimiter, *DELIMITERS):
         if delimiter == " " and '"' not in line:
             cells = re.findall(r"\S+(?:\s*[\[(][^\])]*[\])])?", line)
@@ -131,11 +133,11 @@ def _fields(line: str, layout: Layout, width: int) -> list[str]:
     return []
 
 
-def _words(cells: Sequence[str], width: int) -> bool:
+def _are_names(cells: Sequence[str], width: int) -> bool:
     return len(cells) == width and not any(re.fullmatch(r"[+-]?[\d.,]+(?:[eE][+-]?\d+)?", cell) for cell in cells)
 
 
-def _units(cells: Iterable[str]) -> bool:
+def _are_units(cells: Iterable[str]) -> bool:
     """Whether the cells are the units of a second header line: `1` is one, other numbers are not."""
     units = [unit for cell in cells if (unit := cell.strip("[]()- "))]
     return any(unit != "1" for unit in units) and all(unit == "1" or _is_word_unit(unit) for unit in units)

@@ -1,4 +1,4 @@
-"""Workbooks (xlsx, xls, xlsb, ods): one sheet, laid out as a text table may be."""
+"""Workbooks (xlsx, xls, xlsb, ods): one sheet, laid out like a text table."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""MATLAB files: v5 through SciPy, v7.3 as HDF5; structs by their path, elements of a struct array from 1."""
+"""MATLAB files: v5 by SciPy, v7.3 as HDF5. Structs by their path, elements of a struct array counted from 1."""
 
 from __future__ import annotations
 

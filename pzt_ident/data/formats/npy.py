@@ -1,4 +1,4 @@
-"""NumPy arrays: one array, or the fields of a structured one."""
+"""NumPy files: one array, or the fields of a structured array."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Text tables: CSV, TSV, white space, with or without header, in the common encodings.
+"""Text tables: CSV, TSV or white space, with or without header, in UTF-8, UTF-16 or Latin-1.
 
 `str.split` and `float` take 0.1 to 0.2 s for a file of 1.5 MB and know the line of each value; pandas' C reader takes
 0.03 s, and 0.6 s more for its import.
@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.formats import _analyser
-from pzt_ident.data.formats._layout import COMMENTS, GAPS, sniff
+from pzt_ident.data.formats._layout import COMMENTS, GAPS, detect_layout
 from pzt_ident.data.readers.table import Column, Table
 from pzt_ident.data.record import Source
 from pzt_ident.errors import InputError
@@ -25,23 +25,22 @@ SUFFIXES = (".csv", ".tsv", ".txt", ".dat")
 
 
 def read(path: Path, source: Source) -> Table:
-    """The columns of a text file, of a file with several tables those of `source.table`."""
-    lines = lines_of(path)
-    first, chosen = _analyser.table(lines, source.table, str(path))
-    return Table(path, parse(chosen, str(path), "line", first))
+    """The columns of a text file; of a file with several tables, those of the table `source.table`."""
+    first, lines = _analyser.select_table(_lines(path), source.table, str(path))
+    return Table(path, parse(lines, str(path), "line", first))
 
 
 def parts(path: Path) -> tuple[str, dict[str, str]]:
-    """The numbers of the tables of an analyser's export, with what they are called."""
-    return "table", _analyser.titles(lines_of(path))
+    """The numbers and titles of the tables of an analyser's export."""
+    return "table", _analyser.table_titles(_lines(path))
 
 
-def lines_of(path: Path) -> list[str]:
-    return decode(path.read_bytes(), str(path)).replace("\r\n", "\n").replace("\r", "\n").split("\n")
+def _lines(path: Path) -> list[str]:
+    return _decode(path.read_bytes(), str(path)).replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
-def decode(raw: bytes, where: str) -> str:
-    """Text of UTF-8 or UTF-16 with a byte order mark, of UTF-8 without, else of Latin-1."""
+def _decode(raw: bytes, where: str) -> str:
+    """By the byte order mark of UTF-8 or UTF-16; without one, as UTF-8, else as Latin-1. Raises InputError."""
     for mark, encoding in (
         (codecs.BOM_UTF8, "utf-8-sig"),
         (codecs.BOM_UTF16_LE, "utf-16"),
@@ -58,26 +57,27 @@ def decode(raw: bytes, where: str) -> str:
 
 
 def parse(lines: Sequence[str], where: str, place: str, first: int = 1, delimiter: str | None = None) -> list[Column]:
-    """The columns of the only table in `lines`; the first of them is number `first` (of `place`: line, row).
+    """The columns of the only table in `lines`. `place` is what a line is called in messages (line, row); the first of
+    them has the number `first`.
 
     Raises InputError where there is no table of numbers or where a line has more or fewer fields than the others.
     """
-    layout = sniff(lines, where, delimiter)
-    kept = [i for i in range(layout.start, len(lines)) if lines[i].strip() and not lines[i].startswith(COMMENTS)]
-    rows = [lines[i] for i in kept]
+    layout = detect_layout(lines, where, delimiter)
+    filled = [i for i in range(layout.start, len(lines)) if lines[i].strip() and not lines[i].startswith(COMMENTS)]
+    rows = [lines[i] for i in filled]
     split = layout.splitter(rows)
-    for i, row in zip(kept, map(split, rows), strict=True):
+    for i, row in zip(filled, map(split, rows), strict=True):
         if len(row) != layout.width:
             message = f"{place} {first + i} has {len(row)} fields instead of {layout.width}"
             raise InputError(message, where=where, remedy=f"complete the {place} or delete it")
 
-    def placed(row: int) -> str:
-        return f"row {row} ({place} {first + kept[row]})" if row < len(kept) else f"row {row}"
+    def row_place(row: int) -> str:
+        return f"row {row} ({place} {first + filled[row]})" if row < len(filled) else f"row {row}"
 
     def values(k: int) -> NDArray[Any]:
         return _numbers([row[k] for row in map(split, rows)], layout.decimal)
 
-    return [Column(layout.names[k], partial(values, k), None, placed) for k in range(layout.width)]
+    return [Column(layout.names[k], partial(values, k), None, row_place) for k in range(layout.width)]
 
 
 def _numbers(cells: Sequence[str], decimal: str) -> NDArray[Any]:

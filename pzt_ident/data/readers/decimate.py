@@ -1,4 +1,4 @@
-"""Fewer samples, without aliases."""
+"""Decimation without aliasing."""
 
 from __future__ import annotations
 
@@ -12,10 +12,9 @@ STOPBAND = 60.0
 
 
 def decimated(signal: NDArray[np.float64], step: int, periodic: bool = False) -> NDArray[np.float64]:
-    """Every `step`-th sample, (samples,), behind a low-pass of zero phase and unit gain at rest (Kaiser window).
+    """Every `step`-th sample, (samples,), after a zero-phase low-pass with unit gain at 0 Hz (Kaiser window).
 
-    At its ends the signal goes on as itself where it is periodic, else point-symmetrically, so that neither an offset
-    nor a slope is bent there.
+    At its ends a periodic signal is continued periodically, any other point-symmetrically: offset and slope are kept.
     """
     if step == 1:
         return signal
@@ -24,6 +23,6 @@ def decimated(signal: NDArray[np.float64], step: int, periodic: bool = False) ->
     taps, beta = kaiserord(STOPBAND, 0.2 / step)
     half = taps // 2
     window = firwin(2 * half + 1, 0.9 / step, window=("kaiser", beta), scale=True)
-    goes_on: dict[str, Any] = {"mode": "wrap"} if periodic else {"mode": "reflect", "reflect_type": "odd"}
-    extended = np.pad(signal - signal[0], half, **goes_on)
+    padding: dict[str, Any] = {"mode": "wrap"} if periodic else {"mode": "reflect", "reflect_type": "odd"}
+    extended = np.pad(signal - signal[0], half, **padding)
     return signal[0] + oaconvolve(extended, window, mode="valid")[::step]

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.readers.decimate import decimated
 from pzt_ident.data.readers.signal import Signal
-from pzt_ident.data.readers.source_channels import Finder
+from pzt_ident.data.readers.source_channels import SourceChannels
 from pzt_ident.data.readers.table import Table
-from pzt_ident.data.readers.timebase import stretch
+from pzt_ident.data.readers.timebase import time_slice
 from pzt_ident.data.record import Axis, Channel, Record, Source
 from pzt_ident.data.units import same_kind, unscaled
 from pzt_ident.errors import InputError
@@ -31,63 +31,64 @@ def read_records(
     folder: Path,
     arrays: Mapping[str, Table] | None = None,
 ) -> list[Record]:
-    """The records of a job, in its order; paths are relative to `folder`, `${VAR}` in them is an environment variable.
+    """The records of a job, in its order. Paths are relative to `folder`; `${VAR}` in them is an environment variable.
 
-    A record goes by its name, else by its file's; names that occur twice are numbered. A record to validate that
-    holds samples of one to identify has a note of it. `arrays` are tables in the place of files, by the file's name in
-    the source. Raises InputError on whatever is wrong with a file, naming file,
-    channel and row.
+    A record has the name that the job gives it, else that of its file; a name that occurs twice is numbered. A
+    validation record that holds samples of an identification record has a note of it. Raises InputError with file,
+    channel and row for whatever is wrong with a file. arrays: tables that stand in the place of files, by the file's
+    name in the source.
     """
     tables: dict[object, Table] = {(folder / file, None, None): table for file, table in (arrays or {}).items()}
-    records = _named([_record(Finder(source, folder, tables), axes, time) for source in sources])
-    _check_kinds(records)
-    records = [_as_first(record, records[0]) for record in records]
-    fitted = [record for record in records if record.use == "identify"]
-    return [replace(r, notes=r.notes + _leaks(r, fitted)) if r.use == "validate" else r for r in records]
+    records = _with_names([_record(SourceChannels(source, folder, tables), axes, time) for source in sources])
+    _check_unit_kinds(records)
+    records = [_in_units_of(records[0], record) for record in records]
+    identification = [record for record in records if record.use == "identify"]
+    return [_with_leakage_notes(record, identification) for record in records]
 
 
-def _named(records: Sequence[Record]) -> list[Record]:
+def _with_names(records: Sequence[Record]) -> list[Record]:
     total = Counter(record.name for record in records)
-    taken, named = set(total), []
+    taken, renamed = set(total), []
     for record in records:
         if total[record.name] > 1:
             free = (f"{record.name}_{number}" for number in count(1))
             record = replace(record, name=next(name for name in free if name not in taken))
             taken.add(record.name)
-        named.append(record)
-    return named
+        renamed.append(record)
+    return renamed
 
 
-def _leaks(record: Record, fitted: Sequence[Record]) -> tuple[str, ...]:
-    """A note for each of the fitted records that holds some of the same scored samples of the same file."""
-    notes = []
-    for other in fitted:
-        first, last = max(_scored(record), _scored(other)), min(record.rows[1], other.rows[1])
+def _with_leakage_notes(record: Record, identification: Sequence[Record]) -> Record:
+    """A validation record with a note for every identification record that holds some of the same scored samples."""
+    if record.use != "validate":
+        return record
+    notes = list(record.notes)
+    for other in identification:
+        first, last = max(_first_scored_row(record), _first_scored_row(other)), min(record.rows[1], other.rows[1])
         if record.sha256 == other.sha256 and first < last:
-            here, there = (r.response[:, first - r.rows[0] : last - r.rows[0]] for r in (record, other))
-            if np.array_equal(here, there, equal_nan=True):
+            mine, its = (item.response[:, first - item.rows[0] : last - item.rows[0]] for item in (record, other))
+            if np.array_equal(mine, its, equal_nan=True):
                 notes.append(f"rows {first} to {last} are fitted in {other.name!r}, so they validate nothing")
-    return tuple(notes)
+    return replace(record, notes=tuple(notes))
 
 
-def _scored(record: Record) -> int:
-    """The first row that is scored."""
+def _first_scored_row(record: Record) -> int:
     first, last = record.rows
     return first + record.settle * (last - first) // record.samples
 
 
-def _record(finder: Finder, axes: Mapping[str, Axis], time: Channel | None) -> Record:
-    finder.check(axes)
-    source, where = finder.source, finder.where
-    drives = [finder.signal(f"{name}.drive", axis.drive) for name, axis in axes.items()]
-    responses = [finder.signal(f"{name}.response", axis.response) for name, axis in axes.items()]
+def _record(channels: SourceChannels, axes: Mapping[str, Axis], time: Channel | None) -> Record:
+    channels.check(axes)
+    source, where = channels.source, channels.where
+    drives = [channels.signal(f"{name}.drive", axis.drive) for name, axis in axes.items()]
+    responses = [channels.signal(f"{name}.response", axis.response) for name, axis in axes.items()]
     rows = _rows([*drives, *responses], where)
-    grid = finder.grid(time, rows)
-    part = stretch(grid, rows, source.time, where)
+    grid = channels.grid(time, rows)
+    part = time_slice(grid, rows, source.time, where)
     first = drives[0].first if drives[0] else 0
     _check_length(part, source, grid.dt, where)
     for response in filter(None, responses):
-        _check_moving(response.cut(part).complete())
+        _check_not_constant(response.cut(part).complete())
     return Record(
         name=source.name or Path(source.file).stem,
         use=source.use,
@@ -99,7 +100,7 @@ def _record(finder: Finder, axes: Mapping[str, Axis], time: Channel | None) -> R
         run_in=source.run_in,
         steps=source.steps,
         file=source.file,
-        sha256=finder.hash(),
+        sha256=channels.hash(),
         rows=(first + part.start, first + part.stop),
         axes=tuple(axes),
         drive_units=tuple(unscaled(drive.unit) for drive in drives if drive),
@@ -126,15 +127,17 @@ def _check_length(part: slice, source: Source, dt: float, where: str) -> None:
         raise InputError(problem, where=where, remedy="shorten it")
 
 
-def _check_moving(response: Signal) -> None:
+def _check_not_constant(response: Signal) -> None:
     if np.ptp(response.values) == 0:
         problem = f"the response is constant ({response.values[0]:g} in SI units)"
         raise InputError(problem, where=response.where, remedy="is it the right column, and was the sensor connected?")
 
 
 def _sampled(signals: Sequence[Signal | None], part: slice, source: Source) -> NDArray[np.float64]:
-    """(axes, samples); NaN for a signal that is not measured. A record that is run in is periodic, and stays so where
-    its samples are a multiple of the step."""
+    """(axes, samples), decimated; NaN for a signal that is not measured.
+
+    A record with `run_in` is periodic, and stays so where its length is a multiple of the decimation.
+    """
     step = source.decimate
     periodic = source.run_in > 0 and (part.stop - part.start) % step == 0
     missing = np.full(len(range(part.start, part.stop, step)), np.nan)
@@ -145,22 +148,22 @@ def _sampled(signals: Sequence[Signal | None], part: slice, source: Source) -> N
 def _notes(source: Source) -> tuple[str, ...]:
     if source.decimate == 1:
         return ()
-    return (f"decimated by {source.decimate} behind a zero-phase low-pass, which rounds the corners of the drive",)
+    return (f"decimated by {source.decimate} after a zero-phase low-pass, which rounds the corners of the drive",)
 
 
-def _as_first(record: Record, first: Record) -> Record:
-    """The record with the units of the first one, so that every number of an axis is in one."""
+def _in_units_of(first: Record, record: Record) -> Record:
+    """The record with the units of the first one, so that an axis has one unit throughout."""
     return replace(record, drive_units=first.drive_units, response_units=first.response_units)
 
 
-def _check_kinds(records: Sequence[Record]) -> None:
-    """Raises InputError where an axis has another kind of unit than in the first record."""
+def _check_unit_kinds(records: Sequence[Record]) -> None:
+    """Raises InputError where the unit of an axis is of another kind than in the first record."""
     for record in records[1:]:
         for units, first in (
             (record.drive_units, records[0].drive_units),
             (record.response_units, records[0].response_units),
         ):
-            for axis, unit, usual in zip(record.axes, units, first, strict=True):
-                if unit and usual and not same_kind(unit, usual):
-                    problem = f"axis {axis} is in {unit}, in the record {records[0].name!r} it is in {usual}"
+            for axis, unit, unit_of_first in zip(record.axes, units, first, strict=True):
+                if unit and unit_of_first and not same_kind(unit, unit_of_first):
+                    problem = f"axis {axis} is in {unit}, in the record {records[0].name!r} it is in {unit_of_first}"
                     raise InputError(problem, where=record.file, remedy="identify such records in separate jobs")

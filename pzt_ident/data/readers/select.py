@@ -1,4 +1,4 @@
-"""From a channel of the job to one column of a file."""
+"""The column of a file that a channel of the job names."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from pzt_ident.data.units import plain
 from pzt_ident.errors import InputError, nearest
 
 
-def pick(table: Table, source: Source, channel: Channel, where: str) -> tuple[Column, NDArray[Any]]:
+def select_column(table: Table, source: Source, channel: Channel, where: str) -> tuple[Column, NDArray[Any]]:
     """The column that `channel` names, and its values, (samples,).
 
-    A name or data set is looked up below `source.dataset`, with its unit, without, then in any case; a number
-    counts from 1, in an array along its second axis. Raises InputError where none fits or several do.
+    A name or data set is looked up below `source.dataset`: with its unit, without it, then ignoring case. A number
+    counts from 1, along the second axis of an array. Raises InputError where no column fits or several do.
     """
-    columns, scalars = (_below(items, source.dataset) for items in (table.columns, table.scalars))
+    columns, scalars = (_columns_below(items, source.dataset) for items in (table.columns, table.scalars))
     if source.dataset and not columns:
         groups = {
             "/".join(parts[:n]) for parts in (_path(c.header).split("/") for c in table.columns) for n in range(1, 9)
@@ -28,13 +28,13 @@ def pick(table: Table, source: Source, channel: Channel, where: str) -> tuple[Co
         raise InputError(f"has no data set {source.dataset!r}", where=where, remedy=nearest(source.dataset, groups))
     name, number = channel.dataset or channel.name, channel.column
     if name:
-        column = _named([*columns, *scalars], name, source.dataset, where)
+        column = _column_named([*columns, *scalars], name, source.dataset, where)
     elif len(columns) == 1 and np.ndim(_loaded(columns[0], where)) > 1:
         column = columns[0]
     else:
-        column, number = _numbered(columns, number, where), None
+        column, number = _column_numbered(columns, number, where), None
     index = channel.index or source.index
-    return column, _vector(column, _sliced(_loaded(column, where), index, where), number, where)
+    return column, _vector(column, _sliced_array(_loaded(column, where), index, where), number, where)
 
 
 def _loaded(column: Column, where: str) -> NDArray[Any]:
@@ -49,7 +49,7 @@ def _path(text: str) -> str:
     return plain(text).replace(".", "/").strip("/")
 
 
-def _below(columns: Sequence[Column], dataset: str | None) -> list[Column]:
+def _columns_below(columns: Sequence[Column], dataset: str | None) -> list[Column]:
     """The columns in a group, or the one data set of exactly that path."""
     if not dataset:
         return list(columns)
@@ -57,7 +57,7 @@ def _below(columns: Sequence[Column], dataset: str | None) -> list[Column]:
     return [column for column in columns if (_path(column.header) + "/").startswith(prefix + "/")]
 
 
-def _named(columns: Sequence[Column], name: str, dataset: str | None, where: str) -> Column:
+def _column_named(columns: Sequence[Column], name: str, dataset: str | None, where: str) -> Column:
     group = _path(dataset or "")
     path = _path(f"{group}/{name}")
     spellings: tuple[Callable[[Column], str], ...] = (
@@ -67,13 +67,13 @@ def _named(columns: Sequence[Column], name: str, dataset: str | None, where: str
         lambda column: _path(column.name).lower(),
     )
     for n, spelling in enumerate(spellings):
-        found = [i for i, column in enumerate(columns) if spelling(column) == (path.lower() if n > 1 else path)]
-        if len(found) == 1:
-            return columns[found[0]]
-        if found:
-            numbers = " and ".join(str(i + 1) for i in found)
+        matches = [i for i, column in enumerate(columns) if spelling(column) == (path.lower() if n > 1 else path)]
+        if len(matches) == 1:
+            return columns[matches[0]]
+        if matches:
+            numbers = " and ".join(str(i + 1) for i in matches)
             raise InputError(
-                f"column {name!r} occurs {len(found)} times", where=where, remedy=f"give `column:` {numbers}"
+                f"column {name!r} occurs {len(matches)} times", where=where, remedy=f"give `column:` {numbers}"
             )
     known = [column.header.strip("/")[len(group) :].lstrip("/") for column in columns]
     remedy = (
@@ -82,7 +82,7 @@ def _named(columns: Sequence[Column], name: str, dataset: str | None, where: str
     raise InputError(f"has no column {name!r}", where=where, remedy=remedy)
 
 
-def _numbered(columns: Sequence[Column], number: int | None, where: str) -> Column:
+def _column_numbered(columns: Sequence[Column], number: int | None, where: str) -> Column:
     if number is None and len(columns) != 1:
         names = ", ".join(repr(column.header) for column in columns if column.header)
         raise InputError(
@@ -95,15 +95,15 @@ def _numbered(columns: Sequence[Column], number: int | None, where: str) -> Colu
     return columns[number - 1]
 
 
-def _sliced(values: NDArray[Any], index: tuple[int | str, ...] | None, where: str) -> NDArray[Any]:
+def _sliced_array(values: NDArray[Any], index: tuple[int | str, ...] | None, where: str) -> NDArray[Any]:
     if index is None:
         return values
     try:
         return values[tuple(_slice(item) for item in index)]
     except (IndexError, ValueError):
-        written = ", ".join(map(str, index))
+        text = ", ".join(map(str, index))
         remedy = f"the array has the shape {values.shape}; indices count from 0, ':' takes all"
-        raise InputError(f"index [{written}] is wrong", where=where, remedy=remedy) from None
+        raise InputError(f"index [{text}] is wrong", where=where, remedy=remedy) from None
 
 
 def _slice(item: int | str) -> int | slice:

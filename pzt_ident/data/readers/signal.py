@@ -1,4 +1,4 @@
-"""One channel of one record as numbers in SI units, with the place of each row for error messages."""
+"""A channel of a record as numbers in SI units, with the place of every row for error messages."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pzt_ident.errors import InputError
 
 @dataclass(frozen=True)
 class Signal:
-    """`values` in SI units, (samples,), of which the first is row `first` of the column; `unit` is the user's."""
+    """`values`: (samples,), in SI units, from row `first` of the column on. `unit`: as the user gave it."""
 
     column: Column
     values: NDArray[np.float64]
@@ -31,22 +31,22 @@ class Signal:
         return replace(self, values=self.values[part], first=self.first + (part.start or 0))
 
     def complete(self) -> Signal:
-        """Itself. Raises InputError that names the rows without a finite number, if there are any."""
+        """The signal itself. Raises InputError that names the rows without a finite number."""
         gaps = np.flatnonzero(~np.isfinite(self.values))
         if gaps.size:
             runs = np.split(gaps, np.flatnonzero(np.diff(gaps) > 1) + 1)
-            named = [self.place(run[0]) + (f" to {self.place(run[-1])}" if len(run) > 1 else "") for run in runs[:3]]
+            places = [self.place(run[0]) + (f" to {self.place(run[-1])}" if len(run) > 1 else "") for run in runs[:3]]
             count = "1 value is" if gaps.size == 1 else f"{gaps.size} values are"
             which = "infinite" if np.isinf(self.values[gaps]).all() else "missing"
-            problem = f"{count} {which}: {', '.join(named)}{', ...' if len(runs) > 3 else ''}"
-            raise InputError(problem, where=self.where, remedy="fill the gap, or take a stretch without with `rows`")
+            problem = f"{count} {which}: {', '.join(places)}{', ...' if len(runs) > 3 else ''}"
+            raise InputError(problem, where=self.where, remedy="fill the gap, or leave it out with `rows`")
         return self
 
 
-def signal(
+def signal_of(
     column: Column, values: NDArray[Any], rows: tuple[int | None, int | None] | None, unit: str | None, where: str
 ) -> Signal:
-    """The rows of a column in SI units, the unit that of the job, else that of the file.
+    """The rows of a column in SI units; the unit is that of the job, else that of the file.
 
     Raises InputError on text, on rows out of range, and on a unit that is missing or unknown.
     """

@@ -1,4 +1,4 @@
-"""From the channels of a job to the signals of one record."""
+"""The signals and the time grid of one record, match by the channels of the job."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from typing import Any
 from numpy.typing import NDArray
 
 from pzt_ident.data.readers.open import open_table
-from pzt_ident.data.readers.select import pick
-from pzt_ident.data.readers.signal import Signal, signal
+from pzt_ident.data.readers.select import select_column
+from pzt_ident.data.readers.signal import Signal, signal_of
 from pzt_ident.data.readers.table import Column, Table
-from pzt_ident.data.readers.timebase import Grid, check_rate, grid_of, rate_of
+from pzt_ident.data.readers.timebase import Grid, check_rate, grid_of_rate, grid_of_stamps
 from pzt_ident.data.record import Axis, Channel, Source
 from pzt_ident.data.units import FREQUENCY, MASS, TIME, dimension
 from pzt_ident.errors import InputError, nearest
 
 
 @dataclass
-class Finder:
-    """Finds the channels of one source; `tables` are the files already open, `used` the ones that this source needs."""
+class SourceChannels:
+    """The channels of one source. `tables`: the files already open. `used`: the files that this source needs."""
 
     source: Source
     folder: Path
@@ -37,63 +37,66 @@ class Finder:
 
     def signal(self, label: str, channel: Channel | None) -> Signal | None:
         """The drive or response `x.drive`, `x.response`; None where it is in no file."""
-        channel = self._here(label, channel)
+        channel = self._channel_here(label, channel)
         if channel is None:
             return None
         column, values, where = self._column(label, channel)
-        found = signal(column, values, self.source.rows, channel.unit, where)
-        if dimension(found.unit) in (TIME, FREQUENCY, MASS):
-            problem = f"a {label.rpartition('.')[2]} cannot have the unit {found.unit!r}"
+        signal = signal_of(column, values, self.source.rows, channel.unit, where)
+        if dimension(signal.unit) in (TIME, FREQUENCY, MASS):
+            problem = f"a {label.rpartition('.')[2]} cannot have the unit {signal.unit!r}"
             raise InputError(problem, where=where, remedy="is it the right column?")
-        return found
+        return signal
 
     def grid(self, channel: Channel | None, samples: int) -> Grid:
-        """The time grid by a column of stamps, by one value (s: sample time, Hz: sample rate) or by `sample_rate`."""
-        channel, rate = self._here("time", channel), self.source.sample_rate
+        """The time grid by a column of time stamps, one value (s: sample time, Hz: sample rate) or `sample_rate`.
+
+        samples: rows of the signals. Raises InputError where they have no time, or one that does not fit.
+        """
+        channel, rate = self._channel_here("time", channel), self.source.sample_rate
         if channel is None:
             if rate is None:
                 remedy = "give the record a `sample_rate: 1 kHz`, or the job a `time` channel"
                 raise InputError("has no time", where=self.where, remedy=remedy)
-            return rate_of(rate, self.where)
+            return grid_of_rate(rate, self.where)
         column, values, where = self._column("time", channel)
-        alone = values.size == 1
-        stamps = signal(column, values, None if alone else self.source.rows, channel.unit, where).complete()
+        single = values.size == 1
+        stamps = signal_of(column, values, None if single else self.source.rows, channel.unit, where).complete()
         kind = dimension(stamps.unit)
-        if kind not in ((TIME, FREQUENCY) if alone else (TIME,)):
+        if kind not in ((TIME, FREQUENCY) if single else (TIME,)):
             problem = f"time cannot have the unit {stamps.unit!r}"
             raise InputError(problem, where=where, remedy="give it in s, or one sample rate in Hz")
-        if alone:
+        if single:
             value = float(stamps.values[0])
-            grid = rate_of(value if kind == FREQUENCY or value == 0 else 1 / value, where)
+            grid = grid_of_rate(value if kind == FREQUENCY or value == 0 else 1 / value, where)
         elif stamps.values.size == samples:
-            grid = grid_of(stamps)
+            grid = grid_of_stamps(stamps)
         else:
             problem = f"has {stamps.values.size} rows, the signals have {samples}"
-            raise InputError(problem, where=where, remedy="take all channels over the same rows")
+            raise InputError(problem, where=where, remedy="take all channels override the same rows")
         check_rate(grid, rate, where)
         return grid
 
     def hash(self) -> str:
-        """SHA-256 of the files used, one after the other."""
+        """SHA-256 of the files used, one after another."""
         digest = sha256()
         for path, table in self.used.items():
             digest.update(path.read_bytes() if table.content is None else table.content)
         return digest.hexdigest()
 
     def check(self, axes: Mapping[str, Axis]) -> None:
-        """Raises InputError where `channels` of the source speaks of one that no axis has."""
+        """Raises InputError where `channels` of the source names one that no axis has."""
         known = ["time", "drive", "response", *(f"{axis}.{role}" for axis in axes for role in ("drive", "response"))]
         for key in self.source.channels:
             if key not in known:
                 raise InputError(f"unknown channel {key!r}", where=self.where, remedy=nearest(key, known))
 
-    def _here(self, label: str, channel: Channel | None) -> Channel | None:
-        """The channel as this record has it: what the source says of its role, then of it alone, wins."""
+    def _channel_here(self, label: str, channel: Channel | None) -> Channel | None:
+        """The channel as this record has it: what the source says of its role, and above all of itself, overrides."""
         role = label.rpartition(".")[2]
         if channel and role in self.source.channels:
-            channel = _merged(channel, self.source.channels[role])
+            channel = _overridden(channel, self.source.channels[role])
         if label in self.source.channels:
-            channel = _merged(channel or Channel(), self.source.channels[label])
+            channel = _overridden(channel or Channel(), self.source.channels[label])
         return channel
 
     def _column(self, label: str, channel: Channel) -> tuple[Column, NDArray[Any], str]:
@@ -103,27 +106,27 @@ class Finder:
             self.tables[key] = open_table(path, self.source)
         self.used[path] = self.tables[key]
         where = f"{path}: {label}"
-        return *pick(self.tables[key], self.source, channel, where), where
+        return *select_column(self.tables[key], self.source, channel, where), where
 
 
-def _merged(channel: Channel, over: Channel) -> Channel:
-    if over.name or over.column is not None or over.dataset:
-        channel = replace(channel, name=over.name, column=over.column, dataset=over.dataset)
+def _overridden(channel: Channel, override: Channel) -> Channel:
+    if override.name or override.column is not None or override.dataset:
+        channel = replace(channel, name=override.name, column=override.column, dataset=override.dataset)
     return replace(
         channel,
-        unit=over.unit or channel.unit,
-        index=over.index or channel.index,
-        file=over.file or channel.file,
+        unit=override.unit or channel.unit,
+        index=override.index or channel.index,
+        file=override.file or channel.file,
     )
 
 
 def _expanded(name: str, where: str) -> str:
     """The path with the values of the environment variables `${VAR}` in it."""
 
-    def value(found: re.Match[str]) -> str:
-        if found[1] not in os.environ:
-            remedy = f"set it, for example `export {found[1]}=/path/to/data`"
-            raise InputError(f"the environment variable {found[1]} is not set", where=where, remedy=remedy)
-        return os.environ[found[1]]
+    def value(match: re.Match[str]) -> str:
+        if match[1] not in os.environ:
+            remedy = f"set it, for example `export {match[1]}=/path/to/data`"
+            raise InputError(f"the environment variable {match[1]} is not set", where=where, remedy=remedy)
+        return os.environ[match[1]]
 
     return re.sub(r"\$\{(\w+)\}", value, name)

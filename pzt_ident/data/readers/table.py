@@ -1,4 +1,4 @@
-"""What every reader gives: the named signals or arrays of a file, read when they are picked."""
+"""What every reader returns: the columns of a file, loaded when they are needed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from pzt_ident.data.units import split_header
 class Column:
     """One signal or array. `header` is its text in the file, unit included, or its path `group/name`.
 
-    `load` reads the values; text that is no number stays text. `place` says where a row stands, `line 17` for example.
+    `load` returns the values; text that is no number stays text. `place` names a row in messages: `line 17`.
     """
 
     header: str
@@ -35,7 +35,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Table:
-    """What one file holds: columns, numbered from 1, and scalars that only their name finds (a sample rate). `content`
+    """What one file holds: columns, numbered from 1, and scalars that are taken by name only (a sample rate). `content`
     is that of a table which was made of arrays, not of a file."""
 
     path: Path

@@ -10,7 +10,7 @@ from pzt_ident.data.readers.signal import Signal
 from pzt_ident.errors import InputError
 
 JITTER = 0.01
-"""Largest accepted distance of a time stamp from the uniform grid, in sample times."""
+"""Largest accepted deviation of a time stamp from the uniform grid, in sample times."""
 
 
 @dataclass(frozen=True)
@@ -21,15 +21,15 @@ class Grid:
     start: float = 0.0
 
 
-def rate_of(rate: float, where: str) -> Grid:
+def grid_of_rate(rate: float, where: str) -> Grid:
     """The grid of a sample rate, Hz, from time 0 on."""
     if not 0 < rate < np.inf:
         raise InputError(f"the sample rate {rate:g} Hz is not positive", where=where, remedy="give it in Hz or kHz")
     return Grid(1 / rate)
 
 
-def grid_of(stamps: Signal) -> Grid:
-    """The grid through the first and last stamp, s.
+def grid_of_stamps(stamps: Signal) -> Grid:
+    """The uniform grid through the first and the last time stamp.
 
     Raises InputError where time stands still or runs backward, or where a stamp is off the grid by more than JITTER.
     """
@@ -40,29 +40,31 @@ def grid_of(stamps: Signal) -> Grid:
         row = int(np.argmax(steps <= 0)) + 1
         verb = "repeats" if steps[row - 1] == 0 else "runs backward"
         problem = f"time {verb} at {stamps.place(row)}: {times[row]:.9g} s after {times[row - 1]:.9g} s"
-        before = f"`rows: [{stamps.first}, {stamps.first + row}]`"
-        remedy = f"remove the row, take what is before it with {before}, or leave `time` out and give `sample_rate`"
+        rows = f"`rows: [{stamps.first}, {stamps.first + row}]`"
+        remedy = f"remove the row, take what is before it with {rows}, or leave `time` out and give `sample_rate`"
         raise InputError(problem, where=stamps.where, remedy=remedy)
     dt = float(times[-1] - times[0]) / steps.size
     if np.abs(times - times[0] - dt * np.arange(times.size)).max() > JITTER * dt:
         usual = float(np.median(steps))
         row = int(np.argmax(np.abs(steps - usual)))
-        share = f"{steps[row]:.6g} s, {steps[row] / usual:.4g} times the usual {usual:.6g} s"
+        step = f"{steps[row]:.6g} s, {steps[row] / usual:.4g} times the usual {usual:.6g} s"
         remedy = "resample the record, or leave `time` out and give `sample_rate` if the stamps are only rounded"
-        problem = f"time is not uniform: the step after {stamps.place(row)} is {share}"
+        problem = f"time is not uniform: the step after {stamps.place(row)} is {step}"
         raise InputError(problem, where=stamps.where, remedy=remedy)
     return Grid(dt, float(times[0]))
 
 
 def check_rate(grid: Grid, rate: float | None, where: str) -> None:
-    """Raises InputError where a stated sample rate, Hz, and the grid differ by more than 1 %."""
+    """Raises InputError where a sample rate, Hz, differs from that of the grid by more than 1 %."""
     if rate and abs(grid.dt * rate - 1) > 0.01:
         problem = f"sample_rate {rate:g} Hz contradicts the time channel, which has {1 / grid.dt:g} Hz"
         raise InputError(problem, where=where, remedy="leave one of them out, or check the unit of time")
 
 
-def stretch(grid: Grid, samples: int, time: tuple[float | None, float | None] | None, where: str) -> slice:
-    """The samples from `time[0]` on and before `time[1]`, s. Raises InputError where the record has them not."""
+def time_slice(grid: Grid, samples: int, time: tuple[float | None, float | None] | None, where: str) -> slice:
+    """The samples from `time[0]` on and before `time[1]`, s; all of them without `time`.
+
+    Raises InputError where the record does not have them."""
     if time is None:
         return slice(0, samples)
     last = grid.start + grid.dt * (samples - 1)
