@@ -1,5 +1,5 @@
-"""The job file as a typed, frozen thing.
+"""The job file: read, checked and edited.
 
-In: YAML text. Out: a `Job` whose every word is checked, or one error that lists all faults with line, value and remedy;
-and the text again with an effect, a block or a value changed, comments kept.
+In: YAML text. Out: a frozen `Job`, every word of it checked, or one error that lists all faults with line, value and
+remedy; and the text with an effect, a block or a value changed, comments kept.
 """

@@ -1,4 +1,4 @@
-"""The chain of blocks that a job states, made once."""
+"""The chain of blocks of a job, built once."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class ChainParts:
-    """All that the model of a job is a function of."""
+    """All that the model of a job depends on. `given`: names of the parameters that the job sets."""
 
     items: tuple[str | Choice, ...]
     axes: tuple[str, ...]
@@ -30,16 +30,18 @@ class ChainParts:
         return cls(tuple(items), tuple(axes), measured, tuple(shared), frozenset(given))
 
     def chain(self) -> Chain:
-        """The model of the known words."""
+        """The chain of the known words; unknown words are left out."""
         from pzt_ident.model.chain import Chain
 
-        blocks_in_it = list(dict.fromkeys(blocks.chain(self.items)))
-        return Chain(blocks_in_it, self.axes, self.measured, self.shared, self.given)
+        chosen = list(dict.fromkeys(blocks.chain(self.items)))
+        return Chain(chosen, self.axes, self.measured, self.shared, self.given)
 
 
-class MadeChain:
-    """The chain of a job, made once and again only for other parts. It is no part of what the job says: all are equal,
-    and a copy in another process is empty."""
+class CachedChain:
+    """The chain of a job, built once, and again only for other parts.
+
+    It is not part of what the job says: all compare equal, and a copy in another process is empty.
+    """
 
     def __init__(self) -> None:
         self._parts: ChainParts | None = None
@@ -51,7 +53,7 @@ class MadeChain:
         return self._chain
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, MadeChain)
+        return isinstance(other, CachedChain)
 
-    def __reduce__(self) -> tuple[type[MadeChain], tuple[()]]:
-        return MadeChain, ()
+    def __reduce__(self) -> tuple[type[CachedChain], tuple[()]]:
+        return CachedChain, ()

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from pzt_ident.errors import InputError
-from pzt_ident.job.chain import MadeChain
+from pzt_ident.job.chain import CachedChain
 
 Loc = tuple[str | int, ...]
 
@@ -56,7 +56,7 @@ class Document:
     def __init__(self, text: str, file: str, folder: Path = Path(), plugins: bool = False) -> None:
         self.file, self.folder, self.plugins = file, folder, plugins
         self.faults: list[Fault] = []
-        self.chain = MadeChain()
+        self.chain = CachedChain()
         self._values = 0
         self._open: list[int] = []
         if len(text) > LARGEST_TEXT:

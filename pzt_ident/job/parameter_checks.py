@@ -1,4 +1,4 @@
-"""What a job may say of parameters: names that its model has, bounds and values that they can take."""
+"""Checks of the parameters of a job: names that its model has, bounds and values that they can take."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from pzt_ident.model.chain import Chain, Entry
 
 Earlier = Mapping[str, Any]
-"""The sections before one, less those with a fault in their own form."""
+"""The sections before the one that is checked, without those that cannot be read."""
 
 
 def check_parameters(document: Document, settings: dict[str, Setting], earlier: Earlier) -> None:
@@ -30,25 +30,25 @@ def check_parameters(document: Document, settings: dict[str, Setting], earlier: 
         parts = ChainParts.of((*earlier["model"], *earlier["effects"]), axes, earlier.get("shared", ()), settings)
         model = document.chain.of(parts)
     except InputError:
-        return  # a setting of a block, noted where it stands
-    spelled = {name: entry for entry in model.entries for name in model.spellings(entry)}
-    unseen = {entry.name for entry in model.entries if entry.axis not in model.measured}
-    if spelled and not any(_free(model, entry, settings) for entry in model.entries):
+        return  # a bad setting of a block, reported at the setting
+    entries = {name: entry for entry in model.entries for name in model.spellings(entry)}
+    unmeasured = {entry.name for entry in model.entries if entry.axis not in model.measured}
+    if entries and not any(_is_free(model, entry, settings) for entry in model.entries):
         document.fault(("parameters",), "every parameter is fixed", "free at least one: give it `bounds`")
     for name, setting in settings.items():
-        at: Loc = ("parameters", name)
-        if name not in spelled:
-            _stranger(document, name, earlier, spelled)
+        loc: Loc = ("parameters", name)
+        if name not in entries:
+            _unknown_name(document, name, earlier, entries)
             continue
-        declared = spelled[name].parameter
-        if setting.bounds and name in unseen:
-            document.fault(at, "its axis has no response to fit it to", "give it a `value`")
+        declared = entries[name].parameter
+        if setting.bounds and name in unmeasured:
+            document.fault(loc, "its axis has no response to fit it to", "give it a `value`")
         least = setting.bounds[0] if setting.bounds else setting.value
         if declared.scale == "log" and least is not None and least <= 0:
-            document.fault(at, f"{least:g} is not above 0", "give a value or lower bound above 0")
+            document.fault(loc, f"{least:g} is not above 0", "give a value or lower bound above 0")
 
 
-def _free(model: Chain, entry: Entry, settings: Mapping[str, Setting]) -> bool:
+def _is_free(model: Chain, entry: Entry, settings: Mapping[str, Setting]) -> bool:
     """Whether a parameter is searched for."""
     setting = next((settings[name] for name in model.spellings(entry) if name in settings), None)
     if setting is not None:
@@ -56,21 +56,21 @@ def _free(model: Chain, entry: Entry, settings: Mapping[str, Setting]) -> bool:
     return entry.parameter.value is None and not entry.parameter.linear
 
 
-def _setting(document: Document, at: Loc, setting: Setting) -> None:
+def _setting(document: Document, loc: Loc, setting: Setting) -> None:
     if setting.bounds is None and setting.value is None:
-        document.fault(at, "sets nothing", "give `bounds: [low, high]` or `value: ...`")
+        document.fault(loc, "sets nothing", "give `bounds: [low, high]` or `value: ...`")
     if setting.bounds is None:
         return
     low, high = setting.bounds
     if low >= high:
         message = f"bounds reversed, {low:g} is not below {high:g}"
-        document.fault((*at, "bounds"), message, "write [low, high], or fix it with `value`")
+        document.fault((*loc, "bounds"), message, "write [low, high], or fix it with `value`")
     if setting.value is not None:
-        document.fault((*at, "value"), "beside `bounds`", "keep one: bounds free a parameter, a value fixes it")
+        document.fault((*loc, "value"), "beside `bounds`", "keep one: bounds free a parameter, a value fixes it")
 
 
-def _stranger(document: Document, name: str, earlier: Earlier, spelled: Mapping[str, Entry]) -> None:
-    """Say what is wrong with a name that no parameter of this job has."""
+def _unknown_name(document: Document, name: str, earlier: Earlier, entries: Mapping[str, Entry]) -> None:
+    """Report a name that no parameter of this job has."""
     *axis, block, word = ["", *name.split(".")]
     axes, words = earlier["channels"].axes, list(map(word_of, earlier["model"]))
     chosen = (*words, *earlier["effects"])
@@ -80,10 +80,10 @@ def _stranger(document: Document, name: str, earlier: Earlier, spelled: Mapping[
         said = f"axis {axis[1]!r} has no response, so it has no such parameter", "take it out"
     elif block not in chosen and block in blocks:
         if any(word not in blocks for word in words):
-            return  # one of the unknown words may well stand for this block
+            return  # one of the unknown words may be meant for this block
         said = f"{block!r} is not in this model", "list it under `model` or `effects`, or take this out"
     elif block not in chosen:
-        said = f"unknown parameter {name!r}", nearest(name, spelled)
+        said = f"unknown parameter {name!r}", nearest(name, entries)
     elif declared := blocks[block].parameters().get(word):
         said = (
             f"is not in the form of {block!r} that is chosen",
@@ -98,6 +98,6 @@ def _stranger(document: Document, name: str, earlier: Earlier, spelled: Mapping[
         elif declared.each == "later axis":
             said = "is relative to that of the first axis, which has none", "take it out"
     else:
-        alike = [known for known in spelled if f"{block}." in known and known.count(".") == name.count(".")]
-        said = f"{block!r} has no parameter {word!r}", nearest(name, alike)
+        similar = [known for known in entries if f"{block}." in known and known.count(".") == name.count(".")]
+        said = f"{block!r} has no parameter {word!r}", nearest(name, similar)
     document.fault(("parameters", name), *said, at_key=True)

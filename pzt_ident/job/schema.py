@@ -16,7 +16,7 @@ from pydantic import BaseModel, ConfigDict, Field, PrivateAttr, ValidationError,
 from pzt_ident.data.record import Source
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.job import checks
-from pzt_ident.job.chain import ChainParts, MadeChain
+from pzt_ident.job.chain import CachedChain, ChainParts
 from pzt_ident.job.document import Document, Fault, Loc, reject
 from pzt_ident.job.normalise import written_out
 from pzt_ident.job.plugins import plug
@@ -52,7 +52,7 @@ class Job(BaseModel):
 
     _text: str = PrivateAttr("")
     _folder: Path = PrivateAttr(Path())
-    _made: MadeChain = PrivateAttr(default_factory=MadeChain)
+    _cached_chain: CachedChain = PrivateAttr(default_factory=CachedChain)
 
     @field_validator("*")
     @classmethod
@@ -72,7 +72,7 @@ class Job(BaseModel):
         job = cls._read(document)
         if job is None or document.faults:
             reject(file, document.faults)
-        job._text, job._folder, job._made = text, folder, document.chain
+        job._text, job._folder, job._cached_chain = text, folder, document.chain
         return job
 
     @classmethod
@@ -107,7 +107,7 @@ class Job(BaseModel):
     @property
     def chain(self) -> Chain:
         """Its blocks and effects in signal order; made once, while the job is checked."""
-        return self._made.of(
+        return self._cached_chain.of(
             ChainParts.of((*self.model, *self.effects), self.channels.axes, self.shared, self.parameters)
         )
 

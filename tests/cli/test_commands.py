@@ -179,13 +179,13 @@ def with_gap(table):
 
 
 @pytest.mark.parametrize("command", ["run", "check"])
-@pytest.mark.parametrize("said", DATA_FAULTS)
-def test_bad_input_ends_with_2_and_writes_nothing(folder, command, said):
-    DATA_FAULTS[said](folder)
+@pytest.mark.parametrize("message", DATA_FAULTS)
+def test_bad_input_ends_with_2_and_writes_nothing(folder, command, message):
+    DATA_FAULTS[message](folder)
     before = files(folder)
     result = call(command, "job.yaml", "--json")
     assert result.exit_code == 2
-    assert said in result.stderr
+    assert message in result.stderr
     assert "Traceback" not in result.output
     message, remedy = result.stderr.rstrip().rsplit("\n", 1)
     assert message.startswith("Error: ")
@@ -208,11 +208,11 @@ class TestCheck:
         assert files(folder) == before
 
     def test_json(self, folder):
-        found = json.loads(call("check", "job.yaml", "--json").stdout)
-        assert [record["samples"] for record in found["records"]] == [300, 300]
-        assert found["axes"][0]["drive_range"] == pytest.approx([0, 100], abs=1)
-        assert found["axes"][0]["response_unit"] == "um"
-        named = {row["name"]: row for row in found["parameters"]}
+        facts = json.loads(call("check", "job.yaml", "--json").stdout)
+        assert [record["samples"] for record in facts["records"]] == [300, 300]
+        assert facts["axes"][0]["drive_range"] == pytest.approx([0, 100], abs=1)
+        assert facts["axes"][0]["response_unit"] == "um"
+        named = {row["name"]: row for row in facts["parameters"]}
         assert named["bouc_wen.gamma"]["value"] == pytest.approx(0.01)
         low, high = named["bouc_wen.gain"]["bounds"]
         assert (low, named["bouc_wen.gain"]["unit"]) == (0, "um/V")
@@ -220,8 +220,8 @@ class TestCheck:
 
     def test_says_that_validation_is_none(self, folder):
         (folder / "job.yaml").write_text(JOB.replace("validate.csv", "identify.csv"))
-        said = "identify_2: rows 100 to 300 are fitted in 'identify_1', so they validate nothing"
-        assert said in call("check", "job.yaml").stdout
+        message = "identify_2: rows 100 to 300 are fitted in 'identify_1', so they validate nothing"
+        assert message in call("check", "job.yaml").stdout
 
     def test_quiet(self, folder):
         result = call("check", "job.yaml", "--quiet")
@@ -255,10 +255,10 @@ class TestWords:
 
     def test_block(self):
         result = call("show", "bouc_wen", "--json")
-        found = json.loads(result.stdout)
-        assert found["kind"] == "hysteresis"
-        assert found["doc"].startswith("y = ")
-        assert found["parameters"][0] | {"doc": ""} == {
+        facts = json.loads(result.stdout)
+        assert facts["kind"] == "hysteresis"
+        assert facts["doc"].startswith("y = ")
+        assert facts["parameters"][0] | {"doc": ""} == {
             "name": "gain",
             "form": "",
             "unit": "response/drive",
@@ -395,7 +395,7 @@ class TestErrors:
         assert result.stderr == f"Error: {Path('file/out')}: Not a directory\n  give another folder with --out\n"
 
     @pytest.mark.parametrize(
-        ("arguments", "said"),
+        ("arguments", "message"),
         [
             (["chek", "job.yaml"], "Did you mean 'check'?"),
             (["run"], "Missing argument 'JOB'"),
@@ -405,10 +405,10 @@ class TestErrors:
         ],
         ids=" ".join,
     )
-    def test_usage(self, folder, arguments, said):
+    def test_usage(self, folder, arguments, message):
         result = call(*arguments)
         assert result.exit_code == 2
-        assert said in result.stderr
+        assert message in result.stderr
 
 
 def start(*arguments: str, **options) -> subprocess.CompletedProcess:
@@ -418,18 +418,18 @@ def start(*arguments: str, **options) -> subprocess.CompletedProcess:
 
 class TestProcess:
     def test_help_imports_nothing_heavy(self):
-        found = start("--help", env=os.environ | {"PYTHONPROFILEIMPORTTIME": "1"})
-        assert found.returncode == 0
-        assert found.stdout.startswith("Usage: pzt-ident")
-        imported = {line.rpartition("|")[2].strip().partition(".")[0] for line in found.stderr.splitlines()}
+        done = start("--help", env=os.environ | {"PYTHONPROFILEIMPORTTIME": "1"})
+        assert done.returncode == 0
+        assert done.stdout.startswith("Usage: pzt-ident")
+        imported = {line.rpartition("|")[2].strip().partition(".")[0] for line in done.stderr.splitlines()}
         assert "click" in imported
         assert not imported & {"numpy", "numba", "scipy", "pandas", "matplotlib", "pydantic", "ruamel", "rich", "h5py"}
 
     def test_bad_job_ends_with_2(self, folder):
         (folder / "job.yaml").write_text(JOB.replace("[bouc_wen]", "[bouc_wenn]"))
-        found = start("run", "job.yaml")
-        assert (found.returncode, found.stdout) == (2, "")
-        assert "job.yaml:9:9: model[0]: unknown block 'bouc_wenn'\n  did you mean 'bouc_wen'" in found.stderr
+        done = start("run", "job.yaml")
+        assert (done.returncode, done.stdout) == (2, "")
+        assert "job.yaml:9:9: model[0]: unknown block 'bouc_wenn'\n  did you mean 'bouc_wen'" in done.stderr
         assert files(folder) == {"job.yaml", "identify.csv", "validate.csv"}
 
     @pytest.mark.skipif(os.name == "nt", reason="needs a POSIX pipe")
@@ -437,9 +437,9 @@ class TestProcess:
         reading, writing = os.pipe()
         os.close(reading)
         command = [sys.executable, "-m", "pzt_ident", "show", "pso"]
-        found = subprocess.run(command, stdout=writing, stderr=subprocess.PIPE, text=True, timeout=60)
+        done = subprocess.run(command, stdout=writing, stderr=subprocess.PIPE, text=True, timeout=60)
         os.close(writing)
-        assert found.stderr == ""
+        assert done.stderr == ""
 
     @pytest.mark.skipif(os.name == "nt", reason="needs a POSIX shell")
     def test_no_stdout_and_no_stderr(self, folder):
@@ -448,14 +448,14 @@ class TestProcess:
 
     def test_letters_that_the_terminal_lacks(self, folder):
         (folder / "job.yaml").write_text(JOB.replace("{file: identify.csv,", "{file: identify.csv, name: πρώτη,"))
-        found = start("check", "job.yaml", env=os.environ | {"PYTHONIOENCODING": "cp1252"})
-        assert (found.returncode, found.stderr) == (0, "")
-        assert "?????" in found.stdout
+        done = start("check", "job.yaml", env=os.environ | {"PYTHONIOENCODING": "cp1252"})
+        assert (done.returncode, done.stderr) == (0, "")
+        assert "?????" in done.stdout
 
     @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
     def test_a_full_disk_is_one_line(self):
         with open("/dev/full", "w") as full:
             command = [sys.executable, "-m", "pzt_ident", "show", "pso"]
-            found = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
-        assert found.returncode == 1
-        assert found.stderr == "Error: No space left on device\n"
+            done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+        assert done.returncode == 1
+        assert done.stderr == "Error: No space left on device\n"

@@ -16,11 +16,11 @@ def test_the_demo_finds_what_is_hidden(tmp_path, monkeypatch):
     monkeypatch.setattr("pzt_ident.job.demo.show_in_browser", opened.append)
     answer = CliRunner().invoke(main, ["demo", "--out", str(tmp_path / "demo")])
     assert answer.exit_code == 0, answer.output
-    found = json.loads((tmp_path / "demo" / "improved" / "improvement.json").read_text(encoding="utf-8"))
-    assert set(found["effects"]) == {item["effect"] for item in hidden()}
-    assert found["verdict"] == "adequate"
-    first, last = found["steps"][0]["rmse"], found["steps"][-1]["rmse"]
-    assert last["validate"] < 1.25 * found["floor"] < 0.2 * first["validate"]
+    improvement = json.loads((tmp_path / "demo" / "improved" / "improvement.json").read_text(encoding="utf-8"))
+    assert set(improvement["effects"]) == {item["effect"] for item in hidden()}
+    assert improvement["verdict"] == "adequate"
+    first, last = improvement["steps"][0]["rmse"], improvement["steps"][-1]["rmse"]
+    assert last["validate"] < 1.25 * improvement["floor"] < 0.2 * first["validate"]
     assert opened == [tmp_path / "demo" / "improved" / "report.html"]
     assert opened[0].stat().st_size < 300 * 1024
     assert "hidden was: " in answer.stdout

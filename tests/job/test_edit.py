@@ -170,14 +170,14 @@ def test_paths_follow_the_job(job, tmp_path):
 def test_json_and_quiet(job):
     path = job()
     first, second = path.with_name("a.yaml"), path.with_name("b.yaml")
-    found = json.loads(add(path, "creep", "-o", first, "--json").stdout)
-    assert found == {"job": str(first), "model": ["bouc_wen", "lumped"], "effects": ["drift", "creep"]}
+    answer = json.loads(add(path, "creep", "-o", first, "--json").stdout)
+    assert answer == {"job": str(first), "model": ["bouc_wen", "lumped"], "effects": ["drift", "creep"]}
     answer = add(path, "creep", "-o", second, "--quiet")
     assert (answer.exit_code, answer.output, second.exists()) == (0, "", True)
 
 
 @pytest.mark.parametrize(
-    ("effect", "said"),
+    ("effect", "message"),
     [
         ("crep", "unknown effect 'crep'\n  did you mean 'creep'"),
         ("drift", "'drift' is in its effects already"),
@@ -185,11 +185,11 @@ def test_json_and_quiet(job):
         ("cross_coupling", "'cross_coupling' needs a second axis"),
     ],
 )
-def test_what_cannot_be_added_is_not(job, effect, said):
+def test_what_cannot_be_added_is_not(job, effect, message):
     path = job()
     answer = add(path, effect, "-o", path.with_name("new.yaml"))
     assert answer.exit_code == 2
-    assert said in answer.stderr
+    assert message in answer.stderr
     assert answer.stdout == ""
     assert list(path.parent.iterdir()) == [path]
 

@@ -1,4 +1,4 @@
-"""A job file is read as it is written, and every fault in it is told with its place, value and remedy."""
+"""A job file is read as it is written, and every fault in it is reported with its place, value and remedy."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ ONE_FAULT = [
     ("name: stage", "name: a/b", "1:7: name: 'a/b' is not a name for a folder", "use letters"),
     ("name: stage", "name: 3", "1:7: name: 3 is not a text", "put it in quotes"),
     ("use: identify", "use: identfy", "3:24: records[0].use: 'identfy' is not 'identify' or 'validate'", "write"),
-    ("use: identify", "use: validate", "3:3: records: no record to identify from", "use: identify"),
+    ("use: identify", "use: validate", "3:3: records: no identification record", "use: identify"),
     ("file: a.csv, ", "", "3:5: records[0]: missing key 'file'", "add `file: ...`"),
     ("settle: 500 ms", "setle: 500 ms", "3:56: records[0].setle: unknown key 'setle'", "'settle'"),
     ("0.2 kHz", "5 ms", "3:47: records[0].sample_rate: '5 ms' is not in Hz", "a unit such as Hz"),
@@ -204,13 +204,15 @@ ONE_FAULT = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("old", "new", "said", "remedy"), ONE_FAULT, ids=[said for *_, said, _ in ONE_FAULT])
-def test_a_fault_is_told_with_place_value_and_remedy(old, new, said, remedy):
+@pytest.mark.parametrize(
+    ("old", "new", "expected", "remedy"), ONE_FAULT, ids=[expected for *_, expected, _ in ONE_FAULT]
+)
+def test_a_fault_is_told_with_place_value_and_remedy(old, new, expected, remedy):
     assert GOOD.count(old) == 1
     message = faults(GOOD.replace(old, new))
     first, advice = message.split("\n")
     assert first.startswith("job.yaml:")
-    assert said in first
+    assert expected in first
     assert remedy in advice
 
 
@@ -225,16 +227,16 @@ def test_a_block_may_have_settings():
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said", "remedy"),
+    ("old", "new", "expected", "remedy"),
     [
         ("elements", "elemnts", "10:31: model[1].elemnts: unknown setting 'elemnts'", "did you mean 'elements'"),
         ("elements: 9", "elements: 2.5", "10:41: model[1].elements: 2.5 is not a whole number from 1 to 100", "give a"),
         ("elements: 9", "elements: 8", "10:19: model[1]: 8 elements are too few for mode 3", "`elements: 9`"),
     ],
 )
-def test_a_setting_that_does_not_fit_is_told(old, new, said, remedy):
+def test_a_setting_that_does_not_fit_is_told(old, new, expected, remedy):
     first, advice = faults(ROD.replace(old, new)).split("\n")
-    assert said in first and remedy in advice
+    assert expected in first and remedy in advice
 
 
 def test_two_operators_do_not_go_together():
@@ -280,7 +282,7 @@ def test_all_faults_come_at_once_in_order():
 
 
 @pytest.mark.parametrize(
-    ("text", "said", "remedy"),
+    ("text", "expected", "remedy"),
     [
         ("", "job.yaml:1:1: the job is empty", "records"),
         ("# only a comment\n", "job.yaml:1:1: the job is empty", "records"),
@@ -300,9 +302,9 @@ def test_all_faults_come_at_once_in_order():
     ],
     ids=lambda value: value[:40],
 )  # fmt: skip
-def test_what_is_no_job(text, said, remedy):
+def test_what_is_no_job(text, expected, remedy):
     first, advice = faults(text).split("\n")
-    assert first.startswith(said)
+    assert first.startswith(expected)
     assert remedy in advice
 
 

@@ -1,4 +1,4 @@
-"""The signals and the time grid of one record, match by the channels of the job."""
+"""The signals and the time grid of one record, taken from the files by the channels of the job."""
 
 from __future__ import annotations
 

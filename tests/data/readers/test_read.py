@@ -101,10 +101,10 @@ def test_samples_that_are_fitted_validate_nothing(path):
     sources = [Source("loop.txt", name="fit", rows=(0, 200))]
     sources += [Source("loop.txt", "validate", name, **more) for name, more in taken.items()]
     notes = {record.name: record.notes for record in read_records(sources, axes, Channel("t"), path.parent)}
-    said = "rows {} to 200 are fitted in 'fit', so they validate nothing"
+    note = "rows {} to 200 are fitted in 'fit', so they validate nothing"
     assert (notes["fit"], notes["end"]) == ((), ())
-    assert notes["all"] == (said.format(0),)
-    assert notes["middle"] == (said.format(100),)
+    assert notes["all"] == (note.format(0),)
+    assert notes["middle"] == (note.format(100),)
     assert not any("fitted" in note for note in notes["coarse"])
 
 

@@ -136,7 +136,7 @@ WRITERS = {
 
 @pytest.mark.parametrize("suffix", WRITERS)
 def test_a_truncated_file_is_an_input_error(tmp_path, problem, suffix):
-    path = tmp_path / f"whole{suffix}"
+    path = tmp_path / f"complete{suffix}"
     WRITERS[suffix](path)
     load_everything(path)
     content = path.read_bytes()
@@ -171,10 +171,10 @@ SOUND = {"__doc__": "Curves of our AFM.", "SUFFIXES": (".fcrv",), "read": lambda
 
 def module(**changes):
     """A module that declares a reader, with something else in it or, by None, without."""
-    made = ModuleType("curves")
-    made.__file__ = "curves.py"
-    vars(made).update({name: value for name, value in (SOUND | changes).items() if value is not None})
-    return made
+    curves = ModuleType("curves")
+    curves.__file__ = "curves.py"
+    vars(curves).update({name: value for name, value in (SOUND | changes).items() if value is not None})
+    return curves
 
 
 @pytest.mark.parametrize(

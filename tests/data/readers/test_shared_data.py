@@ -75,13 +75,13 @@ def test_steering_mirror(level, gain, rms):
         for realisation in range(3)
     ]
     axes = {axis: Axis(Channel(column=k, unit="V"), Channel(column=k, unit="m")) for k, axis in enumerate("xyz", 1)}
-    found = read_records(sources, axes, None, DATA / "fsm_piezo_mimo")
-    assert {record.drive.shape for record in found} == {(3, 8192)}
-    drives, responses = (np.fft.rfft([getattr(r, name) for r in found]) for name in ("drive", "response"))
+    loaded = read_records(sources, axes, None, DATA / "fsm_piezo_mimo")
+    assert {record.drive.shape for record in loaded} == {(3, 8192)}
+    drives, responses = (np.fft.rfft([getattr(r, name) for r in loaded]) for name in ("drive", "response"))
     lines = range(20, 200)
     gains = [np.linalg.solve(drives[:, :, k], responses[:, :, k]).T for k in lines]
     assert 1e6 * np.mean(gains, axis=0)[0, 0].real == pytest.approx(gain, abs=0.03)
-    assert 1e6 * np.sqrt(np.mean([record.response**2 for record in found])) == pytest.approx(rms, abs=0.1)
+    assert 1e6 * np.sqrt(np.mean([record.response**2 for record in loaded])) == pytest.approx(rms, abs=0.1)
 
 
 SLOW = {1: (16.9, -20.6), 2: (24.4, -26.2), 3: (2.2, -2.2), 4: (3.8, -3.6), 5: (7.1, -6.6), 6: (12.5, -13.3)}
@@ -101,10 +101,10 @@ def test_pnzt_loops():
 
 def test_pnzt_hold_steps():
     sources = [Source("RMN_TRAP_1400V_1000V_CREEP.dat", table=k) for k in (1, 2, 3, "CREEP_1400V_1000V_1400S")]
-    found = records(sources, "V+ [V]", "P1 [uC/cm2]", "Time [s]", "pnzt_butterfly_creep")
-    assert {record.samples for record in found} == {5000}
-    assert [1e3 * record.dt for record in found] == pytest.approx([13.6, 13.6, 21, 280], rel=1e-3)
-    assert 100 * found[3].response.min() == pytest.approx(-420, abs=5)
+    loaded = records(sources, "V+ [V]", "P1 [uC/cm2]", "Time [s]", "pnzt_butterfly_creep")
+    assert {record.samples for record in loaded} == {5000}
+    assert [1e3 * record.dt for record in loaded] == pytest.approx([13.6, 13.6, 21, 280], rel=1e-3)
+    assert 100 * loaded[3].response.min() == pytest.approx(-420, abs=5)
 
 
 def test_pnzt_matlab_files():
@@ -139,22 +139,22 @@ PERIODS = {"00400": 0.1, "00404": 0.5, "00406": 1, "00408": 2, "00410": 5, "0041
 def test_pulse_pairs(number):
     sources = [Source(f"{number}_0{k}.txt") for k in range(5)]
     drive, response = Channel("Ch1", unit="20 V"), Channel("Ch2,V", unit="100 nC")
-    found = records(sources, drive, response, "Time,s", "pzt_pe_loops_rate_temp/PZT4p1_2022_60V_120C")
-    assert {record.samples for record in found} == {1000 * PERIODS[number]}
-    assert [record.dt for record in found] == pytest.approx([1e-3] * 5)
-    assert found[1].drive.max() == pytest.approx(60, abs=0.5)
-    assert found[3].drive.min() == pytest.approx(-60, abs=0.5)
+    loaded = records(sources, drive, response, "Time,s", "pzt_pe_loops_rate_temp/PZT4p1_2022_60V_120C")
+    assert {record.samples for record in loaded} == {1000 * PERIODS[number]}
+    assert [record.dt for record in loaded] == pytest.approx([1e-3] * 5)
+    assert loaded[1].drive.max() == pytest.approx(60, abs=0.5)
+    assert loaded[3].drive.min() == pytest.approx(-60, abs=0.5)
 
 
 def test_every_pulse_file_is_readable():
     folder = "pzt_pe_loops_rate_temp"
     files = sorted((DATA / folder).glob("*/*.txt"))
     sources = [Source(str(file.relative_to(DATA / folder))) for file in files]
-    found = records(sources, Channel("Ch1", unit="20 V"), Channel("Ch2", unit="100 nC"), "Time", folder)
-    assert len(found) == 30 + 20 + 36
+    loaded = records(sources, Channel("Ch1", unit="20 V"), Channel("Ch2", unit="100 nC"), "Time", folder)
+    assert len(loaded) == 30 + 20 + 36
     amplitudes = {60: "PZT4p1", 90: "PMN20PT"}
     for amplitude, name in amplitudes.items():
-        highest = max(np.abs(record.drive).max() for record in found if name in record.file)
+        highest = max(np.abs(record.drive).max() for record in loaded if name in record.file)
         assert highest == pytest.approx(amplitude, rel=0.01)
 
 
@@ -178,9 +178,9 @@ def test_loops_in_matlab_structs(file, samples, amplitude):
         for half in "pn"
     }
     volt, coulomb = Channel("E.p", unit="V"), Channel("P.p", unit="C")
-    found = records(halves.values(), volt, coulomb, None, "pzt_pe_loops_rate_temp")
-    assert {record.samples for record in found} == {samples}
-    lowest, highest = sorted(record.drive[0, np.abs(record.drive[0]).argmax()] for record in found)
+    loaded = records(halves.values(), volt, coulomb, None, "pzt_pe_loops_rate_temp")
+    assert {record.samples for record in loaded} == {samples}
+    lowest, highest = sorted(record.drive[0, np.abs(record.drive[0]).argmax()] for record in loaded)
     assert (lowest, highest) == pytest.approx((-amplitude, amplitude), rel=0.06)
 
 
@@ -213,10 +213,10 @@ def test_thin_film_reversal_curves():
 )
 def test_thin_film_and_capacitor_at_ten_frequencies(pattern, volt):
     sources = [Source(pattern.format(100 * k, k)) for k in range(1, 11)]
-    found = records(sources, "Vplus", "P1", "Time", "thinfilm_forc_rate")
-    assert {record.samples for record in found} == {401}
-    assert [1 / (400 * record.dt) for record in found] == pytest.approx([100.0 * k for k in range(1, 11)], rel=1e-3)
-    assert [record.drive.max() for record in found] == pytest.approx([volt] * 10, rel=0.03)
+    loaded = records(sources, "Vplus", "P1", "Time", "thinfilm_forc_rate")
+    assert {record.samples for record in loaded} == {401}
+    assert [1 / (400 * record.dt) for record in loaded] == pytest.approx([100.0 * k for k in range(1, 11)], rel=1e-3)
+    assert [record.drive.max() for record in loaded] == pytest.approx([volt] * 10, rel=0.03)
 
 
 @pytest.mark.parametrize("table", [1, 2])
