@@ -1,5 +1,5 @@
-"""The whole story on a measurement that ships: a virtual stage, made by code that shares nothing with the package, in
-which two effects are hidden."""
+"""The demonstration: a measurement of a virtual stage, simulated by code that shares nothing with the package, in which
+two effects are hidden."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ HIDDEN = "hidden.json"
 
 
 def write_demo(folder: Path) -> Path:
-    """Write the records and the job, which knows of no effect, into a folder; the path of the job.
+    """Write the records and the job, which has no effects, into a folder; returns the path of the job.
 
-    Raises InputError, and writes nothing, where one of the files is there already.
+    Raises InputError, and writes nothing, where one of the files exists already.
     """
     from pzt_ident.job.example import write_shipped
 
@@ -24,7 +24,7 @@ def write_demo(folder: Path) -> Path:
 
 
 def hidden() -> list[dict[str, Any]]:
-    """The truth, which the job does not know: effect, strength and unit of each effect in the measurement."""
+    """The truth, which is not in the job: effect, strength and unit of every effect in the measurement."""
     return list(json.loads(files("pzt_ident.job").joinpath("examples", "demo", HIDDEN).read_text(encoding="utf-8")))
 
 

@@ -1,6 +1,6 @@
-"""A YAML text as plain data that remembers where everything stands: line and column of each key and value.
+"""A YAML text as plain data, with line and column of every key and value.
 
-Only YAML's core types are built (mapping, list, text, number, true/false, null); a tag names nothing else.
+Only YAML's core types are built (mapping, list, text, number, true/false, null); any other tag is a fault.
 """
 
 from __future__ import annotations
@@ -47,10 +47,10 @@ def reject(file: str, faults: Sequence[Fault]) -> NoReturn:
 
 
 class Document:
-    """`data` is plain; `faults` are duplicate keys, tags and the like, found on the way. `folder`: where paths start;
-    `plugins`: whether files of code that the job names may be loaded.
+    """data: mappings, lists and values. faults: all that is wrong, at first duplicate keys, tags and the like.
+    folder: the one that paths are relative to. plugins: whether files of code that the job lists may be loaded.
 
-    Raises InputError where the text is no YAML at all.
+    Raises InputError where the text is not YAML.
     """
 
     def __init__(self, text: str, file: str, folder: Path = Path(), plugins: bool = False) -> None:
@@ -70,7 +70,7 @@ class Document:
             reject(file, [Fault(1, 1, "", "nested too deeply", "a job file is a few levels deep")])
 
     def fault(self, loc: Loc, message: str, remedy: str, *, at_key: bool = False) -> None:
-        """Note a fault at a place, or at the nearest place above it that the text has."""
+        """Add a fault at a place, or at the nearest place above it that the text has."""
         path = self._path(loc)
         name, node = path[-1] if path else (None, self._root)
         if name is not None and (node.value == "" or (at_key and len(path) == len(loc))):
@@ -83,7 +83,7 @@ class Document:
         return loc[: len(self._path(loc))]
 
     def source(self, loc: Loc) -> str:
-        """What stands at a place, as written, shortened."""
+        """The text at a place, as written, shortened."""
         node = [self._root, *(value for _, value in self._path(loc))][-1]
         text = (
             node.value
@@ -123,21 +123,21 @@ class Document:
         return [self._build(item, (*loc, i)) for i, item in enumerate(node.value)]
 
     def _mapping(self, node: Any, loc: Loc) -> dict[str, Any]:
-        found: dict[str, Any] = {}
+        mapping: dict[str, Any] = {}
         for key, value in node.value:
             if key.id != "scalar":
                 self.faults.append(_at(key, "a key must be a word", "write `key: value`"))
-            elif key.value in found:
+            elif key.value in mapping:
                 self.faults.append(_at(key, f"duplicate key {key.value!r}", "keep one of the two"))
             else:
                 self._scalar(key, _kind(key))
-                found[key.value] = self._build(value, (*loc, key.value))
-        return found
+                mapping[key.value] = self._build(value, (*loc, key.value))
+        return mapping
 
     def _scalar(self, node: Any, kind: str) -> Any:
         text = node.value
         if any(character == "\0" or "\ud800" <= character <= "\udfff" for character in text):
-            self.faults.append(_at(node, f"{text!r} has a character that is none", "take it out"))
+            self.faults.append(_at(node, f"{text!r} has a character that is not allowed", "remove it"))
             return "?"
         try:
             if kind == "null":
@@ -160,7 +160,7 @@ class Document:
 
 
 def _compose(text: str, file: str) -> Any:
-    """The tree of nodes; None for an empty text."""
+    """The tree of YAML nodes; None for an empty text."""
     from ruamel.yaml import YAML
     from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
@@ -182,7 +182,7 @@ def _advice(problem: str) -> str:
     if "but got" in problem or "mapping values" in problem or "token" in problem:
         return 'put text with brackets, braces or a colon in quotes, such as "u_x [V]"'
     if "another document" in problem:
-        return "one job to a file: take out the line ---"
+        return "one job a file: remove the line ---"
     return "see `pzt-ident init` for a job file to start from"
 
 

@@ -1,4 +1,4 @@
-"""A job file with other effects or another model in it: comments, order and layout kept."""
+"""Edit a job file: other effects, another model; comments, order and layout are kept."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from pzt_ident.model.registry import blocks
 
 
 def add(job: Path, effect: str, out: Path, plugins: bool = False) -> Job:
-    """Write the job of a file with one effect more into another; the new job.
+    """Write the job with one more effect into the new file `out`; returns the new job.
 
-    Raises InputError where the effect is unknown, there already, or does not fit the model, and where `out` exists.
+    Raises InputError where the effect is unknown, in the job already or does not fit the model, and where `out` exists.
     """
     before = load_job(job, plugins)
     if effect in before.effects:
@@ -27,18 +27,19 @@ def add(job: Path, effect: str, out: Path, plugins: bool = False) -> Job:
 
 
 def remove(job: Path, effect: str, out: Path, plugins: bool = False) -> Job:
-    """Write the job of a file without one of its effects into another; the new job.
+    """Write the job without one of its effects into the new file `out`; returns the new job.
 
     Raises InputError where it is not among them, and where `out` exists.
     """
     before = load_job(job, plugins)
     if effect not in before.effects:
-        raise InputError(f"{effect!r} is not in its effects", where=str(job), remedy=_there(before.effects))
+        raise InputError(f"{effect!r} is not in its effects", where=str(job), remedy=_effects_there(before.effects))
     return _write(before, [word for word in before.effects if word != effect], None, out, plugins)
 
 
 def model(job: Path, words: Sequence[str], out: Path, plugins: bool = False) -> Job:
-    """Write the job of a file with these blocks as its model into another; the new job. A block keeps its settings.
+    """Write the job with these blocks as its model into the new file `out`; returns the new job. A block keeps its
+    settings.
 
     Raises InputError where the blocks are no model, and where `out` exists.
     """
@@ -46,7 +47,7 @@ def model(job: Path, words: Sequence[str], out: Path, plugins: bool = False) -> 
     return _write(before, before.effects, words, out, plugins)
 
 
-def _there(effects: Sequence[str]) -> str:
+def _effects_there(effects: Sequence[str]) -> str:
     return f"it has {', '.join(effects)}" if effects else "it has none"
 
 
@@ -56,9 +57,9 @@ def _write(before: Job, effects: Sequence[str], words: Sequence[str] | None, out
     if out.exists():
         raise InputError("exists already", where=str(out), remedy="give another file with -o")
     text = edited(before, effects, out.parent, words)
-    made = Job.from_text(text, out.parent, str(out), plugins)
+    new_job = Job.from_text(text, out.parent, str(out), plugins)
     write_text(out, text)
-    return made
+    return new_job
 
 
 def edited(
@@ -69,42 +70,57 @@ def edited(
     steps: Sequence[int] = (),
     values: Mapping[str, float] | None = None,
 ) -> str:
-    """The job's text with these effects, its paths as seen from another folder; with these blocks where `words` are
-    given, `steps` a sample of each record, where they are not the job's, and parameters fixed to `values`."""
+    """The job's text with these effects, and with paths relative to another folder.
+
+    words: the blocks of the model, where it changes. steps: of the simulation in a sample, for every record.
+    values: of parameters that are fixed from now on.
+    """
     from ruamel.yaml import YAML
-    from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
     yaml = YAML()
     yaml.preserve_quotes = True
     yaml.width = 10_000
     document: Any = yaml.load(job.text)
-    if "effects" not in document:
-        document.insert(list(document).index("model") + 1, "effects", CommentedSeq())
-    if values and not document.get("parameters"):
-        document.pop("parameters", None)
-        document.insert(list(document).index("effects") + 1, "parameters", CommentedMap())
-    found = document["effects"]
-    if not found:
-        found.fa.set_flow_style()
-    for word in [word for word in found if word not in effects]:
-        found.remove(word)
-    found.extend(word for word in effects if word not in found)
+    _set_effects(document, effects)
     if words is not None:
         document["model"][:] = _items(document["model"], words)
     for record, source, count in zip(document["records"], job.records, steps, strict=False):
         if count != source.steps:
             record["steps"] = count
-    for name, value in (values or {}).items():
+    if values:
+        _fix_parameters(document, values)
+    if job.folder.resolve() != folder.resolve():
+        _rebase_files(document, job.folder, folder)
+        for i, file in enumerate(document.get("plugins", ())):
+            document["plugins"][i] = _rebased(file, job.folder, folder)
+    yaml.indent(**_indents(document))
+    text = StringIO()
+    yaml.dump(document, text)
+    return text.getvalue()
+
+
+def _set_effects(document: Any, effects: Sequence[str]) -> None:
+    from ruamel.yaml.comments import CommentedSeq
+
+    if "effects" not in document:
+        document.insert(list(document).index("model") + 1, "effects", CommentedSeq())
+    listed = document["effects"]
+    if not listed:
+        listed.fa.set_flow_style()
+    for word in [word for word in listed if word not in effects]:
+        listed.remove(word)
+    listed.extend(word for word in effects if word not in listed)
+
+
+def _fix_parameters(document: Any, values: Mapping[str, float]) -> None:
+    from ruamel.yaml.comments import CommentedMap
+
+    if not document.get("parameters"):
+        document.pop("parameters", None)
+        document.insert(list(document).index("effects") + 1, "parameters", CommentedMap())
+    for name, value in values.items():
         document["parameters"][name] = CommentedMap(value=value)
         document["parameters"][name].fa.set_flow_style()
-    if job.folder.resolve() != folder.resolve():
-        moved(document, job.folder, folder)
-        for i, file in enumerate(document.get("plugins", ())):
-            document["plugins"][i] = seen_from(file, job.folder, folder)
-    yaml.indent(**indents(document))
-    written = StringIO()
-    yaml.dump(document, written)
-    return written.getvalue()
 
 
 def _items(items: Sequence[Any], words: Sequence[str]) -> list[Any]:
@@ -113,28 +129,28 @@ def _items(items: Sequence[Any], words: Sequence[str]) -> list[Any]:
     return [known.get(word, word) for word in words]
 
 
-def indents(document: Any) -> dict[str, int]:
-    """How far the job's own mappings and lists are set in."""
+def _indents(document: Any) -> dict[str, int]:
+    """The indentation of the mappings and lists of the job."""
     axes, records = document["channels"], document["records"]
     mapping = 2 if axes.fa.flow_style() else axes.lc.col
     dash = 0 if records.fa.flow_style() else records.lc.col
     return {"mapping": mapping, "sequence": dash + 2, "offset": dash}
 
 
-def moved(item: Any, before: Path, after: Path) -> None:
-    """Every `file` below, relative to another folder; absolute paths and those with a variable stay."""
+def _rebase_files(item: Any, before: Path, after: Path) -> None:
+    """Make every `file` in an item relative to the folder `after`; absolute paths and those with a variable stay."""
     if isinstance(item, list):
         for part in item:
-            moved(part, before, after)
+            _rebase_files(part, before, after)
     elif isinstance(item, dict):
         for key, value in item.items():
             if key == "file" and isinstance(value, str):
-                item[key] = seen_from(value, before, after)
+                item[key] = _rebased(value, before, after)
             else:
-                moved(value, before, after)
+                _rebase_files(value, before, after)
 
 
-def seen_from(path: str, before: Path, after: Path) -> str:
+def _rebased(path: str, before: Path, after: Path) -> str:
     if Path(path).is_absolute() or path.startswith(("$", "~")):
         return path
     return os.path.relpath(before.resolve() / path, after.resolve())

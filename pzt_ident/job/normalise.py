@@ -1,4 +1,4 @@
-"""The short ways to write a job, written out: a header for a channel, `1 s` for a time, a word for an optimizer."""
+"""The short forms of a job, expanded: a header for a channel, `1 s` for a time, a word for an optimizer."""
 
 from __future__ import annotations
 
@@ -10,29 +10,29 @@ from pzt_ident.data import units
 from pzt_ident.errors import InputError
 from pzt_ident.job.document import Document, Loc
 
-Change = Callable[[Document, Loc, Any], Any]
+Expand = Callable[[Document, Loc, Any], Any]
 
 QUANTITY = re.compile(r"^([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\d].*)$")
 
 
-def written_out(document: Document) -> dict[str, Any]:
-    """The data of a mapping in the long form; a quantity that cannot be read is noted as a fault."""
+def long_form(document: Document) -> dict[str, Any]:
+    """The data of a job in its long form; a quantity that cannot be read is added as a fault."""
     data: Any = document.data
-    for pattern, change in _SHORT:
-        data = _everywhere(document, data, pattern.split("."), change, ())
+    for pattern, expand in _SHORT_FORMS:
+        data = _expanded(document, data, pattern.split("."), expand, ())
     return data
 
 
-def _everywhere(document: Document, data: Any, pattern: list[str], change: Change, loc: Loc) -> Any:
-    """The data with `change` made at every place of the pattern, in which `*` is any key or index."""
+def _expanded(document: Document, data: Any, pattern: list[str], expand: Expand, loc: Loc) -> Any:
+    """The data with `expand` applied at every place of the pattern, in which `*` is any key or index."""
     if not pattern:
-        return change(document, loc, data)
-    head, rest = pattern[0], pattern[1:]
+        return expand(document, loc, data)
+    head, below = pattern[0], pattern[1:]
     if isinstance(data, dict):
-        chosen = {key: value for key, value in data.items() if head in ("*", key)}
-        return data | {key: _everywhere(document, value, rest, change, (*loc, key)) for key, value in chosen.items()}
+        matching = {key: value for key, value in data.items() if head in ("*", key)}
+        return data | {key: _expanded(document, value, below, expand, (*loc, key)) for key, value in matching.items()}
     if isinstance(data, list) and head == "*":
-        return [_everywhere(document, value, rest, change, (*loc, i)) for i, value in enumerate(data)]
+        return [_expanded(document, value, below, expand, (*loc, i)) for i, value in enumerate(data)]
     return data
 
 
@@ -41,23 +41,23 @@ def _channel(document: Document, loc: Loc, value: Any) -> Any:
 
 
 def _block(document: Document, loc: Loc, value: Any) -> Any:
-    return value if isinstance(value, str) else _chosen(document, loc, value)
+    return value if isinstance(value, str) else _choice(document, loc, value)
 
 
-def _chosen(document: Document, loc: Loc, value: Any) -> Any:
+def _choice(document: Document, loc: Loc, value: Any) -> Any:
     if isinstance(value, str):
         return {"name": value}
     if not isinstance(value, dict):
         return value
-    named = {"name": value["name"]} if "name" in value else {}
-    return named | {"settings": {word: setting for word, setting in value.items() if word != "name"}}
+    name = {"name": value["name"]} if "name" in value else {}
+    return name | {"settings": {word: setting for word, setting in value.items() if word != "name"}}
 
 
-def _in(unit: str) -> Change:
+def _in(unit: str) -> Expand:
     def convert(document: Document, loc: Loc, value: Any) -> Any:
         if not isinstance(value, str):
             return value
-        number, given = _split(document, loc, value, f"1 {unit}")
+        number, given = _number_and_unit(document, loc, value, f"1 {unit}")
         try:
             if units.same_kind(given or unit, unit):
                 return number * units.factor(given or unit) / units.factor(unit)
@@ -71,19 +71,19 @@ def _in(unit: str) -> Change:
 
 def _target(document: Document, loc: Loc, value: Any) -> Any:
     if isinstance(value, str):
-        return dict(zip(("value", "unit"), _split(document, loc, value, "0.1 um"), strict=True))
+        return dict(zip(("value", "unit"), _number_and_unit(document, loc, value, "0.1 um"), strict=True))
     return {"value": value} if isinstance(value, (int, float)) else value
 
 
-def _split(document: Document, loc: Loc, text: str, example: str) -> tuple[float, str | None]:
-    """Number and unit; a harmless number where the text is no quantity, which is noted."""
-    if found := QUANTITY.match(text.strip()):
-        return float(found[1]), found[2]
+def _number_and_unit(document: Document, loc: Loc, text: str, example: str) -> tuple[float, str | None]:
+    """Number and unit; 1 and a fault where the text is not a quantity."""
+    if match := QUANTITY.match(text.strip()):
+        return float(match[1]), match[2]
     document.fault(loc, f"{text!r} is not a number with a unit", f"write a number with its unit, such as `{example}`")
     return 1.0, None
 
 
-_SHORT: tuple[tuple[str, Change], ...] = (
+_SHORT_FORMS: tuple[tuple[str, Expand], ...] = (
     ("records.*.sample_rate", _in("Hz")),
     ("records.*.settle", _in("s")),
     ("records.*.time.*", _in("s")),
@@ -92,7 +92,7 @@ _SHORT: tuple[tuple[str, Change], ...] = (
     ("channels.axes.*.drive", _channel),
     ("channels.axes.*.response", _channel),
     ("model.*", _block),
-    ("optimizers.*", _chosen),
+    ("optimizers.*", _choice),
     ("stop.seconds", _in("s")),
     ("stop.target", _target),
 )

@@ -75,29 +75,29 @@ def _unknown_name(document: Document, name: str, earlier: Earlier, entries: Mapp
     axes, words = earlier["channels"].axes, list(map(word_of, earlier["model"]))
     chosen = (*words, *earlier["effects"])
     if len(axis) == 2 and axis[1] not in axes:
-        said = f"there is no axis {axis[1]!r}", nearest(axis[1], axes)
+        fault = f"there is no axis {axis[1]!r}", nearest(axis[1], axes)
     elif len(axis) == 2 and axes[axis[1]].response is None:
-        said = f"axis {axis[1]!r} has no response, so it has no such parameter", "take it out"
+        fault = f"axis {axis[1]!r} has no response, so it has no such parameter", "take it out"
     elif block not in chosen and block in blocks:
         if any(word not in blocks for word in words):
             return  # one of the unknown words may be meant for this block
-        said = f"{block!r} is not in this model", "list it under `model` or `effects`, or take this out"
+        fault = f"{block!r} is not in this model", "list it under `model` or `effects`, or take this out"
     elif block not in chosen:
-        said = f"unknown parameter {name!r}", nearest(name, entries)
+        fault = f"unknown parameter {name!r}", nearest(name, entries)
     elif declared := blocks[block].parameters().get(word):
-        said = (
+        fault = (
             f"is not in the form of {block!r} that is chosen",
             f"take it out; `pzt-ident show {block}` says which has it",
         )
         if declared.effect:
-            said = f"belongs to the effect {declared.effect!r}", f"add `effects: [{declared.effect}]`"
+            fault = f"belongs to the effect {declared.effect!r}", f"add `effects: [{declared.effect}]`"
         elif declared.per_record:
-            said = "is taken in closed form for each record", "take it out"
+            fault = "is taken in closed form for each record", "take it out"
         elif declared.each == "stage":
-            said = "is one of the whole stage", f"write {block}.{word}"
+            fault = "belongs to the whole stage, not to an axis", f"write {block}.{word}"
         elif declared.each == "later axis":
-            said = "is relative to that of the first axis, which has none", "take it out"
+            fault = "is relative to that of the first axis, which has none", "take it out"
     else:
         similar = [known for known in entries if f"{block}." in known and known.count(".") == name.count(".")]
-        said = f"{block!r} has no parameter {word!r}", nearest(name, similar)
-    document.fault(("parameters", name), *said, at_key=True)
+        fault = f"{block!r} has no parameter {word!r}", nearest(name, similar)
+    document.fault(("parameters", name), *fault, at_key=True)

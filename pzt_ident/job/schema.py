@@ -1,5 +1,5 @@
-"""The job file as a typed, frozen thing. Every fault in it is reported at once, each with file, line, column, key,
-value and remedy."""
+"""The job file as a frozen, typed model. All its faults are reported at once, each with file, line, column, key, value
+and remedy."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from pzt_ident.errors import InputError, nearest
 from pzt_ident.job import checks
 from pzt_ident.job.chain import CachedChain, ChainParts
 from pzt_ident.job.document import Document, Fault, Loc, reject
-from pzt_ident.job.normalise import written_out
+from pzt_ident.job.normalise import long_form
 from pzt_ident.job.plugins import plug
 from pzt_ident.job.sections import Channels, Choice, Item, Limits, Repeats, Setting, Stopping
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 class Job(BaseModel):
     """What to identify from which records, and how. Made by `load_job` or `Job.from_text`.
 
-    text: as the user wrote it. folder: what the paths of the records are relative to.
+    text: as the user wrote it. folder: the one that paths in the job are relative to.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
@@ -63,8 +63,8 @@ class Job(BaseModel):
 
     @classmethod
     def from_text(cls, text: str, folder: Path = Path(), file: str = "job.yaml", plugins: bool = False) -> Job:
-        """Read a job from its YAML. `file` names it in errors, and gives the job its name where it has none. With
-        `plugins`, the files of code that it names are loaded.
+        """Read a job from its YAML text. `file` names it in errors, and names a job without a name. With `plugins`, the
+        files of code that it lists are loaded.
 
         Raises InputError that lists every fault.
         """
@@ -77,23 +77,23 @@ class Job(BaseModel):
 
     @classmethod
     def _read(cls, document: Document) -> Job | None:
-        """The job, or None with every fault noted."""
+        """The job, or None with every fault added to the document."""
         if not isinstance(document.data, dict):
             kind = "empty" if document.data is None else "a list" if isinstance(document.data, list) else "one value"
             advice = "write `name: ...`, `records: ...` and so on"
             reject(document.file, [Fault(1, 1, "", f"the job is {kind}", advice)])
-        return cls._validated(document, {"name": _folder_name(document.file)} | written_out(document))
+        return cls._validated(document, {"name": _folder_name(document.file)} | long_form(document))
 
     @classmethod
     def _validated(cls, document: Document, data: dict[str, Any]) -> Job | None:
-        """The job, or None with every fault noted: what is wrong in its form is taken out to check the rest."""
+        """The job, or None with every fault added to the document; what cannot be read is removed to check the rest."""
         try:
             return cls.model_validate_json(json.dumps(data), context=document)
         except ValidationError as error:
-            _note(document, error)
-            rest = _less(data, [item["loc"] for item in error.errors()])
+            _add_faults(document, error)
+            readable = _without(data, [item["loc"] for item in error.errors()])
         with suppress(ValidationError):
-            cls.model_validate_json(json.dumps(rest), context=document)
+            cls.model_validate_json(json.dumps(readable), context=document)
         return None
 
     @property
@@ -106,14 +106,14 @@ class Job(BaseModel):
 
     @property
     def chain(self) -> Chain:
-        """Its blocks and effects in signal order; made once, while the job is checked."""
+        """Its blocks and effects in signal order; built once, while the job is checked."""
         return self._cached_chain.of(
             ChainParts.of((*self.model, *self.effects), self.channels.axes, self.shared, self.parameters)
         )
 
     @property
     def hash(self) -> str:
-        """Eight digits that change with what the job says, not with how it is laid out."""
+        """Eight hexadecimal digits that change with what the job says, not with its layout."""
         content = json.dumps(self.model_dump(mode="json"), sort_keys=True)
         return hashlib.sha256(content.encode()).hexdigest()[:8]
 
@@ -126,13 +126,13 @@ def _folder_name(file: str) -> str:
 
 
 def load_job(path: Path, plugins: bool = False) -> Job:
-    """Read a job file, see `Job.from_text`. Raises InputError that lists every fault, or that there is no file."""
+    """Read a job file, see `Job.from_text`. Raises InputError that lists every fault, or says that there is no file."""
     path = Path(path)
     return Job.from_text(_text_of(path), path.parent, str(path), plugins)
 
 
 def load_plugins(path: Path) -> None:
-    """Load a file of code, or those that a job lists, whatever else may be wrong with the job."""
+    """Load a Python file, or those that a job lists, whatever else is wrong with the job."""
     if path.suffix == ".py":
         plug(path)
         return
@@ -148,8 +148,8 @@ def _text_of(path: Path) -> str:
     if path.is_dir():
         raise InputError("is a folder", where=str(path), remedy=f"give the job file, such as {path / 'job.yaml'}")
     if not path.exists():
-        beside = [item.name for item in path.parent.glob("*.y*ml")] if path.parent.is_dir() else []
-        remedy = nearest(path.name, beside) if beside else "`pzt-ident init DIR` writes a job to start from"
+        job_files = [item.name for item in path.parent.glob("*.y*ml")] if path.parent.is_dir() else []
+        remedy = nearest(path.name, job_files) if job_files else "`pzt-ident init DIR` writes a job to start from"
         raise InputError("no such file", where=str(path), remedy=remedy)
     try:
         raw = path.read_bytes()
@@ -182,17 +182,17 @@ _EXPECTED = {
     "too_long": ("a list of {max_length}", "give {max_length} values"),
     "missing": ("[first, second]", "write both"),
 }
-"""What pydantic's kinds of error are in the user's words: what the value is not, and what to write."""
+"""By pydantic's kinds of error: what the value is not, and what to write."""
 
 
-def _note(document: Document, error: ValidationError) -> None:
-    """Put pydantic's complaints into the user's words and places; those of a union's members into one."""
+def _add_faults(document: Document, error: ValidationError) -> None:
+    """Add pydantic's errors to the document in plain words; those of the members of a union become one fault."""
     wrong: dict[Loc, list[tuple[str, str]]] = {}
     for item in error.errors(include_url=False):
         loc, kind, raised = item["loc"], item["type"], item.get("ctx", {}).get("error")
         if isinstance(raised, InputError):
-            said = ": ".join(part for part in (raised.where, raised.message) if part)
-            document.fault(loc, said, raised.remedy)
+            message = ": ".join(part for part in (raised.where, raised.message) if part)
+            document.fault(loc, message, raised.remedy)
         elif kind in ("extra_forbidden", "unexpected_keyword_argument"):
             remedy = nearest(str(loc[-1]), _known_keys(loc[:-1]))
             document.fault(loc, f"unknown key {loc[-1]!r}", remedy, at_key=True)
@@ -202,41 +202,41 @@ def _note(document: Document, error: ValidationError) -> None:
             expected, remedy = _EXPECTED.get(kind, (item["msg"], "see `pzt-ident init` for an example"))
             facts = item.get("ctx", {})
             wrong.setdefault(document.reach(loc), []).append((expected.format(**facts), remedy.format(**facts)))
-    for loc, found in wrong.items():
-        expected, remedy = (" or ".join(dict.fromkeys(column)) for column in zip(*found, strict=True))
+    for loc, alternatives in wrong.items():
+        expected, remedy = (" or ".join(dict.fromkeys(column)) for column in zip(*alternatives, strict=True))
         document.fault(loc, f"{document.source(loc)} is not {expected}", remedy)
 
 
 _SEPARATE = {"records": 3, "parameters": 2, "stop": 2}
-"""How many steps down a part can be taken out of a section without a false alarm about the rest of it."""
+"""How deep a part can be removed from a section without false faults in the rest of it."""
 
 
-def _less(data: dict[str, Any], locs: list[Loc]) -> dict[str, Any]:
-    """The data less the keys that the places go through, the whole section where no key can be spared."""
-    rest = copy.deepcopy(data)
+def _without(data: dict[str, Any], locs: list[Loc]) -> dict[str, Any]:
+    """The data without the keys that lead to these places; without the section where no such key can be removed."""
+    remaining = copy.deepcopy(data)
     for place in {loc[: _SEPARATE.get(str(loc[0]), 1)] for loc in locs}:
-        owner: Any = rest
+        owner: Any = remaining
         for part in place[:-1]:
             owner = owner[part] if not isinstance(owner, dict) or part in owner else {}
         if isinstance(owner, dict) and place[-1] in owner:
             del owner[place[-1]]
         else:
-            rest.pop(str(place[0]), None)
-    return rest
+            remaining.pop(str(place[0]), None)
+    return remaining
 
 
 def _known_keys(loc: Loc) -> list[str]:
-    """The keys that may stand in the mapping at a place, from the schema of the job."""
+    """The keys that the mapping at a place may have, from the schema of the job."""
     schema = Job.model_json_schema()
-    definitions, here = schema["$defs"], schema
+    definitions, node = schema["$defs"], schema
     for part in loc:
-        here = here["properties"][part] if part in here.get("properties", {}) else _inside(here)
-        here = next((option for option in here.get("anyOf", ()) if "$ref" in option), here)
-        if "$ref" in here:
-            here = definitions[here["$ref"].rpartition("/")[2]]
-    return list(here["properties"])
+        node = node["properties"][part] if part in node.get("properties", {}) else _item_schema(node)
+        node = next((option for option in node.get("anyOf", ()) if "$ref" in option), node)
+        if "$ref" in node:
+            node = definitions[node["$ref"].rpartition("/")[2]]
+    return list(node["properties"])
 
 
-def _inside(schema: dict[str, Any]) -> dict[str, Any]:
-    """The schema of each item of a list or mapping."""
+def _item_schema(schema: dict[str, Any]) -> dict[str, Any]:
+    """The schema of the items of a list or mapping."""
     return schema["items"] if "items" in schema else schema["additionalProperties"]

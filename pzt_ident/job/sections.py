@@ -1,4 +1,4 @@
-"""The parts of a job that are not a record's."""
+"""The sections of a job, except its records."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Setting:
 
 @dataclass(frozen=True)
 class Choice:
-    """An optimizer or block by name, and what is set in it."""
+    """An optimizer or block by name, with its settings."""
 
     name: str
     settings: dict[str, Any] = field(default_factory=dict)

@@ -187,8 +187,8 @@ def test_bad_input_ends_with_2_and_writes_nothing(folder, command, message):
     assert result.exit_code == 2
     assert message in result.stderr
     assert "Traceback" not in result.output
-    message, remedy = result.stderr.rstrip().rsplit("\n", 1)
-    assert message.startswith("Error: ")
+    error, remedy = result.stderr.rstrip().rsplit("\n", 1)
+    assert error.startswith("Error: ")
     assert remedy.startswith("  ")
     assert result.stdout == ""
     assert files(folder) == before
@@ -322,7 +322,7 @@ class TestInit:
         (tmp_path / "x_validate.csv").write_text("mine")
         result = call("init", str(tmp_path))
         assert result.exit_code == 2
-        assert f"{tmp_path / 'x_validate.csv'}: is there already" in result.stderr
+        assert f"{tmp_path / 'x_validate.csv'}: exists already" in result.stderr
         assert files(tmp_path) == {"x_validate.csv"}
         assert (tmp_path / "x_validate.csv").read_text() == "mine"
 

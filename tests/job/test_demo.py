@@ -30,7 +30,7 @@ def test_the_truth_is_not_beside_the_job(tmp_path):
     job = write_demo(tmp_path / "demo")
     assert {path.name for path in job.parent.iterdir()} == {"job.yaml", "identify.csv", "validate.csv"}
     assert not any(item["effect"] in job.read_text(encoding="utf-8") for item in hidden())
-    with pytest.raises(InputError, match="is there already"):
+    with pytest.raises(InputError, match="exists already"):
         write_demo(tmp_path / "demo")
 
 
