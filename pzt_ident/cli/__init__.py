@@ -1,4 +1,4 @@
-"""The command line: thin callers of what the other folders do.
+"""The command line: each command calls a function of another folder and prints what it returns.
 
-In: the words of a command. Out: text or JSON on the terminal, an exit code.
+In: the arguments of a command. Out: text or JSON on the terminal, and an exit code.
 """

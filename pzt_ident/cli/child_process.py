@@ -1,4 +1,4 @@
-"""The command line, ended when whoever started it is gone."""
+"""The command line as a child process, which ends when the process that started it is gone."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import signal
 from threading import Thread
 
 
-def obey() -> None:
-    """Interrupt the command once the pipe that it reads from has no writer: the workbench was killed."""
+def end_with_parent() -> None:
+    """End the command once nothing writes to its standard input any more: the workbench was killed."""
     os.read(0, 1)
     os.kill(os.getpid(), signal.SIGTERM)
 
@@ -16,5 +16,5 @@ def obey() -> None:
 def main() -> None:
     from pzt_ident.cli.commands import main
 
-    Thread(target=obey, daemon=True).start()
+    Thread(target=end_with_parent, daemon=True).start()
     main(prog_name="pzt-ident")

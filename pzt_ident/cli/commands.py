@@ -1,4 +1,4 @@
-"""The command line. What a command needs is imported when it runs, so that `--help` is there at once."""
+"""The commands. Each imports what it needs when it runs, so that `--help` answers at once."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pzt_ident.cli import options as shell
 from pzt_ident.cli.options import (
     EXISTING,
     Group,
     answer,
-    diagnosing,
-    edit,
-    editing,
-    output,
-    reporting,
-    searching,
-    trusting,
+    diagnosis_options,
+    edit_job,
+    edit_options,
+    no_report_flag,
+    output_options,
+    plugins_flag,
+    plugins_option,
+    run_options,
 )
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def main(debug: bool) -> None:
 
     Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted.
     """
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads only wait for each other: 63 s of CPU for 19
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads wait for each other: 63 s of CPU instead of 19
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # a terminal may lack a letter of a name
 
@@ -51,9 +51,9 @@ def main(debug: bool) -> None:
 @main.command()
 @click.argument("job", type=EXISTING)
 @click.option("--out", type=EXISTING, help="Folder for the results; results/<name>/<time>-<hash> if not given.")
-@searching
-@trusting
-@output
+@run_options
+@plugins_flag
+@output_options
 def run(
     job: Path, out: Path | None, workers: int | None, no_report: bool, plugins: bool, as_json: bool, quiet: bool
 ) -> None:
@@ -70,9 +70,9 @@ def run(
 
 @main.command()
 @click.argument("folder", metavar="DIR", type=EXISTING)
-@searching
-@trusting
-@output
+@run_options
+@plugins_flag
+@output_options
 def resume(folder: Path, workers: int | None, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
     """Go on with the run in the folder DIR."""
 
@@ -92,7 +92,7 @@ def _identify(start: Callable[[Listener], Path], no_report: bool, as_json: bool,
 
         def listen_and_prepare(event: dict[str, Any]) -> None:
             if event["event"] == "start" and not no_report:
-                _import_drawing()
+                _import_report_in_background()
             listen(event)
 
         folder = start(listen_and_prepare)
@@ -101,10 +101,10 @@ def _identify(start: Callable[[Listener], Path], no_report: bool, as_json: bool,
     answer({"folder": str(folder), "result": result}, lambda: show_result(result, folder), as_json, quiet)
 
 
-def _import_drawing() -> None:
-    """Import what draws the report while the searches run: they leave this process idle."""
-    drawing = ("pandas", "matplotlib.figure", "matplotlib.backends.backend_svg", "pzt_ident.report.page")
-    Thread(target=lambda: [import_module(name) for name in drawing], daemon=True).start()
+def _import_report_in_background() -> None:
+    """Import what draws the report while the searches run in other processes."""
+    modules = ("pandas", "matplotlib.figure", "matplotlib.backends.backend_svg", "pzt_ident.report.page")
+    Thread(target=lambda: [import_module(name) for name in modules], daemon=True).start()
 
 
 def _report(folder: Path, no_report: bool) -> None:
@@ -117,9 +117,9 @@ def _report(folder: Path, no_report: bool) -> None:
 @main.command()
 @click.argument("source", metavar="JOB-or-DIR", type=EXISTING)
 @click.option("--out", type=EXISTING, help="Folder for the results; DIR, or results/<name>/<time>-<hash>.")
-@reporting
-@trusting
-@output
+@no_report_flag
+@plugins_flag
+@output_options
 def compare(source: Path, out: Path | None, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
     """Say where the model fails: the best run in the folder DIR, or of the job file JOB, which is run first."""
     from pzt_ident.cli.misfit_tables import show_misfits
@@ -136,20 +136,20 @@ def compare(source: Path, out: Path | None, no_report: bool, plugins: bool, as_j
 
         with listening(silent=as_json or quiet) as listen:
             folder = run(load_job(source, plugins), out, listen=listen)
-    there = out or folder
-    residuals = compare(folder, there)
-    compared = replace(read_folder(folder), misfit=residuals)
-    drawn = () if no_report else write_misfit_figures(compared, there / "figures")
-    for _ in tracked(drawn, "figures", as_json or quiet):
+    target = out or folder
+    residuals = compare(folder, target)
+    results = replace(read_folder(folder), misfit=residuals)
+    figures = () if no_report else write_misfit_figures(results, target / "figures")
+    for _ in tracked(figures, "figures", as_json or quiet):
         pass
-    if not no_report and there == folder and (folder / "report.html").exists():
+    if not no_report and target == folder and (folder / "report.html").exists():
         _report(folder, no_report)
-    facts = {"folder": str(there), "residuals": residuals}
+    facts = {"folder": str(target), "residuals": residuals}
     answer(facts, lambda: show_misfits(residuals), as_json, quiet)
 
 
 @main.command()
-@diagnosing
+@diagnosis_options
 def diagnose(job: Path, **options: Any) -> None:
     """Say which physical effect the model of a job file JOB misses."""
     from pzt_ident.cli import verdict_tables
@@ -159,28 +159,28 @@ def diagnose(job: Path, **options: Any) -> None:
 
 
 @main.command()
-@editing("EFFECT")
+@edit_options("EFFECT")
 def add(**options: Any) -> None:
-    """Write the job file JOB with an EFFECT more, comments kept."""
-    edit("add", **options)
+    """Write a new job file: JOB with one EFFECT more, comments kept."""
+    edit_job("add", **options)
 
 
 @main.command()
-@editing("EFFECT")
+@edit_options("EFFECT")
 def remove(**options: Any) -> None:
-    """Write the job file JOB with one EFFECT less, comments kept."""
-    edit("remove", **options)
+    """Write a new job file: JOB without an EFFECT, comments kept."""
+    edit_job("remove", **options)
 
 
 @main.command()
-@editing("BLOCK...", nargs=-1, required=True)
+@edit_options("BLOCK...", nargs=-1, required=True)
 def model(**options: Any) -> None:
-    """Write the job file JOB with a model of these blocks, comments kept."""
-    edit("model", **options)
+    """Write a new job file: JOB with these blocks as its model, comments kept."""
+    edit_job("model", **options)
 
 
 @main.command()
-@diagnosing
+@diagnosis_options
 def improve(job: Path, **options: Any) -> None:
     """Add what the model of a job file JOB misses, effect by effect, and watch the error fall."""
     from pzt_ident.cli import verdict_tables
@@ -190,7 +190,7 @@ def improve(job: Path, **options: Any) -> None:
 
 
 def _diagnose(
-    work: Callable[..., Path],
+    function: Callable[..., Path],
     name: str,
     show: Callable[[dict[str, Any], Path], None],
     job: Path,
@@ -204,69 +204,69 @@ def _diagnose(
     from pzt_ident.job.schema import load_job
 
     with listening(silent=as_json or quiet) as listen:
-        folder = work(load_job(job, plugins), out, listen)
+        folder = function(load_job(job, plugins), out, listen)
         _report(folder, no_report)
-    found = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
-    answer({"folder": str(folder), name: found}, lambda: show(found, folder), as_json, quiet)
+    verdict = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
+    answer({"folder": str(folder), name: verdict}, lambda: show(verdict, folder), as_json, quiet)
 
 
 @main.command()
 @click.argument("job", type=EXISTING)
-@trusting
-@output
+@plugins_flag
+@output_options
 def check(job: Path, plugins: bool, as_json: bool, quiet: bool) -> None:
     """Say what is in a job file JOB and its data. Writes nothing."""
     from pzt_ident.cli.job_tables import show_job
     from pzt_ident.job.schema import load_job
     from pzt_ident.run.summary import summary_of
 
-    found = summary_of(load_job(job, plugins))
-    answer(found, lambda: show_job(found), as_json, quiet)
+    summary = summary_of(load_job(job, plugins))
+    answer(summary, lambda: show_job(summary), as_json, quiet)
 
 
 @main.command("list")
 @click.argument("kind", type=click.Choice(["blocks", "effects", "optimizers"]))
-@shell.plugging
-@output
+@plugins_option
+@output_options
 def list_(kind: str, as_json: bool, quiet: bool) -> None:
     """List the words that a job may use."""
     from pzt_ident.cli.table import table
     from pzt_ident.model.description import words
 
-    found = words(kind)
-    answer(found, lambda: table(("word", "what it is"), list(found.items())), as_json, quiet)
+    docs = words(kind)
+    answer(docs, lambda: table(("word", "what it is"), list(docs.items())), as_json, quiet)
 
 
 @main.command()
 @click.argument("name")
-@shell.plugging
-@output
+@plugins_option
+@output_options
 def show(name: str, as_json: bool, quiet: bool) -> None:
     """Show what a block, effect or optimizer declares."""
     from pzt_ident.cli.word_tables import show_word
     from pzt_ident.model.description import description_of
 
-    found = description_of(name)
-    answer(found, lambda: show_word(found), as_json, quiet)
+    description = description_of(name)
+    answer(description, lambda: show_word(description), as_json, quiet)
 
 
 @main.command()
 @click.argument("folder", metavar="DIR", type=EXISTING)
-@output
+@output_options
 def init(folder: Path, as_json: bool, quiet: bool) -> None:
     """Write an example job and its data into the folder DIR."""
     from pzt_ident.job.example import write_example
 
     written = write_example(folder)
     job = folder / "job.yaml"
-    said = "".join(f"wrote {path}\n" for path in written) + f"next: pzt-ident run {quote(str(job))}"
-    answer({"written": [str(path) for path in written], "job": str(job)}, lambda: click.echo(said), as_json, quiet)
+    text = "".join(f"wrote {path}\n" for path in written) + f"next: pzt-ident run {quote(str(job))}"
+    answer({"written": [str(path) for path in written], "job": str(job)}, lambda: click.echo(text), as_json, quiet)
 
 
 @main.command()
 @click.option("--out", type=EXISTING, default=Path("pzt-ident-demo"), show_default=True, help="Folder to write into.")
 @click.option("--no-browser", is_flag=True, help="Do not open the report.")
-@output
+@output_options
 def demo(out: Path, no_browser: bool, as_json: bool, quiet: bool) -> None:
     """Find and add what a model misses, on a measurement that ships, and open the report."""
     from pzt_ident.cli import verdict_tables
@@ -278,18 +278,18 @@ def demo(out: Path, no_browser: bool, as_json: bool, quiet: bool) -> None:
 
     silent, job = as_json or quiet, write_demo(out)
     if not silent:
-        click.echo(f"wrote {job}, which knows of no effect, and a measurement with effects hidden in it", err=True)
+        click.echo(f"wrote {job}, a job without effects, and a measurement with hidden effects", err=True)
     with listening(silent) as listen:
         folder = improve(load_job(job), out / "improved", listen)
         write_report(folder)
-    found = json.loads((folder / "improvement.json").read_text(encoding="utf-8"))
+    improvement = json.loads((folder / "improvement.json").read_text(encoding="utf-8"))
 
-    def say() -> None:
-        verdict_tables.show_improvement(found, folder)
-        click.echo(f"hidden was: {', '.join(item['effect'] for item in hidden())}")
+    def show() -> None:
+        verdict_tables.show_improvement(improvement, folder)
+        click.echo(f"hidden effects: {', '.join(item['effect'] for item in hidden())}")
         click.echo(f"next, with the mouse: pzt-ident workbench {quote(str(job))}")
 
-    answer({"folder": str(folder), "improvement": found, "hidden": hidden()}, say, as_json, quiet)
+    answer({"folder": str(folder), "improvement": improvement, "hidden": hidden()}, show, as_json, quiet)
     if not no_browser:
         show_in_browser(folder / "report.html")
 
@@ -297,15 +297,15 @@ def demo(out: Path, no_browser: bool, as_json: bool, quiet: bool) -> None:
 @main.command()
 @click.argument("source", metavar="[JOB or DATA]", required=False, type=EXISTING)
 @click.option("--out", type=EXISTING, help="Folder of the session; workbench/<name of the file> if not given.")
-@click.option("--port", type=click.IntRange(0, 65535), default=0, help="A free one if not given.")
+@click.option("--port", type=click.IntRange(0, 65535), default=0, help="A free port if not given.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen at.")
 @click.option("--allow-network", is_flag=True, help="Let --host be one that other machines can reach.")
 @click.option("--no-browser", is_flag=True, help="Do not open the browser.")
-@trusting
+@plugins_flag
 def workbench(
     source: Path | None, out: Path | None, port: int, host: str, allow_network: bool, no_browser: bool, plugins: bool
 ) -> None:
-    """See and do all of it in the browser, on a job, a measurement, or one that you drop onto the page.
+    """See and do all of it in the browser: a job, a measurement, or a file that you drop onto the page.
 
     Serves files of the folder it is started in, to this machine only.
     """
@@ -326,7 +326,7 @@ def workbench(
 @main.command()
 @click.argument("folders", metavar="DIR...", nargs=-1, required=True, type=EXISTING)
 @click.option("-o", "--out", type=EXISTING, help="Page of several results; side-by-side.html if not given.")
-@output
+@output_options
 def report(folders: tuple[Path, ...], out: Path | None, as_json: bool, quiet: bool) -> None:
     """Draw the report of each folder of results again, and every figure as PDF and SVG at 88 and 180 mm.
 

@@ -1,4 +1,4 @@
-"""What a job and its data hold, as text for the terminal."""
+"""The contents of a job and its data, as text for the terminal."""
 
 from __future__ import annotations
 
@@ -7,30 +7,30 @@ from typing import Any
 import click
 
 from pzt_ident.cli.result_tables import show_notes
-from pzt_ident.cli.table import number, table, together
+from pzt_ident.cli.table import grouped_by_range, number, table
 
 Facts = dict[str, Any]
 
 
-def show_job(found: Facts) -> None:
-    click.echo(f"{found['name']} ({found['hash']}): {' -> '.join(found['model'])}\n")
+def show_job(facts: Facts) -> None:
+    click.echo(f"{facts['name']} ({facts['hash']}): {' -> '.join(facts['model'])}\n")
     table(
         ("record", "use", "samples", "rate [Hz]", "length [s]", "not scored [s]", "file"),
         [
             (row["name"], row["use"], row["samples"], *(number(row[key]) for key in _TIMES), row["file"])
-            for row in found["records"]
+            for row in facts["records"]
         ],
     )
-    show_notes(found["records"])
+    show_notes(facts["records"])
     table(
         ("axis", "drive", "response"),
-        [(axis["name"], _range(axis, "drive"), _range(axis, "response")) for axis in found["axes"]],
+        [(axis["name"], _range(axis, "drive"), _range(axis, "response")) for axis in facts["axes"]],
     )
     table(
         ("parameter", "unit", "bounds", "what it is"),
-        [(row["name"], row["unit"], _searched(row), row["doc"]) for row in together(found["parameters"])],
+        [(row["name"], row["unit"], _treatment(row), row["doc"]) for row in grouped_by_range(facts["parameters"])],
     )
-    click.echo(f"runs: {' '.join(found['runs'])}, {found['evaluations']} evaluations in all")
+    click.echo(f"runs: {' '.join(facts['runs'])}, {facts['evaluations']} evaluations in all")
 
 
 _TIMES = ("sample_rate", "seconds", "settle")
@@ -43,8 +43,8 @@ def _range(axis: Facts, channel: str) -> str:
     return f"{low:.4g} to {high:.4g} {axis[f'{channel}_unit']}"
 
 
-def _searched(row: Facts) -> str:
-    """What becomes of a parameter."""
+def _treatment(row: Facts) -> str:
+    """The search range of a parameter, or that it is fixed or solved for."""
     if not {"value", "bounds"} & set(row):
         return "solved for"
     return "fixed at {:.4g}".format(row["value"]) if "value" in row else "{:.4g} to {:.4g}".format(*row["bounds"])

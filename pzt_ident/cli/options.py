@@ -1,4 +1,4 @@
-"""What all commands share: options, errors in one clear line, the answer as text or JSON."""
+"""What all commands share: options, errors as one line, the answer as text or JSON."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ EXISTING = click.Path(path_type=Path)
 
 
 class Failure(click.ClickException):
-    """One line on stderr; ends with exit code 1."""
+    """An error that is printed as one line; exit code 1."""
 
 
 class BadInput(click.ClickException):
@@ -32,10 +32,10 @@ class Interrupted(click.ClickException):
 
 
 class Group(click.Group):
-    """Turns errors into one clear line: exit code 2 for bad input, 1 for a failure, 130 for an interrupt."""
+    """Prints an error as one line. Exit code 2 for bad input, 1 for a failure, 130 for an interrupt."""
 
     def invoke(self, ctx: click.Context) -> Any:
-        warnings.formatwarning = lambda message, *place, **more: f"Warning: {message}\n"
+        warnings.formatwarning = lambda message, *location, **options: f"Warning: {message}\n"
         try:
             return super().invoke(ctx)
         except (click.ClickException, click.exceptions.Exit, click.Abort):
@@ -49,85 +49,85 @@ class Group(click.Group):
         except Exception as error:
             if ctx.params["debug"] or (isinstance(error, OSError) and error.errno == errno.EPIPE):
                 raise
-            raise Failure(_in_a_line(error)) from None
+            raise Failure(_one_line(error)) from None
 
 
-def _in_a_line(error: Exception) -> str:
+def _one_line(error: Exception) -> str:
     if isinstance(error, OSError) and error.strerror:
         return f"{error.filename}: {error.strerror}" if error.filename else error.strerror
     return f"{type(error).__name__}: {error} (`pzt-ident --debug ...` shows where)"
 
 
-def output(command: Command) -> Command:
+def output_options(command: Command) -> Command:
     """--json and --quiet."""
     command = click.option("--quiet", is_flag=True, help="Say nothing but errors.")(command)
     return click.option("--json", "as_json", is_flag=True, help="Write the answer to stdout as JSON.")(command)
 
 
-reporting = click.option("--no-report", is_flag=True, help="Write the results, draw no report and no figure.")
+no_report_flag = click.option("--no-report", is_flag=True, help="Write the results, draw no report and no figure.")
 
 
-def trusting(command: Command) -> Command:
-    """--plugins."""
-    said = "Load the files that the job lists under `plugins`: they run as code."
-    return click.option("--plugins", is_flag=True, help=said)(command)
+def plugins_flag(command: Command) -> Command:
+    """--plugins, a flag: load the files that the job lists."""
+    text = "Load the files that the job lists under `plugins`: they run as code."
+    return click.option("--plugins", is_flag=True, help=text)(command)
 
 
-def plugging(command: Command) -> Command:
-    """--plugins of a command that reads no job."""
+def plugins_option(command: Command) -> Command:
+    """--plugins FILE of a command that reads no job."""
 
-    def load(ctx: click.Context, option: click.Parameter, paths: tuple[Path, ...]) -> None:
+    def load(ctx: click.Context, parameter: click.Parameter, paths: tuple[Path, ...]) -> None:
         from pzt_ident.job.schema import load_plugins
 
         for path in () if ctx.resilient_parsing else paths:
             load_plugins(path)
 
-    said = "Load this Python file, or those of this job's `plugins`: they run as code. Can be given several times."
-    several = click.option(
-        "--plugins", metavar="JOB-or-FILE", type=EXISTING, multiple=True, callback=load, expose_value=False, help=said
+    text = "Load this Python file, or those of this job's `plugins`: they run as code. Can be given several times."
+    option = click.option(
+        "--plugins", metavar="JOB-or-FILE", type=EXISTING, multiple=True, callback=load, expose_value=False, help=text
     )
-    return several(command)
+    return option(command)
 
 
-def searching(command: Command) -> Command:
+def run_options(command: Command) -> Command:
     """--workers and --no-report."""
-    command = reporting(command)
+    command = no_report_flag(command)
     workers = click.IntRange(min=1)
     return click.option("--workers", type=workers, help="Processes side by side; all cores if not given.")(command)
 
 
-def diagnosing(command: Command) -> Command:
+def diagnosis_options(command: Command) -> Command:
     """JOB, --out and the options of a command that looks for what a model misses."""
-    said = "Folder for the results; results/<name>/<time>-<hash> if not given."
-    command = reporting(trusting(output(command)))
-    return click.argument("job", type=EXISTING)(click.option("--out", type=EXISTING, help=said)(command))
+    text = "Folder for the results; results/<name>/<time>-<hash> if not given."
+    command = no_report_flag(plugins_flag(output_options(command)))
+    return click.argument("job", type=EXISTING)(click.option("--out", type=EXISTING, help=text)(command))
 
 
-def editing(metavar: str, **more: Any) -> Callable[[Command], Command]:
-    """JOB, the words of its change, -o and the options of a command that writes another job file."""
+def edit_options(metavar: str, **attributes: Any) -> Callable[[Command], Command]:
+    """JOB, the effect or blocks, -o and the options of a command that writes another job file."""
 
     def decorate(command: Command) -> Command:
-        new = click.option("-o", "--out", type=EXISTING, required=True, help="The new job file.")
-        words = click.argument("words", metavar=metavar, **more)
-        return click.argument("job", type=EXISTING)(words(new(trusting(output(command)))))
+        out = click.option("-o", "--out", type=EXISTING, required=True, help="The new job file.")
+        words = click.argument("words", metavar=metavar, **attributes)
+        return click.argument("job", type=EXISTING)(words(out(plugins_flag(output_options(command)))))
 
     return decorate
 
 
-def edit(name: str, job: Path, words: Any, out: Path, plugins: bool, as_json: bool, quiet: bool) -> None:
-    """Write another job file by the function of `amend` with this name, and say what is in it."""
-    from pzt_ident.job import edit as edit
+def edit_job(name: str, job: Path, words: Any, out: Path, plugins: bool, as_json: bool, quiet: bool) -> None:
+    """Write another job file by the function `name` of pzt_ident.job.edit, and print what is in it."""
+    from pzt_ident.job import edit
     from pzt_ident.model.registry import word_of
 
-    made = getattr(edit, name)(job, words, out, plugins)
-    facts = {"model": [word_of(item) for item in made.model], "effects": list(made.effects)}
-    held = "; ".join(f"{key} {', '.join(named) or 'none'}" for key, named in facts.items())
-    said = f"wrote {out}: {held}\nnext: pzt-ident run {quote(str(out))}"
-    answer({"job": str(out)} | facts, lambda: click.echo(said), as_json, quiet)
+    new_job = getattr(edit, name)(job, words, out, plugins)
+    facts = {"model": [word_of(item) for item in new_job.model], "effects": list(new_job.effects)}
+    contents = "; ".join(f"{key} {', '.join(words) or 'none'}" for key, words in facts.items())
+    text = f"wrote {out}: {contents}\nnext: pzt-ident run {quote(str(out))}"
+    answer({"job": str(out)} | facts, lambda: click.echo(text), as_json, quiet)
 
 
-def answer(found: dict[str, Any], say: Callable[[], None], as_json: bool, quiet: bool) -> None:
+def answer(facts: dict[str, Any], show: Callable[[], None], as_json: bool, quiet: bool) -> None:
     if as_json:
-        click.echo(json.dumps(found, indent=2))
+        click.echo(json.dumps(facts, indent=2))
     elif not quiet:
-        say()
+        show()

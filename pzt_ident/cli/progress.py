@@ -1,4 +1,4 @@
-"""How far a run is, on the terminal: a live bar, or a line every few seconds."""
+"""The progress of a run on the terminal: a live bar, or a line every few seconds."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Listener(Protocol):
 
 @dataclass
 class Progress:
-    """How far the runs of a job are, from its events."""
+    """The progress of the runs of a job, from its events."""
 
     budget: int = 0
     unit: str = ""
@@ -58,7 +58,7 @@ class Progress:
         return sum(self.evaluations.values())
 
     def seconds_left(self) -> float | None:
-        """What is left at the pace since the first generation; None before there is one."""
+        """The time left at the rate since the first generation; None before there is one."""
         if self.first is None or self.done <= self.first[1]:
             return None
         since, before = self.first
@@ -68,17 +68,17 @@ class Progress:
         if not self.budget:
             return self.activity or "finishing"
         left = self.seconds_left()
-        ahead = "finishing" if self.done >= self.budget else "" if left is None else f"{duration(left)} left"
+        time_left = "finishing" if self.done >= self.budget else "" if left is None else f"{duration(left)} left"
         share = f"{100 * self.done / self.budget:.0f} %: {self.done} of {self.budget} evaluations"
-        said = f"{share}, best RMSE{self.together} {number(self.best)} {self.unit}"
-        return f"{said}, {ahead}" if ahead else said
+        text = f"{share}, best RMSE{self.together} {number(self.best)} {self.unit}"
+        return f"{text}, {time_left}" if time_left else text
 
 
 @contextmanager
 def listening(silent: bool) -> Iterator[Listener]:
     """A listener for the events of a run: a live bar on a terminal, else a line every few seconds, on stderr.
 
-    An interrupt, SIGTERM (a cluster's scheduler sends it) or a full disk is followed by how to go on.
+    After an interrupt, SIGTERM (sent by the scheduler of a cluster) or a full disk, it prints how to resume the run.
     """
     progress = Progress()
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -99,15 +99,15 @@ def listening(silent: bool) -> Iterator[Listener]:
 
 
 def _lines(progress: Progress) -> Listener:
-    shown = time.perf_counter()
+    last_line = time.perf_counter()
 
     def listen(event: Event) -> None:
-        nonlocal shown
+        nonlocal last_line
         progress.take(event)
-        if said := _said(event):
-            click.echo(said, err=True)
-        elif time.perf_counter() - shown >= SECONDS_BETWEEN_LINES:
-            shown = time.perf_counter()
+        if message := _message(event):
+            click.echo(message, err=True)
+        elif time.perf_counter() - last_line >= SECONDS_BETWEEN_LINES:
+            last_line = time.perf_counter()
             click.echo(progress, err=True)
 
     return listen
@@ -124,31 +124,31 @@ def _bar(progress: Progress) -> Iterator[Listener]:
 
         def listen(event: Event) -> None:
             progress.take(event)
-            if said := _said(event):
-                bar.console.print(said, markup=False, highlight=False)
+            if message := _message(event):
+                bar.console.print(message, markup=False, highlight=False)
             bar.update(task, total=progress.budget or None, completed=progress.done, description=str(progress))
 
         yield listen
 
 
-def _said(event: Event) -> str:
-    """An event in words, where it is worth some."""
+def _message(event: Event) -> str:
+    """The sentence that is printed for an event; empty for most events."""
     if event["event"] == "finished":
         return "every run is finished: nothing is searched again"
     if event["event"] == "stair":
         return str(event["said"])
-    return failure(event) if event["event"] == "failed" else ""
+    return failure_message(event) if event["event"] == "failed" else ""
 
 
-def failure(event: Event) -> str:
+def failure_message(event: Event) -> str:
     return f"{event['run']} failed: {event['reason']}"
 
 
 def duration(seconds: float) -> str:
-    """Seconds as a person reads them: `8 s`, `2 min 5 s`, `1 h 20 min`."""
-    whole = round(seconds)
-    if whole < 60:
-        return f"{whole} s"
-    if whole < 3600:
-        return f"{whole // 60} min {whole % 60} s"
-    return f"{whole // 3600} h {whole % 3600 // 60} min"
+    """Seconds in readable units: `8 s`, `2 min 5 s`, `1 h 20 min`."""
+    rounded = round(seconds)
+    if rounded < 60:
+        return f"{rounded} s"
+    if rounded < 3600:
+        return f"{rounded // 60} min {rounded % 60} s"
+    return f"{rounded // 3600} h {rounded % 3600 // 60} min"

@@ -8,13 +8,13 @@ from typing import Any
 
 import click
 
-from pzt_ident.cli.progress import failure
+from pzt_ident.cli.progress import failure_message
 from pzt_ident.cli.table import number, table
 from pzt_ident.data.over_axes import together, weighed
 
 
 def show_result(result: dict[str, Any], folder: Path) -> None:
-    """The league of optimizers, the best run's parameters, the noise floor, and where the rest is."""
+    """The league of optimizers, the parameters of the best run, the noise floor, and the path of the report."""
     unit, best = result["unit"], result["best"]
     error = f"RMSE{together(result['units'])} [{unit}]"
     table(
@@ -31,17 +31,17 @@ def show_result(result: dict[str, Any], folder: Path) -> None:
             for name, item in best["parameters"].items()
         ],
     )
-    click.echo(f"{error}: {uses(best['rmse'])} ({best['run']})")
+    click.echo(f"{error}: {rmse_by_use(best['rmse'])} ({best['run']})")
     show_floors(result)
     show_notes(result["records"])
     for run in result["failed_runs"]:
-        click.echo(failure(run))
+        click.echo(failure_message(run))
     page = folder / "report.html"
     click.echo(f"report: {page}" if page.exists() else f"results: {folder}")
 
 
 def show_floors(facts: dict[str, Any]) -> None:
-    """The noise floor of each axis and, of several, that of all together and what it counts."""
+    """The noise floor of each axis; of several axes, also that of all together and how they are weighed."""
     units = facts["units"]
     for axis, floor in facts["noise_floor"].items():
         click.echo(f"noise floor of {axis} [{units[axis]}]: {number(floor)}")
@@ -52,7 +52,7 @@ def show_floors(facts: dict[str, Any]) -> None:
 
 
 def show_notes(records: Iterable[dict[str, Any]]) -> None:
-    """What there is to know of each record."""
+    """The notes of each record."""
     for record in records:
         for note in record["notes"]:
             click.echo(f"{record['name']}: {note}")
@@ -61,5 +61,5 @@ def show_notes(records: Iterable[dict[str, Any]]) -> None:
 _LEAGUE = ("rmse_best", "rmse_median", "polished_rmse_median")
 
 
-def uses(rmse: dict[str, float | None]) -> str:
+def rmse_by_use(rmse: dict[str, float | None]) -> str:
     return ", ".join(f"{number(value)} {use}" for use, value in rmse.items())

@@ -16,17 +16,17 @@ Row = Sequence[object]
 
 
 def is_terminal(stream: TextIO | None) -> bool:
-    """Whether a person looks at it; None where the process was started with the stream closed."""
+    """Whether the stream is a terminal. It is None where the process was started with it closed."""
     return stream is not None and stream.isatty()
 
 
 def number(value: float | None) -> str:
-    """Four digits; a dash where there is none."""
+    """Four significant digits; a dash for a missing or infinite value."""
     return "-" if value is None or not math.isfinite(value) else f"{value:.4g}"
 
 
 def table(header: Sequence[str], rows: Sequence[Row]) -> None:
-    """Columns under their headings on stdout, set by rich on a terminal and by blanks elsewhere; no word is cut."""
+    """Print columns under their headings, by rich on a terminal and with blanks elsewhere; no word is cut."""
     cells = [["" if cell is None else str(cell) for cell in row] for row in rows]
     if is_terminal(sys.stdout):
         from rich.box import SIMPLE_HEAD
@@ -34,15 +34,15 @@ def table(header: Sequence[str], rows: Sequence[Row]) -> None:
         from rich.table import Table
         from rich.text import Text
 
-        drawn = Table(box=SIMPLE_HEAD)
+        rich_table = Table(box=SIMPLE_HEAD)
         for heading in header:
-            drawn.add_column(Text(heading))
+            rich_table.add_column(Text(heading))
         for row in cells:
-            drawn.add_row(*map(Text, row))
+            rich_table.add_row(*map(Text, row))
         console = Console()
-        least = console.measure(drawn, options=console.options.update_width(1000)).minimum
+        least = console.measure(rich_table, options=console.options.update_width(1000)).minimum
         console.width = max(console.width, least)
-        console.print(drawn)
+        console.print(rich_table)
         return
     widths = [max(map(len, column)) for column in zip(header, *cells, strict=True)]
     for row in [list(header), *cells]:
@@ -51,7 +51,7 @@ def table(header: Sequence[str], rows: Sequence[Row]) -> None:
 
 
 def tracked(items: Iterable[Any], what: str, silent: bool) -> Iterator[Any]:
-    """The items, counted on a terminal while they come; nothing is said elsewhere."""
+    """The items, with a progress bar on a terminal."""
     if silent or not is_terminal(sys.stdout):
         yield from items
         return
@@ -60,7 +60,7 @@ def tracked(items: Iterable[Any], what: str, silent: bool) -> Iterator[Any]:
     yield from track(items, what, transient=True)
 
 
-def together(rows: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
-    """Rows of parameters, those in one that differ in their number alone."""
-    for facts, alike in groupby(rows, lambda row: {key: value for key, value in row.items() if key != "name"}):
-        yield from (facts | {"name": said} for said in ranges(row["name"] for row in alike))
+def grouped_by_range(rows: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+    """Rows of parameters; those that differ only in the number in their name become one row."""
+    for facts, group in groupby(rows, lambda row: {key: value for key, value in row.items() if key != "name"}):
+        yield from (facts | {"name": name} for name in ranges(row["name"] for row in group))

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from pzt_ident.cli.result_tables import show_floors, uses
+from pzt_ident.cli.result_tables import rmse_by_use, show_floors
 from pzt_ident.cli.table import number, table
 from pzt_ident.data.over_axes import together
 from pzt_ident.report.tables import expected
@@ -16,9 +16,9 @@ from pzt_ident.run.events import step_name
 Facts = dict[str, Any]
 
 
-def show_diagnosis(found: Facts, folder: Path) -> None:
-    """The candidates that were refitted or come next, and the verdict."""
-    unit, error = found["unit"], f"RMSE{together(found['units'])}"
+def show_diagnosis(diagnosis: Facts, folder: Path) -> None:
+    """The candidates that were refitted or explain more than 1 % of the misfit, and the verdict."""
+    unit, error = diagnosis["unit"], f"RMSE{together(diagnosis['units'])}"
     rows = [
         (
             item["effect"],
@@ -29,25 +29,25 @@ def show_diagnosis(found: Facts, folder: Path) -> None:
             number(item["rmse"]["validate"]) if item["rmse"] else "",
             item["decision"],
         )
-        for item in found["candidates"]
+        for item in diagnosis["candidates"]
         if item["rmse"] or item["explained"] > 0.01
     ]
     errors = (f"{error}, identify [{unit}]", f"validate [{unit}]")
     table(("effect", "explains", "expected", "visible", *errors, "decision"), rows)
-    click.echo(f"{error} [{unit}]: {uses(found['rmse'])}")
-    show_floors(found)
-    click.echo(found["reason"])
-    _advise(found, folder)
+    click.echo(f"{error} [{unit}]: {rmse_by_use(diagnosis['rmse'])}")
+    show_floors(diagnosis)
+    click.echo(diagnosis["reason"])
+    _advise(diagnosis, folder)
     click.echo(f"diagnosis: {folder / 'diagnosis.json'}")
 
 
-def _advise(found: Facts, folder: Path) -> None:
-    best = next((item for item in found["candidates"] if item["decision"] == "missing"), None)
+def _advise(diagnosis: Facts, folder: Path) -> None:
+    best = next((item for item in diagnosis["candidates"] if item["decision"] == "missing"), None)
     if best:
         click.echo(f"{best['effect']}: {best['physics']}\non the rig: {best['remedy']}")
-    if found["next_experiment"]:
-        _propose(found["next_experiment"], folder)
-    elif best and found["verdict"] == "inconclusive":
+    if diagnosis["next_experiment"]:
+        _propose(diagnosis["next_experiment"], folder)
+    elif best and diagnosis["verdict"] == "inconclusive":
         click.echo(f"no drive within the limits tells them apart. On the rig: {best['separate_by']}")
 
 
@@ -55,9 +55,9 @@ def _propose(proposal: Facts, folder: Path) -> None:
     click.echo(f"to tell {' from '.join(proposal['splits'])}, run {folder / proposal['file']} ({proposal['why']})")
 
 
-def show_improvement(found: Facts, folder: Path) -> None:
+def show_improvement(improvement: Facts, folder: Path) -> None:
     """The staircase, the verdict, and where the improved job is."""
-    unit, floor, error = found["unit"], found["floor"], f"RMSE{together(found['units'])}"
+    unit, floor, error = improvement["unit"], improvement["floor"], f"RMSE{together(improvement['units'])}"
     rows = [
         (
             step_name(step),
@@ -68,7 +68,7 @@ def show_improvement(found: Facts, folder: Path) -> None:
             f"{round(100 * step['explained'])} %" if step["added"] or step["removed"] else "",
             " or ".join(step["class"]),
         )
-        for step in found["steps"]
+        for step in improvement["steps"]
     ]
     table(
         (
@@ -82,10 +82,10 @@ def show_improvement(found: Facts, folder: Path) -> None:
         ),
         rows,
     )
-    show_floors(found)
-    click.echo(f"{found['verdict']}: {found['reason']}")
-    if found["next_experiment"]:
-        _propose(found["next_experiment"], folder)
+    show_floors(improvement)
+    click.echo(f"{improvement['verdict']}: {improvement['reason']}")
+    if improvement["next_experiment"]:
+        _propose(improvement["next_experiment"], folder)
     click.echo(f"improved job: {folder / 'improved.yaml'}")
     if (folder / "report.html").exists():
         click.echo(f"report: {folder / 'report.html'}")

@@ -1,4 +1,4 @@
-"""What a word in a job stands for, as text for the terminal."""
+"""What a block, effect or optimizer declares, as text for the terminal."""
 
 from __future__ import annotations
 
@@ -6,50 +6,50 @@ from typing import Any
 
 import click
 
-from pzt_ident.cli.table import table, together
+from pzt_ident.cli.table import grouped_by_range, table
 
 Facts = dict[str, Any]
 
 
-def show_word(found: Facts) -> None:
-    click.echo(f"{found['name']} ({found['kind']})\n\n{found['doc']}\n")
-    if source := found.get("source"):
+def show_word(facts: Facts) -> None:
+    click.echo(f"{facts['name']} ({facts['kind']})\n\n{facts['doc']}\n")
+    if source := facts.get("source"):
         click.echo(f"{source}\n")
-    if not found.get("convergent", True):
-        click.echo("It comes near an optimum, but does not converge to it.\n")
-    if "settings" in found:
+    if not facts.get("convergent", True):
+        click.echo("It approaches an optimum, but does not converge to it.\n")
+    if "settings" in facts:
         table(
             ("setting", "default", "from - to", "unit", "what it is"),
-            [(row["name"], row["default"], _allowed(row), row["unit"], row["doc"]) for row in found["settings"]],
+            [(row["name"], row["default"], _allowed(row), row["unit"], row["doc"]) for row in facts["settings"]],
         )
-    if "parameters" in found:
+    if "parameters" in facts:
         table(
             ("parameter", "unit", "bounds", "null", "what it is"),
             [
-                (row["name"], row["unit"], "{:g} to {:g}".format(*row["bounds"]), _plain(row["null"]), _meaning(row))
-                for row in together(found["parameters"])
+                (row["name"], row["unit"], "{:g} to {:g}".format(*row["bounds"]), _number(row["null"]), _meaning(row))
+                for row in grouped_by_range(facts["parameters"])
             ],
         )
-        if any("drive" in row["unit"] or "response" in row["unit"] for row in found["parameters"]):
+        if any("drive" in row["unit"] or "response" in row["unit"] for row in facts["parameters"]):
             click.echo("Bounds in units of drive and response are multiples of the data's own peak-to-peak values,")
             click.echo("those of response/drive with either sign where the response does not rise with the drive.")
     for title, key in (("Leaves the same trace as", "look_alikes"), ("To tell", "separate_by"), ("To do", "remedy")):
-        if said := found.get(key):
-            click.echo(f"\n{title}: {said if isinstance(said, str) else ', '.join(said)}")
+        if text := facts.get(key):
+            click.echo(f"\n{title}: {text if isinstance(text, str) else ', '.join(text)}")
 
 
 def _allowed(row: Facts) -> str:
     return " or ".join(row["words"]) if "words" in row else "{:g} to {:g}".format(*row["bounds"])
 
 
-def _plain(value: float | None) -> str:
+def _number(value: float | None) -> str:
     return "" if value is None else f"{value:g}"
 
 
 def _meaning(row: Facts) -> str:
-    """What a parameter is, and what it takes to have it searched for."""
+    """What a parameter is, and when it is searched for."""
     fixed = "" if row["value"] is None else f" Fixed at {row['value']:g} unless the job gives bounds."
     effect = "" if row["effect"] is None else f" With the effect {row['effect']} only."
-    own = " Each record has its own." if row["per_record"] else ""
+    per_record = " Each record has its own." if row["per_record"] else ""
     form = f" With `{row['form']}` only." if row["form"] else ""
-    return row["doc"] + fixed + effect + own + form
+    return row["doc"] + fixed + effect + per_record + form

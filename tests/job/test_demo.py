@@ -23,7 +23,7 @@ def test_the_demo_finds_what_is_hidden(tmp_path, monkeypatch):
     assert last["validate"] < 1.25 * improvement["floor"] < 0.2 * first["validate"]
     assert opened == [tmp_path / "demo" / "improved" / "report.html"]
     assert opened[0].stat().st_size < 300 * 1024
-    assert "hidden was: " in answer.stdout
+    assert "hidden effects: " in answer.stdout
 
 
 def test_the_truth_is_not_beside_the_job(tmp_path):

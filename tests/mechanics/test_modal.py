@@ -129,7 +129,7 @@ def test_a_job_names_modes_of_the_stage_and_of_an_axis():
     ("name", "said"),
     [
         ("modal.frequency_4", "'modal' has no parameter 'frequency_4'"),
-        ("y.modal.frequency_1", "is one of the whole stage\n  write modal.frequency_1"),
+        ("y.modal.frequency_1", "belongs to the whole stage, not to an axis\n  write modal.frequency_1"),
         ("x.modal.push_1", "is relative to that of the first axis"),
     ],
 )
