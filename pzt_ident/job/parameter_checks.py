@@ -92,7 +92,7 @@ def _unknown_name(document: Document, name: str, earlier: Earlier, entries: Mapp
         if declared.effect:
             fault = f"belongs to the effect {declared.effect!r}", f"add `effects: [{declared.effect}]`"
         elif declared.per_record:
-            fault = "is taken in closed form for each record", "take it out"
+            fault = "is solved for in every record by itself", "take it out"
         elif declared.each == "stage":
             fault = "belongs to the whole stage, not to an axis", f"write {block}.{word}"
         elif declared.each == "later axis":

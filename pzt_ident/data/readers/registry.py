@@ -23,7 +23,7 @@ GROUP = "pzt_ident.reader"
 TEXT = "text"
 
 Parts = tuple[str, dict[str, str]]
-"""The key of a record in a job by which a part of a file is taken (`table`, `sheet`), and the title of each part."""
+"""The key of a record in a job that selects a part of a file (`table`, `sheet`), and the title of every part."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Reader:
 
     @classmethod
     def of(cls, module: Any) -> Reader:
-        """The reader that a module declares. Raises InputError where the module is no sound one."""
+        """The reader that a module declares. Raises InputError where it breaks the contract."""
         if not isinstance(module, ModuleType):
             raise InputError("is not a module", where=repr(module), remedy="name the module that declares the reader")
         _check(module)
@@ -86,7 +86,7 @@ class Readers:
     def add(self, module: Any) -> None:
         """Add the reader of a module, in place of an earlier one from the same file.
 
-        Raises InputError where the module declares no sound reader, or claims what another one has.
+        Raises InputError where it breaks the contract, or claims what another reader has.
         """
         added = [reader for reader in self._added if reader.file != getattr(module, "__file__", None)]
         self._added = [*added, _free_reader(module, [*self._installed, *added])]
@@ -117,7 +117,7 @@ def _format_modules() -> list[str]:
 
 
 def _free_reader(module: Any, others: list[Reader]) -> Reader:
-    """The reader of a module. Raises InputError where it is not sound, or claims what another one has."""
+    """The reader of a module. Raises InputError where it breaks the contract, or claims what another has."""
     reader = Reader.of(module)
     _check_free(reader, others)
     return reader

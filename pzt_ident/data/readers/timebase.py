@@ -64,7 +64,8 @@ def check_rate(grid: Grid, rate: float | None, where: str) -> None:
 def time_slice(grid: Grid, samples: int, time: tuple[float | None, float | None] | None, where: str) -> slice:
     """The samples from `time[0]` on and before `time[1]`, s; all of them without `time`.
 
-    Raises InputError where the record does not have them."""
+    Raises InputError where the record does not have them.
+    """
     if time is None:
         return slice(0, samples)
     last = grid.start + grid.dt * (samples - 1)
