@@ -65,7 +65,7 @@ def measured_again(one: Record, other: Record, axis: int, tolerance: float = 2e-
     return bool((np.abs(one.drive - other.drive).max(axis=1) <= tolerance * span).all())
 
 
-def sizes(records: list[Record]) -> Array:
+def error_scales(records: list[Record]) -> Array:
     """What the errors of each measured axis are weighed by: nothing where responses are of one kind, else their noise
     floors, so that a polarization and a displacement count by what their noise lets see; at least WHOLE of the span,
     since an integrated charge is smooth far below what any model reaches."""
@@ -79,7 +79,7 @@ def sizes(records: list[Record]) -> Array:
 def pooled_floor(records: list[Record]) -> float:
     """Noise floor of all measured axes together, in units of the loss."""
     floors = np.array([noise_floor(records, axis).value for axis in records[0].measured])
-    return float(np.sqrt(np.mean(np.square(floors / sizes(records)))))
+    return float(np.sqrt(np.mean(np.square(floors / error_scales(records)))))
 
 
 def facts(records: list[Record]) -> dict[str, Any]:

@@ -75,7 +75,7 @@ def respond(case: Case, fit: Fit, dt: float, drive: Array) -> Array:
     """Response of the first measured axis about its mean, in units of the loss."""
     first = case.records[0]
     blank: Record = replace(first, dt=dt, drive=drive, response=np.zeros_like(drive), settle=0, run_in=0)
-    found = Simulator(fit.problem.model, blank).simulate(fit.problem.parameters(fit.point))[0, 0] / case.sizes[0]
+    found = Simulator(fit.problem.model, blank).simulate(fit.problem.parameters(fit.point))[0, 0] / case.error_scales[0]
     return found - found.mean()
 
 

@@ -1,4 +1,4 @@
-"""Fits of a job's model with effects added, good enough that what is left is the model's fault."""
+"""Fits of a job's model and of the model with effects added, accurate enough to blame the residual on the model."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.noise import pooled_floor, sizes
+from pzt_ident.data.noise import error_scales, pooled_floor
 from pzt_ident.data.record import Record
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.model.block import Coupling
@@ -21,23 +21,23 @@ from pzt_ident.model.registry import Choice, blocks
 from pzt_ident.search.problem import FixedValue, Problem
 
 Array = NDArray[np.float64]
-Tell = Callable[[dict[str, Any]], None]
+Listener = Callable[[dict[str, Any]], None]
 
-STARTS = 240  # chance points, of which the best few are refined, so many at a time until two agree
-REFINED, MOST = 4, 24
-AGREE = 0.01  # of the loss, between the two best of them
-ELSEWHERE = 2  # chance points of one block that are refined
+STARTS = 240  # random points; the best are refined, a batch at a time, until two minima agree
+REFINED, MOST_REFINED = 4, 24  # points in a batch, and in all batches
+AGREEMENT = 0.01  # of the loss, between the two best minima
+RESTARTS = 2  # random points of one block that are refined
 EDGE = 1e-4  # of a parameter's range: as near to its end it is on the bound
-COARSE = 0.05  # noise floors of a record: what halving the step may change before the simulation takes finer steps
-FINEST = 8  # steps a sample
+STEP_TOLERANCE = 0.05  # noise floors: where halving the step changes more of a record, the step is halved
+FINEST = 8  # steps per sample
 DAMPINGS = 10.0 ** np.arange(-5, 4)
 
 
 class Case:
-    """A model, its records and what is free, to which effects can be added that are not ruled out.
+    """A model, its records and its parameter specifications; effects that are not ruled out can be added to it.
 
-    `tell` hears of every start that was fitted, effect that was scored and model that was refitted, as it happens, from
-    any thread; errors are in units of the loss. `given` is the problem of the model as it is, where it is made already.
+    `on_event` is called, from any thread, with every fitted start, scored effect and refitted model; errors are in
+    units of the loss. `base_problem` is the problem of the model without further effects, if it exists already.
     """
 
     def __init__(
@@ -48,48 +48,50 @@ class Case:
         specs: Any,
         ruled_out: Sequence[str] = (),
         shared: Sequence[str] = (),
-        tell: Tell = lambda event: None,
-        given: Problem | None = None,
+        on_event: Listener = lambda event: None,
+        base_problem: Problem | None = None,
     ) -> None:
-        self.tell, self._given = tell, given
+        self.on_event, self._base_problem = on_event, base_problem
         self.words, self.effects = tuple(words), tuple(effects)
         self.ruled_out, self.shared = tuple(ruled_out), tuple(shared)
-        self._at: dict[tuple[int, int], Record] = {}
+        self._resampled: dict[tuple[int, int], Record] = {}
         self.refits: dict[Any, Fit] = {}  # by effects, steps and start
-        self.records, self.specs, self.sizes = tuple(records), specs, sizes(list(records))
+        self.records, self.specs, self.error_scales = tuple(records), specs, error_scales(list(records))
 
-    def problem(self, effects: Sequence[str], steps: Sequence[int] = (), alone: bool = False) -> Problem:
-        """`steps` a sample of each record, by default those of the job; `alone` as in a fit."""
-        if self._given and (tuple(effects), tuple(steps), alone) == (self.effects, (), False):
-            return self._given
+    def problem(self, effects: Sequence[str], steps: Sequence[int] = (), measured_only: bool = False) -> Problem:
+        """steps: simulation steps per sample of each record, by default those of the job; `measured_only` as in
+        `Fit`."""
+        if self._base_problem and (tuple(effects), tuple(steps), measured_only) == (self.effects, (), False):
+            return self._base_problem
         first = self.records[0]
         chain = blocks.chain((*self.words, *effects))
-        silent = self.silent(effects) if alone else {}
-        specs = {name: FixedValue(null) for name, null in silent.items()} | self.specs
+        nulls = self.unmeasured_nulls(effects) if measured_only else {}
+        specs = {name: FixedValue(null) for name, null in nulls.items()} | self.specs
         model = Chain(chain, first.axes, first.measured, self.shared, specs)
-        own = steps or [record.steps for record in self.records]
-        records = [self.at(number, count) for number, count in enumerate(own)]
-        return Problem(model, records, specs, self.sizes)
+        counts = steps or [record.steps for record in self.records]
+        records = [self.record_with_steps(number, count) for number, count in enumerate(counts)]
+        return Problem(model, records, specs, self.error_scales)
 
-    def silent(self, effects: Sequence[str]) -> dict[str, float]:
-        """What keeps effects that were added off the axes without a response, by name: their nulls there, in the user's
-        units. Empty where no coupling lets such an axis be seen."""
+    def unmeasured_nulls(self, effects: Sequence[str]) -> dict[str, float]:
+        """Parameters, by name, that switch the added effects off on axes without a response: their nulls there, in the
+        user's units. Empty where no coupling lets a response depend on such an axis."""
         first, chain = self.records[0], blocks.chain((*self.words, *effects))
         if not any(issubclass(block, Coupling) for block in chain):
             return {}
-        others = [axis for number, axis in enumerate(first.axes) if number not in first.measured]
-        own = {word for word in effects if word not in self.effects}
+        unmeasured = [axis for number, axis in enumerate(first.axes) if number not in first.measured]
+        added = {word for word in effects if word not in self.effects}
         return {
             f"{axis}.{block.name}.{word}": parameter.null
-            for axis, block in product(others, chain)
+            for axis, block in product(unmeasured, chain)
             for word, parameter in block.parameters().items()
-            if {block.name, parameter.effect} & own and parameter.null is not None and Chain.alone(block, parameter)
+            if {block.name, parameter.effect} & added and parameter.null is not None and Chain.alone(block, parameter)
             if f"{block.name}.{word}" not in (*self.shared, *self.specs)
         }
 
-    def at(self, number: int, steps: int) -> Record:
-        """A record, simulated in so many steps a sample; the same one each time, whose signals are made ready once."""
-        return self._at.setdefault((number, steps), replace(self.records[number], steps=steps))
+    def record_with_steps(self, number: int, steps: int) -> Record:
+        """A record simulated in so many steps per sample; always the same object, so that its signals are prepared
+        once."""
+        return self._resampled.setdefault((number, steps), replace(self.records[number], steps=steps))
 
     @cached_property
     def floor(self) -> float:
@@ -99,8 +101,8 @@ class Case:
 
 @dataclass(frozen=True)
 class Fit:
-    """A model with its effects at its best point; RMSE in SI units, validate None without such records. `alone`: the
-    effects that were added act on the measured axes alone."""
+    """A model with its effects at its best point; `identify` and `validate` are RMSE in units of the loss, `validate`
+    None without validation records. `measured_only`: the added effects act on the measured axes only."""
 
     effects: tuple[str, ...]
     problem: Problem
@@ -108,12 +110,13 @@ class Fit:
     identify: float
     validate: float | None
     converged: bool = True
-    alone: bool = False
+    measured_only: bool = False
 
     @property
     def total(self) -> float:
-        """RMSE of both uses together: what fits are ranked by, so that the fitted records alone never choose."""
-        return float(np.sqrt(np.mean(np.square([use for use in (self.identify, self.validate) if use is not None]))))
+        """RMSE of both uses together: the criterion by which fits are ranked."""
+        errors = [error for error in (self.identify, self.validate) if error is not None]
+        return float(np.sqrt(np.mean(np.square(errors))))
 
     @property
     def on_bounds(self) -> tuple[str, ...]:
@@ -121,146 +124,162 @@ class Fit:
         problem, values = self.problem, self.problem.physical(self.point)[0]
         nulls = [problem.model.entries[column].parameter.null for column in problem.free]
         ends = (self.point <= EDGE) | (self.point >= 1 - EDGE)
-        found = zip(problem.names, ends, values, nulls, strict=True)
-        return tuple(name for name, end, value, null in found if end and (null is None or not np.isclose(value, null)))
+        rows = zip(problem.names, ends, values, nulls, strict=True)
+        return tuple(name for name, end, value, null in rows if end and (null is None or not np.isclose(value, null)))
 
     @property
     def steps(self) -> tuple[int, ...]:
-        """Of the simulation in a sample of each record."""
+        """Simulation steps per sample of each record."""
         return tuple(record.steps for record in self.problem.records)
 
     @property
     def values(self) -> dict[str, float]:
-        """Of the free parameters, in the user's units."""
+        """The free parameters by name, in the user's units."""
         return dict(zip(self.problem.names, self.problem.physical(self.point)[0].tolist(), strict=True))
 
 
-def made(effects: tuple[str, ...], problem: Problem, point: Array, converged: bool = True, alone: bool = False) -> Fit:
-    validate = float(problem.loss(point, "validate")[0])
-    unseen = None if np.isnan(validate) else validate
-    return Fit(effects, problem, point, float(problem.loss(point)[0]), unseen, converged, alone)
+def fit_at(
+    effects: tuple[str, ...], problem: Problem, point: Array, converged: bool = True, measured_only: bool = False
+) -> Fit:
+    """The fit that a point is, with its errors."""
+    loss = float(problem.loss(point, "validate")[0])
+    validate = None if np.isnan(loss) else loss
+    return Fit(effects, problem, point, float(problem.loss(point)[0]), validate, converged, measured_only)
 
 
 def first_fit(case: Case, seed: int) -> Fit:
-    """The job's own model, from chance points; not converged where the two best of their minima differ."""
+    """The job's own model, fitted from random points; not converged where the two best minima differ."""
     problem = case.problem(case.effects)
     rng = np.random.default_rng(seed)
     starts = rng.uniform(size=(STARTS, problem.dimensions))
-    order = np.argsort(problem.loss(starts), kind="stable")[:MOST]
-    ends, agreed = np.empty((0, problem.dimensions)), False
-    while len(ends) < MOST and not agreed:
-        own = starts[order[len(ends) : len(ends) + REFINED]]
+    order = np.argsort(problem.loss(starts), kind="stable")[:MOST_REFINED]
+    minima, agreed = np.empty((0, problem.dimensions)), False
+    while len(minima) < MOST_REFINED and not agreed:
+        batch = starts[order[len(minima) : len(minima) + REFINED]]
         with ThreadPoolExecutor(2) as pool:
-            for end in pool.map(lambda start: descend(problem, start), own):
-                ends = np.vstack([ends, end])
-                case.tell({"event": "fitted", "done": len(ends), "of": len(order)})
-        losses = problem.loss(ends)
+            for minimum in pool.map(lambda start: descend(problem, start), batch):
+                minima = np.vstack([minima, minimum])
+                case.on_event({"event": "fitted", "done": len(minima), "of": len(order)})
+        losses = problem.loss(minima)
         best, second = np.sort(losses)[:2]
-        agreed = bool(second <= (1 + AGREE) * best + 0.1 * case.floor and np.isfinite(best))
-    return resolved(case, made(case.effects, problem, ends[np.argmin(losses)], agreed))
+        agreed = bool(second <= (1 + AGREEMENT) * best + 0.1 * case.floor and np.isfinite(best))
+    return refine_steps(case, fit_at(case.effects, problem, minima[np.argmin(losses)], agreed))
 
 
 def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, float]) -> Fit:
-    """The model with other effects, from the parameters it had and a guess (user's units) of the new ones. Where that
-    makes a difference the effects act on axes without a response as well, or on the measured ones alone: the better."""
+    """The model with other effects, started from the parameters of the fit `before` and from a guess (user's units) of
+    the new ones. The new effects act on all axes or on the measured ones only, whichever fits better."""
     problem = case.problem(effects, before.steps)
-    old = before.values
+    known = before.values
     middle = problem.physical(np.full(problem.dimensions, 0.5))[0]
-    start = {name: guess.get(name, old.get(name, middle[i])) for i, name in enumerate(problem.names)}
+    start = {name: guess.get(name, known.get(name, middle[i])) for i, name in enumerate(problem.names)}
     point = problem.unit_point(start)
     key = (effects, before.steps, point.tobytes())
     if key not in case.refits:
-        ways = [(problem, False)]
-        if case.silent(effects):
-            ways.append((case.problem(effects, before.steps, True), True))
-        if len(ways) > 1 and not apart(case, *(way.residuals(point)[0] for way, _ in ways)):
-            ways.pop()
-        fits = [resolved(case, made(effects, way, descend(way, point), alone=alone)) for way, alone in ways]
-        case.refits[key] = min(fits, key=lambda fit: fit.total)
-    found = case.refits[key]
-    case.tell({"event": "refitted", "effects": effects, "identify": found.identify, "validate": found.validate})
-    return found
+        case.refits[key] = _best_of_axes(case, before, effects, problem, point)
+    fit = case.refits[key]
+    case.on_event({"event": "refitted", "effects": effects, "identify": fit.identify, "validate": fit.validate})
+    return fit
 
 
-def apart(case: Case, one: Array, other: Array) -> bool:
-    """Whether two residuals differ by more than the simulation's step may change."""
-    return bool(np.linalg.norm(one - other) > COARSE * case.floor)
+def _best_of_axes(case: Case, before: Fit, effects: tuple[str, ...], problem: Problem, start: Array) -> Fit:
+    """The better of the fits with the effects on all axes and on the measured ones only, where the two differ."""
+    variants = [(problem, False)]
+    if case.unmeasured_nulls(effects):
+        restricted = case.problem(effects, before.steps, True)
+        if residuals_differ(case, problem.residuals(start)[0], restricted.residuals(start)[0]):
+            variants.append((restricted, True))
+    fits = [
+        refine_steps(case, fit_at(effects, variant, descend(variant, start), measured_only=measured_only))
+        for variant, measured_only in variants
+    ]
+    return min(fits, key=lambda fit: fit.total)
 
 
-def resolved(case: Case, fit: Fit) -> Fit:
-    """The fit, gone on with at finer steps of the records where halving the step would show.
+def residuals_differ(case: Case, one: Array, other: Array) -> bool:
+    """Whether two residuals differ by more than halving the simulation's step may change."""
+    return bool(np.linalg.norm(one - other) > STEP_TOLERANCE * case.floor)
 
-    Where the drive is linear between samples, what each block hands on to the next is taken for linear too.
+
+def refine_steps(case: Case, fit: Fit) -> Fit:
+    """The fit, continued with finer simulation steps for the records where halving the step changes the response.
+
+    Where the drive is linear between samples, the signals between blocks are taken as linear too.
     """
-    coarse = (step_errors(case, fit) > COARSE * case.floor) & (np.array(fit.steps) < FINEST)
+    coarse = (step_errors(case, fit) > STEP_TOLERANCE * case.floor) & (np.array(fit.steps) < FINEST)
     if not coarse.any():
         return fit
-    steps = [count * (2 if more else 1) for count, more in zip(fit.steps, coarse, strict=True)]
-    problem = case.problem(fit.effects, steps, fit.alone)
-    return resolved(case, made(fit.effects, problem, descend(problem, fit.point), fit.converged, fit.alone))
+    steps = [count * (2 if halve else 1) for count, halve in zip(fit.steps, coarse, strict=True)]
+    problem = case.problem(fit.effects, steps, fit.measured_only)
+    point = descend(problem, fit.point)
+    return refine_steps(case, fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
 
 
 def step_errors(case: Case, fit: Fit) -> Array:
-    """What halving the step of the simulation changes in each record, root mean square, in units of the loss."""
-    problem, found = fit.problem, []
+    """Change of each record's response when the simulation step is halved, root mean square, in units of the loss:
+    (records,)."""
+    problem, errors = fit.problem, []
     theta = problem.parameters(fit.point)
     for number, record in enumerate(problem.records):
-        finer = case.at(number, 2 * record.steps)
-        one, two = (Simulator(problem.model, each).simulate(theta)[0] for each in (record, finer))
-        change = (two - one)[:, record.settle :] / problem.sizes[:, None]
-        found.append(np.sqrt(np.mean(np.var(change, axis=1))))
-    return np.array(found)
+        halved = case.record_with_steps(number, 2 * record.steps)
+        coarse, fine = (Simulator(problem.model, stepped).simulate(theta)[0] for stepped in (record, halved))
+        change = (fine - coarse)[:, record.settle :] / problem.sizes[:, None]
+        errors.append(np.sqrt(np.mean(np.var(change, axis=1))))
+    return np.array(errors)
 
 
-def elsewhere(fit: Fit, only: str = "", most: int = ELSEWHERE) -> Fit:
-    """The fit, or a better one that starts from other values of one block on one axis, the others kept: of each block
-    in turn, or of `only` one. Beside a greater misfit, since explained, or for want of a better guess, a block may
-    have come to rest in a side minimum, such as a resonance far off."""
+def restart(fit: Fit, block: str = "", starts_per_block: int = RESTARTS) -> Fit:
+    """The best of the fit and of fits restarted from other values of one block on one axis, the rest kept: of each
+    block in turn, or of `block` only. A block may rest in a side minimum, such as a distant resonance, when it was
+    fitted beside a misfit that has since been explained, or from a poor guess."""
     problem = fit.problem
     entries = [problem.model.entries[column] for column in problem.free]
     owners = [(entry.axis, entry.block.name) for entry in entries]
     rng = np.random.default_rng(0)
-    found = [fit]
-    for owner in dict.fromkeys(owner for owner in owners if only in ("", owner[1])):
-        own = np.array([each == owner for each in owners])
-        starts = np.where(own, scattered(problem, rng), fit.point)
-        for start in starts[np.argsort(problem.loss(starts))[:most]]:
-            found.append(made(fit.effects, problem, descend(problem, start), fit.converged, fit.alone))
-    return min(found, key=lambda each: each.total)
+    fits = [fit]
+    for owner in dict.fromkeys(owner for owner in owners if block in ("", owner[1])):
+        restarted = np.array([column_owner == owner for column_owner in owners])
+        starts = np.where(restarted, random_points(problem, rng), fit.point)
+        for start in starts[np.argsort(problem.loss(starts))[:starts_per_block]]:
+            point = descend(problem, start)
+            fits.append(fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
+    return min(fits, key=lambda candidate: candidate.total)
 
 
-def scattered(problem: Problem, rng: np.random.Generator) -> Array:
-    """Chance points; half of them keep near 0 what may range from there over decades, such as a damping."""
+def random_points(problem: Problem, rng: np.random.Generator) -> Array:
+    """(STARTS, dimensions) random points; half of them keep parameters whose lower bound is 0 near it."""
     points = rng.uniform(size=(STARTS, problem.dimensions))
     near = (problem.lower == 0) & (rng.random((STARTS, 1)) < 0.5)
     return np.where(near, points**4, points)
 
 
 def descend(problem: Problem, point: Array, most: int = 30) -> Array:
-    """Levenberg-Marquardt in the cube on normal equations, all dampings tried in one batch; the point reached."""
+    """The point that Levenberg-Marquardt on the normal equations reaches in the unit cube, all dampings in one
+    batch."""
     point = np.clip(point, 0, 1)
     loss, slow = problem.loss(point)[0], 0
     for _ in range(most if np.isfinite(loss) else 0):
         jacobian, residual = problem.jacobian(point), problem.residuals(point)[0]
         gradient, curvature = jacobian.T @ residual, jacobian.T @ jacobian
         free = ~(((point <= 0) & (gradient > 0)) | ((point >= 1) & (gradient < 0)))
-        tries = np.array([stepped(point, gradient, curvature, free, damping) for damping in DAMPINGS])
-        losses = problem.loss(tries)
+        trials = np.array([damped_step(point, gradient, curvature, free, damping) for damping in DAMPINGS])
+        losses = problem.loss(trials)
         best = int(np.argmin(losses))
         if not losses[best] < loss:
             break
         slow = slow + 1 if losses[best] > (1 - 1e-4) * loss else 0
-        point, loss = tries[best], losses[best]
+        point, loss = trials[best], losses[best]
         if slow == 3:
             break
     return point
 
 
-def stepped(point: Array, gradient: Array, curvature: Array, free: NDArray[np.bool_], damping: float) -> Array:
+def damped_step(point: Array, gradient: Array, curvature: Array, free: NDArray[np.bool_], damping: float) -> Array:
+    """The point after one Levenberg-Marquardt step of the free parameters, inside the unit cube."""
     if not free.any():
         return point
-    own = curvature[np.ix_(free, free)]
-    scale = np.maximum(np.diag(own), 1e-12 * max(np.diag(own).max(), 1e-300))
+    block = curvature[np.ix_(free, free)]
+    scale = np.maximum(np.diag(block), 1e-12 * max(np.diag(block).max(), 1e-300))
     step = np.zeros(point.size)
-    step[free] = -np.linalg.lstsq(own + damping * np.diag(scale), gradient[free], rcond=None)[0]
+    step[free] = -np.linalg.lstsq(block + damping * np.diag(scale), gradient[free], rcond=None)[0]
     return np.clip(point + np.clip(step, -0.3, 0.3), 0, 1)

@@ -1,207 +1,229 @@
-"""Add what is missing, effect by effect, and take back what turns out not to be needed."""
+"""Add what is missing, effect by effect, and remove again what turns out not to be needed."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from pzt_ident.diagnosis.refit import Case, Fit, elsewhere, refit
-from pzt_ident.diagnosis.score import Scorer, applicable, misfit
-from pzt_ident.diagnosis.verdict import Candidate, Diagnosis, adequate, alike, diagnose, drop, earns, least, pair
+from pzt_ident.diagnosis.refit import Case, Fit, refit, restart
+from pzt_ident.diagnosis.score import Scorer, applicable, squared_misfit
+from pzt_ident.diagnosis.verdict import (
+    Candidate,
+    Diagnosis,
+    adequate,
+    best_pair,
+    diagnose,
+    is_tied,
+    removed_rms,
+    removes_enough,
+    threshold,
+)
 from pzt_ident.model.registry import blocks
 
-MOST = 8  # steps
-BEAM = 2  # first picks that are followed
-SURE = 0.05  # noise floors by which one effect fits better than another in its place: less may be the simulation's
-HOPELESS = 5.0  # noise floors: where the first way leaves more, another order of the same effects does not help
+MOST_STEPS = 8
+FIRST_EFFECTS = 2  # effects that are tried as the first to be added
+LEAST_GAIN = (
+    0.05  # noise floors by which one effect fits better than another in its place: less may be simulation error
+)
+HOPELESS = 5.0  # noise floors: where the first path ends above that, another order of the same effects does not help
 
 
 @dataclass
 class Step:
-    """One stair: the fit after it, what it added or removed, and its look-alikes in these data with their fits."""
+    """A step of the staircase: the fit after it, the effect it added or removed, the look-alikes that these data cannot
+    distinguish from it with their fits (itself first), and the shares of the misfit it removed and was expected to."""
 
     fit: Fit
     added: str | None = None
     removed: str | None = None
     rivals: dict[str, Fit] = field(default_factory=dict)
     explained: float = 0.0
-    expected: float | None = None  # share of the misfit that the score promised
+    expected: float | None = None
 
     @property
     def tied(self) -> tuple[str, ...]:
-        """What these data cannot tell from the effect that was added, itself first."""
         return tuple(self.rivals)
 
 
-Tell = Callable[[Step], None]
+StepListener = Callable[[Step], None]
+Staircase = tuple[list[Step], Diagnosis]
 
 
-def improve(case: Case, first: Fit, tell: Tell = lambda step: None) -> tuple[list[Step], Diagnosis]:
+def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
     """The staircase, the model as given first, and the diagnosis of its last model.
 
-    Where the best first pick leads to no adequate model, the next best ones are tried: it may have been a proxy.
+    Where the best first effect leads to no adequate model, the next best one is tried: the first may have stood in for
+    something else.
     """
-    found = diagnose(case, first)
-    picks: list[Candidate | None] = [*found.passing[:BEAM]] or [None]
-    ways: list[tuple[list[Step], Diagnosis]] = []
-    for pick in picks:
-        ways.append(climb(case, first, found, pick, tell))
-        left = ways[-1][0][-1].fit.identify / case.floor
-        if ways[-1][1].verdict in ("adequate", "refused") or left > HOPELESS:
+    diagnosis = diagnose(case, first)
+    first_candidates: list[Candidate | None] = [*diagnosis.passing[:FIRST_EFFECTS]] or [None]
+    paths: list[Staircase] = []
+    for candidate in first_candidates:
+        steps, last = climb(case, first, diagnosis, candidate, on_step)
+        paths.append((steps, last))
+        if last.verdict in ("adequate", "refused") or steps[-1].fit.identify / case.floor > HOPELESS:
             break
-    best = min(ways, key=lambda way: (way[1].verdict != "adequate", way[0][-1].fit.total))
-    classed(case, first, best[0])
+    best = min(paths, key=lambda path: (path[1].verdict != "adequate", path[0][-1].fit.total))
+    find_rivals(case, first, best[0])
     return best
 
 
-def climb(case: Case, first: Fit, found: Diagnosis, pick: Candidate | None, tell: Tell) -> tuple[list[Step], Diagnosis]:
-    """One way up: the first pick, then always the best."""
+def climb(
+    case: Case, first: Fit, diagnosis: Diagnosis, candidate: Candidate | None, on_step: StepListener
+) -> Staircase:
+    """One path: the candidate is added first, then always the best one."""
     steps = [Step(first)]
-    tell(steps[0])
-    while len(steps) <= MOST:
-        new = onward(case, first, steps, found, pick)
+    on_step(steps[0])
+    while len(steps) <= MOST_STEPS:
+        new = next_steps(case, first, steps, diagnosis, candidate)
         if not new:
             break
-        reconsider(case, first, (*steps, *new)[-2].fit, new[-1])
-        new += unneeded(case, first, new[-1].fit)
-        new += swapped(case, first, new[-1].fit)
-        seen = {frozenset(step.fit.effects) for step in steps}
-        if frozenset(new[-1].fit.effects) in seen:
+        restart_if_inadequate(case, first, (*steps, *new)[-2].fit, new[-1])
+        new += remove_unneeded(case, first, new[-1].fit)
+        new += exchange_look_alikes(case, first, new[-1].fit)
+        if frozenset(new[-1].fit.effects) in {frozenset(step.fit.effects) for step in steps}:
             break
         for step in new:
-            tell(step)
+            on_step(step)
         steps += new
-        found = diagnose(case, steps[-1].fit, first)
-        pick = found.best
-    return steps, found
+        diagnosis = diagnose(case, steps[-1].fit, first)
+        candidate = diagnosis.best
+    return steps, diagnosis
 
 
-def reconsider(case: Case, first: Fit, before: Fit, step: Step) -> None:
-    """Where a stair does not reach the noise, take its fit on from elsewhere before anything else is blamed."""
+def restart_if_inadequate(case: Case, first: Fit, before: Fit, step: Step) -> None:
+    """Where a step does not reach the noise, restart its fit before anything else is blamed."""
     if not adequate(case, first, step.fit):
-        step.fit = elsewhere(step.fit)
-        step.explained = explained(case, before, step.fit)
+        step.fit = restart(step.fit)
+        step.explained = explained_share(case, before, step.fit)
 
 
-def onward(case: Case, first: Fit, steps: list[Step], found: Diagnosis, pick: Candidate | None) -> list[Step]:
-    """The next stair: what was picked, else two effects at once, else one with other values of a block beside it, else,
-    once a way, one in the place of another."""
+def next_steps(
+    case: Case, first: Fit, steps: list[Step], diagnosis: Diagnosis, candidate: Candidate | None
+) -> list[Step]:
+    """The candidate; without one a pair of effects, else an effect whose fit is restarted, else, once in a path, an
+    effect in the place of another. Empty where the path ends."""
     now = steps[-1].fit
-    if pick is not None and pick.fit is not None:
-        rivals = rivals_of(found) if pick is found.best else {pick.score.effect: pick.fit}
-        return [Step(pick.fit, pick.score.effect, None, rivals, explained(case, now, pick.fit), pick.score.explained)]
-    if found.verdict in ("adequate", "refused"):
+    if candidate is not None and candidate.fit is not None:
+        word, fit = candidate.score.effect, candidate.fit
+        rivals = rivals_of(diagnosis) if candidate is diagnosis.best else {word: fit}
+        return [Step(fit, word, None, rivals, explained_share(case, now, fit), candidate.score.explained)]
+    if diagnosis.verdict in ("adequate", "refused"):
         return []
-    before = any(step.added and step.removed for step in steps)
+    exchanged = any(step.added and step.removed for step in steps)
     return (
-        both(case, first, now, found)
-        or again(case, first, now, found)
-        or ([] if before else exchanged(case, first, now))
+        add_pair(case, first, now, diagnosis)
+        or add_restarted(case, first, now, diagnosis)
+        or ([] if exchanged else exchange_any(case, first, now))
     )
 
 
-def rivals_of(found: Diagnosis) -> dict[str, Fit]:
-    """The refits that these data cannot tell apart, the best first."""
-    fits = {item.score.effect: item.fit for item in found.candidates}
-    return {word: fit for word in found.tied if (fit := fits[word])}
+def rivals_of(diagnosis: Diagnosis) -> dict[str, Fit]:
+    """The refits with the tied effects, by effect, the best first."""
+    fits = {candidate.score.effect: candidate.fit for candidate in diagnosis.candidates}
+    return {word: fit for word in diagnosis.tied if (fit := fits[word])}
 
 
-def both(case: Case, first: Fit, now: Fit, found: Diagnosis) -> list[Step]:
-    """Two effects that hide each other, as two stairs."""
-    fit = pair(case, first, now, found.candidates)
-    if fit is None:
+def add_pair(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Step]:
+    """Two effects that hide each other, as two steps, the one that fits better alone first."""
+    both = best_pair(case, first, now, diagnosis.candidates)
+    if both is None:
         return []
-    values = {name: value for name, value in fit.values.items() if name not in now.problem.names}
-    halves = [refit(case, now, (*now.effects, word), values) for word in fit.effects[-2:]]
-    half = min(halves, key=lambda half: half.total)
-    one, two = half.effects[-1], next(word for word in fit.effects[-2:] if word != half.effects[-1])
+    values = {name: value for name, value in both.values.items() if name not in now.problem.names}
+    alone = [refit(case, now, (*now.effects, word), values) for word in both.effects[-2:]]
+    one = min(alone, key=lambda fit: fit.total)
+    word, other = one.effects[-1], next(word for word in both.effects[-2:] if word != one.effects[-1])
     return [
-        Step(half, one, None, {one: half}, explained(case, now, half)),
-        Step(fit, two, None, {two: fit}, explained(case, half, fit)),
+        Step(one, word, None, {word: one}, explained_share(case, now, one)),
+        Step(both, other, None, {other: both}, explained_share(case, one, both)),
     ]
 
 
-def again(case: Case, first: Fit, now: Fit, found: Diagnosis) -> list[Step]:
-    """An effect of the short list with which another block, such as the hysteresis, must move far to fit."""
+def add_restarted(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Step]:
+    """An effect of the short list that fits once its own or another block, such as the hysteresis, starts elsewhere."""
     if now.identify > HOPELESS * case.floor:
         return []
-    tries = [(item, elsewhere(item.fit)) for item in found.candidates if item.fit]
-    good = [(item, fit) for item, fit in tries if earns(case, first, now, fit)]
-    if not good:
+    refitted = [(candidate.score, restart(candidate.fit)) for candidate in diagnosis.candidates if candidate.fit]
+    passing = [(score, fit) for score, fit in refitted if removes_enough(case, first, now, fit)]
+    if not passing:
         return []
-    item, fit = min(good, key=lambda found: found[1].total)
-    word = item.score.effect
-    return [Step(fit, word, None, {word: fit}, explained(case, now, fit), item.score.explained)]
+    score, fit = min(passing, key=lambda score_and_fit: score_and_fit[1].total)
+    word = score.effect
+    return [Step(fit, word, None, {word: fit}, explained_share(case, now, fit), score.explained)]
 
 
-def explained(case: Case, before: Fit, after: Fit) -> float:
-    """Share of the misfit above the noise that a stair removes."""
-    gone = drop(before.identify, after.identify)
-    return gone * abs(gone) / misfit(case, before)
+def explained_share(case: Case, before: Fit, after: Fit) -> float:
+    """Share of the misfit above the noise that a step removes, negative where it adds to it."""
+    removed = removed_rms(before.identify, after.identify)
+    return removed * abs(removed) / squared_misfit(case, before)
 
 
-def unneeded(case: Case, first: Fit, now: Fit) -> list[Step]:
-    """Take back effects, other than the newest and those of the job itself, that no longer earn their place and that
-    the records to validate do not miss."""
-    found: list[Step] = []
+def remove_unneeded(case: Case, first: Fit, now: Fit) -> list[Step]:
+    """Steps that remove effects, other than the newest and those of the job itself, which no longer remove enough and
+    are of no use to the validation records."""
+    steps: list[Step] = []
     for effect in now.effects[len(first.effects) : -1]:
-        without = refit(case, now, others(now, effect), {})
-        missed = now.validate is not None and drop(without.validate, now.validate) > least(case, first)
-        if not missed and not earns(case, first, without, now):
-            found.append(Step(without, None, effect, {}, explained(case, now, without)))
+        without = refit(case, now, effects_without(now, effect), {})
+        missed = now.validate is not None and removed_rms(without.validate, now.validate) > threshold(case, first)
+        if not missed and not removes_enough(case, first, without, now):
+            steps.append(Step(without, None, effect, {}, explained_share(case, now, without)))
             now = without
-    return found
+    return steps
 
 
-def swapped(case: Case, first: Fit, now: Fit) -> list[Step]:
-    """Put look-alikes in the place of effects that were picked before the others were known, where that leaves less."""
-    found: list[Step] = []
-    own = now.effects[len(first.effects) :]
-    for effect in own if len(own) > 1 else ():
-        best = min(look_alikes(case, now, effect), key=lambda fit: fit.total, default=now)
-        if better(case, now, best):
-            found += [exchange(case, now, best, effect), *unneeded(case, first, best)]
-            now = found[-1].fit
-    return found
+def exchange_look_alikes(case: Case, first: Fit, now: Fit) -> list[Step]:
+    """Steps that put look-alikes in the place of effects added before the others were known, where that fits better."""
+    steps: list[Step] = []
+    added = now.effects[len(first.effects) :]
+    for effect in added if len(added) > 1 else ():
+        best = min(look_alike_fits(case, now, effect), key=lambda fit: fit.total, default=now)
+        if fits_better(case, now, best):
+            steps += [exchange_step(case, now, best, effect), *remove_unneeded(case, first, best)]
+            now = steps[-1].fit
+    return steps
 
 
-def look_alikes(case: Case, now: Fit, effect: str) -> list[Fit]:
-    """The model with each look-alike in the place of an effect."""
-    without = refit(case, now, others(now, effect), {})
+def look_alike_fits(case: Case, now: Fit, effect: str) -> list[Fit]:
+    """The model refitted with each look-alike in the place of an effect."""
+    without = refit(case, now, effects_without(now, effect), {})
     possible, scorer = applicable(case, without.effects), Scorer(case, without)
     words = [word for word in blocks[effect].look_alikes if word in possible]
     return [refit(case, without, (*without.effects, word), scorer.score(word).guess) for word in words]
 
 
-def classed(case: Case, first: Fit, steps: list[Step]) -> None:
-    """Tell each stair what these data cannot tell from its effect, now that all the others are known."""
+def find_rivals(case: Case, first: Fit, steps: list[Step]) -> None:
+    """Set the rivals of the effects in the last model by refits beside all the other effects."""
     now = steps[-1].fit
-    own = now.effects[len(first.effects) :]
-    for effect in own if len(own) > 1 else ():
+    added = now.effects[len(first.effects) :]
+    for effect in added if len(added) > 1 else ():
         step = next(step for step in reversed(steps) if step.added == effect)
-        close = {fit.effects[-1]: fit for fit in look_alikes(case, now, effect) if alike(case, effect, now, fit)}
-        step.rivals = {effect: now} | close
+        tied = [fit for fit in look_alike_fits(case, now, effect) if is_tied(case, effect, now, fit)]
+        step.rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
 
 
-def exchanged(case: Case, first: Fit, now: Fit) -> list[Step]:
-    """Any effect in the place of one that was added, the best of all, where that leaves less."""
-    best, out = now, ""
+def exchange_any(case: Case, first: Fit, now: Fit) -> list[Step]:
+    """The best exchange of an added effect for any other one, where that fits better."""
+    best, removed = now, ""
     for effect in now.effects[len(first.effects) :]:
-        without = refit(case, now, others(now, effect), {})
+        without = refit(case, now, effects_without(now, effect), {})
         rival = diagnose(case, without, first).best
         if rival and rival.fit and rival.fit.total < best.total:
-            best, out = rival.fit, effect
-    return [exchange(case, now, best, out)] if better(case, now, best) else []
+            best, removed = rival.fit, effect
+    return [exchange_step(case, now, best, removed)] if fits_better(case, now, best) else []
 
 
-def others(fit: Fit, effect: str) -> tuple[str, ...]:
+def effects_without(fit: Fit, effect: str) -> tuple[str, ...]:
     return tuple(word for word in fit.effects if word != effect)
 
 
-def better(case: Case, now: Fit, best: Fit) -> bool:
-    return drop(now.total, best.total) > SURE * case.floor and drop(now.validate, best.validate) > 0
+def fits_better(case: Case, now: Fit, other: Fit) -> bool:
+    """Whether another fit is clearly better in total and not worse on the validation records."""
+    return (
+        removed_rms(now.total, other.total) > LEAST_GAIN * case.floor and removed_rms(now.validate, other.validate) > 0
+    )
 
 
-def exchange(case: Case, now: Fit, best: Fit, effect: str) -> Step:
-    word = best.effects[-1]
-    return Step(best, word, effect, {word: best}, explained(case, now, best))
+def exchange_step(case: Case, now: Fit, after: Fit, effect: str) -> Step:
+    """The step that puts the last effect of the fit `after` in the place of another."""
+    word = after.effects[-1]
+    return Step(after, word, effect, {word: after}, explained_share(case, now, after))

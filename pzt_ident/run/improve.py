@@ -14,7 +14,7 @@ from pzt_ident.data.noise import facts
 from pzt_ident.data.signals import write_signals
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis import staircase as stairs
-from pzt_ident.diagnosis.caveats import broken, caveats, rest
+from pzt_ident.diagnosis.caveats import broken_conditions, caveats, misfit_sentences
 from pzt_ident.diagnosis.refit import Case, Fit, first_fit
 from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.diagnosis.verdict import diagnose as judge
@@ -40,7 +40,7 @@ def opened_case(job: Job, out: Path | None, listen: Listen = nobody) -> Iterator
     begin(folder, job, edited(job, job.effects, folder), statement.records)
     case = case_of(statement)
     with event_log(folder, listen) as tell, np.errstate(all="ignore"):
-        case.tell = lambda event: tell(worded(case, event))
+        case.on_event = lambda event: tell(worded(case, event))
         yield case, folder
         tell({"event": "done", "folder": str(folder)})
 
@@ -49,7 +49,7 @@ def case_of(statement: Statement) -> Case:
     """The case that a job makes with its records."""
     job = statement.job
     records, given = statement.records, statement.problem
-    return Case(job.model, job.effects, records, job.parameters, job.rule_out, job.shared, given=given)
+    return Case(job.model, job.effects, records, job.parameters, job.rule_out, job.shared, base_problem=given)
 
 
 def worded(case: Case, event: Event) -> Event:
@@ -60,7 +60,7 @@ def worded(case: Case, event: Event) -> Event:
 
 
 def told(case: Case, step: stairs.Step) -> None:
-    case.tell({"event": "stair", "units": case.records[0].units, **stair(case, step)})
+    case.on_event({"event": "stair", "units": case.records[0].units, **stair(case, step)})
 
 
 def diagnose(job: Job, out: Path | None = None, listen: Listen = nobody) -> Path:
@@ -92,7 +92,7 @@ def improve(job: Job, out: Path | None = None, listen: Listen = nobody) -> Path:
         proposed = diagnosis["next_experiment"] or next(filter(None, proposals), None)
         content = improvement_of(job, case, steps, diagnosis) | {"next_experiment": proposed}
         end = steps[-1].fit
-        values = case.silent(end.effects) if end.alone else None
+        values = case.unmeasured_nulls(end.effects) if end.measured_only else None
         write_text(folder / "improved.yaml", edited(job, end.effects, folder, steps=end.steps, values=values))
         write_json(folder / "diagnosis.json", diagnosis)
         write_json(folder / "improvement.json", content)
@@ -157,14 +157,16 @@ def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
 def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[str, Any]:
     rivals = stairs.rivals_of(found)
     proposed = separating(job, case, rivals, folder)
-    reason = f"{found.reason} {rest(case, found.before)}" if found.verdict == "unexplained" else found.reason
+    reason = (
+        f"{found.reason} {misfit_sentences(case, found.before)}" if found.verdict == "unexplained" else found.reason
+    )
     if len(rivals) > 1 and not proposed:
         reason += f" No drive within {limits_of(job, case)} tells them apart: allow more under `limits`."
     return {
         "verdict": found.verdict,
         "reason": reason
         + (caveats(case, found.best.fit) if found.best and found.best.fit else "")
-        + broken(found.before),
+        + broken_conditions(found.before),
         **facts(list(case.records)),
         "rmse": errors_of(case, found.before),
         "records": by_record(case, found.before),
@@ -172,7 +174,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
             {
                 "effect": item.score.effect,
                 "class": found.tied if item.score.effect in found.tied else [item.score.effect],
-                "explained": item.score.within,
+                "explained": item.score.explained_in_bounds,
                 "expected": item.score.guess,
                 "units": item.score.units,
                 "visibility": item.score.visibility,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 
-from pzt_ident.data.noise import sizes
+from pzt_ident.data.noise import error_scales
 from pzt_ident.data.readers import read_records
 from pzt_ident.data.record import Record
 from pzt_ident.data.units import common_unit
@@ -26,7 +26,7 @@ class Statement:
 
     @cached_property
     def problem(self) -> Problem:
-        return Problem(self.job.chain, self.records, self.job.parameters, sizes(self.records))
+        return Problem(self.job.chain, self.records, self.job.parameters, error_scales(self.records))
 
     @property
     def unit(self) -> str:

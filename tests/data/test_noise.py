@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from pzt_ident.data.noise import noise_floor, period_of, quantiser, resting, sizes
+from pzt_ident.data.noise import error_scales, noise_floor, period_of, quantiser, resting
 from pzt_ident.data.record import Record
 
 SIGMA = 30e-9
@@ -93,13 +93,13 @@ def test_responses_of_different_kinds_are_weighed_by_their_noise(noise):
     drive = np.sin(2 * np.pi * np.arange(noise.size) / 500)
     both = [1e-7 * drive + noise, 1e-2 * drive + 3e4 * noise]
     made = record([drive, drive], both, axes=("x", "y"), drive_units=("V", "V"), response_units=("um", "nm"))
-    assert sizes([made]).tolist() == [1, 1]
+    assert error_scales([made]).tolist() == [1, 1]
     mixed = dataclasses.replace(made, response_units=("um", "uC/cm2"))
-    assert sizes([mixed]) == pytest.approx(noise.std() * np.array([1, 3e4]), rel=0.1)
+    assert error_scales([mixed]) == pytest.approx(noise.std() * np.array([1, 3e4]), rel=0.1)
     smooth = dataclasses.replace(
         mixed, response=mixed.response + np.array([[0], [1]]) * (1e-2 * drive - mixed.response)
     )
-    assert sizes([smooth])[1] == pytest.approx(5e-3 * 2e-2, rel=1e-3)
+    assert error_scales([smooth])[1] == pytest.approx(5e-3 * 2e-2, rel=1e-3)
 
 
 def rising(samples, rest=0):
@@ -195,4 +195,4 @@ def test_the_widest_record_sets_the_least_size():
     more = {"axes": ("x", "y"), "drive_units": ("V", "V"), "response_units": ("um", "uC/cm2")}
     records = [record([top * drive] * 2, [top * drive, 7 * top * drive], **more) for top in (1.0, 0.3)]
     for each in (records, records[::-1]):
-        assert sizes(each) == pytest.approx(5e-3 * 100 * np.array([1, 7]))
+        assert error_scales(each) == pytest.approx(5e-3 * 100 * np.array([1, 7]))

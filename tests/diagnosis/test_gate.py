@@ -7,10 +7,19 @@ import pytest
 
 from pzt_ident.diagnosis import verdict
 from pzt_ident.diagnosis.refit import Fit
-from pzt_ident.diagnosis.score import Score, misfit
-from pzt_ident.diagnosis.verdict import adequate, alike, diagnose, earns, least, pair, reaches, unseen
+from pzt_ident.diagnosis.score import Score, squared_misfit
+from pzt_ident.diagnosis.verdict import (
+    adequate,
+    best_pair,
+    diagnose,
+    is_tied,
+    not_in_validation,
+    reaches_noise,
+    removes_enough,
+    threshold,
+)
 
-CASE = SimpleNamespace(floor=1.0, tell=lambda event: None)
+CASE = SimpleNamespace(floor=1.0, on_event=lambda event: None)
 FAR = 10.0  # an error that nobody takes for noise
 
 
@@ -32,13 +41,13 @@ SMALL = above(1.0, FAR)
 
 
 def test_the_misfit_is_what_is_above_the_noise_and_never_less_than_could_be_told_from_it():
-    assert misfit(CASE, above(3.0)) == pytest.approx(9)
-    assert misfit(CASE, fit(1.0)) == misfit(CASE, fit(0.5)) == pytest.approx(0.09)
+    assert squared_misfit(CASE, above(3.0)) == pytest.approx(9)
+    assert squared_misfit(CASE, fit(1.0)) == squared_misfit(CASE, fit(0.5)) == pytest.approx(0.09)
 
 
 @pytest.mark.parametrize(("first", "enough"), [(1.0, 0.6), (19.0, 0.6), (21.0, 0.63), (100.0, 3.0)])
 def test_enough_is_six_tenths_of_the_noise_or_three_percent_of_the_first_misfit(first, enough):
-    assert least(CASE, above(first)) == pytest.approx(enough)
+    assert threshold(CASE, above(first)) == pytest.approx(enough)
 
 
 @pytest.mark.parametrize("first", [1.0, 40.0])
@@ -46,14 +55,14 @@ def test_enough_is_six_tenths_of_the_noise_or_three_percent_of_the_first_misfit(
 def test_an_effect_removes_enough_of_the_records_that_were_fitted(first, share, earned):
     before, gone = above(1.5, FAR), share * max(0.6, 0.03 * first)
     after = fit(without(before.identify, gone), 0.5 * FAR)
-    assert earns(CASE, above(first), before, after) == earned
+    assert removes_enough(CASE, above(first), before, after) == earned
 
 
 @pytest.mark.parametrize(("share", "earned"), [(0.151, True), (0.149, False)])
 def test_an_effect_removes_a_share_of_what_is_left_of_the_records_that_were_fitted(share, earned):
     before = above(FAR, FAR)
     after = fit(without(before.identify, FAR * np.sqrt(share)), 0.5 * FAR)
-    assert earns(CASE, before, before, after) == earned
+    assert removes_enough(CASE, before, before, after) == earned
 
 
 @pytest.mark.parametrize("first", [1.0, 40.0])
@@ -61,12 +70,12 @@ def test_an_effect_removes_a_share_of_what_is_left_of_the_records_that_were_fitt
 def test_an_effect_removes_half_as_much_of_the_records_that_were_not_fitted(first, share, earned):
     before, gone = above(2.0, FAR), share * max(0.6, 0.03 * first)
     after = fit(1.0, without(FAR, gone))
-    assert earns(CASE, above(first), before, after) == earned
+    assert removes_enough(CASE, above(first), before, after) == earned
 
 
 def test_where_all_records_were_fitted_they_alone_decide():
-    assert earns(CASE, SMALL, above(2.0), fit(1.0))
-    assert not earns(CASE, SMALL, above(2.0), above(2.0))
+    assert removes_enough(CASE, SMALL, above(2.0), fit(1.0))
+    assert not removes_enough(CASE, SMALL, above(2.0), above(2.0))
 
 
 @pytest.mark.parametrize("wrong", ["before", "after", "fitted", None])
@@ -75,12 +84,12 @@ def test_records_that_show_nothing_are_at_the_noise_before_and_after(first, wron
     noise = np.hypot(1, max(0.6, 0.03 * first))
     before, after, fitted = (noise * (1.001 if wrong == word else 0.999) for word in ("before", "after", "fitted"))
     ahead, behind = above(2.0, before), fit(fitted, after)
-    assert unseen(CASE, above(first), ahead, behind) == (wrong is None)
-    assert earns(CASE, above(first), ahead, behind) == (wrong is None)
+    assert not_in_validation(CASE, above(first), ahead, behind) == (wrong is None)
+    assert removes_enough(CASE, above(first), ahead, behind) == (wrong is None)
 
 
 def test_records_that_are_not_there_are_not_at_the_noise():
-    assert not unseen(CASE, SMALL, above(2.0), fit(1.0))
+    assert not not_in_validation(CASE, SMALL, above(2.0), fit(1.0))
 
 
 @pytest.mark.parametrize("first", [1.0, 40.0])
@@ -94,7 +103,7 @@ def test_an_adequate_model_leaves_little_above_the_noise_and_thrice_that_of_what
     enough = max(0.6, 0.03 * first)
     model = above(fitted * enough, unfitted and np.hypot(1, unfitted * 3 * enough))
     assert adequate(CASE, above(first), model) == fine
-    assert reaches(CASE, above(first), model) == (fitted < 1)
+    assert reaches_noise(CASE, above(first), model) == (fitted < 1)
 
 
 def test_the_total_is_root_mean_square_over_both_uses():
@@ -109,10 +118,10 @@ def judged(monkeypatch):
     def of(fits):
         scores = [Score(word, explained=0.9, power=3.0) for word in fits]
         monkeypatch.setattr(verdict, "Scorer", lambda case, before: None)
-        monkeypatch.setattr(verdict, "scored", lambda case, before, scorer: scores)
-        monkeypatch.setattr(verdict, "faulty", lambda case, first, before: "")
-        monkeypatch.setattr(verdict, "doubted", lambda case, first, before, items: None)
-        monkeypatch.setattr(verdict, "refits", lambda case, before, items: [given(item) for item in items])
+        monkeypatch.setattr(verdict, "score_all", lambda case, before, scorer: scores)
+        monkeypatch.setattr(verdict, "refusal", lambda case, first, before: "")
+        monkeypatch.setattr(verdict, "restart_look_alikes", lambda case, first, before, items: None)
+        monkeypatch.setattr(verdict, "refit_all", lambda case, before, items: [given(item) for item in items])
 
         def given(item):
             item.fit = fits[item.score.effect]
@@ -124,16 +133,16 @@ def judged(monkeypatch):
 
 def test_the_effect_that_is_best_on_both_uses_is_taken_not_the_one_that_fits_best(judged):
     """Totals 5 and 4.5; of the records that were fitted alone the first would be best."""
-    found = judged({"creep": fit(1.0, 7.0, ["creep"]), "saturation": fit(4.5, 4.5, ["saturation"])})
-    assert [item.score.effect for item in found.candidates] == ["saturation", "creep"]
-    assert (found.verdict, found.tied) == ("missing", ["saturation"])
-    assert [item.score.effect for item in found.passing] == ["saturation", "creep"]
+    diagnosis = judged({"creep": fit(1.0, 7.0, ["creep"]), "saturation": fit(4.5, 4.5, ["saturation"])})
+    assert [item.score.effect for item in diagnosis.candidates] == ["saturation", "creep"]
+    assert (diagnosis.verdict, diagnosis.tied) == ("missing", ["saturation"])
+    assert [item.score.effect for item in diagnosis.passing] == ["saturation", "creep"]
 
 
 def test_an_effect_that_the_other_records_do_not_show_is_not_taken_however_well_it_fits(judged):
-    found = judged({"creep": fit(1.0, 30.0, ["creep"]), "saturation": fit(20.0, 20.0, ["saturation"])})
-    assert (found.verdict, found.tied) == ("missing", ["saturation"])
-    assert [item.score.effect for item in found.passing] == ["saturation"]
+    diagnosis = judged({"creep": fit(1.0, 30.0, ["creep"]), "saturation": fit(20.0, 20.0, ["saturation"])})
+    assert (diagnosis.verdict, diagnosis.tied) == ("missing", ["saturation"])
+    assert [item.score.effect for item in diagnosis.passing] == ["saturation"]
 
 
 @pytest.mark.parametrize(("apart", "verdict", "tied"), [(0.19, "inconclusive", 2), (0.21, "missing", 1)])
@@ -141,9 +150,9 @@ def test_fits_less_than_a_fifth_of_the_noise_apart_are_a_tie_and_the_simpler_one
     """Apart in root mean square, of both uses; no look-alikes."""
     best = fit(2.0, 2.0, ["creep"], dimensions=7)
     next_best = fit(np.hypot(2.0, apart), np.hypot(2.0, apart), ["saturation"], dimensions=5)
-    found = judged({"creep": best, "saturation": next_best})
-    assert (found.verdict, len(found.tied)) == (verdict, tied)
-    assert found.tied[0] == ("saturation" if tied == 2 else "creep")
+    diagnosis = judged({"creep": best, "saturation": next_best})
+    assert (diagnosis.verdict, len(diagnosis.tied)) == (verdict, tied)
+    assert diagnosis.tied[0] == ("saturation" if tied == 2 else "creep")
 
 
 @pytest.mark.parametrize(("total", "apart", "close"), [(2.0, 0.39, True), (2.0, 0.41, False)])
@@ -152,15 +161,15 @@ def test_look_alikes_are_a_tie_where_they_are_twice_as_far_apart(total, apart, c
         fit(total, total, ["amplifier_lag"]),
         fit(np.hypot(total, apart), np.hypot(total, apart), ["sensor_lag"]),
     )
-    assert alike(CASE, "amplifier_lag", best, rival) == close
+    assert is_tied(CASE, "amplifier_lag", best, rival) == close
     stranger = fit(rival.identify, rival.validate, ["saturation"])
-    assert not alike(CASE, "amplifier_lag", best, stranger)
+    assert not is_tied(CASE, "amplifier_lag", best, stranger)
 
 
 @pytest.mark.parametrize(("share", "close"), [(1.009, True), (1.011, False)])
 def test_far_above_the_noise_look_alikes_are_a_tie_to_one_percent(share, close):
     best, rival = fit(50.0, 50.0, ["amplifier_lag"]), fit(50.0 * share, 50.0 * share, ["sensor_lag"])
-    assert alike(CASE, "amplifier_lag", best, rival) == close
+    assert is_tied(CASE, "amplifier_lag", best, rival) == close
 
 
 def test_of_pairs_that_earn_the_best_on_both_uses_is_taken(monkeypatch):
@@ -173,5 +182,5 @@ def test_of_pairs_that_earn_the_best_on_both_uses_is_taken(monkeypatch):
     monkeypatch.setattr(verdict, "refit", lambda case, before, effects, guess: fits[effects])
     items = [verdict.Candidate(Score(word, explained=0.5)) for word in ("creep", "drift", "delay")]
     before = fit(30.0, 30.0)
-    assert pair(CASE, before, before, items) is fits["drift", "delay"]
-    assert pair(CASE, before, before, items[:2]) is None
+    assert best_pair(CASE, before, before, items) is fits["drift", "delay"]
+    assert best_pair(CASE, before, before, items[:2]) is None

@@ -12,8 +12,7 @@ import rig
 import stage
 from pzt_ident.diagnosis import next_experiment
 from pzt_ident.diagnosis.next_experiment import Reach, propose, protocols, respond
-from pzt_ident.diagnosis.refit import Case, first_fit, refit
-from pzt_ident.diagnosis.refit import made as fit_at
+from pzt_ident.diagnosis.refit import Case, first_fit, fit_at, refit
 
 LINEAR = {"bouc_wen.alpha": 0.0, "bouc_wen.beta": 0.01, "bouc_wen.gamma": 0.0}
 REACH = Reach(0.0, 100.0, 1e5, 60.0)
@@ -216,7 +215,7 @@ def test_responses_are_in_units_of_the_loss_of_the_first_measured_axis():
     drive = np.array([np.resize([0.0, top], 40) for top in (5.0, 10.0, 20.0)])
     record = rig.record(*drive, measured=[1, 2])
     made = Case(["bouc_wen"], (), [replace(record, response=1e-7 * drive)], stage.specs(STRAIGHT))
-    made.sizes = np.array([3.0, 5.0])
+    made.error_scales = np.array([3.0, 5.0])
     problem = made.problem(())
     fit = fit_at((), problem, problem.unit_point(dict(zip(problem.names, (1e-7, 3e-7), strict=True))))
     expected = 1e-7 / 3 * (drive[1] - drive[1].mean())

@@ -1,4 +1,4 @@
-"""Fits that are good enough to blame what is left on the model, and the steps that they are made of."""
+"""Fits that are good enough to blame what is left on the model, and the steps of which they consist."""
 
 from dataclasses import replace
 
@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 import rig
 import stage
 from pzt_ident.diagnosis import refit
-from pzt_ident.diagnosis.caveats import bounded, silenced
-from pzt_ident.diagnosis.refit import descend, elsewhere, first_fit, made, stepped
+from pzt_ident.diagnosis.caveats import bounds_sentence, measured_only_sentence
+from pzt_ident.diagnosis.refit import damped_step, descend, first_fit, fit_at, restart
 from pzt_ident.engine.simulator import simulate
 from pzt_ident.model.block import Addition, Block, Coupling, Place
 from pzt_ident.model.chain import Chain
@@ -53,15 +53,15 @@ def test_a_fit_whose_starts_end_apart_has_not_converged(plain, monkeypatch):
 
 def test_more_starts_are_refined_until_two_agree(plain, monkeypatch):
     """Of each four of the first twenty all but the first get nowhere."""
-    seen, whole = [], refit.descend
+    starts, descent = [], refit.descend
 
     def lame(problem, point):
-        seen.append(point)
-        return whole(problem, point) if len(seen) in (1, 21) else point
+        starts.append(point)
+        return descent(problem, point) if len(starts) in (1, 21) else point
 
     monkeypatch.setattr(refit, "descend", lame)
     assert first_fit(plain, 0).converged
-    assert len(seen) == 24
+    assert len(starts) == 24
 
 
 def test_a_block_is_found_elsewhere_and_a_fit_at_the_noise_stays(plain):
@@ -69,16 +69,16 @@ def test_a_block_is_found_elsewhere_and_a_fit_at_the_noise_stays(plain):
     ringing = stage.case(soft, model=("bouc_wen", "lumped"), noise=1e-9)
     problem = ringing.problem(())
     stiff = stage.STAGE | {"bouc_wen.gain": 0.082, "lumped.mass": 0.01, "lumped.stiffness": 9e8, "lumped.damping": 50.0}
-    stuck = made((), problem, problem.unit_point(stiff))
+    stuck = fit_at((), problem, problem.unit_point(stiff))
     assert stuck.identify > 3e-9
-    assert elsewhere(stuck).identify == pytest.approx(1e-9, rel=0.1)
+    assert restart(stuck).identify == pytest.approx(1e-9, rel=0.1)
     fit = first_fit(plain, 0)
-    assert elsewhere(fit).identify == pytest.approx(fit.identify, rel=1e-3)
+    assert restart(fit).identify == pytest.approx(fit.identify, rel=1e-3)
 
 
 def test_without_records_to_validate_there_is_no_error_of_them(plain):
-    alone = refit.Case(plain.words, (), plain.records[:1], {})
-    assert first_fit(alone, 0).validate is None
+    without_validation = refit.Case(plain.words, (), plain.records[:1], {})
+    assert first_fit(without_validation, 0).validate is None
 
 
 def test_a_refit_goes_on_from_what_was_found(creeping):
@@ -115,7 +115,7 @@ def test_a_step_is_short_and_moves_nothing_that_is_held(point, damping, held, se
     rng = np.random.default_rng(seed)
     jacobian, residual = rng.normal(size=(20, 3)), rng.normal(size=20)
     free = np.array([bool(held >> i & 1) for i in range(3)])
-    end = stepped(np.array(point), jacobian.T @ residual, jacobian.T @ jacobian, free, damping)
+    end = damped_step(np.array(point), jacobian.T @ residual, jacobian.T @ jacobian, free, damping)
     assert np.array_equal(end[~free], np.array(point)[~free])
     assert np.all(np.abs(end - point) <= 0.3 + 1e-12)
     assert np.all((end >= 0) & (end <= 1))
@@ -123,7 +123,7 @@ def test_a_step_is_short_and_moves_nothing_that_is_held(point, damping, held, se
 
 def test_a_step_without_damping_is_newtons():
     curvature, gradient = np.diag([2.0, 4.0]), np.array([0.2, -0.4])
-    end = stepped(np.array([0.5, 0.5]), gradient, curvature, np.array([True, True]), 0.0)
+    end = damped_step(np.array([0.5, 0.5]), gradient, curvature, np.array([True, True]), 0.0)
     assert end == pytest.approx([0.4, 0.6])
 
 
@@ -182,13 +182,13 @@ def test_halving_the_step_changes_nothing_of_what_is_exact(plain):
 
 def test_a_solver_too_coarse_for_what_is_left_is_blamed_on_no_effect(plain, monkeypatch):
     monkeypatch.setitem(blocks._items, "coarse", Coarse)
-    made = refit.Case((*plain.words, "coarse"), (), plain.records, {})
-    fit = first_fit(made, 0)
+    case = refit.Case((*plain.words, "coarse"), (), plain.records, {})
+    fit = first_fit(case, 0)
     problem = fit.problem
     response = simulate(problem.model, problem.records[0], problem.parameters(fit.point))[0, 0]
     half_a_step = np.gradient(response) / 2 / refit.FINEST  # by which Euler's lag is too short
     assert fit.steps == (refit.FINEST, refit.FINEST)
-    assert refit.step_errors(made, fit)[0] == pytest.approx(np.std(half_a_step), rel=0.1)
+    assert refit.step_errors(case, fit)[0] == pytest.approx(np.std(half_a_step), rel=0.1)
 
 
 def test_a_lag_within_the_sample_is_told_from_a_delay_by_finer_steps():
@@ -197,9 +197,9 @@ def test_a_lag_within_the_sample_is_told_from_a_delay_by_finer_steps():
     drives = [50 * (1 - np.cos(2 * np.pi * start * time)) + 3 * np.sin(5e4 * time**2) for start in (10, 13)]
     known = {name: value for name, value in stage.STAGE.items() if name.startswith("lumped")}
     model = ("bouc_wen", "lumped")
-    made = stage.case({"amplifier_lag.tau": 2e-5}, known, model=model, drives=drives, dt=1e-4, noise=2e-9, steps=32)
-    first = first_fit(made, 0)
-    lag, delay = (refit.refit(made, first, (word,), {}) for word in ("amplifier_lag", "delay"))
+    case = stage.case({"amplifier_lag.tau": 2e-5}, known, model=model, drives=drives, dt=1e-4, noise=2e-9, steps=32)
+    first = first_fit(case, 0)
+    lag, delay = (refit.refit(case, first, (word,), {}) for word in ("amplifier_lag", "delay"))
     assert min(lag.steps) > 1
     assert lag.identify == pytest.approx(2e-9, rel=0.1)
     assert lag.values["amplifier_lag.tau"] == pytest.approx(2e-5, rel=0.02)
@@ -215,8 +215,8 @@ def test_a_parameter_on_a_bound_is_told_unless_it_is_its_null(creeping):
     assert replace(fit, point=point).on_bounds == ("bouc_wen.gamma",)
     point[place["amplifier_lag.tau"]] = 1.0
     assert set(replace(fit, point=point).on_bounds) == {"bouc_wen.gamma", "amplifier_lag.tau"}
-    said = bounded(replace(fit, point=point))
-    assert "amplifier_lag.tau and bouc_wen.gamma ended on their bounds of 0.005 s and 0.5 1/V" in said
+    sentence = bounds_sentence(replace(fit, point=point))
+    assert "amplifier_lag.tau and bouc_wen.gamma ended on their bounds of 0.005 s and 0.5 1/V" in sentence
 
 
 COUPLED = ("bouc_wen", "lumped", "kinematic_coupling")
@@ -227,8 +227,10 @@ def seen_through_a_coupling(response=None):
     """x and y are driven, only x is measured."""
     rng = np.random.default_rng(3)
     drive = [np.interp(np.arange(600), np.arange(0, 601, 25), rng.uniform(0, 100, 25)) for _ in "xy"]
-    made = rig.record(*drive, response=[drive[0] * 1e-7 if response is None else response, 0 * drive[1]], measured=[0])
-    return refit.Case(COUPLED, (), [replace(made, response_units=("um", None))], stage.specs(MECHANICS))
+    record = rig.record(
+        *drive, response=[drive[0] * 1e-7 if response is None else response, 0 * drive[1]], measured=[0]
+    )
+    return refit.Case(COUPLED, (), [replace(record, response_units=("um", None))], stage.specs(MECHANICS))
 
 
 ON_AXES = [word for word in blocks.effects() if not issubclass(blocks[word], Coupling | Addition)]
@@ -237,41 +239,41 @@ ON_AXES = [word for word in blocks.effects() if not issubclass(blocks[word], Cou
 @pytest.mark.parametrize("effect", ON_AXES)
 def test_an_effect_kept_off_an_axis_leaves_it_as_it_is_without(effect):
     """x reads what it would of a stage whose y, measured as well, has the effect at its null."""
-    made = seen_through_a_coupling()
-    silent = made.silent((effect,))
-    assert silent
+    case = seen_through_a_coupling()
+    nulls = case.unmeasured_nulls((effect,))
+    assert nulls
     chain = blocks.chain((*COUPLED, effect))
-    one, both = Chain(chain, "xy", (0,), given=silent), Chain(chain, "xy", (0, 1))
-    known = dict(zip(one.names, rig.candidates(one, made.records[0].drive, 4, 1).T, strict=True)) | silent
+    one, both = Chain(chain, "xy", (0,), given=nulls), Chain(chain, "xy", (0, 1))
+    known = dict(zip(one.names, rig.candidates(one, case.records[0].drive, 4, 1).T, strict=True)) | nulls
     apart = {name: known.get(name, known.get(name.partition(".")[2])) for name in both.names}
     responses = [
-        simulate(each, made.records[0], np.stack([np.broadcast_to(values[name], 4) for name in each.names], axis=1))
-        for each, values in ((one, known), (both, apart))
+        simulate(model, case.records[0], np.stack([np.broadcast_to(values[name], 4) for name in model.names], axis=1))
+        for model, values in ((one, known), (both, apart))
     ]
     rig.assert_close(responses[0][:, 0], responses[1][:, 0])
 
 
 def test_what_keeps_an_effect_off_is_its_null_on_the_axes_without_a_response():
     """Where nothing couples them there is nothing to keep off, and what the job has or says of is left to it."""
-    made = seen_through_a_coupling()
-    assert made.silent(("amplifier_lag",)) == {"y.amplifier_lag.tau": 0.0}
-    assert made.silent(()) == {}
-    assert refit.Case(COUPLED, ("amplifier_lag",), made.records, made.specs).silent(("amplifier_lag",)) == {}
-    told = made.specs | stage.specs({"amplifier_lag.tau": 1.0})
-    assert refit.Case(COUPLED, (), made.records, told).silent(("amplifier_lag",)) == {}
-    assert refit.Case(("bouc_wen", "lumped"), (), made.records, made.specs).silent(("amplifier_lag",)) == {}
+    case = seen_through_a_coupling()
+    assert case.unmeasured_nulls(("amplifier_lag",)) == {"y.amplifier_lag.tau": 0.0}
+    assert case.unmeasured_nulls(()) == {}
+    assert refit.Case(COUPLED, ("amplifier_lag",), case.records, case.specs).unmeasured_nulls(("amplifier_lag",)) == {}
+    specified = case.specs | stage.specs({"amplifier_lag.tau": 1.0})
+    assert refit.Case(COUPLED, (), case.records, specified).unmeasured_nulls(("amplifier_lag",)) == {}
+    assert refit.Case(("bouc_wen", "lumped"), (), case.records, case.specs).unmeasured_nulls(("amplifier_lag",)) == {}
 
 
-@pytest.mark.parametrize("alone", [True, False])
-def test_an_axis_without_response_has_an_effect_where_that_fits_better(alone):
+@pytest.mark.parametrize("measured_only", [True, False])
+def test_an_axis_without_response_has_an_effect_where_that_fits_better(measured_only):
     blank, effects = seen_through_a_coupling(), ("amplifier_lag",)
-    stage_of = blank.problem(effects, alone=alone)
+    stage_of = blank.problem(effects, measured_only=measured_only)
     known = stage.STAGE | {"kinematic_coupling.ratio": 0.3, "amplifier_lag.tau": 3e-3, "y.amplifier_lag.tau": 0.0}
     theta = np.array([[known[name] for name in stage_of.model.names]])
     noise = np.random.default_rng(4).normal(0, stage.NOISE, 600)
     case = seen_through_a_coupling(simulate(stage_of.model, blank.records[0], theta)[0, 0] + noise)
-    found = refit.refit(case, first_fit(case, 0), effects, {"amplifier_lag.tau": 1.0})
-    assert found.alone == alone
-    assert found.identify == pytest.approx(stage.NOISE, rel=0.1)
-    assert found.values["amplifier_lag.tau"] == pytest.approx(3e-3, rel=0.02)
-    assert ("`y.amplifier_lag.tau: {value: 0}`" in silenced(case, found)) == alone
+    refitted = refit.refit(case, first_fit(case, 0), effects, {"amplifier_lag.tau": 1.0})
+    assert refitted.measured_only == measured_only
+    assert refitted.identify == pytest.approx(stage.NOISE, rel=0.1)
+    assert refitted.values["amplifier_lag.tau"] == pytest.approx(3e-3, rel=0.02)
+    assert ("`y.amplifier_lag.tau: {value: 0}`" in measured_only_sentence(case, refitted)) == measured_only

@@ -1,4 +1,4 @@
-"""The staircase: pairs are found, a wrong pick is taken back, and it ends where nothing more is known."""
+"""The staircase: pairs are found, a wrong first effect is removed again, and it ends where no effect explains more."""
 
 from dataclasses import replace
 
@@ -7,20 +7,27 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis import staircase as improving
-from pzt_ident.diagnosis.refit import first_fit, refit
-from pzt_ident.diagnosis.refit import made as fitted
+from pzt_ident.diagnosis.refit import first_fit, fit_at, refit
 from pzt_ident.diagnosis.score import Score
-from pzt_ident.diagnosis.staircase import Step, again, both, exchanged, explained, improve, unneeded
+from pzt_ident.diagnosis.staircase import (
+    Step,
+    add_pair,
+    add_restarted,
+    exchange_any,
+    explained_share,
+    improve,
+    remove_unneeded,
+)
 from pzt_ident.diagnosis.verdict import Candidate, Diagnosis, diagnose
 from pzt_ident.model.registry import blocks
 
 PAIR = stage.EFFECTS["creep"] | stage.EFFECTS["quadratic_gain"]
 
 
-def climbed(made):
-    told = []
-    steps, last = improve(made, first_fit(made, 0), told.append)
-    assert told[0].added is None and told[0].removed is None
+def climbed(case):
+    reported = []
+    steps, last = improve(case, first_fit(case, 0), reported.append)
+    assert reported[0].added is None and reported[0].removed is None
     assert steps[-1].fit is last.before
     return steps, last
 
@@ -57,12 +64,12 @@ def test_the_effects_of_the_job_stay():
 
 
 def test_a_wrong_first_pick_is_taken_back():
-    made = stage.case(stage.EFFECTS["quadratic_gain"])
-    first = first_fit(made, 0)
-    wrong = refit(made, first, ("asymmetry",), {})
-    right = refit(made, wrong, ("asymmetry", "quadratic_gain"), {})
-    assert unneeded(made, first, replace(right, validate=0.0)) == []  # what the unseen records would miss stays
-    (back,) = unneeded(made, first, right)
+    case = stage.case(stage.EFFECTS["quadratic_gain"])
+    first = first_fit(case, 0)
+    wrong = refit(case, first, ("asymmetry",), {})
+    right = refit(case, wrong, ("asymmetry", "quadratic_gain"), {})
+    assert remove_unneeded(case, first, replace(right, validate=0.0)) == []  # what the unseen records would miss stays
+    (back,) = remove_unneeded(case, first, right)
     assert (back.added, back.removed) == (None, "asymmetry")
     assert back.fit.effects == ("quadratic_gain",)
     assert back.fit.identify == pytest.approx(stage.NOISE, rel=0.1)
@@ -70,24 +77,24 @@ def test_a_wrong_first_pick_is_taken_back():
 
 
 def test_what_is_needed_is_not_taken_back():
-    made = stage.case(PAIR)
-    first = first_fit(made, 0)
-    one = refit(made, first, ("creep",), {"creep.ratio": 0.08, "creep.tau": 1.0})
-    two = refit(made, one, ("creep", "quadratic_gain"), {})
-    assert unneeded(made, first, two) == []
-    assert unneeded(made, two, refit(made, two, ("creep", "quadratic_gain", "drift"), {})) == []
+    case = stage.case(PAIR)
+    first = first_fit(case, 0)
+    one = refit(case, first, ("creep",), {"creep.ratio": 0.08, "creep.tau": 1.0})
+    two = refit(case, one, ("creep", "quadratic_gain"), {})
+    assert remove_unneeded(case, first, two) == []
+    assert remove_unneeded(case, two, refit(case, two, ("creep", "quadratic_gain", "drift"), {})) == []
 
 
 def test_what_a_step_explains_is_a_share_of_the_misfit():
-    made = stage.case(PAIR)
-    first = first_fit(made, 0)
-    one = refit(made, first, ("quadratic_gain",), {})
-    two = refit(made, one, ("quadratic_gain", "creep"), {"creep.ratio": 0.08, "creep.tau": 1.0})
-    floor = made.floor**2
+    case = stage.case(PAIR)
+    first = first_fit(case, 0)
+    one = refit(case, first, ("quadratic_gain",), {})
+    two = refit(case, one, ("quadratic_gain", "creep"), {"creep.ratio": 0.08, "creep.tau": 1.0})
+    floor = case.floor**2
     share = (first.identify**2 - one.identify**2) / (first.identify**2 - floor)
-    assert explained(made, first, one) == pytest.approx(share)
-    assert explained(made, one, two) == pytest.approx(1, abs=0.05)
-    assert explained(made, one, first) < 0
+    assert explained_share(case, first, one) == pytest.approx(share)
+    assert explained_share(case, one, two) == pytest.approx(1, abs=0.05)
+    assert explained_share(case, one, first) < 0
 
 
 def test_what_no_effect_explains_ends_unexplained():
@@ -101,11 +108,11 @@ def test_what_no_effect_explains_ends_unexplained():
 
 
 def test_two_effects_that_hide_each_other_are_two_stairs_the_better_one_first():
-    made = stage.case(PAIR)
-    first = first_fit(made, 0)
-    found = diagnose(made, first)
-    hidden = [item for item in found.candidates if item.score.effect in ("creep", "quadratic_gain")]
-    one, two = both(made, first, first, replace(found, candidates=hidden))
+    case = stage.case(PAIR)
+    first = first_fit(case, 0)
+    diagnosis = diagnose(case, first)
+    hidden = [item for item in diagnosis.candidates if item.score.effect in ("creep", "quadratic_gain")]
+    one, two = add_pair(case, first, first, replace(diagnosis, candidates=hidden))
     assert {one.added, two.added} == set(two.fit.effects) == {"creep", "quadratic_gain"}
     assert one.fit.effects == (one.added,)
     assert first.total > one.fit.total > two.fit.total
@@ -115,27 +122,27 @@ def test_two_effects_that_hide_each_other_are_two_stairs_the_better_one_first():
 @pytest.mark.parametrize("hopeless", [0, np.inf])
 def test_an_effect_that_rests_in_a_side_minimum_is_a_stair_once_nothing_else_is_left(monkeypatch, hopeless):
     monkeypatch.setattr(improving, "HOPELESS", hopeless)
-    made = stage.case(stage.EFFECTS["quadratic_gain"])
-    first = first_fit(made, 0)
-    problem = made.problem(("quadratic_gain",))
-    resting = fitted(("quadratic_gain",), problem, problem.unit_point(first.values | {"quadratic_gain.curvature": 0.0}))
-    found = Diagnosis("unexplained", "", first, [Candidate(Score("quadratic_gain"), resting)], [])
-    steps = again(made, first, first, found)
+    case = stage.case(stage.EFFECTS["quadratic_gain"])
+    first = first_fit(case, 0)
+    problem = case.problem(("quadratic_gain",))
+    resting = fit_at(("quadratic_gain",), problem, problem.unit_point(first.values | {"quadratic_gain.curvature": 0.0}))
+    diagnosis = Diagnosis("unexplained", "", first, [Candidate(Score("quadratic_gain"), resting)], [])
+    steps = add_restarted(case, first, first, diagnosis)
     assert [step.added for step in steps] == (["quadratic_gain"] if hopeless else [])
     assert all(step.fit.identify == pytest.approx(stage.NOISE, rel=0.1) for step in steps)
 
 
 def test_a_proxy_is_exchanged_for_what_is_missing():
-    made = stage.case(stage.EFFECTS["quadratic_gain"])
-    first = first_fit(made, 0)
-    (step,) = exchanged(made, first, refit(made, first, ("asymmetry",), {}))
+    case = stage.case(stage.EFFECTS["quadratic_gain"])
+    first = first_fit(case, 0)
+    (step,) = exchange_any(case, first, refit(case, first, ("asymmetry",), {}))
     assert (step.added, step.removed, step.fit.effects) == ("quadratic_gain", "asymmetry", ("quadratic_gain",))
     assert step.fit.validate == pytest.approx(stage.NOISE, rel=0.1)
 
 
 def test_what_fits_as_well_in_the_place_of_an_effect_is_told_once_all_are_known():
-    made = stage.case(PAIR)
-    steps, _ = climbed(made)
+    case = stage.case(PAIR)
+    steps, _ = climbed(case)
     for step in steps:
         if step.added in steps[-1].fit.effects:
             assert step.tied[0] == step.added

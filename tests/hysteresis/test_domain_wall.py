@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import smith
-from pzt_ident.diagnosis.caveats import broken
+from pzt_ident.diagnosis.caveats import broken_conditions
 from pzt_ident.diagnosis.refit import Case, first_fit
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.errors import InputError
@@ -153,7 +153,7 @@ def test_a_job_says_that_its_walls_run_away(tmp_path):
     assert "condition (9)" in note
     assert "Record loop: at" in write_report(folder).read_text()
     case = Case(job.model, (), read(job), job.parameters)
-    assert "Record loop: at" in broken(first_fit(case, 0))
+    assert "Record loop: at" in broken_conditions(first_fit(case, 0))
 
 
 def test_another_form_is_unknown():

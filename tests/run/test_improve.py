@@ -146,7 +146,9 @@ class TestDiagnose:
         assert call("diagnose", stage.write(tmp_path, made.records), "--out", tmp_path / "out").exit_code == 0
         found = read(tmp_path / "out" / "diagnosis.json")
         assert found["verdict"] == "unexplained"
-        assert re.search(r"what is left, an RMSE of .* to validate\. \d+ % of the misfit lies ", found["reason"])
+        assert re.search(
+            r"the remaining error, an RMSE of .* on the validation records\. \d+ % of the misfit lies ", found["reason"]
+        )
 
 
 class TestImprove:
@@ -278,12 +280,12 @@ def test_the_improved_job_is_the_model_that_was_told_of(coupled, tmp_path, monke
     def climbed(case, first, tell):
         problem = case.problem(effects, steps, alone)
         point = np.random.default_rng(5).uniform(0.3, 0.9, problem.dimensions)
-        end = refit.made(effects, problem, point, alone=alone)
+        end = refit.fit_at(effects, problem, point, measured_only=alone)
         return [stairs.Step(first), stairs.Step(end, "amplifier_lag")], Diagnosis("adequate", "Said.", end, [], [])
 
     def as_given(case, seed):
         problem = case.problem(case.effects)
-        return refit.made(case.effects, problem, np.full(problem.dimensions, 0.5))
+        return refit.fit_at(case.effects, problem, np.full(problem.dimensions, 0.5))
 
     monkeypatch.setattr(improvement, "first_fit", as_given)
     monkeypatch.setattr(improvement.stairs, "improve", climbed)
