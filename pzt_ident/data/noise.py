@@ -1,4 +1,4 @@
-"""How much of a response no model can explain."""
+"""The noise floor of a response: the part that no model can explain."""
 
 from __future__ import annotations
 
@@ -12,9 +12,8 @@ from pzt_ident.data.units import common_unit, factor, of_one_kind
 
 Array = NDArray[np.float64]
 
-
-LINE = 30.0
-WHOLE = 5e-3
+LINE_RATIO = 30.0  # power of a spectral line over that of the frequencies around it
+LEAST_SCALE = 5e-3  # of the span of a response
 
 
 class Floor(NamedTuple):
@@ -25,38 +24,39 @@ class Floor(NamedTuple):
 
 
 def noise_floor(records: list[Record], axis: int) -> Floor:
-    """Noise of an axis, from the best evidence there is: records measured again, rest segments, repeated periods, else
-    the high frequencies.
+    """Noise of an axis, from the best evidence there is: repeated records, rest segments, repeated periods, else the
+    high frequencies.
 
     Never less than the quantiser's q / sqrt(12) where the response takes few values. The high-frequency part is weak
     evidence: it takes slow noise for signal and fast signal for noise.
     """
     signals = [(r.drive, r.response[axis], r.settle, r.dt) for r in records]
-    again = [(r, other) for i, r in enumerate(records) for other in records[:i] if measured_again(r, other, axis)]
-    step = min((quantiser(y) for _, y, _, _ in signals), default=0.0)
+    pairs = [(r, other) for i, r in enumerate(records) for other in records[:i] if is_repeat(r, other, axis)]
+    step = min((quantiser_step(y) for _, y, _, _ in signals), default=0.0)
     least = step / np.sqrt(12)
-    if again:
-        change = [(a.response[axis] - b.response[axis])[max(a.settle, b.settle) :] for a, b in again]
-        return at_least(np.sqrt(np.mean([scatter(each, 1) ** 2 / 2 for each in change])), "repeated records", least)
-    for find, source in (
-        (resting, "rest segments"),
-        (repeated, "repeated periods"),
-        (rough, "high frequencies (weak)"),
+    if pairs:
+        changes = [(a.response[axis] - b.response[axis])[max(a.settle, b.settle) :] for a, b in pairs]
+        variances = [detrended_deviation(change, 1) ** 2 / 2 for change in changes]
+        return at_least(np.sqrt(np.mean(variances)), "repeated records", least)
+    for estimate, source in (
+        (rest_noise, "rest segments"),
+        (period_noise, "repeated periods"),
+        (difference_noise, "high frequencies (weak)"),
     ):
-        found = [(v, n * dt) for u, y, settle, dt in signals for v, n in find(u[:, settle:], y[settle:])]
-        if found:
-            values, seconds = np.array(found).T
-            return at_least(np.sqrt(np.average(values**2, weights=seconds)), source, least)
+        estimates = [(v, n * dt) for u, y, settle, dt in signals for v, n in estimate(u[:, settle:], y[settle:])]
+        if estimates:
+            deviations, seconds = np.array(estimates).T
+            return at_least(np.sqrt(np.average(deviations**2, weights=seconds)), source, least)
     return Floor(least, "quantiser")
 
 
-def at_least(value: float, source: str, least: float) -> Floor:
-    """A scatter, or the quantiser where that is more."""
-    return Floor(float(value), source) if value > least else Floor(least, "quantiser")
+def at_least(deviation: float, source: str, least: float) -> Floor:
+    """The floor of a standard deviation, or that of the quantiser where it is more."""
+    return Floor(float(deviation), source) if deviation > least else Floor(least, "quantiser")
 
 
-def measured_again(one: Record, other: Record, axis: int, tolerance: float = 2e-3) -> bool:
-    """Whether all drives differ by no more than a share of their spans; data listed twice are measured once."""
+def is_repeat(one: Record, other: Record, axis: int, tolerance: float = 2e-3) -> bool:
+    """Whether all drives differ by no more than a share of their spans; the same data listed twice are no repeat."""
     if one.drive.shape != other.drive.shape or one.dt != other.dt:
         return False
     if np.array_equal(one.response[axis], other.response[axis]):
@@ -66,14 +66,14 @@ def measured_again(one: Record, other: Record, axis: int, tolerance: float = 2e-
 
 
 def error_scales(records: list[Record]) -> Array:
-    """What the errors of each measured axis are weighed by: nothing where responses are of one kind, else their noise
-    floors, so that a polarization and a displacement count by what their noise lets see; at least WHOLE of the span,
-    since an integrated charge is smooth far below what any model reaches."""
+    """What the errors of each measured axis are divided by in the loss, (measured axes,): 1 where the responses are of
+    one kind, else their noise floors, and at least LEAST_SCALE of their spans, since an integrated charge is smooth far
+    below the error of any model."""
     if of_one_kind(list(records[0].units.values())):
         return np.ones(len(records[0].measured))
     spans = np.array([max(np.ptp(record.response[axis]) for record in records) for axis in records[0].measured])
     floors = np.array([noise_floor(records, axis).value for axis in records[0].measured])
-    return np.maximum(floors, WHOLE * spans)
+    return np.maximum(floors, LEAST_SCALE * spans)
 
 
 def pooled_floor(records: list[Record]) -> float:
@@ -82,89 +82,87 @@ def pooled_floor(records: list[Record]) -> float:
     return float(np.sqrt(np.mean(np.square(floors / error_scales(records)))))
 
 
-def facts(records: list[Record]) -> dict[str, Any]:
-    """Units and noise floors as the files of a result have them: of each axis by its name, and `unit` and `floor` of
-    what is over all axes."""
+def units_and_floors(records: list[Record]) -> dict[str, Any]:
+    """Units and noise floors as in the files of a result: of each axis by its name, and `unit` and `floor` over all
+    axes."""
     units = records[0].units
-    found = {records[0].axes[axis]: noise_floor(records, axis) for axis in records[0].measured}
+    floors = {records[0].axes[axis]: noise_floor(records, axis) for axis in records[0].measured}
     unit = common_unit(list(units.values()))
     return {
         "unit": unit,
         "units": units,
-        "noise_floor": {axis: floor.value / factor(units[axis]) for axis, floor in found.items()},
-        "noise_floor_source": {axis: floor.source for axis, floor in found.items()},
+        "noise_floor": {axis: floor.value / factor(units[axis]) for axis, floor in floors.items()},
+        "noise_floor_source": {axis: floor.source for axis, floor in floors.items()},
         "floor": pooled_floor(records) / factor(unit),
     }
 
 
-def quantiser(response: Array) -> float:
+def quantiser_step(response: Array) -> float:
     """Step of the quantiser, 0 where none shows: the values lie on a grid of at most a third as many points."""
     values = np.unique(response)
     if values.size < 2 or values.size > response.size / 3:
         return 0.0
     gaps = np.diff(values)
     step = float(gaps[gaps > 1e-6 * gaps.max()].min())
-    whole = gaps / step
-    return step if np.allclose(whole, np.round(whole), atol=0.05) else 0.0
+    steps = gaps / step
+    return step if np.allclose(steps, np.round(steps), atol=0.05) else 0.0
 
 
-def resting(drive: Array, response: Array, least: int = 100) -> list[tuple[float, int]]:
-    """Scatter about a quartic, which follows creep, and about the lines of the mains and the floor, in the last four
-    fifths of every stretch of constant drive, and the samples there."""
+def rest_noise(drive: Array, response: Array, least: int = 100) -> list[tuple[float, int]]:
+    """Standard deviation and number of samples of each rest: the last four fifths of an interval of constant drive,
+    less a quartic, which follows creep, and the lines of the mains and the floor."""
     span = np.ptp(drive, axis=1, keepdims=True)
     still = (np.abs(np.diff(drive, axis=1)) <= 1e-6 * np.maximum(span, 1e-300)).all(axis=0)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(int), [0]])))
-    found = []
+    estimates = []
     for first, last in zip(edges[::2], edges[1::2], strict=True):
         first += (last - first) // 5
         if last - first >= least:
-            found.append((float(np.std(without_lines(response[first:last], 4))), last - first))
-    return found
+            estimates.append((float(np.std(without_lines(response[first:last], 4))), last - first))
+    return estimates
 
 
-def repeated(drive: Array, response: Array, least: int = 3) -> list[tuple[float, int]]:
-    """Half the variance of the difference of successive periods, each about its own line."""
+def period_noise(drive: Array, response: Array, least: int = 3) -> list[tuple[float, int]]:
+    """Standard deviation and number of samples of a periodic record: half the variance of the difference of successive
+    periods, less its straight line; the median over the periods."""
     period = period_of(drive)
     if not period or response.size < least * period:
         return []
-    found = []
+    deviations = []
     for first in range(0, response.size - 2 * period + 1, period):
         change = response[first + period : first + 2 * period] - response[first : first + period]
-        found.append(scatter(change, 1) / np.sqrt(2))
-    return [(float(np.median(found)), response.size)]
+        deviations.append(detrended_deviation(change, 1) / np.sqrt(2))
+    return [(float(np.median(deviations)), response.size)]
 
 
-def rough(drive: Array, response: Array) -> list[tuple[float, int]]:
-    """Third differences of white noise have twenty times its variance."""
+def difference_noise(drive: Array, response: Array) -> list[tuple[float, int]]:
+    """Standard deviation and number of samples from third differences, whose variance is 20 times that of white
+    noise."""
     third = np.diff(response, 3)
-    size = float(np.median(np.abs(third)) / 0.6745 / np.sqrt(20)) if third.size > 10 else 0.0
-    return [(size, third.size)] if third.size > 10 else []
+    deviation = float(np.median(np.abs(third)) / 0.6745 / np.sqrt(20)) if third.size > 10 else 0.0
+    return [(deviation, third.size)] if third.size > 10 else []
 
 
-def scatter(signal: Array, degree: int) -> float:
-    return float(np.std(about(signal, degree)))
-
-
-def about(signal: Array, degree: int) -> Array:
-    """What is left of a polynomial."""
+def detrended_deviation(signal: Array, degree: int) -> float:
+    """Standard deviation about the best polynomial."""
     x = np.linspace(-1, 1, signal.size)
-    return np.asarray(signal - np.polynomial.Polynomial.fit(x, signal, degree)(x))
+    return float(np.std(np.asarray(signal - np.polynomial.Polynomial.fit(x, signal, degree)(x))))
 
 
 def without_lines(signal: Array, degree: int, most: int = 5, near: int = 25) -> Array:
-    """What is left of a polynomial and, fitted together with it, of the sinusoids whose power stands LINE times above
-    that of the frequencies around them."""
+    """The signal less a polynomial and, fitted together with it, up to `most` sinusoids whose power is LINE_RATIO times
+    that of the `near` frequencies around them."""
     from scipy.optimize import minimize_scalar
 
     t = np.arange(signal.size)
     basis = np.linalg.qr(np.polynomial.legendre.legvander(np.linspace(-1, 1, signal.size), degree))[0]
 
     def waves(frequency: float) -> Array:
-        """Orthonormal, beside what is fitted already."""
-        both = np.column_stack([np.cos(2 * np.pi * frequency * t), np.sin(2 * np.pi * frequency * t)])
-        return np.asarray(np.linalg.qr(both - basis @ (basis.T @ both))[0])
+        """Cosine and sine, orthonormal to each other and to the basis: (samples, 2)."""
+        columns = np.column_stack([np.cos(2 * np.pi * frequency * t), np.sin(2 * np.pi * frequency * t)])
+        return np.asarray(np.linalg.qr(columns - basis @ (basis.T @ columns))[0])
 
-    def unexplained(frequency: float) -> float:
+    def negative_power(frequency: float) -> float:
         return -float(np.square(waves(frequency).T @ signal).sum())
 
     noise = signal - basis @ (basis.T @ signal)
@@ -172,17 +170,18 @@ def without_lines(signal: Array, degree: int, most: int = 5, near: int = 25) -> 
         power = np.abs(np.fft.rfft(noise * np.hanning(noise.size))) ** 2
         peak = int(np.argmax(power[3:])) + 3 if power.size > 2 * near else 0
         around = np.concatenate([power[max(1, peak - near) : max(1, peak - 2)], power[peak + 3 : peak + near]])
-        if not peak or power[peak] <= LINE * around.mean():
+        if not peak or power[peak] <= LINE_RATIO * around.mean():
             break
         ends = ((peak - 1) / noise.size, (peak + 1) / noise.size)
-        best = minimize_scalar(unexplained, bounds=ends, method="bounded", options={"xatol": 1e-9})
+        best = minimize_scalar(negative_power, bounds=ends, method="bounded", options={"xatol": 1e-9})
         basis = np.hstack([basis, waves(float(best.x))])
         noise = signal - basis @ (basis.T @ signal)
     return np.asarray(noise)
 
 
 def period_of(drive: Array, tolerance: float = 2e-3) -> int:
-    """Samples after which every drive repeats, 0 where it does not: the first valley of the distance to itself."""
+    """Samples after which every drive repeats, 0 where it does not: the first valley of the mean squared difference
+    between the drive and itself delayed."""
     span = np.ptp(drive, axis=1)
     moving = drive[span > 0]
     samples = drive.shape[1]
@@ -193,10 +192,10 @@ def period_of(drive: Array, tolerance: float = 2e-3) -> int:
     correlation = np.fft.irfft(np.abs(np.fft.rfft(scaled, size)) ** 2, size).sum(axis=0)
     power = np.concatenate([[0], np.cumsum((scaled**2).sum(axis=0))])
     lags = np.arange(1, samples // 2 + 1)
-    apart = (power[-1] - power[lags] + power[samples - lags] - 2 * correlation[lags]) / (samples - lags)
-    low = np.flatnonzero(apart < tolerance**2)
-    risen = low[low > np.argmax(apart >= tolerance**2)] if apart.max() >= tolerance**2 else low[:0]
+    distance = (power[-1] - power[lags] + power[samples - lags] - 2 * correlation[lags]) / (samples - lags)
+    low = np.flatnonzero(distance < tolerance**2)
+    risen = low[low > np.argmax(distance >= tolerance**2)] if distance.max() >= tolerance**2 else low[:0]
     if not risen.size:
         return 0
     valley = risen[: np.argmax(np.diff(risen, append=risen[-1] + 2) > 1) + 1]
-    return int(lags[valley[np.argmin(apart[valley])]])
+    return int(lags[valley[np.argmin(distance[valley])]])

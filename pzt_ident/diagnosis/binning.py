@@ -1,4 +1,4 @@
-"""Samples and spectral lines sorted into bins, and what the residual has in each."""
+"""Samples and spectral lines sorted into bins, and the squared residual in each bin."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pzt_ident.data.noise import period_of
 
 Array = NDArray[np.float64]
-Whole = NDArray[np.intp]
+Indices = NDArray[np.intp]
 
 
 class Bin(NamedTuple):
@@ -26,12 +26,12 @@ class Bin(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Binning:
-    """Every scored sample of every record in one of the bins: `places` has a bin's number per sample, per record."""
+    """Every scored sample of every record in one of the bins: `places` has its bin's index, (samples,) per record."""
 
     name: str
     unit: str
     bins: tuple[Bin, ...]
-    places: list[Whole]
+    places: list[Indices]
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,38 +53,38 @@ def tally(binning: Binning, residuals: Sequence[Array]) -> Tally:
     return Tally(binning.name, binning.unit, binning.bins, counts, sums)
 
 
-def named(name: str, words: Sequence[str], places: list[Whole]) -> Binning:
-    """Bins without an order."""
-    return Binning(name, "", tuple(map(Bin, words)), places)
+def unordered_binning(name: str, labels: Sequence[str], places: list[Indices]) -> Binning:
+    """Bins without limits."""
+    return Binning(name, "", tuple(map(Bin, labels)), places)
 
 
-def linear(name: str, unit: str, values: list[Array], zero: bool = False, bins: int = 6) -> Binning:
-    """Even bins about multiples of a round number, so that round values are not on an edge: about so many from the
-    least value, or from zero, to the greatest."""
+def linear_binning(name: str, unit: str, values: list[Array], from_zero: bool = False, bins: int = 6) -> Binning:
+    """About `bins` even bins from the least value, or from zero, to the greatest. They are centred on multiples of a
+    round number, so that round values are not on an edge."""
     low, high = min(map(np.min, values)), max(map(np.max, values))
-    step = round_up((high if zero else high - low) / bins)
+    step = round_up((high if from_zero else high - low) / bins)
     first = np.round(low / step)
     count = int(np.round(high / step) - first) + 1
     edges = ((first - 0.5 + np.arange(count + 1)) * step).tolist()
     edges[0] = max(edges[0], 0.0) if low >= 0 else edges[0]
     places = [np.clip(np.round(part / step) - first, 0, count - 1).astype(np.intp) for part in values]
-    return Binning(name, unit, between(edges, unit), places)
+    return Binning(name, unit, bins_between(edges, unit), places)
 
 
-def logarithmic(name: str, unit: str, values: list[Array], low: float, rest: str = "") -> Binning:
-    """Two bins a decade, at 1 and 3, from `low`; what is less is in the first. Zeros are a bin of their own, called
-    `rest`, where that is given."""
+def logarithmic_binning(name: str, unit: str, values: list[Array], low: float, zero_label: str = "") -> Binning:
+    """Two bins per decade, with edges at 1 and 3, from `low`; smaller values are in the first. Where `zero_label` is
+    given, zeros are in a bin of that name."""
     edges = half_decades(low, max(map(np.max, values)))
     places = [np.searchsorted(edges[1:-1], part, side="right") for part in values]
-    bins = between(edges, unit)
-    if rest:
-        places = [np.where(part > 0, found, len(bins)) for found, part in zip(places, values, strict=True)]
-        bins = (*bins, Bin(rest))
+    bins = bins_between(edges, unit)
+    if zero_label:
+        places = [np.where(part > 0, place, len(bins)) for place, part in zip(places, values, strict=True)]
+        bins = (*bins, Bin(zero_label))
     return Binning(name, unit, bins, places)
 
 
-def doubling(name: str, values: list[Whole]) -> Binning:
-    """Whole numbers from 1: 1, 2, 3 to 4, 5 to 8, ..."""
+def doubling_binning(name: str, values: list[Indices]) -> Binning:
+    """Integers from 1: 1, 2, 3 to 4, 5 to 8, ..."""
     count = int(np.ceil(np.log2(max(map(np.max, values))))) + 1
     lasts = 2 ** np.arange(count)
     bins = tuple(
@@ -103,7 +103,7 @@ def half_decades(low: float, high: float) -> list[float]:
     return [0.0, *steps[(steps > low) & (steps < high)].tolist(), float(steps[steps >= high][0])]
 
 
-def between(edges: Sequence[float], unit: str) -> tuple[Bin, ...]:
+def bins_between(edges: Sequence[float], unit: str) -> tuple[Bin, ...]:
     return tuple(Bin(f"{low:.6g} to {high:.6g} {unit}".rstrip(), low, high) for low, high in pairwise(edges))
 
 
@@ -115,8 +115,9 @@ def round_up(value: float) -> float:
     return float(power * next(digit for digit in (1, 2, 5, 10) if digit * power >= value * (1 - 1e-9)))
 
 
-def power(residual: Array) -> tuple[Array, Array]:
-    """Sum of squares at each line of the spectrum, and its degrees of freedom: both sum as the samples do."""
+def power_spectrum(residual: Array) -> tuple[Array, Array]:
+    """Sum of squares at each line of the spectrum, and its degrees of freedom, (lines,): their sums are the sum of
+    squares and the number of the samples."""
     freedom = np.full(residual.size // 2 + 1, 2.0)
     freedom[0] = 1
     if residual.size % 2 == 0:
@@ -124,46 +125,48 @@ def power(residual: Array) -> tuple[Array, Array]:
     return freedom * np.abs(np.fft.rfft(residual)) ** 2 / residual.size, freedom
 
 
-def by_frequency(residuals: Sequence[Array], steps: Sequence[float]) -> Tally:
-    """Bands of the residual, two a decade."""
-    lowest = min(1 / (dt * part.size) for part, dt in zip(residuals, steps, strict=True))
-    highest = max(0.5 / dt for dt in steps)
+def tally_by_frequency(residuals: Sequence[Array], sample_times: Sequence[float]) -> Tally:
+    """The residual in frequency bands, two per decade; sample_times: s, of each record."""
+    lowest = min(1 / (dt * part.size) for part, dt in zip(residuals, sample_times, strict=True))
+    highest = max(0.5 / dt for dt in sample_times)
     edges = half_decades(max(lowest, 1e-5 * highest), highest)
     counts, squares = np.zeros(len(edges) - 1), np.zeros(len(edges) - 1)
-    for part, dt in zip(residuals, steps, strict=True):
-        energy, freedom = power(part)
+    for part, dt in zip(residuals, sample_times, strict=True):
+        energy, freedom = power_spectrum(part)
         places = np.searchsorted(edges[1:-1], np.fft.rfftfreq(part.size, dt), side="right")
         counts += np.bincount(places, freedom, counts.size)
         squares += np.bincount(places, energy, counts.size)
-    return Tally("frequency", "Hz", between(edges, "Hz"), counts, squares)
+    return Tally("frequency", "Hz", bins_between(edges, "Hz"), counts, squares)
 
 
-LINES = ("odd harmonics", "even harmonics", "between the harmonics")
+HARMONICS = ("odd harmonics", "even harmonics", "between the harmonics")
 
 
-def by_line(residuals: Sequence[Array], drives: Sequence[Array]) -> Tally | None:
-    """Odd and even harmonics of the drive, and what does not repeat with it, from the last whole periods of each
-    record whose drives (axes, samples) repeat; None where none does."""
+def tally_by_harmonics(residuals: Sequence[Array], drives: Sequence[Array]) -> Tally | None:
+    """The residual at odd and even harmonics of the drive and between them, in the last complete periods of each record
+    whose drives, (axes, samples), repeat; None where none does."""
     counts, squares = np.zeros(3), np.zeros(3)
     for residual, drive in zip(residuals, drives, strict=True):
         period = period_of(drive)
         cycles = residual.size // period if period >= 8 else 0
         if cycles < 2 or leaks(drive[:, -cycles * period :], cycles):
             continue
-        energy, freedom = power(residual[-cycles * period :])
-        kinds = line_kinds(energy.size, cycles)
+        energy, freedom = power_spectrum(residual[-cycles * period :])
+        kinds = harmonic_kinds(energy.size, cycles)
         counts += np.bincount(kinds, freedom, 3)
         squares += np.bincount(kinds, energy, 3)
-    return Tally("lines", "", tuple(map(Bin, LINES)), counts, squares) if counts.any() else None
+    return Tally("lines", "", tuple(map(Bin, HARMONICS)), counts, squares) if counts.any() else None
 
 
-def line_kinds(lines: int, cycles: int) -> Whole:
-    """0 at the odd harmonics, 1 at the even ones and at zero, 2 between."""
-    harmonic, between_them = np.divmod(np.arange(lines), cycles)
-    return np.where(between_them > 0, 2, np.where(harmonic % 2 == 1, 0, 1))
+def harmonic_kinds(lines: int, cycles: int) -> Indices:
+    """For each spectral line of so many cycles 0 at odd harmonics, 1 at even ones and at zero, 2 between: (lines,)."""
+    harmonic, remainder = np.divmod(np.arange(lines), cycles)
+    return np.where(remainder > 0, 2, np.where(harmonic % 2 == 1, 0, 1))
 
 
 def leaks(drive: Array, cycles: int) -> bool:
-    """Whether the period is not a whole number of samples, so that a hundredth of the drive falls between the lines."""
-    energy = sum(power(part - part.mean())[0] for part in drive)
-    return bool(energy[line_kinds(energy.size, cycles) == 2].sum() > 0.01 * energy.sum())  # type: ignore[index,union-attr]
+    """Whether more than a hundredth of the drive's energy is between its harmonics, as where the period is not an
+    integer number of samples."""
+    energy = sum(power_spectrum(part - part.mean())[0] for part in drive)
+    between = harmonic_kinds(energy.size, cycles) == 2  # type: ignore[union-attr]
+    return bool(energy[between].sum() > 0.01 * energy.sum())  # type: ignore[index,union-attr]

@@ -1,4 +1,4 @@
-"""The misfit of an axis, and its shares by what it can be told apart by."""
+"""The misfit of an axis, and its shares by record, branch, amplitude and so on."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from pzt_ident.diagnosis.worst_intervals import Interval
 
 
 @dataclass(frozen=True)
-class Part:
+class BinMisfit:
     """A bin: its share of the misfit and of the samples, its RMSE (None where it is empty), and whether it is below
-    the noise, so that its share was cut to 0. `lower` and `upper` are its limits where it has neighbours.
+    the noise, where the share is 0. `lower` and `upper` are its limits where it has neighbours.
 
     Of the spectrum `samples` is the share of the bandwidth and `rmse` the part of the RMSE that lies in the band.
     """
@@ -25,9 +25,9 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Dominant:
-    """The run of bins, `first` to `last`, that has most of the misfit for its samples. sharpness: Kullback-Leibler
-    divergence of its share from what is due to it, nat (Kulldorff's scan statistic per unit of misfit)."""
+class DominantBins:
+    """The run of bins, `first` to `last`, with the most misfit for its samples. sharpness: Kullback-Leibler divergence
+    of its share of the misfit from the share expected of it, nat (Kulldorff's scan statistic per unit of misfit)."""
 
     first: int
     last: int
@@ -39,18 +39,18 @@ class Dominant:
 
 @dataclass(frozen=True)
 class View:
-    """The misfit sorted by one thing; `covers` is the share of the scored samples that could be sorted so."""
+    """The misfit by one quantity; `covers` is the share of the scored samples for which it is defined."""
 
     name: str
     unit: str
     covers: float
-    bins: tuple[Part, ...]
-    dominant: Dominant | None
+    bins: tuple[BinMisfit, ...]
+    dominant: DominantBins | None
 
 
 @dataclass(frozen=True)
-class Crossing:
-    """Two views crossed: RMSE (None where empty) and share of the misfit, rows by columns."""
+class CrossTable:
+    """The misfit by two quantities: RMSE (None where empty) and share of the misfit, rows by columns."""
 
     rows: str
     columns: str
@@ -62,7 +62,7 @@ class Crossing:
 
 @dataclass(frozen=True)
 class Misfit:
-    """What the model of one axis leaves, over the scored samples of all records, in the user's unit:
+    """The residual of one axis over the scored samples of all records, in the user's unit:
     rmse^2 = noise_floor^2 + misfit^2; the misfit is 0 where the difference may be chance or an error of the floor."""
 
     axis: str
@@ -73,6 +73,6 @@ class Misfit:
     noise_source: str
     misfit: float
     views: tuple[View, ...]
-    map: Crossing | None
+    map: CrossTable | None
     worst: tuple[Interval, ...]
     sentences: tuple[str, ...]

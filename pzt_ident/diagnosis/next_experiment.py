@@ -1,10 +1,11 @@
-"""The drive that tells rivals apart best, within what the rig may do."""
+"""The drive that separates rival models best, within the limits of the rig."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,147 +17,173 @@ from pzt_ident.engine.simulator import Simulator
 Array = NDArray[np.float64]
 
 CHIRP = (20.0, 2000.0)  # Hz
-BEYOND = 6000.0  # Hz, beyond the resonances of a stage
+COUPLING_CHIRP = (20.0, 6000.0)  # Hz, to beyond the resonances of a stage
 HOLD = 20.0  # s
-LEAST, FAINT, AMPLE = 0.3, 1.0, 3.0  # noise floors between two rivals: told apart, well, and more is no better
+SEPARATED, WELL_SEPARATED, AMPLE = 0.3, 1.0, 3.0  # noise floors between two rivals; more than AMPLE is no better
 
 
 @dataclass(frozen=True)
-class Reach:
-    """What the rig may do with an axis: drive, SI units, its rate, a second, and the length of a record, s."""
+class DriveLimits:
+    """What the rig allows on an axis: range of the drive, SI units, its rate, 1/s, and the length of a record, s."""
 
     low: float
     high: float
     rate: float
     duration: float
 
+    @property
+    def span(self) -> float:
+        return self.high - self.low
+
+
+class Protocol(NamedTuple):
+    """A drive that moves one axis: its name, what it shows, sample time dt, s, and the drives, (axes, samples)."""
+
+    name: str
+    purpose: str
+    dt: float
+    drive: Array
+
 
 @dataclass(frozen=True)
 class Proposal:
-    """drive: (axes, samples), SI units. apart: least rms difference between two rivals, in noise floors."""
+    """A protocol for all axes, the rivals that it splits, and the least rms difference between two of them, in noise
+    floors. drive: (axes, samples), SI units."""
 
     name: str
     why: str
     splits: tuple[str, ...]
     dt: float
     drive: Array
-    apart: float
+    separation: float
 
 
-def propose(case: Case, rivals: dict[str, Fit], reaches: Sequence[Reach]) -> Proposal | None:
-    """Simulate all rivals on each protocol, within the reach of each axis; the one that tells the most of them apart,
-    the closest two by the most.
+def propose(case: Case, rivals: dict[str, Fit], limits: Sequence[DriveLimits]) -> Proposal | None:
+    """Simulate all rivals on each protocol within the limits of each axis. The best has the largest sum of separations
+    of two rivals, each counted from SEPARATED and up to AMPLE noise floors, then the largest least separation.
 
-    None where no protocol within reach tells any two of them apart.
+    None where no protocol separates any two of them.
     """
     best: Proposal | None = None
-    most = (0.0, 0.0)
-    alike = drives_of(case.records)
-    apart = [reaches[list(alike).index(drive)] for drive in range(alike.max() + 1)]
-    for name, why, dt, own in protocols(apart, alike[case.records[0].measured[0]]):
-        drive = own[alike]
+    best_rank = (0.0, 0.0)
+    drive_of_axis = drives_of(case.records)
+    drive_limits = [limits[list(drive_of_axis).index(drive)] for drive in range(drive_of_axis.max() + 1)]
+    for name, purpose, dt, drives in protocols(drive_limits, drive_of_axis[case.records[0].measured[0]]):
+        drive = drives[drive_of_axis]
         responses = [respond(case, fit, dt, drive) for fit in rivals.values()]
-        pairs = [float(np.sqrt(np.mean((a - b) ** 2))) / case.floor for a, b in combinations(responses, 2)]
-        told = (sum(min(apart, AMPLE) for apart in pairs if apart > LEAST), min(pairs))
-        if np.isfinite(pairs).all() and told[0] > 0 and told > most:
-            best, most = Proposal(name, why, tuple(rivals), dt, drive, min(pairs)), told
+        separations = [float(np.sqrt(np.mean((a - b) ** 2))) / case.floor for a, b in combinations(responses, 2)]
+        least = min(separations)
+        rank = (sum(min(separation, AMPLE) for separation in separations if separation > SEPARATED), least)
+        if np.isfinite(separations).all() and rank[0] > 0 and rank > best_rank:
+            best, best_rank = Proposal(name, purpose, tuple(rivals), dt, drive, least), rank
     return best
 
 
 def drives_of(records: Sequence[Record]) -> NDArray[np.intp]:
-    """The number of each axis' drive: that of an earlier axis where every record moves both alike, as it does where
-    two responses of one drive are measured."""
-    whole = np.hstack([record.drive for record in records])
-    first = [next(a for a, other in enumerate(whole) if np.array_equal(other, drive)) for drive in whole]
+    """The number of each axis' drive, (axes,); axes whose drives are equal in every record, as where two responses of
+    one drive are measured, have the same."""
+    drives = np.hstack([record.drive for record in records])
+    first = [next(axis for axis, other in enumerate(drives) if np.array_equal(other, drive)) for drive in drives]
     return np.unique(first, return_inverse=True)[1]
 
 
 def respond(case: Case, fit: Fit, dt: float, drive: Array) -> Array:
-    """Response of the first measured axis about its mean, in units of the loss."""
+    """Response of the first measured axis about its mean, in units of the loss: (samples,)."""
     first = case.records[0]
-    blank: Record = replace(first, dt=dt, drive=drive, response=np.zeros_like(drive), settle=0, run_in=0)
-    found = Simulator(fit.problem.model, blank).simulate(fit.problem.parameters(fit.point))[0, 0] / case.error_scales[0]
-    return found - found.mean()
+    record: Record = replace(first, dt=dt, drive=drive, response=np.zeros_like(drive), settle=0, run_in=0)
+    simulator = Simulator(fit.problem.model, record)
+    response = simulator.simulate(fit.problem.parameters(fit.point))[0, 0] / case.error_scales[0]
+    return response - response.mean()
 
 
-def protocols(reaches: Sequence[Reach], axis: int) -> Iterator[tuple[str, str, float, Array]]:
-    """Name, what it shows, sample time and drives of each protocol, which moves one axis alone."""
-    reach = reaches[axis]
-    quick = quickest(reach)
-    own = [
-        ("slow triangles", "rate and creep play no part", 1e-3, turns(reach, [1, 0] * 3, min(0.5, quick), 1e-3)),
-        ("two rates", "a lag grows with the rate, hysteresis with its logarithm", 1e-4, two_rates(reach, quick, 1e-4)),
-        ("steps and holds", "creep follows the step, relaxation stops after a small step back, drift does not care",
-         1e-2, holds(reach, [0.6, 0.57, 0.3, 0.9, 0.1], 1e-2)),
-        ("nested loops", "memory closes its loops, a gain does not", 1e-3,
-         turns(reach, [1, 0.2, 0.8, 0.3, 0.7, 0.4, 0.7, 0.3, 0.8, 0.2, 1, 0], min(0.5, quick), 1e-3)),
-        ("two amplitudes", "a gain that grows with the amplitude, or bends", 1e-3,
-         turns(reach, [0.4, 0, 0.4, 0, 1, 0, 1, 0], min(0.5, quick), 1e-3)),
-        ("small chirp", "phase against frequency: delay, lag and modes part", 5e-5, chirp(reach, CHIRP, 2.0, 5e-5)),
+def protocols(limits: Sequence[DriveLimits], axis: int) -> Iterator[Protocol]:
+    """The protocols that move the axis alone, and those that move each other axis alone."""
+    for protocol in axis_protocols(limits[axis]):
+        yield from on_axis(limits, protocol, axis)
+    for other, other_limits in enumerate(limits):
+        if other != axis and other_limits.high > other_limits.low:
+            for protocol in coupling_protocols(other_limits):
+                yield from on_axis(limits, protocol, other)
+
+
+def axis_protocols(limits: DriveLimits) -> list[Protocol]:
+    """The protocols of the measured axis, drives of shape (samples,)."""
+    fast = fastest_cycles(limits)
+    slow = min(0.5, fast)
+    nested = [1, 0.2, 0.8, 0.3, 0.7, 0.4, 0.7, 0.3, 0.8, 0.2, 1, 0]
+    return [
+        Protocol("slow triangles", "rate and creep play no part", 1e-3, ramps(limits, [1, 0] * 3, slow, 1e-3)),
+        Protocol("two rates", "a lag grows with the rate, hysteresis with its logarithm", 1e-4,
+                 two_rates(limits, fast, 1e-4)),
+        Protocol("steps and holds",
+                 "creep follows the step, relaxation stops after a small step back, drift does not care", 1e-2,
+                 holds(limits, [0.6, 0.57, 0.3, 0.9, 0.1], 1e-2)),
+        Protocol("nested loops", "memory closes its loops, a gain does not", 1e-3, ramps(limits, nested, slow, 1e-3)),
+        Protocol("two amplitudes", "a gain that grows with the amplitude, or bends", 1e-3,
+                 ramps(limits, [0.4, 0, 0.4, 0, 1, 0, 1, 0], slow, 1e-3)),
+        Protocol("small chirp", "phase against frequency: delay, lag and modes part", 5e-5,
+                 chirp(limits, CHIRP, 2.0, 5e-5)),
     ]  # fmt: skip
-    for name, why, dt, u in own:
-        yield from bounded(reaches, name, why, dt, u, axis)
-    for other, theirs in enumerate(reaches):
-        if other == axis or theirs.high <= theirs.low:
-            continue
-        slow = turns(theirs, [1, 0] * 2, min(0.5, quickest(theirs)), 1e-3)
-        yield from bounded(reaches, "the other axis alone", "what comes through a coupling", 1e-3, slow, other)
-        fast = chirp(theirs, (CHIRP[0], BEYOND), 1.0, 2e-5)
-        why = "couplings ring at different modes"
-        yield from bounded(reaches, "chirp of the other axis", why, 2e-5, fast, other)
 
 
-def quickest(reach: Reach) -> float:
-    """Cycles a second over the whole range that the rate allows."""
-    return min(reach.rate / (2 * (reach.high - reach.low)), 50.0)
+def coupling_protocols(limits: DriveLimits) -> Iterator[Protocol]:
+    """The protocols of another axis than the measured one, drives of shape (samples,)."""
+    slow = ramps(limits, [1, 0] * 2, min(0.5, fastest_cycles(limits)), 1e-3)
+    yield Protocol("the other axis alone", "what comes through a coupling", 1e-3, slow)
+    fast = chirp(limits, COUPLING_CHIRP, 1.0, 2e-5)
+    yield Protocol("chirp of the other axis", "couplings ring at different modes", 2e-5, fast)
 
 
-def bounded(
-    reaches: Sequence[Reach], name: str, why: str, dt: float, u: Array, axis: int
-) -> Iterator[tuple[str, str, float, Array]]:
-    u = u[: int(reaches[axis].duration / dt)]
-    if u.size > 100:
-        rest = np.array([min(max(0.0, reach.low), reach.high) for reach in reaches])
-        drive = np.tile(rest[:, None], u.size)
-        drive[axis] = u
-        yield name, why, dt, drive
+def fastest_cycles(limits: DriveLimits) -> float:
+    """The highest frequency of triangles over the whole range that the rate allows, and at most 50, Hz."""
+    return min(limits.rate / (2 * limits.span), 50.0)
 
 
-def two_rates(reach: Reach, quick: float, dt: float) -> Array:
-    """A slow cycle in two thirds of the time at most and five quick ones; nothing where the rates are not apart."""
-    slow = max(quick / 30, 1.5 / reach.duration)
-    if quick < 3 * slow or 5 / quick > reach.duration / 3:
+def on_axis(limits: Sequence[DriveLimits], protocol: Protocol, axis: int) -> Iterator[Protocol]:
+    """The protocol on one axis, cut to the allowed duration, with the others at rest as near to 0 as allowed; nothing
+    where fewer than 101 samples are left."""
+    moving = protocol.drive[: int(limits[axis].duration / protocol.dt)]
+    if moving.size > 100:
+        resting = np.array([min(max(0.0, item.low), item.high) for item in limits])
+        drive = np.tile(resting[:, None], moving.size)
+        drive[axis] = moving
+        yield protocol._replace(drive=drive)
+
+
+def two_rates(limits: DriveLimits, fast: float, dt: float) -> Array:
+    """A slow cycle, in two thirds of the time at most, and five fast ones; nothing where the rates are too close."""
+    slow = max(fast / 30, 1.5 / limits.duration)
+    if fast < 3 * slow or 5 / fast > limits.duration / 3:
         return np.zeros(0)
-    return np.concatenate([turns(reach, [1, 0], slow, dt), turns(reach, [1, 0] * 5, quick, dt)])
+    return np.concatenate([ramps(limits, [1, 0], slow, dt), ramps(limits, [1, 0] * 5, fast, dt)])
 
 
-def turns(reach: Reach, levels: list[float], frequency: float, dt: float) -> Array:
-    """Ramps between shares of the range, a full range in half a period."""
-    speed = 2 * frequency * (reach.high - reach.low)
-    corners = reach.low + (reach.high - reach.low) * np.array([0.0, *levels])
+def ramps(limits: DriveLimits, levels: list[float], frequency: float, dt: float) -> Array:
+    """Ramps between shares of the range, the full range in half a period of the frequency, Hz."""
+    speed = 2 * frequency * limits.span
+    corners = limits.low + limits.span * np.array([0.0, *levels])
     times = np.concatenate([[0], np.cumsum(np.abs(np.diff(corners)) / speed)])
-    return np.interp(np.arange(0, min(times[-1], reach.duration), dt), times, corners)
+    return np.interp(np.arange(0, min(times[-1], limits.duration), dt), times, corners)
 
 
-def holds(reach: Reach, levels: list[float], dt: float) -> Array:
-    """Ramps as fast as is allowed, each held."""
-    span = reach.high - reach.low
-    times, corners = [0.0, 1.0], [reach.low, reach.low]
-    hold = min(HOLD, reach.duration / (len(levels) + 1))
+def holds(limits: DriveLimits, levels: list[float], dt: float) -> Array:
+    """The fastest ramps to shares of the range, with a hold after each."""
+    times, corners = [0.0, 1.0], [limits.low, limits.low]
+    hold = min(HOLD, limits.duration / (len(levels) + 1))
     for level in levels:
-        corner = reach.low + span * level
-        there = times[-1] + max(abs(corner - corners[-1]) / reach.rate, dt)
-        times += [there, there + hold]
+        corner = limits.low + limits.span * level
+        arrival = times[-1] + max(abs(corner - corners[-1]) / limits.rate, dt)
+        times += [arrival, arrival + hold]
         corners += [corner, corner]
-    return np.interp(np.arange(0, min(times[-1], reach.duration), dt), times, corners)
+    return np.interp(np.arange(0, min(times[-1], limits.duration), dt), times, corners)
 
 
-def chirp(reach: Reach, band: tuple[float, float], longest: float, dt: float) -> Array:
-    """A few percent of the range about its middle, logarithmic in frequency, less where the rate asks for it."""
-    seconds, middle = min(longest, reach.duration / 2), (reach.low + reach.high) / 2
+def chirp(limits: DriveLimits, band: tuple[float, float], longest: float, dt: float) -> Array:
+    """A logarithmic chirp of 3 % of the range about its middle, smaller where the rate limits it; band: Hz."""
+    seconds, middle = min(longest, limits.duration / 2), (limits.low + limits.high) / 2
     t = np.arange(0, seconds, dt)
     growth = np.log(band[1] / band[0]) / seconds
     frequency = band[0] * np.exp(growth * t)
-    size = np.minimum(0.03 * (reach.high - reach.low), 0.9 * reach.rate / (2 * np.pi * frequency))
-    ramp = np.arange(reach.low, middle, reach.rate * dt)
-    return np.concatenate([ramp, middle + size * np.sin(2 * np.pi * (frequency - band[0]) / growth)])
+    amplitude = np.minimum(0.03 * limits.span, 0.9 * limits.rate / (2 * np.pi * frequency))
+    ramp = np.arange(limits.low, middle, limits.rate * dt)
+    return np.concatenate([ramp, middle + amplitude * np.sin(2 * np.pi * (frequency - band[0]) / growth)])

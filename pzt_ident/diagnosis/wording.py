@@ -5,23 +5,23 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from pzt_ident.diagnosis.binning import Bin, Tally
-from pzt_ident.diagnosis.misfit import Dominant
+from pzt_ident.diagnosis.misfit import DominantBins
 
 SPECTRAL = ("frequency", "lines")
 
 
-def sentence(found: Tally, first: int, last: int, share: float, samples: float) -> str:
+def dominant_sentence(tally: Tally, first: int, last: int, share: float, samples: float) -> str:
     """`62 % of the misfit lies within 0.1 s after a reversal, which is 9 % of the samples.`"""
-    whole = "bandwidth" if found.name in SPECTRAL else "samples"
-    place = where(found.name, found.unit, found.bins, first, last)
-    return f"{percent(share)} of the misfit lies {place}, which is {percent(samples)} of the {whole}."
+    total = "bandwidth" if tally.name in SPECTRAL else "samples"
+    location = location_phrase(tally.name, tally.unit, tally.bins, first, last)
+    return f"{percent(share)} of the misfit lies {location}, which is {percent(samples)} of the {total}."
 
 
-def where(name: str, unit: str, bins: Sequence[Bin], first: int, last: int) -> str:
-    """The place that a run of bins is, behind `lies`."""
+def location_phrase(quantity: str, unit: str, bins: Sequence[Bin], first: int, last: int) -> str:
+    """Where a run of bins is: `in half cycles of 90 to 110 V peak to peak`."""
     label = bins[first].label
-    kind, _, other = name.partition(" of ")
-    limits = span(bins, first, last, unit)
+    kind, _, other = quantity.partition(" of ")
+    limits = limits_phrase(bins, first, last, unit)
     match kind:
         case "record":
             return f"in record {label}"
@@ -33,10 +33,10 @@ def where(name: str, unit: str, bins: Sequence[Bin], first: int, last: int) -> s
         case "rate":
             return "where the drive is holding" if bins[first].lower is None else f"where the drive moves at {limits}"
         case "time since reversal":
-            return after(bins, first, last)
+            return time_phrase(bins, first, last)
         case "cycle":
-            begun, ended = int(bins[first].lower or 1), int(bins[last].upper or 1)
-            return f"in cycle {begun}" if begun == ended else f"in cycles {begun} to {ended}"
+            start, end = int(bins[first].lower or 1), int(bins[last].upper or 1)
+            return f"in cycle {start}" if start == end else f"in cycles {start} to {end}"
         case "position":
             return f"at responses of {limits}"
         case "drive":
@@ -46,21 +46,21 @@ def where(name: str, unit: str, bins: Sequence[Bin], first: int, last: int) -> s
     return f"in the {label} of the drive" if label.endswith("harmonics") and "between" not in label else f"{label}"
 
 
-def span(bins: Sequence[Bin], first: int, last: int, unit: str) -> str:
+def limits_phrase(bins: Sequence[Bin], first: int, last: int, unit: str) -> str:
     lower, upper = bins[first].lower, bins[last].upper
     return f"{lower:.6g} to {upper:.6g} {unit}".rstrip() if lower is not None else bins[first].label
 
 
-def after(bins: Sequence[Bin], first: int, last: int) -> str:
+def time_phrase(bins: Sequence[Bin], first: int, last: int) -> str:
     lower, upper = bins[first].lower, bins[last].upper
     if not lower:
-        return f"within {seconds(upper)} after a reversal or stop"
+        return f"within {duration(upper)} after a reversal or stop"
     if last == len(bins) - 1:
-        return f"later than {seconds(lower)} after a reversal or stop"
-    return f"{seconds(lower)} to {seconds(upper)} after a reversal or stop"
+        return f"later than {duration(lower)} after a reversal or stop"
+    return f"{duration(lower)} to {duration(upper)} after a reversal or stop"
 
 
-def seconds(value: float | None) -> str:
+def duration(value: float | None) -> str:
     """`0.03 s`, `300 us`"""
     value = value or 0.0
     return f"{value:.6g} s" if value >= 1e-3 else f"{1e6 * value:.6g} us"
@@ -73,12 +73,12 @@ def percent(share: float) -> str:
     return f"{value:.0f} %" if value >= 1 else f"{value:.1g} %" if value >= 0.01 else "less than 0.01 %"
 
 
-def account(misfit: float, dominants: Iterable[Dominant | None]) -> list[str]:
-    """The sentences of the dominant parts, the sharpest first and those of the spectrum last."""
+def summary(misfit: float, dominants: Iterable[DominantBins | None]) -> list[str]:
+    """The sentences about the dominant bins, the sharpest first and those of the spectrum last."""
     if not misfit:
         return ["Nothing is left above the noise."]
-    found = [one for one in dominants if one]
-    if not found:
+    known = [dominant for dominant in dominants if dominant]
+    if not known:
         return ["No record, branch, amplitude, rate or band stands out: the misfit is spread evenly."]
-    ranked = sorted(found, key=lambda one: ("bandwidth" in one.sentence, -one.sharpness))
-    return list(dict.fromkeys(one.sentence for one in ranked))
+    ranked = sorted(known, key=lambda dominant: ("bandwidth" in dominant.sentence, -dominant.sharpness))
+    return list(dict.fromkeys(dominant.sentence for dominant in ranked))

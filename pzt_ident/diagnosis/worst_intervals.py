@@ -1,4 +1,4 @@
-"""The worst stretches of a residual."""
+"""The intervals of a residual with the most misfit."""
 
 from __future__ import annotations
 
@@ -27,27 +27,28 @@ class Interval:
 def worst_intervals(
     records: Sequence[Record], residuals: list[Array], noise: float, most: int = 5
 ) -> tuple[Interval, ...]:
-    """The stretches, apart from each other, whose squared residual exceeds a level by the largest sum, the one with
-    most of the misfit first; none has less than a hundredth of it. residuals: scored samples, (samples,) each.
+    """The disjoint intervals over which the smoothed squared residual exceeds a level by the largest sum, that with the
+    largest share of the misfit first, none below 1 %. residuals: scored samples, (samples,) each.
 
-    The level is half as much again as the mean square, or 0.6 of the mean square where the misfit is, if that is more.
+    The level is 1.5 times the mean square, or 0.6 times the mean square weighted by the square itself if that is more.
     """
-    local = [smooth(part**2, max(1, part.size // 200)) for part in residuals]
-    squares = np.concatenate(local)
+    smoothed = [smooth(part**2, max(1, part.size // 200)) for part in residuals]
+    squares = np.concatenate(smoothed)
     level = max(1.5 * squares.mean(), 0.6 * (squares**2).sum() / squares.sum())
     total = sum(float((part**2).sum()) - noise**2 * part.size for part in residuals)
-    found = []
-    for record, part, own_square in zip(records, residuals, local, strict=True):
-        for first, last in heaviest(own_square - level, most):
-            own = part[first:last]
-            share = (float((own**2).sum()) - noise**2 * own.size) / total
+    intervals = []
+    for record, residual, square in zip(records, residuals, smoothed, strict=True):
+        for first, last in heaviest_runs(square - level, most):
+            part = residual[first:last]
+            share = (float((part**2).sum()) - noise**2 * part.size) / total
             start, end = record.time[record.settle + np.array([first, last - 1])].tolist()
-            found.append(Interval(record.name, start, end, float(np.sqrt((own**2).mean())), share))
-    return tuple(sorted((one for one in found if one.share >= 0.01), key=lambda one: -one.share)[:most])
+            intervals.append(Interval(record.name, start, end, float(np.sqrt((part**2).mean())), share))
+    large = [interval for interval in intervals if interval.share >= 0.01]
+    return tuple(sorted(large, key=lambda interval: -interval.share)[:most])
 
 
 def smooth(values: Array, width: int) -> Array:
-    """Mean over `width` samples about each, as many as there are at the ends."""
+    """Moving mean over `width` samples, fewer at the ends."""
     sums = np.concatenate([[0.0], np.cumsum(values)])
     middle = np.arange(values.size)
     first = np.maximum(middle - width // 2, 0)
@@ -55,17 +56,17 @@ def smooth(values: Array, width: int) -> Array:
     return (sums[last] - sums[first]) / (last - first)
 
 
-def heaviest(weights: Array, most: int) -> list[tuple[int, int]]:
-    """First index and the one behind the last of up to `most` disjoint runs of positive sum, the heaviest first, each
-    the heaviest in what those before it left."""
-    left, found = weights.copy(), []
+def heaviest_runs(weights: Array, most: int) -> list[tuple[int, int]]:
+    """First index and the one after the last of up to `most` disjoint runs of positive sum, each the heaviest beside
+    the runs before it."""
+    remaining, runs = weights.copy(), []
     for _ in range(most):
-        sums = np.concatenate([[0.0], np.cumsum(left)])
+        sums = np.concatenate([[0.0], np.cumsum(remaining)])
         gains = sums - np.minimum.accumulate(sums)
         last = int(gains.argmax())
         first = int(sums[: last + 1].argmin())
         if gains[last] <= 0:
             break
-        found.append((first, last))
-        left[first:last] = -np.abs(weights).sum()  # no later run pays for crossing this one
-    return found
+        runs.append((first, last))
+        remaining[first:last] = -np.abs(weights).sum()  # no later run pays for crossing this one
+    return runs

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from pzt_ident.data.noise import facts
+from pzt_ident.data.noise import units_and_floors
 from pzt_ident.data.record import Record
 from pzt_ident.data.signals import write_signals
 from pzt_ident.data.units import factor
@@ -38,7 +38,7 @@ def collect(statement: Statement, folder: Path, tasks: list[Task], failed: dict[
     write_signals(folder / "signals.nc", problem.errors(point))
     result = {
         "name": job.name,
-        **facts(records),
+        **units_and_floors(records),
         "seed": job.seed,
         "command": read_environment(folder)["command"],
         "created": datetime.now().astimezone().isoformat(timespec="seconds"),

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from pzt_ident.data.noise import facts
+from pzt_ident.data.noise import units_and_floors
 from pzt_ident.data.signals import write_signals
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis import staircase as stairs
@@ -118,7 +118,7 @@ def improvement_of(job: Job, case: Case, steps: list[stairs.Step], last: dict[st
         "verdict": verdict,
         "reason": reason,
         "effects": added,
-        **facts(list(case.records)),
+        **units_and_floors(list(case.records)),
     }
 
 
@@ -167,7 +167,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
         "reason": reason
         + (caveats(case, found.best.fit) if found.best and found.best.fit else "")
         + broken_conditions(found.before),
-        **facts(list(case.records)),
+        **units_and_floors(list(case.records)),
         "rmse": errors_of(case, found.before),
         "records": by_record(case, found.before),
         "candidates": [

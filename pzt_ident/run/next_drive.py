@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from pzt_ident.data.units import factor
-from pzt_ident.diagnosis.next_experiment import FAINT, LEAST, Proposal, Reach, propose
+from pzt_ident.diagnosis.next_experiment import SEPARATED, WELL_SEPARATED, DriveLimits, Proposal, propose
 from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.files import write_text
 from pzt_ident.job.schema import Job
@@ -21,7 +21,7 @@ def separating(job: Job, case: Case, rivals: dict[str, Fit], folder: Path) -> di
     return written(case, proposal, folder) if proposal else None
 
 
-def reaches_of(job: Job, case: Case) -> list[Reach]:
+def reaches_of(job: Job, case: Case) -> list[DriveLimits]:
     """The job's limits for each axis; where it gives none, what the records themselves did."""
     limits, first = job.limits, case.records[0]
     length = limits.duration or max(60.0, *(record.samples * record.dt for record in case.records))
@@ -30,7 +30,7 @@ def reaches_of(job: Job, case: Case) -> list[Reach]:
         size, drives = factor(str(unit)), [record.drive[axis] for record in case.records]
         low, high = limits.drive or (min(u.min() for u in drives) / size, max(u.max() for u in drives) / size)
         rates = [float(np.abs(np.diff(u)).max()) / r.dt for u, r in zip(drives, case.records, strict=True)]
-        found.append(Reach(low * size, high * size, limits.slew * size if limits.slew else max(rates), length))
+        found.append(DriveLimits(low * size, high * size, limits.slew * size if limits.slew else max(rates), length))
     return found
 
 
@@ -54,8 +54,8 @@ def written(case: Case, proposal: Proposal, folder: Path) -> dict[str, Any]:
     text = "\n".join([header, *(",".join(f"{value:.9g}" for value in row) for row in rows)]) + "\n"
     path = folder / "next_experiment.csv"
     write_text(path, text)
-    apart = f"them {proposal.apart:.1f} noise floors" if proposal.apart > LEAST else "some of them"
+    apart = f"them {proposal.separation:.1f} noise floors" if proposal.separation > SEPARATED else "some of them"
     said = f"{proposal.name}: {proposal.why}; sets {apart} apart, sampled at {1 / proposal.dt:g} Hz"
-    if proposal.apart < FAINT:
+    if proposal.separation < WELL_SEPARATED:
         said += f", which is little. {blocks[proposal.splits[0]].separate_by}".removesuffix(".")
     return {"splits": list(proposal.splits), "file": path.name, "why": said}

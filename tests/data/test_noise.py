@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from pzt_ident.data.noise import error_scales, noise_floor, period_of, quantiser, resting
+from pzt_ident.data.noise import error_scales, noise_floor, period_of, quantiser_step, rest_noise
 from pzt_ident.data.record import Record
 
 SIGMA = 30e-9
@@ -48,7 +48,7 @@ def test_records_measured_again_give_the_noise_of_any_signal(noise):
     """Wide-band signals have neither rest nor a smooth course; a settled offset between both counts for nothing."""
     rng = np.random.default_rng(3)
     drive = rng.normal(size=3000)
-    again = [record(drive, 1e-7 * drive + each) for each in (noise[:3000], 1e-6 + noise[3000:])]
+    again = [record(drive, 1e-7 * drive + part) for part in (noise[:3000], 1e-6 + noise[3000:])]
     floor = noise_floor([*again, record(rng.normal(size=3000), noise[:3000] * 7)], 0)
     assert floor.source == "repeated records"
     assert floor.value == pytest.approx(SIGMA, rel=0.1)
@@ -66,16 +66,16 @@ def test_never_below_the_quantiser():
 
 
 def test_quantiser_needs_a_grid(noise):
-    assert quantiser(noise) == 0
-    assert quantiser(np.round(noise / 1e-8) * 1e-8) == pytest.approx(1e-8)
+    assert quantiser_step(noise) == 0
+    assert quantiser_step(np.round(noise / 1e-8) * 1e-8) == pytest.approx(1e-8)
 
 
 @pytest.mark.parametrize("cycles", [6.3, 10.6, 50.2])
 def test_rest_segments_give_the_noise_despite_hum_far_above_it(cycles):
     t = np.arange(2000.0) / 2000
     hum = 20 * np.sin(2 * np.pi * cycles * t + 1)
-    found = resting(np.zeros((1, 2000)), hum + np.random.default_rng(3).normal(size=2000))
-    assert found[0][0] == pytest.approx(1, rel=0.1)
+    estimates = rest_noise(np.zeros((1, 2000)), hum + np.random.default_rng(3).normal(size=2000))
+    assert estimates[0][0] == pytest.approx(1, rel=0.1)
 
 
 @pytest.mark.parametrize("period", [64, 333, 1000])
@@ -92,9 +92,9 @@ def test_a_chirp_has_no_period():
 def test_responses_of_different_kinds_are_weighed_by_their_noise(noise):
     drive = np.sin(2 * np.pi * np.arange(noise.size) / 500)
     both = [1e-7 * drive + noise, 1e-2 * drive + 3e4 * noise]
-    made = record([drive, drive], both, axes=("x", "y"), drive_units=("V", "V"), response_units=("um", "nm"))
-    assert error_scales([made]).tolist() == [1, 1]
-    mixed = dataclasses.replace(made, response_units=("um", "uC/cm2"))
+    lengths = record([drive, drive], both, axes=("x", "y"), drive_units=("V", "V"), response_units=("um", "nm"))
+    assert error_scales([lengths]).tolist() == [1, 1]
+    mixed = dataclasses.replace(lengths, response_units=("um", "uC/cm2"))
     assert error_scales([mixed]) == pytest.approx(noise.std() * np.array([1, 3e4]), rel=0.1)
     smooth = dataclasses.replace(
         mixed, response=mixed.response + np.array([[0], [1]]) * (1e-2 * drive - mixed.response)
@@ -140,16 +140,16 @@ def test_the_start_of_a_rest_is_left_to_settle():
     assert noise_floor([record(drive, response)], 0).value == pytest.approx(1, rel=0.1)
 
 
-@pytest.mark.parametrize(("samples", "found"), [(124, 0), (125, 1)])
-def test_a_rest_has_a_hundred_steps_after_its_first_fifth(samples, found):
+@pytest.mark.parametrize(("samples", "rests"), [(124, 0), (125, 1)])
+def test_a_rest_has_a_hundred_steps_after_its_first_fifth(samples, rests):
     drive = np.concatenate([rising(300), np.full(samples - 1, 100.0), 100 - rising(300)[1:]])
-    assert len(resting(drive[None], white(drive.size))) == found
+    assert len(rest_noise(drive[None], white(drive.size))) == rests
 
 
 def test_a_rest_is_one_of_all_drives():
     still, moving = np.zeros(1000), white(1000, seed=1)
-    assert len(resting(np.array([still, still]), white(1000))) == 1
-    assert resting(np.array([still, moving]), white(1000)) == []
+    assert len(rest_noise(np.array([still, still]), white(1000))) == 1
+    assert rest_noise(np.array([still, moving]), white(1000)) == []
 
 
 def test_records_are_measured_again_where_all_drives_and_the_sample_time_are_the_same():
@@ -172,27 +172,27 @@ def test_a_rest_that_is_quieter_than_the_quantiser_has_the_noise_of_the_quantise
     """One value in fifty is a step higher: 0.14 steps of scatter."""
     drive, step = rising(500, 3000), 1e-9
     flips = np.random.default_rng(2).random(3500) < 0.02
-    found = noise_floor([record(drive, step * flips)], 0)
-    assert (found.source, found.value) == ("quantiser", pytest.approx(step / np.sqrt(12)))
+    floor = noise_floor([record(drive, step * flips)], 0)
+    assert (floor.source, floor.value) == ("quantiser", pytest.approx(step / np.sqrt(12)))
 
 
 def test_the_finest_quantiser_of_several_records_counts():
     drive = np.tile(np.concatenate([rising(300), rising(300)[::-1]]), 4)
     steps = ((0.5, 1.0), (2.0, 0.7))
     records = [record(scale * drive, np.round(scale * drive / step) * step) for step, scale in steps]
-    for each in (records, records[::-1]):
-        assert noise_floor(each, 0).value == pytest.approx(0.5 / np.sqrt(12))
+    for ordered in (records, records[::-1]):
+        assert noise_floor(ordered, 0).value == pytest.approx(0.5 / np.sqrt(12))
 
 
 def test_few_values_off_a_grid_and_a_ramp_are_not_quantised():
-    assert quantiser(np.resize([0.0, 1.0, 2.5], 300)) == 0
-    assert quantiser(np.resize([0.0, 1.0, 3.0], 300)) == 1
-    assert quantiser(np.arange(300.0)) == 0
+    assert quantiser_step(np.resize([0.0, 1.0, 2.5], 300)) == 0
+    assert quantiser_step(np.resize([0.0, 1.0, 3.0], 300)) == 1
+    assert quantiser_step(np.arange(300.0)) == 0
 
 
 def test_the_widest_record_sets_the_least_size():
     drive = np.tile(np.concatenate([rising(300), rising(300)[::-1]]), 4)
     more = {"axes": ("x", "y"), "drive_units": ("V", "V"), "response_units": ("um", "uC/cm2")}
     records = [record([top * drive] * 2, [top * drive, 7 * top * drive], **more) for top in (1.0, 0.3)]
-    for each in (records, records[::-1]):
-        assert error_scales(each) == pytest.approx(5e-3 * 100 * np.array([1, 7]))
+    for ordered in (records, records[::-1]):
+        assert error_scales(ordered) == pytest.approx(5e-3 * 100 * np.array([1, 7]))

@@ -19,7 +19,7 @@ TRUE, MODEL = {"y": 3e-7, "x": 1e-7}, {"y": 5e-7, "x": 0.9e-7}  # m/V
 SETTLE, DT, START = 29, 0.01, 2.5  # 0.29 s / 0.01 s is less than 29 in floating point
 
 
-def made(name, use, seed):
+def simulated(name, use, seed):
     """Axes in no order of the alphabet; what is driven but not measured stands between the others."""
     drive = np.random.default_rng(seed).uniform(0, 100, (3, 200))
     response = np.array([TRUE.get(axis, np.nan) * drive[i] for i, axis in enumerate(AXES)])
@@ -27,7 +27,7 @@ def made(name, use, seed):
     return replace(blank, name=name, use=use, axes=AXES, drive_units=DRIVES, response_units=RESPONSES)
 
 
-RECORDS = [made("slow", "validate", 1), made("fast", "identify", 2)]
+RECORDS = [simulated("slow", "validate", 1), simulated("fast", "identify", 2)]
 ORDER = [record.name for record in RECORDS]
 
 
@@ -75,15 +75,15 @@ def test_traces_are_those_of_measured_axes_in_the_order_of_the_records(traces):
 def test_records_come_back_in_si_units_each_axis_with_its_residual(path):
     records, residuals = read_signals(path, ORDER)
     assert [(record.name, record.use) for record in records] == [("slow", "validate"), ("fast", "identify")]
-    for record, found, was in zip(records, residuals, RECORDS, strict=True):
-        assert (sorted(record.axes), record.settle, len(found)) == (sorted(AXES), SETTLE, 2)
+    for record, read, was in zip(records, residuals, RECORDS, strict=True):
+        assert (sorted(record.axes), record.settle, len(read)) == (sorted(AXES), SETTLE, 2)
         assert (record.dt, record.start) == (pytest.approx(DT), START)
         for place, axis in enumerate(record.axes):
             old = AXES.index(axis)
             assert (record.drive_units[place], record.response_units[place]) == (DRIVES[old], RESPONSES[old])
             np.testing.assert_allclose(record.drive[place], was.drive[old])
             np.testing.assert_allclose(record.response[place], was.response[old])
-        for left, place in zip(found, record.measured, strict=True):
+        for left, place in zip(read, record.measured, strict=True):
             expected = residual(was, record.axes[place])
             np.testing.assert_allclose(left, expected, atol=1e-9 * np.ptp(expected))
 
@@ -91,10 +91,10 @@ def test_records_come_back_in_si_units_each_axis_with_its_residual(path):
 def test_the_misfit_of_an_axis_is_that_of_its_own_residual_and_floor(path):
     floors = {"x": 0.01, "y": 20.0}  # um, nm
     result = {"best": {"run": "pso-0"}, "unit": "um", "noise_floor": floors}
-    found = misfits(path.parent, "hand", result, ORDER)["axes"]
+    axes = misfits(path.parent, "hand", result, ORDER)["axes"]
     for axis, floor in floors.items():
         scored = np.concatenate([residual(record, axis)[SETTLE:] for record in RECORDS]) / METRES[axis]
-        assert found[axis]["unit"] == RESPONSES[AXES.index(axis)]
-        assert (found[axis]["samples"], found[axis]["noise_floor"]) == (2 * (200 - SETTLE), pytest.approx(floor))
-        assert found[axis]["rmse"] == pytest.approx(np.sqrt(np.mean(scored**2)))
-        assert found[axis]["misfit"] == pytest.approx(np.sqrt(np.mean(scored**2) - floor**2))
+        assert axes[axis]["unit"] == RESPONSES[AXES.index(axis)]
+        assert (axes[axis]["samples"], axes[axis]["noise_floor"]) == (2 * (200 - SETTLE), pytest.approx(floor))
+        assert axes[axis]["rmse"] == pytest.approx(np.sqrt(np.mean(scored**2)))
+        assert axes[axis]["misfit"] == pytest.approx(np.sqrt(np.mean(scored**2) - floor**2))

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from pzt_ident.data.noise import Floor
 from pzt_ident.data.record import Record
-from pzt_ident.diagnosis.binning import doubling, linear, logarithmic, power
+from pzt_ident.diagnosis.binning import doubling_binning, linear_binning, logarithmic_binning, power_spectrum
 from pzt_ident.diagnosis.locate import locate
-from pzt_ident.diagnosis.worst_intervals import heaviest
+from pzt_ident.diagnosis.worst_intervals import heaviest_runs
 
 DT = 1e-3
 TIME = DT * np.arange(8000)
@@ -41,7 +41,7 @@ def record(name="loops", use="identify", drive=TRIANGLE, other=None, settle=0):
     )
 
 
-def found(residuals, records=None, floor=SILENT):
+def located(residuals, records=None, floor=SILENT):
     """Residuals in um."""
     records = records or [record(name=f"record {i}") for i in range(len(residuals))]
     (axis,) = locate(records, [1e-6 * np.atleast_2d(part) for part in residuals], [floor])
@@ -57,12 +57,12 @@ def share(axis, name, *labels):
     return sum(part.share for part in view(axis, name).bins if part.label in labels)
 
 
-def said(axis):
+def text(axis):
     return "\n".join(axis.sentences)
 
 
 def test_all_on_the_falling_branch():
-    axis = found([0.3 * FALLING])
+    axis = located([0.3 * FALLING])
     branch = {part.label: part for part in view(axis, "branch").bins}
     assert branch["falling"].share == pytest.approx(1, abs=2e-3)
     assert branch["falling"].samples == pytest.approx(0.5, abs=2e-3)
@@ -72,14 +72,14 @@ def test_all_on_the_falling_branch():
 
 
 def test_after_reversals():
-    axis = found([0.2 * (TIME % 1 < 0.1)])
+    axis = located([0.2 * (TIME % 1 < 0.1)])
     chosen = view(axis, "time since reversal").dominant
     assert (chosen.share, chosen.samples) == (pytest.approx(1, abs=0.01), pytest.approx(0.1, abs=2e-3))
-    assert "within 0.1 s after a reversal or stop, which is 10 % of the samples." in said(axis)
+    assert "within 0.1 s after a reversal or stop, which is 10 % of the samples." in text(axis)
 
 
 def test_in_one_record():
-    axis = found([0.1 * np.ones(8000), 0.3 * np.ones(8000)])
+    axis = located([0.1 * np.ones(8000), 0.3 * np.ones(8000)])
     assert share(axis, "record", "record 0") == pytest.approx(0.1)
     assert view(axis, "record").dominant.share == pytest.approx(0.9)
     assert axis.sentences[0].startswith("90 % of the misfit lies in record record 1, which is 50 %")
@@ -87,21 +87,21 @@ def test_in_one_record():
 
 def test_in_holds():
     drive = np.interp(TIME, [0, 1, 3, 4, 5, 6, 7, 8], [0, 100, 100, 0, 100, 0, 100, 0])
-    axis = found([1.0 * ((TIME > 1) & (TIME < 3))], [record(drive=drive)])
+    axis = located([1.0 * ((TIME > 1) & (TIME < 3))], [record(drive=drive)])
     assert share(axis, "branch", "holding") == pytest.approx(1, abs=0.01)
     assert share(axis, "rate", "holding") == pytest.approx(1, abs=0.01)
-    assert "where the drive is holding" in said(axis)
+    assert "where the drive is holding" in text(axis)
 
 
 def test_wherever_the_drive_moves():
     drive = np.interp(TIME, [0, 1, 7, 8], [0, 100, 100, 0])
-    axis = found([1.0 * ((TIME < 1) | (TIME > 7))], [record(drive=drive)])
-    assert "where the drive is moving, which is 25 % of the samples." in said(axis)
+    axis = located([1.0 * ((TIME < 1) | (TIME > 7))], [record(drive=drive)])
+    assert "where the drive is moving, which is 25 % of the samples." in text(axis)
 
 
 def test_what_follows_from_the_record_is_not_said_of_its_cycles():
     slow = 100 * np.abs((TIME / 4 + 1) % 2 - 1)
-    axis = found([0.5 + 0 * TIME, 0 * TIME], [record(), record(drive=slow)])
+    axis = located([0.5 + 0 * TIME, 0 * TIME], [record(), record(drive=slow)])
     assert share(axis, "cycle", "3 to 4") == pytest.approx(0.5, abs=2e-3)
     assert not view(axis, "cycle").dominant
     assert view(axis, "record").dominant.share == 1
@@ -109,7 +109,7 @@ def test_what_follows_from_the_record_is_not_said_of_its_cycles():
 
 def test_in_large_and_fast_half_cycles():
     drive = np.where(TIME < 4, TRIANGLE, 0.2 * TRIANGLE)
-    axis = found([0.1 * (TIME < 4)], [record(drive=drive)])
+    axis = located([0.1 * (TIME < 4)], [record(drive=drive)])
     assert view(axis, "amplitude").dominant.sentence == (
         "100 % of the misfit lies in half cycles of 90 to 110 V peak to peak, which is 50 % of the samples."
     )
@@ -117,10 +117,10 @@ def test_in_large_and_fast_half_cycles():
 
 
 def test_in_a_band_of_frequency():
-    axis = found([0.5 * np.sin(2 * np.pi * 7 * TIME)])
+    axis = located([0.5 * np.sin(2 * np.pi * 7 * TIME)])
     assert share(axis, "frequency", "3 to 10 Hz") == pytest.approx(1)
     assert view(axis, "frequency").dominant.samples == pytest.approx(7 / 500, rel=0.02)
-    assert "at frequencies of 3 to 10 Hz" in said(axis)
+    assert "at frequencies of 3 to 10 Hz" in text(axis)
 
 
 LINES = [(3, "odd harmonics"), (4, "even harmonics"), (2.5, "between the harmonics")]
@@ -128,41 +128,41 @@ LINES = [(3, "odd harmonics"), (4, "even harmonics"), (2.5, "between the harmoni
 
 @pytest.mark.parametrize(("order", "kind"), LINES)
 def test_in_lines(order, kind):
-    axis = found([np.cos(2 * np.pi * order * TIME / 2)])
+    axis = located([np.cos(2 * np.pi * order * TIME / 2)])
     assert share(axis, "lines", kind) == pytest.approx(1)
 
 
 def test_lines_only_where_the_drive_repeats():
     chirp = np.sin(2 * np.pi * (TIME + TIME**2))
-    assert not [one for one in found([chirp], [record(drive=chirp)]).views if one.name == "lines"]
-    both = found([chirp, chirp], [record(drive=chirp), record()])
+    assert not [one for one in located([chirp], [record(drive=chirp)]).views if one.name == "lines"]
+    both = located([chirp, chirp], [record(drive=chirp), record()])
     assert view(both, "lines").covers == pytest.approx(0.5)
 
 
 def test_tied_to_another_axis():
     falling = TIME % 3.2 >= 1.6
-    axis = found([0.1 * falling], [record(other=OTHER)])
+    axis = located([0.1 * falling], [record(other=OTHER)])
     assert share(axis, "branch of y", "falling") == pytest.approx(1, abs=2e-3)
-    assert "where the drive of y is falling" in said(axis)
-    assert "where the drive is" not in said(axis)
-    level = found([OTHER > 35], [record(other=OTHER)])
-    assert "100 % of the misfit lies where the drive of y is 35 to 45 V" in said(level)
+    assert "where the drive of y is falling" in text(axis)
+    assert "where the drive is" not in text(axis)
+    level = located([OTHER > 35], [record(other=OTHER)])
+    assert "100 % of the misfit lies where the drive of y is 35 to 45 V" in text(level)
 
 
 def test_an_axis_that_is_not_driven_is_no_view():
-    names = {one.name for one in found([FALLING], [record(other=0 * TIME)]).views}
+    names = {one.name for one in located([FALLING], [record(other=0 * TIME)]).views}
     assert not [name for name in names if name.endswith("of y")]
 
 
 def test_what_is_not_scored_does_not_count():
-    axis = found([1.0 * (TIME < 1)], [record(settle=1000)])
+    axis = located([1.0 * (TIME < 1)], [record(settle=1000)])
     assert (axis.misfit, axis.samples) == (0, 7000)
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_white_noise_at_the_floor_is_no_misfit(seed):
     rng = np.random.default_rng(seed)
-    axis = found([0.05 * rng.normal(size=8000) for _ in range(3)], floor=Floor(5e-8, "rest segments"))
+    axis = located([0.05 * rng.normal(size=8000) for _ in range(3)], floor=Floor(5e-8, "rest segments"))
     assert (axis.misfit, axis.map, axis.worst) == (0, None, ())
     assert not [one for one in axis.views if one.dominant]
     assert axis.sentences == ("Nothing is left above the noise.",)
@@ -170,13 +170,13 @@ def test_white_noise_at_the_floor_is_no_misfit(seed):
 
 def test_noise_takes_no_share():
     noise = 0.05 * np.random.default_rng(1).normal(size=8000)
-    axis = found([noise + 0.1 * FALLING], floor=Floor(5e-8, "rest segments"))
+    axis = located([noise + 0.1 * FALLING], floor=Floor(5e-8, "rest segments"))
     assert share(axis, "branch", "falling") == pytest.approx(1, abs=0.02)
     assert axis.misfit == pytest.approx(0.1 / 2**0.5, rel=0.02)
 
 
 def test_a_misfit_that_is_everywhere_dominates_nowhere_in_time():
-    axis = found([0.1 * np.random.default_rng(1).normal(size=8000)], floor=Floor(5e-8, "rest segments"))
+    axis = located([0.1 * np.random.default_rng(1).normal(size=8000)], floor=Floor(5e-8, "rest segments"))
     assert axis.misfit == pytest.approx(0.1 * 0.75**0.5, rel=0.02)
     assert axis.sentences == ("No record, branch, amplitude, rate or band stands out: the misfit is spread evenly.",)
 
@@ -191,7 +191,7 @@ def test_shares_sum_to_one_and_squares_add(seed, floor, count, settle):
         for i, drive in enumerate(drives)
     ]
     residuals = [rng.normal(size=1000) * rng.uniform(0, 2, 1000) for _ in drives]
-    axis = found(residuals, records, Floor(1e-6 * floor, "told"))
+    axis = located(residuals, records, Floor(1e-6 * floor, "given"))
     for one in axis.views:
         assert sum(part.share for part in one.bins) == pytest.approx(1 if axis.misfit else 0)
         assert sum(part.samples for part in one.bins) == pytest.approx(1)
@@ -205,7 +205,7 @@ def test_shares_sum_to_one_and_squares_add(seed, floor, count, settle):
 
 
 def test_the_map_crosses_the_two_views_that_tell_most():
-    axis = found([0.1 * FALLING, 0 * TIME])
+    axis = located([0.1 * FALLING, 0 * TIME])
     assert (axis.map.rows, axis.map.row_labels) == ("record", ("record 0", "record 1"))
     assert (axis.map.columns, axis.map.column_labels) == ("branch", ("rising", "falling", "holding"))
     np.testing.assert_allclose(axis.map.share, [[0, 1, 0], [0, 0, 0]], atol=2e-3)
@@ -214,7 +214,7 @@ def test_the_map_crosses_the_two_views_that_tell_most():
 
 def test_the_worst_stretches():
     burst = (TIME > 2) & (TIME < 2.5)
-    axis = found([0.1 + 0 * TIME, 0.1 + burst + 0.8 * (TIME > 7.5)])
+    axis = located([0.1 + 0 * TIME, 0.1 + burst + 0.8 * (TIME > 7.5)])
     first, second = axis.worst
     assert first.record == "record 1"
     assert (first.start, first.end) == (pytest.approx(2, abs=0.05), pytest.approx(2.5, abs=0.05))
@@ -226,7 +226,7 @@ def test_the_worst_stretches():
 
 @given(st.lists(st.integers(-5, 5), min_size=1, max_size=14))
 def test_the_heaviest_run_is_the_heaviest(weights):
-    runs = heaviest(np.array(weights, dtype=float), 3)
+    runs = heaviest_runs(np.array(weights, dtype=float), 3)
     sums = [sum(weights[i:j]) for i, j in combinations(range(len(weights) + 1), 2)]
     if max(sums) <= 0:
         assert not runs
@@ -239,20 +239,20 @@ def test_the_heaviest_run_is_the_heaviest(weights):
 @given(st.lists(st.floats(1e-6, 1e6), min_size=1, max_size=30), st.integers(0, 5))
 def test_every_value_is_in_its_bin(values, shift):
     values = np.array(values)
-    for binning in (linear("a", "V", [values]), logarithmic("b", "s", [values], 1e-4 * values.max())):
+    for binning in (linear_binning("a", "V", [values]), logarithmic_binning("b", "s", [values], 1e-4 * values.max())):
         for value, place in zip(values, binning.places[0], strict=True):
-            own, slack = binning.bins[place], 1e-9 * values.max()
-            assert own.lower - slack <= value <= own.upper + slack
-    whole = np.round(values).astype(int) + 1
-    binning = doubling("c", [whole])
-    for value, place in zip(whole, binning.places[0], strict=True):
+            limits, slack = binning.bins[place], 1e-9 * values.max()
+            assert limits.lower - slack <= value <= limits.upper + slack
+    integers = np.round(values).astype(int) + 1
+    binning = doubling_binning("c", [integers])
+    for value, place in zip(integers, binning.places[0], strict=True):
         assert binning.bins[place].lower <= value <= binning.bins[place].upper
 
 
 @given(st.integers(2, 300), st.integers(0, 100))
 def test_parseval(samples, seed):
     values = np.random.default_rng(seed).normal(size=samples)
-    energy, freedom = power(values)
+    energy, freedom = power_spectrum(values)
     assert energy.sum() == pytest.approx((values**2).sum())
     assert freedom.sum() == samples
 
@@ -262,11 +262,11 @@ def test_each_axis_has_its_own_residual_unit_and_floor():
     both = replace(record(other=OTHER), response_units=("um", "nm"))
     both = replace(both, response=np.vstack([1e-7 * TRIANGLE, 1e-7 * OTHER]))
     residuals = np.array([0.1e-6, 300e-9])[:, None] * np.ones((2, TIME.size))
-    x, y = locate([both], [residuals], [SILENT, Floor(200e-9, "told")])
+    x, y = locate([both], [residuals], [SILENT, Floor(200e-9, "given")])
     assert (x.axis, x.unit, x.rmse, x.misfit) == ("x", "um", pytest.approx(0.1), pytest.approx(0.1))
     assert (y.axis, y.unit, y.rmse, y.noise_floor) == ("y", "nm", pytest.approx(300), pytest.approx(200))
     assert y.misfit == pytest.approx(np.sqrt(300**2 - 200**2))
-    assert (x.noise_source, y.noise_source) == ("none", "told")
+    assert (x.noise_source, y.noise_source) == ("none", "given")
 
 
 @pytest.mark.parametrize(("settle", "excess"), [(0, 0.3), (7900, 4 * np.sqrt(2 / 100))])
@@ -274,12 +274,12 @@ def test_each_axis_has_its_own_residual_unit_and_floor():
 def test_an_excess_is_more_than_chance_and_than_the_error_of_the_floor(settle, excess, more):
     """Of many samples 0.3 of the squared floor, of 100 samples four standard deviations of their mean square."""
     size = 0.05 * np.sqrt(1 + more * excess)
-    axis = found([size + 0 * TIME], [record(settle=settle)], Floor(0.05e-6, "told"))
+    axis = located([size + 0 * TIME], [record(settle=settle)], Floor(0.05e-6, "given"))
     assert axis.misfit == pytest.approx(0.05 * np.sqrt(more * excess) if more > 1 else 0)
 
 
 def test_a_part_below_the_noise_is_said_to_be():
-    axis = found([np.where(FALLING, 1.0, 0.01)], floor=Floor(0.05e-6, "told"))
+    axis = located([np.where(FALLING, 1.0, 0.01)], floor=Floor(0.05e-6, "given"))
     below = {part.label: part.below_noise for part in view(axis, "branch").bins}
     assert (below["falling"], below["rising"]) == (False, True)
 
@@ -290,7 +290,7 @@ def test_a_dominant_part_has_a_share_beyond_that_of_its_samples(count, least, mo
     """0.15 more than a tenth, or one and a half times a half."""
     part = least + more
     sizes = [np.sqrt(part), *[np.sqrt((1 - part) / (count - 1))] * (count - 1)]
-    axis = found([size + 0 * TIME for size in sizes], [record(f"{i}", settle=7000) for i in range(count)])
+    axis = located([size + 0 * TIME for size in sizes], [record(f"{i}", settle=7000) for i in range(count)])
     most = view(axis, "record").dominant
     assert (most is not None) == (more > 0)
     assert most is None or (most.first, most.last, most.share) == (0, 0, pytest.approx(part))
@@ -300,7 +300,7 @@ def test_what_is_due_to_a_record_is_not_said_of_its_branch():
     """One record only rises and has 9 of 14 parts of the squares, five only fall."""
     ramp = np.linspace(0, 100, TIME.size)
     records = [record("up", drive=ramp), *[record(f"down {i}", drive=ramp[::-1].copy()) for i in range(5)]]
-    axis = found([(0.3 if i == 0 else 0.1) + 0 * TIME for i in range(6)], records)
+    axis = located([(0.3 if i == 0 else 0.1) + 0 * TIME for i in range(6)], records)
     assert view(axis, "record").dominant.share == pytest.approx(9 / 14)
     assert share(axis, "branch", "rising") == pytest.approx(9 / 14, abs=2e-3)
     assert view(axis, "branch").dominant is None

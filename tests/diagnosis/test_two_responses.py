@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from pzt_ident.diagnosis.next_experiment import Reach, drives_of, propose
+from pzt_ident.diagnosis.next_experiment import DriveLimits, drives_of, propose
 from pzt_ident.diagnosis.refit import Case, first_fit, refit
 from pzt_ident.diagnosis.verdict import diagnose
 from pzt_ident.engine.simulator import Simulator
@@ -21,22 +21,22 @@ LEFT = {"thermal_relaxation", "creep", "amplifier_lag", "quadratic_gain"}
 
 
 @pytest.fixture(scope="module")
-def made():
+def case():
     """1 and 0.1 Hz to identify, 0.01 Hz to validate; noise of 1/1000 of each response."""
     known = {f"homogenized_energy.{word}": value for word, value in FIXED.items()}
     known |= {"p.homogenized_energy.quadratic": 0.0, "d.homogenized_energy.quadratic": 5e-5}  # nm/V^2
     specs = {name: SimpleNamespace(bounds=None, value=value) for name, value in known.items()}
     specs["homogenized_energy.coercive"] = SimpleNamespace(bounds=(300.0, 3000.0), value=None)
     ruled_out = [word for word in blocks.effects() if word not in LEFT]
-    case = Case(["homogenized_energy"], (), [blank(hertz) for hertz in (1, 0.1, 0.01)], specs, ruled_out, SHARED)
-    problem, rng = case.problem(("thermal_relaxation",)), np.random.default_rng(3)
+    blank_case = Case(["homogenized_energy"], (), [blank(hertz) for hertz in (1, 0.1, 0.01)], specs, ruled_out, SHARED)
+    problem, rng = blank_case.problem(("thermal_relaxation",)), np.random.default_rng(3)
     theta = [(FIXED | TRUE | OWN["pd"[entry.axis]])[entry.word] for entry in problem.model.entries]
     records = []
-    for one in case.records:
-        clean = Simulator(problem.model, one).simulate(np.array(theta))[0]
+    for blank_record in blank_case.records:
+        clean = Simulator(problem.model, blank_record).simulate(np.array(theta))[0]
         noise = 1e-3 * np.ptp(clean, axis=1, keepdims=True) * rng.normal(size=clean.shape)
-        records.append(replace(one, response=clean + noise))
-    return Case(case.words, (), records, specs, ruled_out, SHARED)
+        records.append(replace(blank_record, response=clean + noise))
+    return Case(blank_case.words, (), records, specs, ruled_out, SHARED)
 
 
 def blank(hertz):
@@ -46,18 +46,18 @@ def blank(hertz):
     return replace(one, use=use, axes=("p", "d"), response_units=("uC/cm2", "nm"))
 
 
-def test_thermal_relaxation_is_named_and_the_rate_left_out_foreseen(made):
-    first = first_fit(made, 1)
-    found = diagnose(made, first)
-    assert (found.verdict, found.best.score.effect) == ("missing", "thermal_relaxation")
-    assert found.best.fit.values["homogenized_energy.fluctuation"] == pytest.approx(45, rel=0.05)
-    assert found.best.fit.validate < 0.05 * first.validate
+def test_thermal_relaxation_is_named_and_the_rate_left_out_foreseen(case):
+    first = first_fit(case, 1)
+    diagnosis = diagnose(case, first)
+    assert (diagnosis.verdict, diagnosis.best.score.effect) == ("missing", "thermal_relaxation")
+    assert diagnosis.best.fit.values["homogenized_energy.fluctuation"] == pytest.approx(45, rel=0.05)
+    assert diagnosis.best.fit.validate < 0.05 * first.validate
 
 
-def test_what_moves_two_responses_is_proposed_as_one_drive(made):
-    assert drives_of(made.records).tolist() == [0, 0]
-    first = first_fit(made, 1)
-    rivals = {"as given": first, "thermal_relaxation": refit(made, first, ("thermal_relaxation",), {})}
-    found = propose(made, rivals, [Reach(-1500.0, 1500.0, 6000.0, 0.4)] * 2)
-    assert np.array_equal(*found.drive)
-    assert 1 < found.apart < 1e4
+def test_what_moves_two_responses_is_proposed_as_one_drive(case):
+    assert drives_of(case.records).tolist() == [0, 0]
+    first = first_fit(case, 1)
+    rivals = {"as given": first, "thermal_relaxation": refit(case, first, ("thermal_relaxation",), {})}
+    proposal = propose(case, rivals, [DriveLimits(-1500.0, 1500.0, 6000.0, 0.4)] * 2)
+    assert np.array_equal(*proposal.drive)
+    assert 1 < proposal.separation < 1e4

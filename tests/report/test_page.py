@@ -213,5 +213,5 @@ def test_what_is_over_axes_says_so_and_what_it_counts():
     assert (together({"x": "um"}), weighed({"x": "um"}), weighed({"x": "um", "y": "nm"})) == ("", [], [])
     assert together({"x": "um", "y": "nm", "z": "m"}) == " (x, y and z together)"
     assert weighed({"p": "uC/cm2", "d": "nm"}) == [
-        "An RMSE of p and d together counts each in its noise floor, or in 0.5\u00a0% of its span if more."
+        "An RMSE of p and d together weights each by its noise floor, or by 0.5\u00a0% of its span where that is more."
     ]
