@@ -55,14 +55,14 @@ def at_least(deviation: float, source: str, least: float) -> Floor:
     return Floor(float(deviation), source) if deviation > least else Floor(least, "quantiser")
 
 
-def is_repeat(one: Record, other: Record, axis: int, tolerance: float = 2e-3) -> bool:
+def is_repeat(record: Record, other: Record, axis: int, tolerance: float = 2e-3) -> bool:
     """Whether all drives differ by no more than a share of their spans; the same data listed twice are no repeat."""
-    if one.drive.shape != other.drive.shape or one.dt != other.dt:
+    if record.drive.shape != other.drive.shape or record.dt != other.dt:
         return False
-    if np.array_equal(one.response[axis], other.response[axis]):
+    if np.array_equal(record.response[axis], other.response[axis]):
         return False
-    span = np.ptp(one.drive, axis=1)
-    return bool((np.abs(one.drive - other.drive).max(axis=1) <= tolerance * span).all())
+    span = np.ptp(record.drive, axis=1)
+    return bool((np.abs(record.drive - other.drive).max(axis=1) <= tolerance * span).all())
 
 
 def error_scales(records: list[Record]) -> Array:

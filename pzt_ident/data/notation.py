@@ -12,7 +12,7 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def number(value: float | None, digits: int = 4) -> str:
-    """`value` with so many significant digits: 0.08195, 17.30, 8.195 × 10⁻⁸; a dash where there is none."""
+    """`value` with `digits` significant digits: 0.08195, 17.30, 8.195 × 10⁻⁸; a dash for None and NaN."""
     if value is None or math.isnan(value):
         return MISSING
     if math.isinf(value) or value == 0:
@@ -24,7 +24,7 @@ def number(value: float | None, digits: int = 4) -> str:
 
 
 def short(value: float | None, digits: int = 4) -> str:
-    """As `number`, without the zeros that follow the last digit: for bounds, ticks and other round numbers."""
+    """As `number`, without trailing zeros: for bounds, ticks and other round numbers."""
     mantissa, times, power = number(value, digits).partition(" × ")
     if "." in mantissa:
         mantissa = mantissa.rstrip("0").rstrip(".")
@@ -40,7 +40,7 @@ def bounds(lower: float | None, upper: float | None) -> str:
 def with_error(value: float | None, error: float | None) -> str:
     """`value ± error`, the error with two significant digits and the value with the same decimals.
 
-    Where that would leave the value fewer than two digits or more than eight, each is written by itself.
+    Where the value would have fewer than two digits or more than eight, both are written as `number` does.
     """
     if value is None or error is None or not math.isfinite(value) or not math.isfinite(error) or error <= 0:
         return number(value)
@@ -56,7 +56,7 @@ def with_error(value: float | None, error: float | None) -> str:
 
 
 def count(value: float | None) -> str:
-    """A whole number with its thousands set apart: 17 500."""
+    """An integer with spaces between the thousands: 17 500."""
     return MISSING if value is None or math.isnan(value) else f"{round(value):,}".replace(",", "\u202f")
 
 
@@ -65,7 +65,7 @@ def percent(share: float | None, decimals: int = 0) -> str:
 
 
 def unit(text: str) -> str:
-    """A unit as it is printed: um/V is µm/V, N s/m is N·s/m, m/s^2 is m/s², 1 is nothing."""
+    """A unit as it is printed: um/V as µm/V, N s/m as N·s/m, m/s^2 as m/s², 1 as the empty text."""
     text = unicodedata.normalize("NFKC", text).replace("\u03bc", "µ").strip()
     text = re.sub(r"\bu(?=(m|s|g|V|A|N|C|F|K|W|Hz|rad)\b)", "µ", text)
     text = re.sub(r"(?:\^|\*\*)(-?\d+)", lambda match: match[1].translate(SUPERSCRIPTS), text)
@@ -73,12 +73,12 @@ def unit(text: str) -> str:
 
 
 def spelled(text: str) -> str:
-    """A sentence with its units spelled as `unit` does: 3 um is 3 µm."""
+    """A sentence with its units printed as by `unit`: 3 um as 3 µm."""
     return re.sub(r"(?<=\d[ \u00a0])u(?=(m|s|g|V|A|N|C|F)\b)", "µ", text)
 
 
 def quantity(value: float | None, of: str, digits: int = 4) -> str:
-    """Number and unit, which no line break parts."""
+    """Number and unit with a non-breaking space between them."""
     return f"{number(value, digits)}\u00a0{unit(of)}".rstrip("\u00a0")
 
 
@@ -93,20 +93,20 @@ def listed(names: Iterable[str]) -> str:
 
 
 def ranges(names: Iterable[str]) -> list[str]:
-    """`weight_3 to weight_9` in the place of three and more that follow each other."""
+    """Names, with `weight_3 to weight_9` in the place of three or more that are numbered consecutively."""
     runs: list[list[str]] = []
     for name in names:
         head, _, digits = name.rpartition("_")
-        before, _, last = runs[-1][-1].rpartition("_") if runs else ("", "", "")
-        if before == head and digits.isdigit() and last.isdigit() and int(digits) == int(last) + 1:
+        last_head, _, last = runs[-1][-1].rpartition("_") if runs else ("", "", "")
+        if last_head == head and digits.isdigit() and last.isdigit() and int(digits) == int(last) + 1:
             runs[-1].append(name)
         else:
             runs.append([name])
-    return [said for run in runs for said in ([f"{run[0]} to {run[-1]}"] if len(run) > 2 else run)]
+    return [text for run in runs for text in ([f"{run[0]} to {run[-1]}"] if len(run) > 2 else run)]
 
 
 def _power(value: float, digits: int) -> int:
-    """The power of ten of `value` once it is rounded to so many digits."""
+    """The power of ten of `value` rounded to `digits` significant digits."""
     return int(f"{value:.{digits - 1}e}".partition("e")[2])
 
 

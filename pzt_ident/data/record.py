@@ -1,4 +1,4 @@
-"""Measured channels: what a job names (Source, Channel, Axis) and what a simulation uses (Record)."""
+"""Measured channels as a job names them (Source, Channel, Axis) and as a simulation uses them (Record)."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ Use = Literal["identify", "validate"]
 
 @dataclass(frozen=True)
 class Channel:
-    """Where one signal stands in a file: a header text such as `u_x [V]`, a column number counted from 1, or a data
-    set or array (then `file` may be another file than the record's). `unit` wins over the unit in the header."""
+    """Where a signal is in a file: a header text such as `u_x [V]`, a column number counted from 1, or a data set or
+    array (then `file` may be another file than the record's). `unit` overrides the unit in the header."""
 
     name: str | None = None
     column: int | None = None
@@ -35,9 +35,10 @@ class Axis:
 
 @dataclass(frozen=True)
 class Source:
-    """One record as the job names it. `rows` are counted from 0, the end excluded; `time` is a stretch in s.
+    """One record as the job names it. `rows` are counted from 0, the end excluded; `time` is an interval, s; `settle` is
+    the time at the start that is simulated but not scored, s.
 
-    `channels` says what is different in this record, by `time`, `drive`, `response` or, of one axis, `x.drive`:
+    `channels` overrides channels in this record, by `time`, `drive`, `response` or, of one axis, `x.drive`:
     `{"response": Channel(file="y.npy")}` takes every response from another file.
     """
 
@@ -60,13 +61,13 @@ class Source:
 
 @dataclass(frozen=True, eq=False)
 class Record:
-    """One measured stretch on a uniform time grid, in SI units.
+    """One measurement on a uniform time grid, in SI units.
 
     drive, response: (axes, samples); the response of an axis that is not measured is NaN throughout.
     dt, start: sample time and first time stamp, s. settle: samples simulated but not scored at the start.
     run_in: how often the drive is simulated before the first sample (a periodic record in steady state).
-    steps: of the simulation in a sample.
-    sha256: of the file as read. rows: the first row of the file that the record holds, and the first behind it.
+    steps: simulation steps per sample.
+    sha256: of the file as read. rows: the first row of the file that the record holds, and the first after it.
     """
 
     name: str
@@ -97,7 +98,7 @@ class Record:
 
     @property
     def units(self) -> dict[str, str]:
-        """The unit of the response of each measured axis."""
+        """The unit of the response of each measured axis, by its name."""
         return {axis: unit for axis, unit in zip(self.axes, self.response_units, strict=True) if unit is not None}
 
     @property
@@ -105,27 +106,27 @@ class Record:
         return self.start + self.dt * np.arange(self.samples, dtype=np.float64)
 
 
-def between(drive: NDArray[np.float64], times: int, periodic: bool, smooth: bool) -> NDArray[np.float64]:
-    """A drive at so many steps a sample, the last sample held: linear between samples, or smooth, which is band-limited
-    where it is periodic and else a cubic spline. (samples,) -> (times * samples,)."""
-    if times == 1:
+def interpolated(drive: NDArray[np.float64], steps: int, periodic: bool, smooth: bool) -> NDArray[np.float64]:
+    """A drive at `steps` points per sample, the last sample held: linear between samples or, if smooth, band-limited
+    where the drive is periodic and else a cubic spline. (samples,) -> (steps * samples,)."""
+    if steps == 1:
         return drive
     if smooth and periodic:
         from scipy.signal import resample
 
-        return np.asarray(resample(drive, times * drive.size))
-    ahead = np.append(drive, drive[0] if periodic else drive[-1])
-    grid = np.arange(times * drive.size) / times
+        return np.asarray(resample(drive, steps * drive.size))
+    extended = np.append(drive, drive[0] if periodic else drive[-1])
+    grid = np.arange(steps * drive.size) / steps
     if not smooth:
-        return np.interp(grid, np.arange(ahead.size), ahead)
+        return np.interp(grid, np.arange(extended.size), extended)
     from scipy.interpolate import CubicSpline
 
     return np.asarray(CubicSpline(np.arange(drive.size), drive)(np.minimum(grid, drive.size - 1)))
 
 
-def rises_with(records: Sequence[Record], axis: int) -> float:
+def drive_correlation(records: Sequence[Record], axis: int) -> float:
     """Correlation of an axis' response with its drive over all records, 0 where one of them is constant."""
-    moves = [(record.drive[axis], record.response[axis]) for record in records]
-    drive, response = (np.concatenate([signal - signal.mean() for signal in part]) for part in zip(*moves, strict=True))
-    size = np.sqrt((drive @ drive) * (response @ response))
-    return float(drive @ response / size) if size > 0 else 0.0
+    drive = np.concatenate([record.drive[axis] - record.drive[axis].mean() for record in records])
+    response = np.concatenate([record.response[axis] - record.response[axis].mean() for record in records])
+    norm = np.sqrt((drive @ drive) * (response @ response))
+    return float(drive @ response / norm) if norm > 0 else 0.0

@@ -1,4 +1,4 @@
-"""Measurement, model and residual of each record as netCDF4: `signals.nc`, written and read."""
+"""Write and read `signals.nc`: measurement, model and residual of each record as netCDF4."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """One measured axis of one record beside the model, arrays of shape (samples,) in the user's units; the residual
-    is model minus response.
+    """One measured axis of one record with its model, arrays of shape (samples,) in the user's units; the residual is
+    model minus measurement.
 
     The first `settle` seconds are simulated but not scored.
     """
@@ -48,9 +48,9 @@ class Trace:
 
 
 def write_signals(path: Path, residuals: Iterable[tuple[Record, Array]]) -> None:
-    """One group a record: time, and for each axis the drive and, where measured, response, model and residual.
+    """One group per record: time, and for each axis the drive and, where measured, response, model and residual.
 
-    residuals: each record with model minus measurement, (measured axes, samples), SI units. The model carries the
+    residuals: each record with model minus measurement, (measured axes, samples), SI units. The model includes the
     record's free offset and additions. Units in the file are the user's.
     """
     import h5netcdf
@@ -83,7 +83,7 @@ def _put(group: Any, name: str, values: Array, unit: str, meaning: str) -> None:
 
 
 def read_signals(path: Path, order: Sequence[str]) -> tuple[list[Record], list[Array]]:
-    """The records of the file, in the order of their names, and the residuals of each, (measured axes, samples), in SI
+    """The records of the file in the given order of names, and the residuals of each, (measured axes, samples), in SI
     units."""
     import h5py
 
@@ -94,8 +94,8 @@ def read_signals(path: Path, order: Sequence[str]) -> tuple[list[Record], list[A
 
 
 def read_traces(path: Path, order: Sequence[str]) -> tuple[Trace, ...]:
-    """Every measured axis of every record, in the order of the records' names. Raises InputError where the file is no
-    netCDF4."""
+    """Every measured axis of every record, in the given order of the records' names. Raises InputError where the file is
+    not netCDF4."""
     import h5py
 
     try:
@@ -108,7 +108,7 @@ def read_traces(path: Path, order: Sequence[str]) -> tuple[Trace, ...]:
 
 
 def _groups(file: h5py.File) -> list[h5py.Group]:
-    """Those of records, at whatever depth: a record's name may hold a slash."""
+    """The groups of records, at any depth: a record's name may contain a slash."""
     groups: list[h5py.Group] = []
     file.visititems(lambda _, item: groups.append(item) if "use" in item.attrs else None)
     return groups

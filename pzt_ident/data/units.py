@@ -1,4 +1,4 @@
-"""Units as they stand in headers and job files: a small table, SI prefixes, products and quotients."""
+"""Units as written in headers and job files: a small table, SI prefixes, products and quotients."""
 
 from __future__ import annotations
 
@@ -88,9 +88,9 @@ _LABELLED = re.compile(r"(?i)\b(?:ch|channel|sensor|axis|input|output|probe|actu
 
 
 def factor(unit: str) -> float:
-    """What a value in `unit` is multiplied by to be in SI units: `factor("um/V")` is 1e-6.
+    """The factor from `unit` to SI units: `factor("um/V")` is 1e-6.
 
-    A number in front is the scale of a signal: values in `20 V` are volts behind a gain of 20.
+    A number in front is the scale of a signal: values in `20 V` are volts after a gain of 20.
     Raises InputError with the nearest known words.
     """
     return _parsed(unit)[0]
@@ -102,22 +102,22 @@ def dimension(unit: str) -> Dimension:
 
 
 def same_kind(a: str, b: str) -> bool:
-    """Whether values in one unit can be given in the other."""
+    """Whether values in one unit can be converted to the other."""
     return dimension(a) == dimension(b)
 
 
 def of_one_kind(units: Sequence[str]) -> bool:
-    """Whether values in these units can be added up."""
+    """Whether values in all units can be added up."""
     return all(same_kind(unit, units[0]) for unit in units)
 
 
 def common_unit(units: Sequence[str]) -> str:
-    """That of a number over responses in these units: the first one, 1 where they are of different kinds."""
+    """The unit of a number over responses in several units: the first, or 1 where they are of different kinds."""
     return units[0] if of_one_kind(units) else "1"
 
 
 def unscaled(unit: str) -> str:
-    """The unit without a number in front, to show results in: `V` for `20 V`."""
+    """The unit without a number in front, in which results are shown: `V` for `20 V`."""
     return _SCALED.sub("", unit.strip())
 
 
@@ -130,25 +130,25 @@ def is_unit(text: str) -> bool:
 
 
 def plain(text: str) -> str:
-    """One spelling of a text: compatible characters (NFKC), ASCII micro, minus and product signs, single spaces."""
+    """A text in a uniform spelling: NFKC, ASCII micro, minus and product signs, single spaces."""
     return " ".join(unicodedata.normalize("NFKC", text).translate(_SPELLING).split())
 
 
 def split_header(header: str) -> tuple[str, str | None]:
     """Name and unit of a column: `u_x [V]`, `u_x (V)`, `Ch1,V` and `P1 uC_per_cm2` all have one.
 
-    What stands in square brackets is taken for a unit, known or not; elsewhere only a known unit is, and
-    a single letter after a word such as `Channel` is not.
+    Text in square brackets counts as a unit, known or not; elsewhere only a known unit does, and a single letter
+    after a word such as `Channel` does not.
     """
     header = header.strip()
-    if found := _BRACKETED.match(header):
-        inside = (found["square"] if found["square"] is not None else found["round"]).strip()
-        if found["square"] is not None or is_unit(inside):
-            return found["name"], inside or None
-    elif found := _TRAILING.match(header):
-        label = len(found["unit"]) == 1 and "," not in header and _LABELLED.search(found["name"])
-        if not found["unit"][0].isdigit() and is_unit(found["unit"]) and not label:
-            return found["name"], found["unit"]
+    if match := _BRACKETED.match(header):
+        inside = (match["square"] if match["square"] is not None else match["round"]).strip()
+        if match["square"] is not None or is_unit(inside):
+            return match["name"], inside or None
+    elif match := _TRAILING.match(header):
+        label = len(match["unit"]) == 1 and "," not in header and _LABELLED.search(match["name"])
+        if not match["unit"][0].isdigit() and is_unit(match["unit"]) and not label:
+            return match["name"], match["unit"]
     return header, None
 
 
@@ -157,34 +157,34 @@ def _parsed(unit: str) -> tuple[float, Dimension]:
     text = plain(unit).replace("_per_", "/").replace(" per ", "/")
     size, powers, position, sign = 1.0, [0] * 5, 0, 1
     while True:
-        found = _FACTOR.match(text, position)
-        if not found:
+        match = _FACTOR.match(text, position)
+        if not match:
             raise _unknown(unit, text[position:])
-        one, dim, power = _single(unit, found)
-        size *= one ** (sign * power)
+        scale, dim, power = _single(unit, match)
+        size *= scale ** (sign * power)
         powers = [old + sign * power * new for old, new in zip(powers, dim, strict=True)]
-        if found.end() == len(text):
+        if match.end() == len(text):
             return size, (powers[0], powers[1], powers[2], powers[3], powers[4])
-        joint = re.compile(r"\s*([*/])\s*|\s+").match(text, found.end())
-        if not joint:
+        operator = re.compile(r"\s*([*/])\s*|\s+").match(text, match.end())
+        if not operator:
             raise _unknown(unit, text[position:])
-        sign, position = (-1 if joint[1] == "/" else 1), joint.end()
+        sign, position = (-1 if operator[1] == "/" else 1), operator.end()
 
 
-def _single(unit: str, found: re.Match[str]) -> tuple[float, Dimension, int]:
-    if found["number"]:
-        return float(found["number"]), _NUMBER, 1
-    if found["inside"]:
-        return *_parsed(found["inside"]), int(found["power"] or 1)
-    name = found["name"]
+def _single(unit: str, match: re.Match[str]) -> tuple[float, Dimension, int]:
+    if match["number"]:
+        return float(match["number"]), _NUMBER, 1
+    if match["inside"]:
+        return *_parsed(match["inside"]), int(match["power"] or 1)
+    name = match["name"]
     name = name if name in _SINGLE else _SYNONYM.get(name.lower(), name)
     name = re.sub("(?:Ω|ohm)$", "Ohm", name)
     if name not in _SINGLE:
-        raise _unknown(unit, found["name"])
-    return *_SINGLE[name], int(found["power"] or 1)
+        raise _unknown(unit, match["name"])
+    return *_SINGLE[name], int(match["power"] or 1)
 
 
 def _unknown(unit: str, part: str) -> InputError:
-    named = f" (in {unit!r})" if part != unit else ""
+    context = f" (in {unit!r})" if part != unit else ""
     common = "m mm um nm micron s ms us second Hz kHz V mV kV volt A mA N mN C uC nC F kg K Pa J W Ohm rad % count 1"
-    return InputError(f"unknown unit {part!r}{named}", remedy=nearest(part, common.split()))
+    return InputError(f"unknown unit {part!r}{context}", remedy=nearest(part, common.split()))

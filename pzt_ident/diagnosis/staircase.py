@@ -22,9 +22,7 @@ from pzt_ident.model.registry import blocks
 
 MOST_STEPS = 8
 FIRST_EFFECTS = 2  # effects that are tried as the first to be added
-LEAST_GAIN = (
-    0.05  # noise floors by which one effect fits better than another in its place: less may be simulation error
-)
+LEAST_GAIN = 0.05  # noise floors by which one effect fits better than another: less may be simulation error
 HOPELESS = 5.0  # noise floors: where the first path ends above that, another order of the same effects does not help
 
 
@@ -131,11 +129,12 @@ def add_pair(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Ste
         return []
     values = {name: value for name, value in both.values.items() if name not in now.problem.names}
     alone = [refit(case, now, (*now.effects, word), values) for word in both.effects[-2:]]
-    one = min(alone, key=lambda fit: fit.total)
-    word, other = one.effects[-1], next(word for word in both.effects[-2:] if word != one.effects[-1])
+    single = min(alone, key=lambda fit: fit.total)
+    word = single.effects[-1]
+    other = next(effect for effect in both.effects[-2:] if effect != word)
     return [
-        Step(one, word, None, {word: one}, explained_share(case, now, one)),
-        Step(both, other, None, {other: both}, explained_share(case, one, both)),
+        Step(single, word, None, {word: single}, explained_share(case, now, single)),
+        Step(both, other, None, {other: both}, explained_share(case, single, both)),
     ]
 
 

@@ -68,5 +68,5 @@ def heaviest_runs(weights: Array, most: int) -> list[tuple[int, int]]:
         if gains[last] <= 0:
             break
         runs.append((first, last))
-        remaining[first:last] = -np.abs(weights).sum()  # no later run pays for crossing this one
+        remaining[first:last] = -np.abs(weights).sum()  # no later run crosses this one
     return runs

@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.record import Record, between
+from pzt_ident.data.record import Record, interpolated
 from pzt_ident.engine.additions import Additions
 from pzt_ident.engine.program import Program
 from pzt_ident.model.block import TILES
@@ -146,7 +146,7 @@ class Simulator:
         return np.hstack([table[:, :1], table, np.repeat(table[:, -1:], PADDING, axis=1)])
 
     def _fine(self, drive: Array) -> Array:
-        return between(drive, self.substeps, bool(self.record.run_in), smooth=self.model.oversample > 1)
+        return interpolated(drive, self.substeps, bool(self.record.run_in), smooth=self.model.oversample > 1)
 
 
 def simulate(model: Chain, record: Record, theta: Array) -> Array:

@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pzt_ident.data.record import Record, rises_with
+from pzt_ident.data.record import Record, drive_correlation
 from pzt_ident.data.units import factor
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.errors import InputError
@@ -95,7 +95,7 @@ class Problem:
                 upper.append(high)
         self.free = np.array(free, dtype=int)
         entries = [self.model.entries[column] for column in linear]
-        turn = [np.sign(rises_with(identify, entry.axis)) or 1.0 for entry in entries]
+        turn = [np.sign(drive_correlation(identify, entry.axis)) or 1.0 for entry in entries]
         units = np.array([sign * self._size(entry, identify) for sign, entry in zip(turn, entries, strict=True)])
         self.linear = Linear(self.model, linear, units, self._scaled)
         self.names = tuple(self.model.names[column] for column in free)
@@ -116,7 +116,7 @@ class Problem:
         """Declared bounds in SI units; those of a gain also with the other sign, unless the response rises with the
         drive: an inverting amplifier turns it round, and so does a drive above the resonance."""
         low, high = entry.parameter.bounds
-        if entry.parameter.unit == "response/drive" and rises_with(records, entry.axis) <= CLEAR:
+        if entry.parameter.unit == "response/drive" and drive_correlation(records, entry.axis) <= CLEAR:
             low, high = min(low, -high), max(high, -low)
         return np.array([low, high]) * self._size(entry, records)
 
