@@ -35,8 +35,8 @@ class Axis:
 
 @dataclass(frozen=True)
 class Source:
-    """One record as the job names it. `rows` are counted from 0, the end excluded; `time` is an interval, s; `settle` is
-    the time at the start that is simulated but not scored, s.
+    """One record as the job names it. rows: counted from 0, the end excluded. time: an interval, s. settle: the time at
+    the start that is simulated but not scored, s.
 
     `channels` overrides channels in this record, by `time`, `drive`, `response` or, of one axis, `x.drive`:
     `{"response": Channel(file="y.npy")}` takes every response from another file.

@@ -94,8 +94,8 @@ def read_signals(path: Path, order: Sequence[str]) -> tuple[list[Record], list[A
 
 
 def read_traces(path: Path, order: Sequence[str]) -> tuple[Trace, ...]:
-    """Every measured axis of every record, in the given order of the records' names. Raises InputError where the file is
-    not netCDF4."""
+    """Every measured axis of every record, in the given order of names. Raises InputError where the file is not
+    netCDF4."""
     import h5py
 
     try:
