@@ -1,4 +1,4 @@
-"""Residuals of known place: what is found there has a closed form."""
+"""Residuals of known place: their shares of the misfit have a closed form."""
 
 import json
 from dataclasses import asdict, replace
