@@ -16,7 +16,7 @@ from pzt_ident.api.model import Model
 from pzt_ident.api.printed import html, table_text
 from pzt_ident.api.record import Record, Signals
 from pzt_ident.api.statement import drive_record, file_of, has_stamps
-from pzt_ident.data.noise import facts
+from pzt_ident.data.noise import units_and_floors
 from pzt_ident.data.notation import listed, number, quantity, unit, with_error
 from pzt_ident.data.over_axes import together
 from pzt_ident.data.units import factor
@@ -104,7 +104,7 @@ class Fit:
     @cached_property
     def noise(self) -> dict[str, Any]:
         """Units and noise floors as in `result.json`: of each axis, their source, and `floor` of all together."""
-        return facts(self.statement.records)
+        return units_and_floors(self.statement.records)
 
     @property
     def noise_floor(self) -> dict[str, float]:

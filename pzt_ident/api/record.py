@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pzt_ident.data import record as data
 from pzt_ident.data.readers import read_records
-from pzt_ident.data.readers.column import Column, Table
+from pzt_ident.data.readers.table import Column, Table
 from pzt_ident.data.units import FREQUENCY, dimension, factor, split_header
 from pzt_ident.errors import InputError
 

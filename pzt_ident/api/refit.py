@@ -37,12 +37,12 @@ def with_effect(fit: Fit, effect: str) -> Fit:
 
 def as_given(case: Case, fit: Fit) -> diagnosis.Fit:
     """A fit as the diagnosis goes on from it."""
-    return diagnosis.made(case.effects, case.problem(case.effects), fit.point)
+    return diagnosis.fit_at(case.effects, case.problem(case.effects), fit.point)
 
 
 def from_refit(fit: Fit, case: Case, refit: diagnosis.Fit) -> Fit:
     """What the diagnosis fitted to the records of a fit, as a fit."""
-    silent = case.silent(refit.effects) if refit.alone else {}
+    silent = case.unmeasured_nulls(refit.effects) if refit.measured_only else {}
     statement, records, sections = restated(fit, refit.effects, refit.steps, silent)
     point = statement.problem.unit_point(refit.values)
     known = what_is_known(statement, point)
