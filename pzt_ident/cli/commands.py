@@ -90,9 +90,9 @@ def _identify(start: Callable[[Listener], Path], no_report: bool, as_json: bool,
     with listening(silent=as_json or quiet) as listen:
 
         def listen_and_prepare(event: dict[str, Any]) -> None:
+            listen(event)
             if event["event"] == "start" and not no_report:
                 _import_report_in_background()
-            listen(event)
 
         folder = start(listen_and_prepare)
         _report(folder, no_report)

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 from pzt_ident.diagnosis.worst_intervals import Interval
 
+LEAST = 0.3  # noise floors
+
 
 @dataclass(frozen=True)
 class BinMisfit:
@@ -76,3 +78,16 @@ class Misfit:
     map: CrossTable | None
     worst: tuple[Interval, ...]
     sentences: tuple[str, ...]
+
+
+def squared_misfit(rmse: float, floor: float) -> float:
+    """Mean square above the noise floor, and at least that of 0.3 noise floors, which is the least that can be
+    distinguished from noise."""
+    return max(rmse**2 - floor**2, (LEAST * floor) ** 2)
+
+
+def share_explained(before: float, after: float, floor: float) -> float:
+    """Share of the misfit that is gone where the RMSE falls from `before` to `after`: 1 at the noise floor and below,
+    negative where the error grew, 0 where there was none."""
+    squared = squared_misfit(before, floor)
+    return min((before**2 - after**2) / squared, 1.0) if squared > 0 else 0.0

@@ -13,6 +13,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.diagnosis import misfit
 from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.model.block import Addition, Coupling, Term
 from pzt_ident.model.registry import blocks
@@ -246,9 +247,8 @@ def on_bound(problem: Problem, guess: Mapping[str, float]) -> bool:
 
 
 def squared_misfit(case: Case, fit: Fit) -> float:
-    """Mean square above the noise floor of the identification records, and at least that of 0.3 noise floors, which is
-    the least that can be distinguished from noise."""
-    return max(fit.identify**2 - case.floor**2, (0.3 * case.floor) ** 2)
+    """That of a fit on the identification records."""
+    return misfit.squared_misfit(fit.identify, case.floor)
 
 
 def parameter_grid(problem: Problem, columns: list[int], counts: Mapping[str, int]) -> Iterator[tuple[float, ...]]:

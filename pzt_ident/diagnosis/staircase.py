@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit, restart
-from pzt_ident.diagnosis.score import Scorer, applicable, squared_misfit
+from pzt_ident.diagnosis.score import Scorer, applicable
 from pzt_ident.diagnosis.verdict import (
     Candidate,
     Diagnosis,
@@ -152,9 +153,8 @@ def add_restarted(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> lis
 
 
 def explained_share(case: Case, before: Fit, after: Fit) -> float:
-    """Share of the misfit above the noise that a step removes, negative where it adds to it."""
-    removed = removed_rms(before.identify, after.identify)
-    return removed * abs(removed) / squared_misfit(case, before)
+    """Share of the misfit on the identification records that a step removes."""
+    return share_explained(before.identify, after.identify, case.floor)
 
 
 def remove_unneeded(case: Case, first: Fit, now: Fit) -> list[Step]:

@@ -174,7 +174,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
             {
                 "effect": item.score.effect,
                 "class": found.tied if item.score.effect in found.tied else [item.score.effect],
-                "explained": item.score.explained_in_bounds,
+                "explained": min(item.score.explained_in_bounds, 1.0),
                 "expected": item.score.guess,
                 "units": item.score.units,
                 "visibility": item.score.visibility,
