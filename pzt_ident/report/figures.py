@@ -1,4 +1,4 @@
-"""The figures of a run: which there are, and their files."""
+"""The list of figures of a run, and their files."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from pzt_ident.report import residual_figures as residual
 from pzt_ident.report import search_figures as search
 from pzt_ident.report import signal_figures as signal
 from pzt_ident.report import staircase_figures as staircase
-from pzt_ident.report.style import COLUMN, PAGE, saved, style
-from pzt_ident.report.words import standing
+from pzt_ident.report.sentences import USE_NAMES, distributed_parameters
+from pzt_ident.report.style import COLUMN, PAGE, file_content, style
 from pzt_ident.run.results import Results
 
 if TYPE_CHECKING:
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Plate:
-    """One figure to be drawn at any width: `section` is where it stands in the report, none where that shows the same
-    to be looked into; `caption` is what is below it."""
+    """One figure, not drawn yet. `section`: id of its section of the report, None where the report shows the same
+    interactively; `height(width)` in mm; `draw` draws into a figure of that size."""
 
     name: str
     section: str | None
@@ -38,7 +38,7 @@ class Plate:
 
 
 def plates(results: Results) -> list[Plate]:
-    """Every figure that these results have, in the order of the report."""
+    """All figures of these results, in the order of the report."""
     return [
         *_staircase_plates(results),
         *_signal_plates(results),
@@ -59,40 +59,40 @@ def drawn(plate: Plate, width: float, kind: type[Figure] | None = None) -> Figur
 
 
 def render(plate: Plate, width: float, forms: Sequence[str]) -> dict[str, bytes]:
-    """A plate drawn `width` mm wide, as the content of a file of each form, svg or pdf."""
+    """The file content of a figure `width` mm wide for each format in `forms` (svg, pdf)."""
     figure = drawn(plate, width)
     with style():
-        return {form: saved(figure, form) for form in forms}
+        return {form: file_content(figure, form) for form in forms}
 
 
 def write_page_figures(results: Results, folder: Path) -> list[tuple[Plate, bytes]]:
-    """Write every figure that the page shows as SVG, `<name>-180mm.svg`; returns them."""
+    """Write the static figures of the page as `<name>-180mm.svg`; returns each with its content."""
     return [(plate, _write(plate, PAGE, ("svg",), folder)["svg"]) for plate in plates(results) if plate.section]
 
 
 def write_paper_figures(results: Results, folder: Path) -> Iterator[Plate]:
-    """Write every figure as a paper needs it, SVG and PDF at 88 and 180 mm. Yields what is done."""
+    """Write all figures for print, SVG and PDF at 88 and 180 mm. Yields each one that is written."""
     return _written(plates(results), folder)
 
 
 def write_misfit_figures(results: Results, folder: Path) -> Iterator[Plate]:
-    """Write the figures of the misfit, SVG and PDF at 88 and 180 mm. Yields what is done."""
+    """Write the figures of the misfit, SVG and PDF at 88 and 180 mm. Yields each one that is written."""
     return _written(misfit_plates(results), folder)
 
 
-def _written(chosen: Iterable[Plate], folder: Path) -> Iterator[Plate]:
-    for plate in chosen:
+def _written(selection: Iterable[Plate], folder: Path) -> Iterator[Plate]:
+    for plate in selection:
         for width in (COLUMN, PAGE):
             _write(plate, width, ("svg", "pdf"), folder)
         yield plate
 
 
 def _write(plate: Plate, width: int, forms: Sequence[str], folder: Path) -> dict[str, bytes]:
-    drawn = render(plate, width, forms)
-    for form, content in drawn.items():
-        with replaced(folder / f"{plate.name}-{width}mm.{form}") as beside:
-            beside.write_bytes(content)
-    return drawn
+    contents = render(plate, width, forms)
+    for form, content in contents.items():
+        with replaced(folder / f"{plate.name}-{width}mm.{form}") as temporary:
+            temporary.write_bytes(content)
+    return contents
 
 
 def slug(text: str) -> str:
@@ -105,45 +105,45 @@ def _staircase_plates(results: Results) -> Iterator[Plate]:
         yield Plate(
             "staircase",
             None,
-            "RMSE after each step on the records that were fitted and on those that the fit never saw, and the noise "
-            "floor.",
+            "RMSE on the identification and on the validation records after each step, and the noise floor.",
             staircase.height,
             partial(staircase.draw, improvement=results.improvement),
         )
 
 
 def _signal_plates(results: Results) -> Iterator[Plate]:
-    floor = results.floors
+    floors = results.floors
     bins = max(150, min(600, 2400 // max(len(results.traces), 1)))
     for place, trace in enumerate(results.traces, start=1):
         yield Plate(
             "-".join(filter(None, (f"time-{place}", slug(trace.record), slug(trace.axis)))),
             None,
-            f"Response of axis {trace.axis}, measured and modelled, and the residual: {trace.record} ({trace.use}).",
+            f"Measured and modelled response of axis {trace.axis} and the residual: {trace.record} "
+            f"({USE_NAMES[trace.use]}).",
             signal.time_height,
-            partial(signal.draw_time, trace=trace, noise=floor.get(trace.axis), bins=bins),
+            partial(signal.draw_time, trace=trace, noise=floors.get(trace.axis), bins=bins),
         )
     for axis, traces in _by_axis(results):
         yield Plate(
             f"loops-{slug(axis)}",
             None,
-            f"Response against drive of axis {axis}, measured and modelled.",
+            f"Measured and modelled response of axis {axis} against the drive.",
             partial(signal.records_height, records=len(traces)),
             partial(signal.draw_loops, traces=traces, points=3 * bins),
         )
 
 
 def _residual_plates(results: Results) -> Iterator[Plate]:
-    floor = results.floors
+    floors = results.floors
     for axis, traces in _by_axis(results):
         height = partial(signal.records_height, records=len(traces))
         yield Plate(
             f"residual-drive-{slug(axis)}",
             "residuals",
-            f"Residual of axis {axis} against the drive, rising and falling drive apart: median, and the band that "
-            "holds 90 % of the samples.",
+            f"Residual of axis {axis} against the drive, separately for rising and falling drive: median, and the "
+            "band that contains 90 % of the samples.",
             height,
-            partial(residual.draw_branches, traces=traces, noise=floor.get(axis)),
+            partial(residual.draw_branches, traces=traces, noise=floors.get(axis)),
         )
         yield Plate(
             f"residual-loop-{slug(axis)}",
@@ -155,42 +155,43 @@ def _residual_plates(results: Results) -> Iterator[Plate]:
     yield Plate(
         "residual-spread",
         "residuals",
-        "Spread of the scored residuals.",
+        "Distribution of the residual over the scored samples.",
         partial(residual.histogram_height, axes=len(results.axes)),
-        partial(residual.draw_histogram, traces=results.traces, noise=floor),
+        partial(residual.draw_histogram, traces=results.traces, noise=floors),
     )
 
 
 def misfit_plates(results: Results) -> Iterator[Plate]:
-    """Of each axis that has a misfit."""
+    """The figures of each axis that has a misfit above its noise floor."""
     for axis, traces in _by_axis(results):
-        found = results.misfit.get("axes", {}).get(axis, {})
-        if not found.get("misfit"):
+        axis_misfit = results.misfit.get("axes", {}).get(axis, {})
+        if not axis_misfit.get("misfit"):
             continue
         yield Plate(
             f"misfit-shares-{slug(axis)}",
             "misfit",
-            f"Share of the squared misfit of axis {axis} above the noise in each bin, and share of the samples (of the "
-            "bandwidth, for frequency and lines) in it. A bar that reaches beyond its tick misfits more than its due.",
-            partial(misfit.shares_height, misfit=found),
-            partial(misfit.draw_shares, misfit=found),
+            f"Share of the squared misfit of axis {axis} above the noise in each bin (bar), and share of the samples "
+            "(of the bandwidth, for frequency and lines) in it (tick). Where the bar exceeds the tick, the misfit is "
+            "above average.",
+            partial(misfit.shares_height, misfit=axis_misfit),
+            partial(misfit.draw_shares, misfit=axis_misfit),
         )
-        if found["map"]:
+        if crossed := axis_misfit["map"]:
             yield Plate(
                 f"misfit-map-{slug(axis)}",
                 "misfit",
-                f"RMSE of axis {axis} where {found['map']['rows']} and {found['map']['columns']}, which tell most, "
-                "cross; the number is the share of the misfit, %. Grey: no samples.",
-                partial(misfit.map_height, misfit=found),
-                partial(misfit.draw_misfit_map, misfit=found),
+                f"RMSE of axis {axis} by {crossed['rows']} and {crossed['columns']}, the two quantities on which the "
+                "misfit depends most; the numbers are shares of the squared misfit in %. Grey: no samples.",
+                partial(misfit.map_height, misfit=axis_misfit),
+                partial(misfit.draw_misfit_map, misfit=axis_misfit),
             )
-        if failing := misfit.failing(found, traces):
+        if worst := misfit.traces_of_worst(axis_misfit, traces):
             yield Plate(
                 f"misfit-worst-{slug(axis)}",
                 None,
-                f"The stretches with most of the misfit of axis {axis}: in time, and on the measured loop.",
-                partial(misfit.worst_height, records=len(failing)),
-                partial(misfit.draw_worst, misfit=found, traces=failing),
+                f"The segments with the largest share of the misfit of axis {axis}: in time, and on the measured loop.",
+                partial(misfit.worst_height, records=len(worst)),
+                partial(misfit.draw_worst, misfit=axis_misfit, traces=worst),
             )
 
 
@@ -198,8 +199,8 @@ def _search_plates(results: Results) -> Iterator[Plate]:
     yield Plate(
         "convergence",
         "convergence",
-        "Best RMSE on the identify records so far, before the polish: median and quartiles over the repeats of each "
-        "optimizer.",
+        "Best RMSE on the identification records so far, before the local polish: median and quartiles over the "
+        "repeats of each optimizer.",
         search.convergence_height,
         partial(search.draw_convergence, results=results),
     )
@@ -207,17 +208,17 @@ def _search_plates(results: Results) -> Iterator[Plate]:
         yield Plate(
             "estimates",
             "parameters",
-            "Where every run put each free parameter between its bounds. A parameter whose estimates scatter over the "
-            "whole box is one that the data do not determine. Logarithmic (log) where the bounds span two decades or "
-            "more.",
+            "Estimates of each free parameter from all runs, relative to its bounds. A parameter whose estimates "
+            "scatter over the full range is not determined by the data. The scale is logarithmic (log) where the "
+            "bounds span two decades or more.",
             partial(search.estimates_height, parameters=len(free)),
             partial(search.draw_estimates, results=results),
         )
-    for name, entries in standing(results).items():
+    for name, entries in distributed_parameters(results).items():
         yield Plate(
             f"density-{slug(name)}",
             "parameters",
-            f"{name} of the best run over the drive that each stands for.",
+            f"{name} of the best run over the drive value to which each parameter belongs.",
             density_figures.height,
             partial(density_figures.draw, name=name, entries=entries),
         )
@@ -226,7 +227,7 @@ def _search_plates(results: Results) -> Iterator[Plate]:
         yield Plate(
             "correlation",
             "correlations",
-            "Correlations of the best run's estimates; grey where there is none to give.",
+            "Correlations of the best run's estimates; grey: not defined.",
             partial(search.correlation_height, longest=max(map(len, names)), parameters=len(names)),
             partial(search.draw_correlation, results=results),
         )

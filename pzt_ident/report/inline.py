@@ -1,4 +1,4 @@
-"""From an SVG file to an element of an HTML page."""
+"""SVG files as elements of an HTML page."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ if TYPE_CHECKING:
     from markupsafe import Markup
 
 _NUMBER = re.compile(r"-?\d+\.\d+")
-_UNTURNED = re.compile(r"rotate\(-?0 ")
+_NO_ROTATION = re.compile(r"rotate\(-?0 ")
 _LINK = re.compile(r"(?<=url\(#)|(?<=^#)")
 
 
 def inline(svg: bytes, name: str) -> Markup:
-    """The drawing alone, a tenth of a point fine, in the page's type; its ids start with `name`, so that no two
-    figures of a page share one. It is labelled by the element with the id `<name>-caption`."""
+    """An `svg` element for the page: coordinates rounded to 0.1 point, without metadata and font. Its ids start with
+    `name`, so that no two figures of a page share one; the element with the id `<name>-caption` labels it."""
     from markupsafe import Markup
 
     root = ElementTree.fromstring(svg)
@@ -28,7 +28,7 @@ def inline(svg: bytes, name: str) -> Markup:
         element.attrib = {
             _local(key): _attribute(_local(key), value, name)
             for key, value in element.attrib.items()
-            if not ((key == "id" and element.tag == "g") or _UNTURNED.match(value))
+            if not ((key == "id" and element.tag == "g") or _NO_ROTATION.match(value))
         }
         element.text, element.tail = (text and (text.strip() or None) for text in (element.text, element.tail))
     _unwrap(root)
@@ -37,33 +37,33 @@ def inline(svg: bytes, name: str) -> Markup:
 
 
 def _unwrap(parent: ElementTree.Element) -> None:
-    """Put the content of groups that say nothing in their place."""
+    """Replace groups without attributes by their content."""
     for child in parent:
         _unwrap(child)
     parent[:] = [item for child in parent for item in (child if child.tag == "g" and not child.attrib else [child])]
 
 
 def relative(path: str) -> str:
-    """A path of straight lines as steps from point to point, in tenths: half as long as its coordinates."""
-    points = path.split()
-    if not set(points) & {"C", "Q"}:
-        points = _steps(points)
-    return " ".join(points)
+    """A path of straight lines in relative coordinates, rounded to 0.1: half as long as the absolute ones."""
+    tokens = path.split()
+    if not set(tokens) & {"C", "Q"}:
+        tokens = _steps(tokens)
+    return " ".join(tokens)
 
 
-def _steps(points: list[str]) -> list[str]:
-    said: list[str] = []
-    at, start, place = (0, 0), (0, 0), 0
-    while place < len(points):
-        letter = points[place]
+def _steps(tokens: list[str]) -> list[str]:
+    steps: list[str] = []
+    point, start, place = (0, 0), (0, 0), 0
+    while place < len(tokens):
+        letter = tokens[place]
         if letter == "z":
-            said, at, place = [*said, "z"], start, place + 1
+            steps, point, place = [*steps, "z"], start, place + 1
             continue
-        x, y = (round(10 * float(value)) for value in points[place + 1 : place + 3])
-        said.append(f"{letter.lower()}{(x - at[0]) / 10:g} {(y - at[1]) / 10:g}")
-        at, place = (x, y), place + 3
-        start = at if letter == "M" else start
-    return said
+        x, y = (round(10 * float(value)) for value in tokens[place + 1 : place + 3])
+        steps.append(f"{letter.lower()}{(x - point[0]) / 10:g} {(y - point[1]) / 10:g}")
+        point, place = (x, y), place + 3
+        start = point if letter == "M" else start
+    return steps
 
 
 def _local(qualified: str) -> str:

@@ -1,4 +1,4 @@
-"""Tables as LaTeX sets them: booktabs, and the signs that numbers and units are printed with."""
+"""Tables in LaTeX (booktabs)."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import pandas as pd
 
-SENTENCE = 45  # letters
+SENTENCE = 45  # letters; a column with longer cells is broken into lines
 
 
 def tabular(text: pd.DataFrame, words: Collection[str]) -> str:
-    r"""A printed table, its columns of `words` flush left, to be read with `\input`; needs `\usepackage{booktabs}`."""
+    r"""A `tabular` of `text`, columns in `words` flush left, for `\input`; needs `\usepackage{booktabs}`."""
     align = "".join(_alignment(text[column]) if column in words else "r" for column in text)
     body = [_row(row) for row in text.itertuples(index=False, name=None)]
     lines = [rf"\begin{{tabular}}{{{align}}}", r"\toprule", _row(text.columns), r"\midrule", *body]
@@ -21,12 +21,12 @@ def tabular(text: pd.DataFrame, words: Collection[str]) -> str:
 
 
 def _alignment(column: pd.Series[str]) -> str:
-    """Sentences are broken into lines."""
+    """A paragraph column for sentences, else flush left."""
     return "p{60mm}" if column.str.len().max() > SENTENCE else "l"
 
 
 def escaped(text: str) -> str:
-    """`text` as LaTeX shows it: its special characters, and the signs that numbers and units are printed with."""
+    """`text` with LaTeX's special characters escaped, and superscripts and mathematical signs in math mode."""
     text = re.sub(r"[\\{}&%$#_~^<>|]", lambda match: _SPECIAL[match[0]], text)
     text = re.sub(r"[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+", lambda match: f"$^{{{match[0].translate(_DIGITS)}}}$", text)
     return re.sub("|".join(_SIGNS), lambda match: _SIGNS[match[0]], text)

@@ -1,4 +1,4 @@
-"""The page: one HTML file that needs nothing else and loads nothing."""
+"""The report as one self-contained HTML file that loads nothing else."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from pzt_ident.data.over_axes import together
 from pzt_ident.files import plain, write_text
 from pzt_ident.report.figures import Plate, write_page_figures
 from pzt_ident.report.inline import inline
-from pzt_ident.report.tables import make_tables, write_tables
+from pzt_ident.report.sentences import findings, verdict
+from pzt_ident.report.tables import Table, make_tables, write_tables
 from pzt_ident.report.traces import packed
-from pzt_ident.report.words import findings, verdict
 from pzt_ident.run.events import step_name
 from pzt_ident.run.results import Results, read_folder
 
@@ -27,29 +27,47 @@ if TYPE_CHECKING:
     from jinja2 import Environment
     from markupsafe import Markup
 
-LARGEST = 295_000  # bytes; where the page would be larger, its signals are thinned
-POINTS = (7000, 4000, 2000)  # of all records together
+LARGEST = 295_000  # bytes of the page; above that its signals are thinned further
+POINTS = (7000, 4000, 2000)  # samples of all records together, tried in this order
 MODULES = ("parts.js", "signals.js", "plane.js", "explorer.js", "staircase.js", "report.js")
 
 
 def write_report(folder: Path) -> Path:
-    """Write `report.html`, `tables/` and the SVG of each figure in `figures/` of a finished run, diagnosis or
+    """Write `report.html`, `tables/` and the SVG of each static figure in `figures/` for a finished run, diagnosis or
     improvement.
 
-    Returns the path of the page, which is written last. Raises InputError where the folder holds no result.
+    Returns the path of the page, which is written last. Raises InputError if the folder holds no result.
     """
     results = read_folder(folder)
     tables = make_tables(results)
     write_tables(tables, results.folder / "tables")
-    drawn = write_page_figures(results, results.folder / "figures")
+    variables = _template_variables(results, tables, _figures_by_section(results))
+    stairs = [staircase(results, "stairs")] if results.improvement else []
+    content = {"floors": results.floors, "stairs": stairs}
+    page = ""
+    for points in POINTS:
+        content["records"] = packed(results.models, points)
+        page = rendered("report.html", results.name, content, **variables)
+        if len(page.encode()) < LARGEST:
+            break
+    write_text(results.folder / "report.html", page)
+    return results.folder / "report.html"
+
+
+def _figures_by_section(results: Results) -> dict[str | None, list[tuple[Plate, Markup]]]:
+    """The static figures of the page, written to `figures/` and as elements of the page."""
     sections: dict[str | None, list[tuple[Plate, Markup]]] = {}
-    for plate, svg in drawn:
+    for plate, svg in write_page_figures(results, results.folder / "figures"):
         sections.setdefault(plate.section, []).append((plate, inline(svg, plate.name)))
-    words = {
+    return sections
+
+
+def _template_variables(results: Results, tables: dict[str, Table], figures: dict[str | None, Any]) -> dict[str, Any]:
+    return {
         "results": results,
         "result": results.result,
         "tables": tables,
-        "figures": sections,
+        "figures": figures,
         "together": together(results.units),
         "verdict": verdict(results),
         "misfits": list(results.misfit.get("axes", {}).values()),
@@ -57,33 +75,24 @@ def write_report(folder: Path) -> Path:
         "failed_simulations": sum(run["failed_simulations"] for run in results.result.get("runs", ())),
         "optimizers": listed(row["optimizer"] for row in results.result["league"]) if results.result else "",
     }
-    content = {"floors": results.floors, "stairs": [stairs(results, "stairs")] if results.improvement else []}
-    page = ""
-    for points in POINTS:
-        content["records"] = packed(results.models, points)
-        page = rendered("report.html", results.name, content, **words)
-        if len(page.encode()) < LARGEST:
-            break
-    write_text(results.folder / "report.html", page)
-    return results.folder / "report.html"
 
 
-def stairs(results: Results, place: str) -> dict[str, Any]:
-    """The steps of an improvement as the page draws them, into the element with the id `place`."""
-    found = results.improvement
-    steps = [{"name": step_name(step), **step["rmse"]} for step in found["steps"]]
-    said = {"unit": numbers.unit(found["unit"]) or "1", "together": together(results.units)}
-    return {"place": place, "steps": steps, "floor": found["floor"], **said}
+def staircase(results: Results, place: str) -> dict[str, Any]:
+    """What the page's script draws of an improvement into the element with the id `place`."""
+    improvement = results.improvement
+    steps = [{"name": step_name(step), **step["rmse"]} for step in improvement["steps"]]
+    axis = {"unit": numbers.unit(improvement["unit"]) or "1", "together": together(results.units)}
+    return {"place": place, "steps": steps, "floor": improvement["floor"], **axis}
 
 
-def rendered(name: str, title: str, content: dict[str, Any], **words: Any) -> str:
-    """A page of this folder with the look and the scripts that all of them share; `content` is what these draw."""
+def rendered(name: str, title: str, content: dict[str, Any], **variables: Any) -> str:
+    """The template `name` with styles and scripts inline; `content` (JSON) is what the scripts draw."""
     from markupsafe import Markup
 
     data = json.dumps(plain(content), separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-    scripts = [web("uplot/uPlot.iife.min.js"), module()]
+    scripts = [web_file("uplot/uPlot.iife.min.js"), bundled_modules()]
     allowed = " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(s.encode()).digest()).decode()}'" for s in scripts)
-    css = "\n".join(web(sheet) for sheet in ("page.css", "plots.css", "uplot/uPlot.min.css"))
+    css = "\n".join(web_file(sheet) for sheet in ("page.css", "plots.css", "uplot/uPlot.min.css"))
     return (
         environment()
         .get_template(name)
@@ -93,22 +102,22 @@ def rendered(name: str, title: str, content: dict[str, Any], **words: Any) -> st
             scripts=[Markup(script) for script in scripts],
             allowed=Markup(allowed),
             css=Markup(css),
-            **words,
+            **variables,
         )
     )
 
 
-def web(name: str) -> str:
+def web_file(name: str) -> str:
     return files("pzt_ident.report").joinpath("web", name).read_text(encoding="utf-8")
 
 
-def module() -> str:
-    """The page's modules as one: without what they import from each other and export, comments and indents."""
-    whole = "\n".join(web(name) for name in MODULES)
+def bundled_modules() -> str:
+    """The page's JavaScript modules as one, without imports, exports, comments and indentation."""
+    source = "\n".join(web_file(name) for name in MODULES)
     return re.sub(
         r"^import .*;\n|^export (?=async|function|class|const)|^ *(//.*|/\*\*[^/]*\*/)\n|^ +",
         "",
-        whole,
+        source,
         flags=re.MULTILINE,
     )
 
@@ -118,8 +127,8 @@ def environment() -> Environment:
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     loader = PackageLoader("pzt_ident", "report")
-    made = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    made.globals.update(zip=zip)
-    made.filters.update(quantity=numbers.quantity, count=numbers.count, number=numbers.number)
-    made.filters.update(percent=numbers.percent, spelled=numbers.spelled)
-    return made
+    env = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    env.globals.update(zip=zip)
+    env.filters.update(quantity=numbers.quantity, count=numbers.count, number=numbers.number)
+    env.filters.update(percent=numbers.percent, spelled=numbers.spelled)
+    return env

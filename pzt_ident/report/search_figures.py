@@ -1,4 +1,4 @@
-"""Figures of the search: how every optimizer came down, and where its estimates lie."""
+"""Figures of the search: convergence of each optimizer, its estimates, and their correlation."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _NOISE = {"color": "#009e73", "linewidth": 0.9, "linestyle": (0, (6, 2))}
 
 
 def optimizers(results: Results) -> list[str]:
-    """In the order of the league, which is also the order of the colours."""
+    """Names in the order of the league, which is also the order of the colours."""
     return [row["optimizer"] for row in results.result["league"]]
 
 
@@ -48,19 +48,20 @@ def convergence_height(width: float) -> float:
 
 
 def draw_convergence(figure: Figure, results: Results) -> None:
-    """Best RMSE so far of each optimizer, median and quartiles over its repeats, against evaluations and seconds."""
-    looks = {name: _look(place) for place, name in enumerate(optimizers(results))}
+    """Best RMSE so far of each optimizer against evaluations and wall time: median and quartiles over its repeats."""
+    styles = {name: _line_style(place) for place, name in enumerate(optimizers(results))}
     levels = _levels(results)
-    keys = [key(name, **look) for name, look in looks.items()] + [key(name, **look) for name, _, look in levels]
+    keys = [key(name, **style) for name, style in styles.items()]
+    keys += [key(name, **style) for name, _, style in levels]
     top = heading(figure, "Convergence: median and quartiles of the repeats", keys)
     shape = (2, 1) if width_of(figure) == COLUMN else (1, 2)
     for place, (axes, cost) in enumerate(zip(panels(figure, *shape, Frame(top + 4)).ravel(), _COSTS, strict=True)):
-        for name, look in looks.items():
-            spent, low, middle, high = descent(results.history[results.history["optimizer"] == name], cost[0])
-            axes.fill_between(spent, low, high, color=look["color"], alpha=0.15, linewidth=0, step="post")
-            axes.plot(spent, middle, drawstyle="steps-post", **look)
-        for _, level, look in levels:
-            axes.axhline(level, **look)
+        for name, style in styles.items():
+            spent, low, median, high = convergence(results.history[results.history["optimizer"] == name], cost[0])
+            axes.fill_between(spent, low, high, color=style["color"], alpha=0.15, linewidth=0, step="post")
+            axes.plot(spent, median, drawstyle="steps-post", **style)
+        for _, level, style in levels:
+            axes.axhline(level, **style)
         axes.set_xscale("log")
         axes.set_yscale("log")
         log_ticks(axes.xaxis, cost[1], cost[2], axes.get_xlim())
@@ -68,26 +69,30 @@ def draw_convergence(figure: Figure, results: Results) -> None:
         name_panel(axes, f"against {cost[1]}", place=place)
 
 
-def descent(history: pd.DataFrame, cost: str, points: int = 60) -> tuple[Array, Array, Array, Array]:
-    """Cost, and lower quartile, median and upper quartile of the best RMSE over the repeats at it; a repeat that has
-    stopped keeps its last. Costs before the first generation of the slowest repeat are left out."""
-    repeats = [own.sort_values(cost) for _, own in history.groupby("repeat")]
+def convergence(history: pd.DataFrame, cost: str, points: int = 60) -> tuple[Array, Array, Array, Array]:
+    """Cost, and the lower quartile, median and upper quartile over the repeats of the best RMSE at that cost.
+
+    A repeat that has stopped keeps its last value. Costs before the first generation of the slowest repeat are left
+    out."""
+    repeats = [repeat.sort_values(cost) for _, repeat in history.groupby("repeat")]
     if not repeats:
         return np.empty(0), np.empty(0), np.empty(0), np.empty(0)
     grid = np.unique(history[cost].to_numpy(float))
-    grid = grid[grid >= max(own[cost].iloc[0] for own in repeats)]
+    grid = grid[grid >= max(repeat[cost].iloc[0] for repeat in repeats)]
     if grid.size > points:
         grid = grid[np.unique(np.geomspace(1, grid.size, points).astype(int) - 1)]
-    reached = np.array([own["best"].to_numpy(float)[own[cost].searchsorted(grid, "right") - 1] for own in repeats])
-    reached[~np.isfinite(reached)] = np.nan
-    seen = ~np.isnan(reached).all(axis=0)
-    reached = reached[:, seen]
-    lower, median, upper = np.nanquantile(reached, (0.25, 0.5, 0.75), axis=0)
-    return grid[seen], lower, median, upper
+    best = np.array(
+        [repeat["best"].to_numpy(float)[repeat[cost].searchsorted(grid, "right") - 1] for repeat in repeats]
+    )
+    best[~np.isfinite(best)] = np.nan
+    known = ~np.isnan(best).all(axis=0)
+    best = best[:, known]
+    lower, median, upper = np.nanquantile(best, (0.25, 0.5, 0.75), axis=0)
+    return grid[known], lower, median, upper
 
 
 def free_parameters(results: Results) -> list[str]:
-    """Those that are searched for or stand alone."""
+    """Parameters of the best run except those that belong to one drive value each."""
     return [name for name, entry in results.best["parameters"].items() if not entry.get("at")]
 
 
@@ -96,22 +101,21 @@ def estimates_height(width: float, parameters: int) -> float:
 
 
 def draw_estimates(figure: Figure, results: Results) -> None:
-    """Where in its bounds every run put each free parameter, the best run ringed: a scatter over the whole box is
-    a parameter that the data do not determine."""
+    """Estimates of each free parameter from all runs relative to its bounds, the best run ringed."""
     names = free_parameters(results)
-    looks = {name: _dot(place) for place, name in enumerate(optimizers(results))}
-    keys = [key(name, linestyle="", **look) for name, look in looks.items()]
+    styles = {name: _marker_style(place) for place, name in enumerate(optimizers(results))}
+    keys = [key(name, linestyle="", **style) for name, style in styles.items()]
     ring = {"marker": "o", "markersize": 5.5, "markerfacecolor": "none", "markeredgecolor": INK, "markeredgewidth": 0.7}
     top = heading(figure, "Estimates of all runs within their bounds", [*keys, key("best run", linestyle="", **ring)])
     best = [results.best["parameters"][name] for name in names]
-    room = 3 + max(len(_bounds(entry)) for entry in best)  # mm, one a letter
-    frame = Frame(top + 1, left=_names_width(max(map(len, names))), right=room)
+    right = 3 + max(len(_bounds(entry)) for entry in best)  # mm, one per letter
+    frame = Frame(top + 1, left=_names_width(max(map(len, names))), right=right)
     axes = panels(figure, 1, 1, frame)[0, 0]
-    for place, (optimizer, look) in enumerate(looks.items()):
-        own = [run["parameters"] for run in results.result["runs"] if run["optimizer"] == optimizer]
-        shift = 0.36 * (place / max(len(looks) - 1, 1) - 0.5)
-        xs = [within(parameters[name]) for name in names for parameters in own]
-        axes.plot(xs, np.repeat(np.arange(len(names)) + shift, len(own)), linestyle="", clip_on=False, **look)
+    for place, (optimizer, style) in enumerate(styles.items()):
+        estimates = [run["parameters"] for run in results.result["runs"] if run["optimizer"] == optimizer]
+        shift = 0.36 * (place / max(len(styles) - 1, 1) - 0.5)
+        xs = [within(parameters[name]) for name in names for parameters in estimates]
+        axes.plot(xs, np.repeat(np.arange(len(names)) + shift, len(estimates)), linestyle="", clip_on=False, **style)
     axes.plot([within(entry) for entry in best], range(len(names)), linestyle="", clip_on=False, **ring)
     for row, entry in enumerate(best):
         axes.axhline(row, color=SHADE, linewidth=0.5, zorder=0)
@@ -120,11 +124,11 @@ def draw_estimates(figure: Figure, results: Results) -> None:
     axes.set_yticks(range(len(names)), names)
     axes.set_xlim(-0.02, 1.02)
     axes.set_xticks([0, 0.5, 1], ["lower", "middle", "upper"])
-    axes.set_xlabel("place within the bounds")
+    axes.set_xlabel("position within the bounds")
 
 
 def within(entry: Mapping[str, Any]) -> float:
-    """Place of a value between its bounds, 0 to 1; of the logarithms where the bounds span two decades or more."""
+    """Position of a value between its bounds, 0 to 1; logarithmic where the bounds span two decades or more."""
     value, lower, upper = entry["value"], entry["lower"], entry["upper"]
     if spans_decades(entry):
         value, lower, upper = math.log(max(value, lower)), math.log(lower), math.log(upper)
@@ -140,7 +144,7 @@ def correlation_height(width: float, longest: int, parameters: int) -> float:
 
 
 def draw_correlation(figure: Figure, results: Results) -> None:
-    """Correlations of the best run's estimates; grey where the data do not determine them."""
+    """Correlation matrix of the best run's estimates; grey where it is not defined."""
     names, matrix = correlation(results)
     width, longest = width_of(figure), max(map(len, names))
     top, left = heading(figure, "Correlation of the estimates, best run"), _names_width(longest)
@@ -177,23 +181,24 @@ def _map_width(width: float, longest: int, parameters: int) -> float:
 
 
 def correlation(results: Results) -> tuple[list[str], Array]:
-    """Names and matrix, NaN where there is no correlation."""
-    found = results.best.get("correlation") or {"names": [], "matrix": []}
-    return found["names"], np.array(found["matrix"], dtype=float).reshape((len(found["names"]),) * 2)
+    """Names (n) and correlation matrix (n, n), NaN where a correlation is not defined."""
+    stored = results.best.get("correlation") or {"names": [], "matrix": []}
+    names = stored["names"]
+    return names, np.array(stored["matrix"], dtype=float).reshape(len(names), len(names))
 
 
-def _look(place: int) -> dict[str, Any]:
+def _line_style(place: int) -> dict[str, Any]:
     return {"color": PALETTE[place % len(PALETTE)], "linestyle": DASHES[place % len(DASHES)], "linewidth": 1.0}
 
 
-def _dot(place: int) -> dict[str, Any]:
+def _marker_style(place: int) -> dict[str, Any]:
     colour, marker = PALETTE[place % len(PALETTE)], MARKERS[place % len(MARKERS)]
     return {"color": colour, "marker": marker, "markersize": 3.2, "markeredgewidth": 0, "alpha": 0.8}
 
 
 def _levels(results: Results) -> list[tuple[str, float, dict[str, Any]]]:
-    """Horizontal lines: the best result of all runs, after its polish, and the noise floor; a zero has no place on a
-    logarithmic axis."""
+    """Horizontal lines (name, RMSE, style): the best polished result and the noise floor; zero is left out, since
+    the axis is logarithmic."""
     best, floor = results.best["rmse"]["identify"], results.floor or 0.0
     return [("best, polished", best, _BEST)] * (best > 0) + [("noise floor", floor, _NOISE)] * (floor > 0)
 

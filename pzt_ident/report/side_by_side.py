@@ -1,4 +1,4 @@
-"""Several results on one page."""
+"""Several results compared on one page."""
 
 from __future__ import annotations
 
@@ -8,101 +8,102 @@ from typing import Any
 
 from pzt_ident.data.notation import number, quantity, unit
 from pzt_ident.files import write_text
-from pzt_ident.report.page import POINTS, rendered, stairs
+from pzt_ident.report.page import POINTS, rendered, staircase
+from pzt_ident.report.sentences import USE_NAMES, listed, together, verdict
 from pzt_ident.report.tables import Cell, Table, table, write_tables
 from pzt_ident.report.traces import packed
-from pzt_ident.report.words import listed, together, verdict
 from pzt_ident.run.results import Results, read_folder
 
 
 def write_side_by_side(folders: Sequence[Path], page: Path) -> Path:
-    """Write the results of these folders as one page, and its tables into a folder of the same name beside it.
+    """Write one page on the results of these folders, and its tables into a folder of the same name beside it.
 
-    Models of the same samples are shown in the same figures. Raises InputError where a folder holds no result.
+    Models of the same samples share their figures. Raises InputError if a folder holds no result.
     """
     results = dict(zip(labels(folders), map(read_folder, folders), strict=True))
-    tables = {made.name: made for made in (summary(results), parameters(results))}
+    tables = {table.name: table for table in (summary(results), parameters(results))}
     write_tables(tables, page.with_suffix(""))
-    improved = {name: own for name, own in results.items() if own.improvement}
-    drawn = [stairs(own, f"stairs-{place}") | {"title": name} for place, (name, own) in enumerate(improved.items())]
-    models = {name: own.traces for name, own in results.items()}
-    content = {"records": packed(models, POINTS[0]), "floors": shared_floors(results), "stairs": drawn}
-    verdicts = {name: verdict(own) for name, own in results.items()}
-    words: dict[str, Any] = {"results": results, "tables": tables, "stairs": drawn, "verdicts": verdicts}
-    write_text(page, rendered("side_by_side.html", "Side by side", content, lead=lead(results), **words))
+    improved = {name: result for name, result in results.items() if result.improvement}
+    stairs = [
+        staircase(result, f"stairs-{place}") | {"title": name} for place, (name, result) in enumerate(improved.items())
+    ]
+    models = {name: result.traces for name, result in results.items()}
+    content = {"records": packed(models, POINTS[0]), "floors": shared_floors(results), "stairs": stairs}
+    verdicts = {name: verdict(result) for name, result in results.items()}
+    variables: dict[str, Any] = {"results": results, "tables": tables, "stairs": stairs, "verdicts": verdicts}
+    write_text(page, rendered("side_by_side.html", "Side by side", content, lead=ranking(results), **variables))
     return page
 
 
 def labels(folders: Sequence[Path]) -> list[str]:
-    """The folders' last names, as many as it takes to tell them apart."""
+    """The last parts of the folders' paths, as many as make them distinct, else numbers and names."""
     parts = [folder.resolve().parts for folder in folders]
     for count in range(1, max(map(len, parts)) + 1):
-        found = ["/".join(own[-count:]) for own in parts]
-        if len(set(found)) == len(found):
-            return found
+        names = ["/".join(path[-count:]) for path in parts]
+        if len(set(names)) == len(names):
+            return names
     return [f"{place}: {folder.name}" for place, folder in enumerate(folders, start=1)]
 
 
-def lead(results: dict[str, Results]) -> str:
-    """Which result leaves the least, on records the fit never saw where all have such."""
-    use = "identify" if any(own.rmse["validate"] is None for own in results.values()) else "validate"
-    if len({(own.unit, *own.units) for own in results.values()}) > 1:
-        return "The responses are of different axes or in different units: their errors cannot be ranked."
+def ranking(results: dict[str, Results]) -> str:
+    """A sentence naming the result with the lowest RMSE, on the validation records if all results have some."""
+    use = "identify" if any(result.rmse["validate"] is None for result in results.values()) else "validate"
+    if len({(result.unit, *result.units) for result in results.values()}) > 1:
+        return "The results have different axes or units: their errors cannot be ranked."
     best = min(results, key=lambda name: results[name].rmse[use] or 0.0)
-    where = "on records the fit never saw" if use == "validate" else "on the records it was fitted to"
-    size = f"{quantity(results[best].rmse[use], results[best].unit, 3)} RMS{together(results[best].units)}"
-    return f"{best} leaves least {where}: {size}."
+    size = f"{quantity(results[best].rmse[use], results[best].unit, 3)}{together(results[best].units)}"
+    return f"{best} has the lowest RMSE on the {USE_NAMES[use]} records: {size}."
 
 
 def shared_floors(results: dict[str, Results]) -> dict[str, float | None]:
-    """The noise floor of each axis on which the results agree, in its unit."""
-    found: dict[str, set[tuple[str, float | None]]] = {}
-    for own in results.values():
-        for axis, floor in own.floors.items():
-            found.setdefault(axis, set()).add((own.units[axis], floor))
-    return {axis: next(iter(pairs))[1] for axis, pairs in found.items() if len(pairs) == 1}
+    """The noise floor of each axis, in its unit, where all results agree on it."""
+    floors: dict[str, set[tuple[str, float | None]]] = {}
+    for result in results.values():
+        for axis, floor in result.floors.items():
+            floors.setdefault(axis, set()).add((result.units[axis], floor))
+    return {axis: next(iter(pairs))[1] for axis, pairs in floors.items() if len(pairs) == 1}
 
 
 def summary(results: dict[str, Results]) -> Table:
-    """One row a result: what it leaves, and what that cost where it was searched for."""
+    """One row per result: its RMSE, noise floor, best run and the effects that were added."""
     rows = [
         {
             "result": name,
-            "job": own.name,
-            **own.rmse,
-            "unit": own.unit,
-            "axes": f"{listed(own.units)}{' together' * (len(own.units) > 1)}",
-            "noise_floor": own.floor or None,
-            "run": own.result["best"]["run"] if own.result else "",
-            "seconds": own.result["best"]["seconds"] if own.result else None,
-            "effects": ", ".join(own.improvement.get("effects", ())),
+            "job": result.name,
+            **result.rmse,
+            "unit": result.unit,
+            "axes": f"{listed(result.units)}{' together' * (len(result.units) > 1)}",
+            "noise_floor": result.floor or None,
+            "run": result.result["best"]["run"] if result.result else "",
+            "seconds": result.result["best"]["seconds"] if result.result else None,
+            "effects": ", ".join(result.improvement.get("effects", ())),
         }
-        for name, own in results.items()
+        for name, result in results.items()
     ]
     cells: dict[str, Cell] = {
         "result": lambda row: row["result"],
         "job": lambda row: row["job"],
-        "identify": lambda row: number(row["identify"]),
-        "validate": lambda row: number(row["validate"]),
+        "identification RMSE": lambda row: number(row["identify"]),
+        "validation RMSE": lambda row: number(row["validate"]),
         "noise floor": lambda row: number(row["noise_floor"], 3),
         "unit": lambda row: unit(row["unit"]) or "1",
-        "of axis": lambda row: row["axes"],
+        "axes": lambda row: row["axes"],
         "best run": lambda row: row["run"],
         "time [s]": lambda row: number(row["seconds"], 3),
         "effects added": lambda row: row["effects"],
     }
-    return table("results", rows, cells, {"result", "job", "unit", "of axis", "best run", "effects added"}, {})
+    return table("results", rows, cells, {"result", "job", "unit", "axes", "best run", "effects added"}, {})
 
 
 def parameters(results: dict[str, Results]) -> Table:
-    """One row a parameter, one column a result."""
-    values = {name: own.parameters for name, own in results.items()}
-    names = dict.fromkeys(key for found in values.values() for key in found)
+    """One row per parameter, one column per result."""
+    values = {name: result.parameters for name, result in results.items()}
+    names = dict.fromkeys(key for entries in values.values() for key in entries)
     rows = [
         {
             "parameter": key,
-            "unit": next(found[key]["unit"] for found in values.values() if key in found),
-            **{name: found.get(key, {}).get("value") for name, found in values.items()},
+            "unit": next(entries[key]["unit"] for entries in values.values() if key in entries),
+            **{name: entries.get(key, {}).get("value") for name, entries in values.items()},
         }
         for key in names
     ]

@@ -1,4 +1,4 @@
-"""Figures of the signals: the best model beside the measurement, in time and as loops."""
+"""Figures of the signals: model and measurement over time and as loops."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from pzt_ident.data.signals import Array, Trace
+from pzt_ident.report.sentences import USE_NAMES
 from pzt_ident.report.style import (
     COLUMN,
     INK,
@@ -16,8 +17,8 @@ from pzt_ident.report.style import (
     NOISE,
     SHADE,
     Frame,
-    along,
     decimate,
+    decimate_curve,
     heading,
     key,
     label,
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_KEYS = (("measured", MEASURED), ("model", MODEL))
+_CURVES = (("measured", MEASURED), ("model", MODEL))
 
 
 def time_height(width: float) -> float:
@@ -39,20 +40,20 @@ def time_height(width: float) -> float:
 
 
 def draw_time(figure: Figure, trace: Trace, noise: float | None, bins: int) -> None:
-    """Measured and modelled response over time, the residual below; what is not scored is shaded."""
-    keys = [key(name, **look) for name, look in _KEYS]
+    """Measured and modelled response over time, the residual below; samples that are not scored are shaded."""
+    keys = [key(name, **style) for name, style in _CURVES]
     keys += [patch("± noise floor", **NOISE)] * bool(noise) + [patch("not scored", color=SHADE)] * (trace.settle > 0)
-    top = heading(figure, f"Model beside measurement, axis {trace.axis}", keys)
+    top = heading(figure, f"Model and measurement, axis {trace.axis}", keys)
     upper, lower = panels(figure, 2, 1, Frame(top + 4, down=3.5), sharex=True, height_ratios=(1.8, 1))[:, 0]
-    name_panel(upper, trace.record, trace.use)
-    for axes, values, look in (
+    name_panel(upper, trace.record, USE_NAMES[trace.use])
+    for axes, values, style in (
         (upper, trace.response, MEASURED),
         (upper, trace.model, MODEL),
         (lower, trace.residual, {"color": INK, "linewidth": 0.4}),
     ):
         shown = decimate(values, bins)
-        axes.plot(trace.time[shown], values[shown], **look)
-        if trace.settle > 0 and look is not MODEL:
+        axes.plot(trace.time[shown], values[shown], **style)
+        if trace.settle > 0 and style is not MODEL:
             axes.axvspan(trace.time[0], trace.time[0] + trace.settle, color=SHADE, linewidth=0)
     lower.axhspan(-(noise or 0), noise or 0, linewidth=0, **NOISE)
     lower.set_ylim(*_limits(trace, noise or 0.0))
@@ -63,29 +64,29 @@ def draw_time(figure: Figure, trace: Trace, noise: float | None, bins: int) -> N
 
 
 def draw_loops(figure: Figure, traces: Sequence[Trace], points: int) -> None:
-    """Response against drive, one panel a record."""
+    """Response against drive, one panel per record."""
     title = f"Response against drive, axis {traces[0].axis}"
-    top = heading(figure, title, [key(name, **look) for name, look in _KEYS])
+    top = heading(figure, title, [key(name, **style) for name, style in _CURVES])
     for axes, trace in zip(record_panels(figure, traces, Frame(top + 4)), traces, strict=True):
-        shown = along(trace.drive, trace.response, points)
-        for values, look in ((trace.response, MEASURED), (trace.model, MODEL)):
-            axes.plot(trace.drive[shown], values[shown], **look | {"linewidth": 0.65 * look["linewidth"]})
+        shown = decimate_curve(trace.drive, trace.response, points)
+        for values, style in ((trace.response, MEASURED), (trace.model, MODEL)):
+            axes.plot(trace.drive[shown], values[shown], **style | {"linewidth": 0.65 * style["linewidth"]})
         label(axes.yaxis, "response", trace.unit, trace.response)
 
 
 def record_panels(figure: Figure, traces: Sequence[Trace], frame: Frame) -> list[Axes]:
-    """One titled panel a record, its drive along the foot."""
+    """One titled panel per record with the drive on its x axis."""
     grid = panels(figure, *_shape(width_of(figure), len(traces)), frame).ravel()
     for place, (axes, trace) in enumerate(zip(grid, traces, strict=False)):
-        name_panel(axes, trace.record, trace.use, place if len(traces) > 1 else None)
+        name_panel(axes, trace.record, USE_NAMES[trace.use], place if len(traces) > 1 else None)
         label(axes.xaxis, "drive", trace.drive_unit, trace.drive)
-    for spare in grid[len(traces) :]:
-        spare.set_axis_off()
+    for unused in grid[len(traces) :]:
+        unused.set_axis_off()
     return list(grid[: len(traces)])
 
 
 def records_height(width: float, records: int) -> float:
-    """Height in mm of a figure with one panel a record."""
+    """Height in mm of a figure with one panel per record."""
     rows, columns = _shape(width, records)
     return 24 + rows * 0.72 * min(70.0, width / columns - 13) + 14 * (rows - 1)
 
@@ -96,8 +97,8 @@ def _shape(width: float, records: int) -> tuple[int, int]:
 
 
 def _limits(trace: Trace, noise: float) -> tuple[float, float]:
-    """Room for the scored residual and the noise floor; the start, before the model has settled, may leave it."""
+    """Limits of the y axis, set by the scored residual and the noise floor; samples not scored may lie outside."""
     scored = trace.residual[trace.scored]
     ends: Array = np.append(scored[np.isfinite(scored)], [-1.2 * noise, 1.2 * noise])
-    spare = 0.06 * float(np.ptp(ends)) or 1.0
-    return float(ends.min()) - spare, float(ends.max()) + spare
+    margin = 0.06 * float(np.ptp(ends)) or 1.0
+    return float(ends.min()) - margin, float(ends.max()) + margin

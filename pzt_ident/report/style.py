@@ -1,4 +1,4 @@
-"""One look for every figure: paper sizes, type, colours, and how many points a line is worth."""
+"""The style of all figures: paper sizes, fonts, colours, legends, axis labels, and thinning of long curves."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 COLUMN, PAGE = 88, 180
-"""Widths of a figure in a paper's column and across its page, mm."""
+"""Widths of a figure in one column and across the page, mm."""
 
 INK, QUIET, SHADE = "#1a1a1a", "#8a8a8a", "#e4e4e4"
 MEASURED: dict[str, Any] = {"color": "#7aa6c8", "linewidth": 1.8, "solid_capstyle": "butt"}
 MODEL: dict[str, Any] = {"color": "#b3400f", "linewidth": 0.7}
 NOISE: dict[str, Any] = {"color": "#009e73", "alpha": 0.25}
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#aa4499", "#ddaa33", "#56b4e9", "#222222")
-"""Okabe and Ito's colours, the yellow darkened: told apart by the colour-blind and, with DASHES, in grey."""
+"""Okabe and Ito's colours with the yellow darkened: distinguishable with colour blindness and, with DASHES, in grey."""
 DASHES = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (6, 1.2, 1.2, 1.2)), (0, (3, 1)), (0, (8, 2)), "-")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 
@@ -81,7 +81,7 @@ _STYLE: Any = {
 
 @contextmanager
 def style() -> Iterator[None]:
-    """The look, for what is drawn and saved inside."""
+    """Matplotlib's settings for what is drawn and saved inside."""
     import warnings
 
     import matplotlib
@@ -93,7 +93,7 @@ def style() -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Frame:
-    """What a figure leaves around its panels, and between them, in mm."""
+    """Margins of a figure around its panels (top, left, right, bottom) and between them (across, down), mm."""
 
     top: float
     left: float = 13.0
@@ -131,7 +131,7 @@ def height_of(figure: Figure) -> float:
 
 
 def heading(figure: Figure, text: str, handles: Sequence[Any] = ()) -> float:
-    """Write what the figure shows at its top left and the legend below it; return the height taken, in mm."""
+    """Write the title at the top left and the legend below it; returns their height in mm."""
     width, height = width_of(figure), height_of(figure)
     figure.text(2 / width, 1 - 1.5 / height, fit(text, width - 4), va="top", weight="bold", size=7)
     if not handles:
@@ -143,7 +143,7 @@ def heading(figure: Figure, text: str, handles: Sequence[Any] = ()) -> float:
 
 
 def _legend_columns(labels: list[str], width: float) -> int:
-    """As many as fit; a legend fills column after column, the first ones fuller."""
+    """The largest number of columns that fits; a legend fills its columns one after the other."""
     for columns in range(len(labels), 1, -1):
         stacks = np.array_split([len(label) for label in labels], columns)
         if sum(8.5 + 1.15 * max(stack) for stack in stacks) <= width:
@@ -151,82 +151,84 @@ def _legend_columns(labels: list[str], width: float) -> int:
     return 1
 
 
-def key(label: str, **look: Any) -> Any:
-    """A line of the legend."""
+def key(label: str, **style: Any) -> Any:
+    """A line in the legend."""
     from matplotlib.lines import Line2D
 
-    return Line2D([], [], label=label, **look)
+    return Line2D([], [], label=label, **style)
 
 
-def patch(label: str, **look: Any) -> Any:
-    """A patch of the legend."""
+def patch(label: str, **style: Any) -> Any:
+    """A patch in the legend."""
     from matplotlib.patches import Patch
 
-    return Patch(label=label, linewidth=0, **look)
+    return Patch(label=label, linewidth=0, **style)
 
 
 def fit(text: str, width: float, size: float = 7.0) -> str:
-    """`text`, its middle left out where it would not fit into `width` mm."""
-    most = int(width / (0.185 * size))
-    if len(text) <= most:
+    """`text`, its middle replaced by an ellipsis where it does not fit into `width` mm at `size` pt."""
+    letters = int(width / (0.185 * size))
+    if len(text) <= letters:
         return text
-    return f"{text[: most - most // 3 - 1]}…{text[-(most // 3) :]}"
+    return f"{text[: letters - letters // 3 - 1]}…{text[-(letters // 3) :]}"
 
 
-def label(axis: Axis, name: str, of: str, values: Sequence[float] | NDArray[np.float64]) -> None:
-    """Name and unit of an axis that shows `values`; a power of ten goes to the unit, `residual [10⁻⁶ m]`, where the
-    numbers would be long."""
+def label(axis: Axis, name: str, raw_unit: str, values: Sequence[float] | NDArray[np.float64]) -> None:
+    """Label an axis that shows `values` with name and unit; for very small or large values the unit carries a power of
+    ten, as in `residual [10⁻⁶ m]`."""
     from matplotlib.ticker import FuncFormatter
 
     largest = float(np.nanmax(np.abs(values), initial=0.0))
     power = 3 * math.floor(math.log10(largest) / 3) if 0 < largest < 1e-3 or 1e5 <= largest < math.inf else 0
     if power:
         axis.set_major_formatter(FuncFormatter(lambda value, _: short(value / 10.0**power, 6)))
-    words = [power_of_ten(power)] * bool(power) + [unit(of)] * bool(unit(of)) or [of]
-    axis.set_label_text(f"{name} [{' '.join(words)}]".removesuffix(" []"))
+    parts = [power_of_ten(power)] * bool(power) + [unit(raw_unit)] * bool(unit(raw_unit)) or [raw_unit]
+    axis.set_label_text(f"{name} [{' '.join(parts)}]".removesuffix(" []"))
 
 
-def log_ticks(axis: Axis, name: str, of: str, span: Sequence[float]) -> None:
-    """`label` of a logarithmic axis from the lower to the upper value of `span`, with plain numbers at its ticks."""
+def log_ticks(axis: Axis, name: str, raw_unit: str, span: Sequence[float]) -> None:
+    """As `label`, for a logarithmic axis over `span` (lower, upper), with plain numbers at its ticks."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if span[1] / span[0] < 300 else (1.0,), numticks=8))
     axis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
     axis.set_minor_formatter(NullFormatter())
-    label(axis, name, of, span)
+    label(axis, name, raw_unit, span)
 
 
 def decimate(values: NDArray[np.float64], bins: int) -> NDArray[np.intp]:
-    """Indices of the lowest and highest value of each of `bins` stretches, and of both ends, in order."""
+    """Ascending indices of the minimum and maximum in each of `bins` intervals, and of both ends."""
     size = values.size
     if size <= 2 * bins:
         return np.arange(size)
     edges = np.linspace(0, size, bins + 1).astype(int)
-    known = np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
-    found = [
-        start + pick(known[start:stop]) for start, stop in itertools.pairwise(edges) for pick in (np.argmin, np.argmax)
+    finite = np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
+    extremes = [
+        start + index(finite[start:stop])
+        for start, stop in itertools.pairwise(edges)
+        for index in (np.argmin, np.argmax)
     ]
-    return np.unique([0, *found, size - 1])
+    return np.unique([0, *extremes, size - 1])
 
 
-def along(xs: NDArray[np.float64], ys: NDArray[np.float64], points: int) -> NDArray[np.intp]:
-    """Indices of points at even distances along a curve, and of the turns of x, in order."""
+def decimate_curve(xs: NDArray[np.float64], ys: NDArray[np.float64], points: int) -> NDArray[np.intp]:
+    """Ascending indices of points at equal distances along a curve, and of the extremes of x."""
     if xs.size <= points:
         return np.arange(xs.size)
     steps = [np.diff(np.nan_to_num(values)) / (float(np.ptp(np.nan_to_num(values))) or 1.0) for values in (xs, ys)]
-    way = np.append(0.0, np.cumsum(np.hypot(*steps)))
-    return np.union1d(decimate(xs, points // 4), np.searchsorted(way, np.linspace(0.0, way[-1], points)))
+    length = np.append(0.0, np.cumsum(np.hypot(*steps)))
+    return np.union1d(decimate(xs, points // 4), np.searchsorted(length, np.linspace(0.0, length[-1], points)))
 
 
-def saved(figure: Figure, form: str) -> bytes:
-    """The figure as a file's content, `form` being svg or pdf; the same bytes for the same figure."""
+def file_content(figure: Figure, form: str) -> bytes:
+    """The figure as the content of a file in the format `form` (svg, pdf); the same figure gives the same bytes."""
     file = io.BytesIO()
     figure.savefig(file, format=form, metadata={"Date": None} if form == "svg" else {"CreationDate": None})
     return file.getvalue() if form == "pdf" else _rounded(file.getvalue().decode()).encode()
 
 
 def _rounded(svg: str) -> str:
-    """Path coordinates to a hundredth of a point, which is finer than any printer."""
+    """The SVG with path coordinates rounded to 0.01 point, finer than any printer resolves."""
     number = re.compile(r"-?\d+\.\d{3,}")
     return re.sub(
         r' d="[^"]*"', lambda path: number.sub(lambda match: f"{float(match[0]):.2f}", path[0]).replace(" \n", " "), svg
@@ -234,9 +236,9 @@ def _rounded(svg: str) -> str:
 
 
 def name_panel(axes: Axes, name: str, remark: str = "", place: int | None = None) -> None:
-    """What a panel shows, above it: behind the letter of its place among several, (a), (b), ..., and before a remark
-    that is never cut."""
+    """Title of a panel: the letter of its `place` among several, (a), (b), ..., its name, shortened to fit, and a
+    remark in parentheses."""
     width = axes.get_position().width * width_of(axes.figure) + 2  # type: ignore[arg-type]
-    first = "" if place is None else f"({chr(97 + place % 26)}) "
-    last = f" ({remark})" if remark else ""
-    axes.set_title(first + fit(name, width - 1.2 * len(first + last), 6.5) + last)
+    letter = "" if place is None else f"({chr(97 + place % 26)}) "
+    suffix = f" ({remark})" if remark else ""
+    axes.set_title(letter + fit(name, width - 1.2 * len(letter + suffix), 6.5) + suffix)

@@ -1,4 +1,4 @@
-"""The tables of a run: numbers for a computer (CSV), and the same as text for a reader (page, LaTeX)."""
+"""The tables of a run: as numbers (CSV) and as printed text (page, LaTeX)."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from pzt_ident.data.notation import bounds, count, number, percent, quantity, sh
 from pzt_ident.data.over_axes import together
 from pzt_ident.files import write_text
 from pzt_ident.report.latex import tabular
+from pzt_ident.report.sentences import USE_NAMES
 from pzt_ident.run.events import step_name
 from pzt_ident.run.results import Results
 
@@ -22,8 +23,8 @@ Cell = Callable[[Mapping[str, Any]], str]
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """`data` has the numbers, a unit in the heading where there is one; `text` has what is printed. `words` are
-    the printed columns set flush left, numbers being flush right."""
+    """`data`: the numbers, with units in the headings. `text`: the same as printed. `words`: the columns of `text` that
+    are set flush left; numbers are set flush right."""
 
     name: str
     data: pd.DataFrame
@@ -32,11 +33,11 @@ class Table:
 
 
 def make_tables(results: Results) -> dict[str, Table]:
-    """Those that these results have, by name: the league of optimizers, every run, the best run's parameters and the
-    records of a run; the candidates of a diagnosis; the steps of an improvement and the parameters before and after."""
-    made = [league, runs, parameters, records] if results.result else []
-    made += [candidates] * bool(results.diagnosis) + [steps, changes] * bool(results.improvement)
-    return {table.name: table for table in (make(results) for make in made)}
+    """All tables of these results by name: league of optimizers, runs, parameters of the best run and records (run);
+    candidates (diagnosis); steps and changes of parameters (improvement)."""
+    makers = [league, runs, parameters, records] if results.result else []
+    makers += [candidates] * bool(results.diagnosis) + [steps, changes] * bool(results.improvement)
+    return {table.name: table for table in (make(results) for make in makers)}
 
 
 def write_tables(tables: Mapping[str, Table], folder: Path) -> None:
@@ -47,7 +48,7 @@ def write_tables(tables: Mapping[str, Table], folder: Path) -> None:
 
 
 def league(results: Results) -> Table:
-    """One row an optimizer: its own result before the polish, what it cost, and the result after the polish."""
+    """One row per optimizer: its RMSE before the polish, its cost, and the RMSE after the polish."""
     rmse = ("rmse_median", "rmse_lower_quartile", "rmse_upper_quartile", "rmse_best", "polished_rmse_median")
     cells: dict[str, Cell] = {
         "optimizer": lambda row: row["optimizer"],
@@ -64,17 +65,15 @@ def league(results: Results) -> Table:
         "success": lambda row: percent(row["success"]),
     }
     if len(results.result["league"]) > 1:
-        cells["behind the first in"] = lambda row: (
-            f"{row['leader_ahead']} of {row['pairs']}" if row.get("pairs") else "–"
-        )
+        cells["worse than first"] = lambda row: f"{row['leader_ahead']} of {row['pairs']}" if row.get("pairs") else "–"
         cells["sign test p"] = lambda row: number(row["sign_test"], 2) if row.get("pairs") else "–"
     return table(
-        "league", results.result["league"], cells, {"optimizer"}, _heads(results, *rmse, s=("seconds_median",))
+        "league", results.result["league"], cells, {"optimizer"}, _headings(results, *rmse, s=("seconds_median",))
     )
 
 
 def runs(results: Results) -> Table:
-    """One row a finished run, RMSE over the identify and over the validate records, before and after the polish."""
+    """One row per finished run: RMSE on the identification and validation records before and after the polish."""
     flat = ("identify", "validate", "identify_before_polish", "validate_before_polish")
     rows = [
         {
@@ -87,24 +86,24 @@ def runs(results: Results) -> Table:
     ]
     cells: dict[str, Cell] = {
         "run": lambda row: row["run"],
-        pooled("identify", results): lambda row: number(row["identify"]),
-        pooled("validate", results): lambda row: number(row["validate"]),
-        pooled("identify before polish", results): lambda row: number(row["identify_before_polish"]),
-        pooled("validate before polish", results): lambda row: number(row["validate_before_polish"]),
+        pooled("identification RMSE", results): lambda row: number(row["identify"]),
+        pooled("validation RMSE", results): lambda row: number(row["validate"]),
+        pooled("identification RMSE before polish", results): lambda row: number(row["identify_before_polish"]),
+        pooled("validation RMSE before polish", results): lambda row: number(row["validate_before_polish"]),
         "evaluations": lambda row: count(row["evaluations"]),
-        "in the polish": lambda row: count(row["polish_evaluations"]),
+        "polish evaluations": lambda row: count(row["polish_evaluations"]),
         "evaluations to 1\u00a0%": lambda row: count(row["evaluations_to_1_percent"]),
         "time [s]": lambda row: number(row["seconds"], 3),
         "CPU [s]": lambda row: number(row["cpu_seconds"], 3),
         "failed simulations": lambda row: count(row["failed_simulations"]),
         "stopped by": lambda row: row["stopped_by"],
     }
-    heads = _heads(results, *flat, s=("seconds", "cpu_seconds"))
-    return table("runs", rows, cells, {"run", "stopped by"}, heads)
+    headings = _headings(results, *flat, s=("seconds", "cpu_seconds"))
+    return table("runs", rows, cells, {"run", "stopped by"}, headings)
 
 
 def parameters(results: Results) -> Table:
-    """One row a parameter of the best run: value with standard error, bounds, and what the data say about it."""
+    """One row per parameter of the best run: value with standard error, bounds, and whether the data determine it."""
     keys = ("value", "standard_error", "unit", "lower", "upper", "verdict", "note")
     rows = [
         {"parameter": name, **{key: entry.get(key) for key in keys}}
@@ -123,7 +122,7 @@ def parameters(results: Results) -> Table:
 
 
 def records(results: Results) -> Table:
-    """One row a record: its use, size, RMSE of the best run per axis in its own unit, and the hash of its file."""
+    """One row per record: its use, size, RMSE of the best run by axis in the axis' unit, and the hash of its file."""
     keys = ("name", "use", "samples", "sample_rate", "settle")
     axes = list(dict.fromkeys(axis for record in results.result["records"] for axis in record["rmse"]))
     rows = [
@@ -140,7 +139,7 @@ def records(results: Results) -> Table:
     }
     cells: dict[str, Cell] = {
         "record": lambda row: row["name"],
-        "use": lambda row: row["use"],
+        "use": lambda row: USE_NAMES[row["use"]],
         "samples": lambda row: count(row["samples"]),
         "rate [Hz]": lambda row: short(row["sample_rate"], 6),
         "not scored [s]": lambda row: short(row["settle"]),
@@ -148,13 +147,13 @@ def records(results: Results) -> Table:
         "file": lambda row: row["file"],
         "SHA-256": lambda row: row["sha256"][:16],
     }
-    heads = {f"rmse_{axis}": f"rmse_{axis} [{results.units[axis]}]" for axis in axes}
-    heads |= _heads(results, s=("settle",), Hz=("sample_rate",))
-    return table("records", rows, cells, {"record", "use", "file", "SHA-256"}, heads)
+    headings = {f"rmse_{axis}": f"rmse_{axis} [{results.units[axis]}]" for axis in axes}
+    headings |= _headings(results, s=("settle",), Hz=("sample_rate",))
+    return table("records", rows, cells, {"record", "use", "file", "SHA-256"}, headings)
 
 
 def candidates(results: Results) -> Table:
-    """One row an effect that was considered, best first."""
+    """One row per effect that was considered, best first."""
     rows = [
         {
             **{key: item[key] for key in ("effect", "decision", "explained", "visibility", "physics", "remedy")},
@@ -167,32 +166,32 @@ def candidates(results: Results) -> Table:
     cells: dict[str, Cell] = {
         "effect": lambda row: row["effect"],
         "decision": lambda row: row["decision"],
-        "explains": lambda row: percent(row["explained"]),
-        "expected": lambda row: row["expected"],
+        "explained misfit": lambda row: percent(row["explained"]),
+        "estimate": lambda row: row["expected"],
         "visibility": lambda row: number(row["visibility"], 2),
-        "cannot be told from": lambda row: row["alike"],
-        pooled("identify", results): lambda row: number(row["identify"]),
-        pooled("validate", results): lambda row: number(row["validate"]),
-        "what it is": lambda row: row["physics"],
+        "indistinguishable from": lambda row: row["alike"],
+        pooled("identification RMSE", results): lambda row: number(row["identify"]),
+        pooled("validation RMSE", results): lambda row: number(row["validate"]),
+        "physics": lambda row: row["physics"],
     }
-    words = {"effect", "decision", "expected", "cannot be told from", "what it is"}
-    return table("candidates", rows, cells, words, _heads(results, "identify", "validate"))
+    words = {"effect", "decision", "estimate", "indistinguishable from", "physics"}
+    return table("candidates", rows, cells, words, _headings(results, "identify", "validate"))
 
 
 def expected(values: Mapping[str, float], units: Mapping[str, str], most: int = 3) -> str:
-    """The first parameters of an effect and the values that they would take."""
-    said = [f"{short_name(name)} {quantity(value, units.get(name, '1'), 3)}" for name, value in values.items()]
-    return ", ".join([*said[:most], "…"] if len(said) > most else said)
+    """The estimated values of the first `most` parameters of an effect, as printed."""
+    texts = [f"{short_name(name)} {quantity(value, units.get(name, '1'), 3)}" for name, value in values.items()]
+    return ", ".join([*texts[:most], "…"] if len(texts) > most else texts)
 
 
 def short_name(name: str) -> str:
-    """A parameter without its block: `x.creep.tau` is `x.tau`."""
+    """The name of a parameter without its block: `x.tau` for `x.creep.tau`."""
     *axis, _, last = name.split(".")
     return ".".join([*axis, last])
 
 
 def steps(results: Results) -> Table:
-    """One row a stair: what was added or taken back, and what the model leaves after it."""
+    """One row per step: the effect added or removed, the RMSE after it, and the explained share of the misfit."""
     rows = [
         {
             "step": step_name(step),
@@ -206,18 +205,18 @@ def steps(results: Results) -> Table:
     rows[0]["explained"] = None
     cells: dict[str, Cell] = {
         "step": lambda row: row["step"],
-        pooled("identify", results): lambda row: number(row["identify"]),
-        pooled("validate", results): lambda row: number(row["validate"]),
-        "noise floors": lambda row: number(row["floors"], 3),
-        "expected to explain": lambda row: percent(row["expected"]),
-        "explained": lambda row: percent(row["explained"]),
-        "these data say": lambda row: row["class"],
+        pooled("identification RMSE", results): lambda row: number(row["identify"]),
+        pooled("validation RMSE", results): lambda row: number(row["validate"]),
+        "RMSE in noise floors": lambda row: number(row["floors"], 3),
+        "predicted share": lambda row: percent(row["expected"]),
+        "explained share": lambda row: percent(row["explained"]),
+        "supported by the data": lambda row: row["class"],
     }
-    return table("steps", rows, cells, {"step", "these data say"}, _heads(results, "identify", "validate"))
+    return table("steps", rows, cells, {"step", "supported by the data"}, _headings(results, "identify", "validate"))
 
 
 def changes(results: Results) -> Table:
-    """One row a parameter of the improved model, before and after."""
+    """One row per parameter of the improved model: its value before and after."""
     first, last = (results.improvement["steps"][place]["parameters"] for place in (0, -1))
     rows = [
         {
@@ -238,24 +237,25 @@ def changes(results: Results) -> Table:
 
 
 def table(
-    name: str, rows: list[dict[str, Any]], cells: dict[str, Cell], words: set[str], heads: dict[str, str]
+    name: str, rows: list[dict[str, Any]], cells: dict[str, Cell], words: set[str], headings: dict[str, str]
 ) -> Table:
+    """`cells`: the printed text of a row by column; `headings`: CSV headings by key of a row."""
     import pandas as pd
 
     text = pd.DataFrame([{title: str(cell(row)) for title, cell in cells.items()} for row in rows], columns=list(cells))
-    data = pd.DataFrame(rows).rename(columns=heads)
+    data = pd.DataFrame(rows).rename(columns=headings)
     return Table(name, data, text, frozenset(words))
 
 
 def pooled(name: str, results: Results) -> str:
-    """The heading of a number over all axes, as it is printed."""
+    """The printed heading of a number over all axes."""
     return f"{name}{together(results.units)} [{unit(results.unit) or 1}]"
 
 
-def _heads(results: Results, *keys: str, **others: tuple[str, ...]) -> dict[str, str]:
-    """Headings with units: `keys` are over all axes, the others go by their unit."""
-    own = {key: f"{key} [{of}]" for of, names in others.items() for key in names}
-    return {key: f"{key}{together(results.units)} [{results.unit}]" for key in keys} | own
+def _headings(results: Results, *keys: str, **keys_by_unit: tuple[str, ...]) -> dict[str, str]:
+    """CSV headings by key: `keys` hold errors over all axes, the others have the unit that is their keyword."""
+    with_units = {key: f"{key} [{unit}]" for unit, names in keys_by_unit.items() for key in names}
+    return {key: f"{key}{together(results.units)} [{results.unit}]" for key in keys} | with_units
 
 
 def _pair(rmse: Mapping[str, float | None]) -> tuple[float | None, float | None]:

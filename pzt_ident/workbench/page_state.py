@@ -12,9 +12,9 @@ from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.data.readers.registry import readers
 from pzt_ident.data.signals import Trace
 from pzt_ident.model.registry import blocks, word_of
+from pzt_ident.report.sentences import printed_reason
 from pzt_ident.report.tables import expected
 from pzt_ident.report.traces import packed
-from pzt_ident.report.words import reason
 from pzt_ident.run.results import read_results
 from pzt_ident.workbench.guard import LARGEST_UPLOAD
 from pzt_ident.workbench.session import Session
@@ -73,7 +73,7 @@ def diagnosis_of(step: Path) -> dict[str, Any] | None:
     found = json.loads(path.read_text(encoding="utf-8"))
     for item in found["candidates"]:
         item["would_be"] = expected(item["expected"], item["units"])
-    return printed(found) | {"reason": reason(found["reason"], read_results(step / "run"))}
+    return printed(found) | {"reason": printed_reason(found["reason"], read_results(step / "run"))}
 
 
 def job_of(session: Session) -> dict[str, Any]:

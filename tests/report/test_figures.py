@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from pzt_ident.report.figures import plates, render, write_page_figures, write_paper_figures
-from pzt_ident.report.residual_figures import banded, branches, cell_means
-from pzt_ident.report.search_figures import descent, within
-from pzt_ident.report.style import COLUMN, PAGE, along, decimate, fit
+from pzt_ident.report.residual_figures import branches, cell_means, quantile_band
+from pzt_ident.report.search_figures import convergence, within
+from pzt_ident.report.style import COLUMN, PAGE, decimate, decimate_curve, fit
 from pzt_ident.run.results import Trace, read_results
 
 NUMBER = st.floats(-1e6, 1e6) | st.just(np.nan)
@@ -30,7 +30,7 @@ def test_decimation_keeps_extremes_ends_and_order(values, bins):
 def test_points_along_a_loop_are_even_and_reach_its_turns():
     time = np.linspace(0, 20, 20_001)
     drive, response = np.sin(2 * np.pi * time), np.sin(2 * np.pi * time - 0.3)
-    shown = along(drive, response, 900)
+    shown = decimate_curve(drive, response, 900)
     assert shown.size < 1400
     assert np.hypot(np.diff(drive[shown]), np.diff(response[shown])).max() < 0.15
     assert (drive[shown].min(), drive[shown].max()) == (drive.min(), drive.max())
@@ -48,7 +48,7 @@ def test_branches_follow_a_noisy_triangle():
 
 def test_band_of_a_known_residual():
     drive = np.repeat(np.arange(40.0), 101)
-    drive_mid, low, middle, high = banded(drive, np.tile(np.linspace(-1, 1, 101), 40))
+    drive_mid, low, middle, high = quantile_band(drive, np.tile(np.linspace(-1, 1, 101), 40))
     np.testing.assert_allclose(low, -0.9)
     np.testing.assert_allclose(middle, 0, atol=1e-12)
     np.testing.assert_allclose(high, 0.9)
@@ -69,7 +69,7 @@ def test_descent_of_two_repeats_one_of_which_stops_early():
         [(0, 10, 4.0), (0, 20, 2.0), (0, 30, 1.0), (1, 10, 8.0), (1, 20, 6.0)],
         columns=["repeat", "evaluations", "best"],
     )
-    spent, low, middle, high = descent(history, "evaluations")
+    spent, low, middle, high = convergence(history, "evaluations")
     np.testing.assert_allclose(spent, [10, 20, 30])
     np.testing.assert_allclose(low, [5, 3, 2.25])
     np.testing.assert_allclose(middle, [6, 4, 3.5])
@@ -78,7 +78,7 @@ def test_descent_of_two_repeats_one_of_which_stops_early():
 
 def test_descent_leaves_out_what_no_repeat_could_simulate():
     history = pd.DataFrame({"repeat": 0, "evaluations": [1, 2], "best": [np.inf, 3.0]})
-    spent, _, middle, _ = descent(history, "evaluations")
+    spent, _, middle, _ = convergence(history, "evaluations")
     assert (spent.tolist(), middle.tolist()) == ([2.0], [3.0])
 
 
@@ -115,7 +115,7 @@ def test_axes_carry_units_and_names_are_shown_as_they_are(weird):
     svg = render(plates(read_results(weird))[0], PAGE, ("svg",))["svg"]
     texts = [element.text for element in ElementTree.fromstring(svg).iter() if element.text]
     assert {"response [µm]", "residual [µm]", "time [s]"} <= set(texts)
-    assert "<script>alert('x')</script> 100%_µ & \"q\" $a_1$.csv (identify)" in texts
+    assert "<script>alert('x')</script> 100%_µ & \"q\" $a_1$.csv (identification)" in texts
 
 
 def test_paper_files_are_pdf_and_svg_at_both_widths(plain):

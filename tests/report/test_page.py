@@ -11,7 +11,7 @@ import pytest
 from pzt_ident.data.notation import listed
 from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.report.page import write_report
-from pzt_ident.report.words import findings, reason, verdict
+from pzt_ident.report.sentences import findings, printed_reason, verdict
 from pzt_ident.run.misfit import compare
 from pzt_ident.run.results import read_results
 from run_folders import WEIRD, make_run
@@ -106,14 +106,14 @@ def test_markup_in_names_is_text(weird_page):
     assert "# <script>alert(1)</script>" in weird_page.text
 
 
-def test_parameters_that_are_not_found_get_a_plain_word(plain_page):
-    assert "These data do not determine lumped.mass and lumped.damping" in plain_page.text
-    assert "bouc_wen.gamma sits on its lower bound" in plain_page.text
+def test_parameters_that_are_not_found_are_named(plain_page):
+    assert "The data do not determine lumped.mass and lumped.damping" in plain_page.text
+    assert "bouc_wen.gamma is on its lower bound" in plain_page.text
     marked = [words for words in plain_page.words if words in ("not determined", "on its lower bound")]
     assert sorted(marked) == ["not determined", "not determined", "on its lower bound"]
 
 
-def test_what_was_run_is_told(plain, plain_page):
+def test_what_was_run_is_reported(plain, plain_page):
     result = json.loads((plain / "result.json").read_text())
     for record in result["records"]:
         assert record["sha256"] in plain_page.text
@@ -123,14 +123,14 @@ def test_what_was_run_is_told(plain, plain_page):
 
 def test_verdict_on_unseen_records(plain):
     assert verdict(read_results(plain)).replace("\u00a0", " ") == (
-        "The model leaves 0.375 µm RMS on records the fit never saw, 7.7 times the noise floor of 0.049 µm."
+        "The RMSE is 0.375 µm on the validation records, 7.7 times the noise floor of 0.049 µm."
     )
 
 
 def test_verdict_without_validation_and_noise(weird):
     assert verdict(read_results(weird)).replace("\u00a0", " ") == (
-        "The model leaves 0.302 µm RMS (x and y together) on the records it was fitted to, and no record was kept back "
-        "to judge it on; the noise floor is not known."
+        "The RMSE is 0.302 µm (x and y together) on the identification records, and there is no validation record; "
+        "the noise floor is not known."
     )
     assert "1 run did not finish: rga-0." in findings(read_results(weird))
 
@@ -146,7 +146,7 @@ def test_failed_simulations_are_counted(plain):
     )
 
 
-def test_what_is_special_about_a_record_is_told(plain):
+def test_what_is_special_about_a_record_is_reported(plain):
     assert "Record multisine.csv: decimated by 4." in findings(read_results(plain))
 
 
@@ -166,8 +166,8 @@ def test_a_perfect_fit_of_fixed_parameters_is_drawn(plain, tmp_path):
     folder = shutil.copytree(plain, tmp_path / "perfect", ignore=shutil.ignore_patterns("figures", "tables"))
     perfect(folder)
     page = Page(write_report(folder).read_text(encoding="utf-8"))
-    assert "There is none to show." in page.text
-    assert "The model leaves 0 µm RMS" in page.text.replace("\u00a0", " ")
+    assert "No figure: the results for it are missing." in page.text
+    assert "The RMSE is 0 µm " in page.text.replace("\u00a0", " ")
     assert sorted(path.name for path in folder.iterdir() if path.name.startswith(".")) == []
 
 
@@ -191,22 +191,20 @@ def perfect(folder):
 def test_of_a_response_without_noise_errors_are_not_counted_in_floors(tmp_path):
     folder = make_run(tmp_path / "run", noise_floor=1e-9)
     results = read_results(folder)
-    assert verdict(results).endswith(
-        "; the response holds hardly any noise to compare it with, as if it were simulated."
-    )
-    said = "The RMSE falls from 3e6 to 1171.2 noise floors. It leaves 2000 noise floors."
-    assert reason(said.replace("3e6", "3000000.0"), results) == (
+    assert verdict(results).endswith("; the response contains almost no noise, as if it were simulated.")
+    text = "The RMSE falls from 3e6 to 1171.2 noise floors. It leaves 2000 noise floors."
+    assert printed_reason(text.replace("3e6", "3000000.0"), results) == (
         "The RMSE falls from 0.00300 µm to 1.17 × 10⁻⁶ µm. It leaves 2.00 × 10⁻⁶ µm.".replace(" µm", "\u00a0µm")
     )
-    assert reason(said, read_results(make_run(tmp_path / "noisy"))) == said
+    assert printed_reason(text, read_results(make_run(tmp_path / "noisy"))) == text
 
 
-def test_a_better_fit_than_the_runs_is_told(plain):
+def test_a_better_fit_than_the_runs_is_reported(plain):
     results = read_results(plain)
     run = results.best["rmse"]["identify"]
-    for share, told in ((0.5, True), (0.99, False)):
-        found = replace(results, diagnosis={"rmse": {"identify": share * run}})
-        assert ("search longer" in reason("The model is adequate.", found)) is told
+    for share, better in ((0.5, True), (0.99, False)):
+        diagnosed = replace(results, diagnosis={"rmse": {"identify": share * run}})
+        assert ("search longer" in printed_reason("The model is adequate.", diagnosed)) is better
 
 
 def test_what_is_over_axes_says_so_and_what_it_counts():

@@ -33,7 +33,7 @@ def test_models_of_the_same_samples_are_in_one_figure(pair, tmp_path):
     page = write_side_by_side(pair, tmp_path / "both.html").read_text(encoding="utf-8")
     content = json.loads(re.search(r'id="content">(.*?)</script>', page, re.S)[1])
     assert [[model["name"] for model in record["models"]] for record in content["records"]] == [["plain", "other"]] * 2
-    assert "plain leaves least on records the fit never saw" in page
+    assert "plain has the lowest RMSE on the validation records" in page
     assert {path.name for path in (tmp_path / "both").iterdir()} == {
         f"{table}.{form}" for table in ("results", "parameters") for form in ("csv", "tex")
     }

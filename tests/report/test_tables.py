@@ -33,7 +33,7 @@ def test_csv_gives_back_every_number(plain, written):
 
 def test_nothing_is_a_dash_in_print_and_empty_in_csv(weird):
     tables = make_tables(read_results(weird))
-    assert tables["runs"].text["validate (x and y together) [µm]"].tolist() == ["–"]
+    assert tables["runs"].text["validation RMSE (x and y together) [µm]"].tolist() == ["–"]
     assert tables["runs"].data["validate (x and y together) [um]"].isna().all()
 
 

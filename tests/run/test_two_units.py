@@ -15,9 +15,9 @@ from pzt_ident.cli.commands import main
 from pzt_ident.data.units import factor
 from pzt_ident.model.registry import blocks
 from pzt_ident.report.search_figures import _levels
+from pzt_ident.report.sentences import remaining_error
 from pzt_ident.report.side_by_side import write_side_by_side
 from pzt_ident.report.tables import make_tables
-from pzt_ident.report.words import left
 from pzt_ident.run.results import read_folder
 from pzt_ident.workbench import page_state as view
 from pzt_ident.workbench.session import Session
@@ -203,7 +203,7 @@ def test_the_report_says_it(made):
         rel=5e-3,
     )
     for axis in "xy":
-        misfit = re.search(rf"Axis {axis}: ([\d.]+) (\S+) RMS are the noise floor of ([\d.]+) (\S+) ", page)
+        misfit = re.search(rf"Axis {axis}: RMSE ([\d.]+) (\S+), noise floor ([\d.]+) (\S+) ", page)
         size = factor(misfit[2])
         assert misfit[2] == misfit[4] == {"x": "µm", "y": unit.replace("u", "µ")}[axis]
         assert float(misfit[3]) * size == pytest.approx(values[f"axis {axis}"], rel=5e-3)
@@ -227,9 +227,9 @@ def test_the_sentences_say_it(made):
         results = read_folder(folder / name)
         found = physical(results.facts)
         ratios = sorted(found[f"second {axis}"] / found[f"floor {axis}"] for axis in "xy")
-        said = left(results).replace("\u00a0", " ")
+        said = remaining_error(results).replace("\u00a0", " ")
         amount, first, last = re.search(
-            r"leaves ([\d.]+) µm RMS \(x and y together\) .* ([\d.]+) to ([\d.]+) ", said
+            r"RMSE is ([\d.]+) µm \(x and y together\) .* ([\d.]+) to ([\d.]+) ", said
         ).groups()
         assert float(amount) * 1e-6 == pytest.approx(found["validate"], rel=5e-3)
         assert [float(first), float(last)] == pytest.approx(ratios, rel=0.05)
@@ -243,7 +243,7 @@ def test_side_by_side_draws_no_floor_of_another_unit(both, tmp_path):
     rows = pd.read_csv(tmp_path / "both/results.csv")
     floors = [read(folder / "result.json")["floor"] for folder in folders]
     assert rows["noise_floor"].tolist() == pytest.approx(floors) and set(rows["axes"]) == {"x and y together"}
-    assert f"RMS {TOGETHER}" in page
+    assert f"µm {TOGETHER}" in page
 
 
 @pytest.fixture

@@ -185,7 +185,7 @@ def test_from_a_job_to_the_report_and_back(measured, tmp_path):
     still = [name for name, entry in found["parameters"].items() if entry["verdict"] == "not moved"]
     assert still == [f"homogenized_energy.weight_{k}" for k in range(17, 25)]
     page = write_report(folder).read_text()
-    assert "No record moves the 8 of 4125 to 5875" in page.replace("\u2009", "").replace(",", "")
+    assert "No record excites the 8 values at 4125 to 5875" in page.replace("\u2009", "").replace(",", "")
     assert (folder / "figures" / "density-homogenized-energy-weight-180mm.svg").exists()
     again = fixed | {name: {"value": entry["value"]} for name, entry in found["parameters"].items()}
     width = again["homogenized_energy.interaction"]["value"]
