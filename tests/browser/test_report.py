@@ -33,7 +33,7 @@ def opened(loaded):
     return loaded
 
 
-def rmse_said(page):
+def rmse_shown(page):
     return float(re.search(r"RMSE ([\d.]+) µm", page.text_content(".readout"))[1])
 
 
@@ -44,7 +44,7 @@ def rmse_of(folder, start=0.0, end=np.inf):
 
 
 def test_it_opens_without_a_network_or_an_error(opened, folder):
-    assert rmse_said(opened) == pytest.approx(rmse_of(folder), rel=0.006)
+    assert rmse_shown(opened) == pytest.approx(rmse_of(folder), rel=0.006)
     assert opened.locator(".u-wrap > canvas").count() == 2 and opened.locator(".plane canvas.drawn").count() == 2
 
 
@@ -62,7 +62,7 @@ def test_a_stretch_by_its_times(opened, folder):
     fields.nth(1).fill("12")
     fields.nth(1).press("Enter")
     expect(opened.locator(".readout")).to_contain_text(re.compile(r"Marked from (5|5\.0\d*) s to (12|11\.9\d*) s"))
-    assert rmse_said(opened) == pytest.approx(rmse_of(folder, 5, 12), rel=0.02)
+    assert rmse_shown(opened) == pytest.approx(rmse_of(folder, 5, 12), rel=0.02)
 
 
 def test_a_drag_in_time_marks_the_planes_too(opened):
@@ -78,14 +78,14 @@ def test_a_drag_in_time_marks_the_planes_too(opened):
     assert opened.evaluate("document.querySelectorAll('.plane .marked')[1].toDataURL()") != before
 
 
-def test_a_box_in_the_loop_marks_stretches_of_time(opened):
+def test_a_box_in_the_loop_marks_segments_of_time(opened):
     opened.locator(".plane .pointed").first.scroll_into_view_if_needed()
     box = opened.locator(".plane .pointed").first.bounding_box()
     opened.mouse.move(box["x"] + 0.8 * box["width"], box["y"] + 0.05 * box["height"])
     opened.mouse.down()
     opened.mouse.move(box["x"] + 0.95 * box["width"], box["y"] + 0.4 * box["height"], steps=4)
     opened.mouse.up()
-    expect(opened.locator(".readout")).to_contain_text(re.compile(r"Marked \d+ stretches"))
+    expect(opened.locator(".readout")).to_contain_text(re.compile(r"Marked \d+ segments"))
 
 
 def test_the_keyboard_reaches_the_mark(opened):

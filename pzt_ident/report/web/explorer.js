@@ -1,12 +1,12 @@
-import { element, onPaper, printed } from "./parts.js";
+import { element, isPrinting, redrawForPrint, USE_NAMES } from "./parts.js";
 import { colour, gridded, Plane, tick } from "./plane.js";
-import { errorOf, extent, lowerBound, marksInBox, marksInTime, number, opened, thinned } from "./signals.js";
+import { deviationFromLine, errorOf, extent, lowerBound, marksInBox, marksInTime, number, thinned } from "./signals.js";
 
 const MODELS = ["--model", "--before", "--third", "--fourth"];
 const DASHES = [[], [6, 3], [2, 2], [8, 2, 2, 2]];
-const LONG = 20000; // points: in longer records dashes run together, and a line of one pixel is drawn five times as fast
+const LONG = 20000; // points; longer records are drawn without dashes, one pixel wide, which is five times as fast
 
-/** Model beside measurement: in time, as a loop and as a map of the residual. What is marked in one is seen in all. */
+/** Model and measurement over time, as a loop and as a map of the residual. A mark made in one plot is shown in all. */
 export class Explorer {
   constructor(root, records, options = {}) {
     Object.assign(this, { root, records, floors: options.floors ?? {}, marks: [] });
@@ -16,16 +16,16 @@ export class Explorer {
     this.readout = element(root, "p", { class: "readout", role: "status", "aria-live": "polite" });
     this.curves = element(root, "div", {
       class: "curves", tabindex: 0, role: "group",
-      "aria-label": "In time. Arrow keys move the mark, with Shift its end; Enter shows it alone, Home all; Escape clears it.",
+      "aria-label": "Signals over time. Arrow keys move the mark, with Shift its end; Enter zooms to the mark, Home shows the whole record; Escape clears the mark.",
     });
     const planes = element(root, "div", { class: "planes" });
     this.loop = new Plane(planes, "Loop: response against drive", (xs, ys) => this.markBox(this.record.response, xs, ys));
-    this.map = new Plane(planes, "Residual map", (xs, ys) => this.markBox(this.open, xs, ys));
+    this.map = new Plane(planes, "Residual map", (xs, ys) => this.markBox(this.deviation, xs, ys));
     this.curves.addEventListener("keydown", (event) => this.key(event));
     const redraw = () => this.record && this.draw();
-    new ResizeObserver(() => this.root.clientWidth !== this.drawnAt && redraw()).observe(root);
+    new ResizeObserver(() => this.root.clientWidth !== this.drawnWidth && redraw()).observe(root);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
-    printed(redraw);
+    redrawForPrint(redraw);
     this.choose(0);
   }
 
@@ -38,8 +38,8 @@ export class Explorer {
     bar.append("s");
     for (const field of [this.from, this.to])
       field.addEventListener("change", () => this.markFields());
-    for (const [name, act] of [["Show the mark", () => this.zoomToMark()], ["Show all", () => this.zoom()], ["Clear", () => this.mark([])]])
-      element(bar, "button", { type: "button" }, name).addEventListener("click", act);
+    for (const [name, action] of [["Zoom to mark", () => this.zoomToMark()], ["Show all", () => this.zoom()], ["Clear", () => this.mark([])]])
+      element(bar, "button", { type: "button" }, name).addEventListener("click", action);
     this.fillPicker();
   }
 
@@ -47,15 +47,15 @@ export class Explorer {
     this.picker.replaceChildren();
     this.records.forEach((record, place) => {
       const several = this.records.some((other) => other.axis !== record.axis);
-      element(this.picker, "option", { value: place }, `${record.name}${several ? `, ${record.axis}` : ""} (${record.use})`);
+      element(this.picker, "option", { value: place }, `${record.name}${several ? `, ${record.axis}` : ""} (${USE_NAMES[record.use]})`);
     });
   }
 
-  /** Other models of the same records, or other records: the record shown and what is marked stay where they can. */
+  /** Show other models or records; the selected record and its marks are kept if the new records have them. */
   update(records) {
     const same = records.findIndex((item) => item.name === this.record.name && item.axis === this.record.axis);
-    const stays = same >= 0 && records[same].index.length === this.record.index.length;
-    const marks = stays ? this.marks : [];
+    const sameSize = same >= 0 && records[same].index.length === this.record.index.length;
+    const marks = sameSize ? this.marks : [];
     this.records = records;
     this.fillPicker();
     this.choose(Math.max(same, 0), marks);
@@ -65,7 +65,7 @@ export class Explorer {
     this.picker.value = place;
     this.record = this.records[place];
     this.scored = lowerBound(this.record.index, this.record.settle);
-    this.open = opened(this.record.drive, this.record.response, this.scored);
+    this.deviation = deviationFromLine(this.record.drive, this.record.response, this.scored);
     this.span = [0, this.record.index.length];
     this.marks = marks;
     this.draw();
@@ -76,12 +76,12 @@ export class Explorer {
     const { time } = this.record;
     const ends = marks.length ? [time[marks[0][0]], time[marks.at(-1)[1] - 1]] : ["", ""];
     if (written) [this.from.value, this.to.value] = ends.map((value) => (value === "" ? "" : Number(value.toPrecision(7))));
-    this.say();
+    this.updateReadout();
     for (const plot of this.plots) this.band(plot);
     for (const plane of [this.loop, this.map]) plane.mark(marks);
   }
 
-  /** The stretch that is written in the fields, an empty one being the end of the record. */
+  /** Mark the interval in the two fields; an empty field is the start or end of the record. */
   markFields() {
     const { time } = this.record;
     const [from, to] = [this.from, this.to].map((field, end) => (field.value === "" ? time.at(-end || 0) : Number(field.value)));
@@ -92,23 +92,23 @@ export class Explorer {
     this.mark(xRange ? marksInBox(this.record.drive, ys, xRange, yRange) : []);
   }
 
-  /** What the marked stretch, or the whole record, leaves. */
-  say() {
+  /** The RMSE of each model over the marked segments, or over the whole record. */
+  updateReadout() {
     const { record, marks } = this;
-    const whole = [[0, record.index.length]];
-    const said = record.models.map((model) => {
-      const { rmse, share } = errorOf(record, model, marks.length ? marks : whole);
-      const part = marks.length ? `, ${number(100 * share, 2)} % of the record's squared error` : "";
-      return `${record.models.length > 1 ? `${model.name}: ` : ""}RMSE ${number(rmse)} ${record.unit}${part}`;
+    const wholeRecord = [[0, record.index.length]];
+    const errors = record.models.map((model) => {
+      const { rmse, share } = errorOf(record, model, marks.length ? marks : wholeRecord);
+      const portion = marks.length ? `, ${number(100 * share, 2)} % of the record's squared error` : "";
+      return `${record.models.length > 1 ? `${model.name}: ` : ""}RMSE ${number(rmse)} ${record.unit}${portion}`;
     });
-    this.readout.textContent = `${this.place()}: ${said.join("; ")}${this.overFloor()}.`;
+    this.readout.textContent = `${this.markedSpan()}: ${errors.join("; ")}${this.overFloor()}.`;
   }
 
-  place() {
+  markedSpan() {
     const { time } = this.record;
     if (!this.marks.length) return `Whole record, ${number(time.at(-1) - time[0])} s`;
     const [from, to] = [time[this.marks[0][0]], time[this.marks.at(-1)[1] - 1]];
-    const parts = this.marks.length > 1 ? `${this.marks.length} stretches ` : "";
+    const parts = this.marks.length > 1 ? `${this.marks.length} segments ` : "";
     return `Marked ${parts}from ${tick(from)} s to ${tick(to)} s`;
   }
 
@@ -118,18 +118,18 @@ export class Explorer {
   }
 
   draw() {
-    this.drawnAt = this.root.clientWidth;
-    this.fine = onPaper() ? 2 : 1; // pixels a pixel
+    this.drawnWidth = this.root.clientWidth;
+    this.pixelRatio = isPrinting() ? 2 : 1;
     this.curves.replaceChildren();
     const { record } = this;
-    const named = record.models.length > 1, models = record.models.toReversed();
+    const several = record.models.length > 1, models = record.models.toReversed();
     this.plots = [
       this.plot(`response [${record.unit}]`, 0.26, 0, [record.response, ...models.map((model) => sum(record.response, model.residual))], [
-        { label: "measured", stroke: () => colour("--measured"), width: 3 * this.fine },
-        ...this.lines(named ? (model) => model.name : () => "model"),
+        { label: "measured", stroke: () => colour("--measured"), width: 3 * this.pixelRatio },
+        ...this.lines(several ? (model) => model.name : () => "model"),
       ]),
       this.plot(`residual [${record.unit}]`, 0.18, this.floors[record.axis] ?? 0, models.map((model) => model.residual),
-        this.lines(named ? (model) => `residual, ${model.name}` : () => "residual: model less measured")),
+        this.lines(several ? (model) => `residual, ${model.name}` : () => "residual (model minus measurement)")),
     ];
     this.loop.show(this.scene(record.response, `response [${record.unit}]`, {
       curves: [
@@ -139,27 +139,27 @@ export class Explorer {
         })).reverse(),
       ],
     }));
-    const cells = gridded(record.drive, this.open, record.models[0].residual, this.scored);
-    this.map.caption.textContent = `Residual map: mean residual along the loop, its slope taken out. Violet: the model is ${number(cells.largest, 2)} ${record.unit} or more below the measurement; orange: above.`;
-    this.map.show(this.scene(this.open, `off a straight line [${record.unit}]`, { cells }));
+    const cells = gridded(record.drive, this.deviation, record.models[0].residual, this.scored);
+    this.map.caption.textContent = `Residual map: mean residual along the loop, drawn without its mean slope. Violet: the model is ${number(cells.largest, 2)} ${record.unit} or more below the measurement; orange: above.`;
+    this.map.show(this.scene(this.deviation, `deviation from a straight line [${record.unit}]`, { cells }));
     this.mark(this.marks);
   }
 
-  scene(ys, yLabel, drawn) {
+  scene(ys, yLabel, content) {
     const ranges = [this.record.drive, ys].map((values) => extent(values.subarray(this.scored)));
-    return { xs: this.record.drive, ys, ranges, xLabel: `drive [${this.record.driveUnit}]`, yLabel, marks: this.marks, ...drawn };
+    return { xs: this.record.drive, ys, ranges, xLabel: `drive [${this.record.driveUnit}]`, yLabel, marks: this.marks, ...content };
   }
 
   plot(label, share, floor, arrays, series) {
-    const { record, fine } = this;
+    const { record, pixelRatio } = this;
     const width = Math.max(280, this.curves.clientWidth - 4);
-    const font = `${Math.round(0.78 * fine * parseFloat(getComputedStyle(this.curves).fontSize))}px system-ui, sans-serif`;
+    const font = `${Math.round(0.78 * pixelRatio * parseFloat(getComputedStyle(this.curves).fontSize))}px system-ui, sans-serif`;
     const axis = (label, labelSize, size, more) => ({
-      label, labelSize: fine * labelSize, size: fine * size, gap: 5 * fine, space: (self, axis) => fine * (axis ? 24 : 50), font, labelFont: font,
-      stroke: () => colour("--quiet"), grid: { stroke: () => colour("--rule"), width: fine }, ticks: { show: false }, ...more,
+      label, labelSize: pixelRatio * labelSize, size: pixelRatio * size, gap: 5 * pixelRatio, space: (self, axis) => pixelRatio * (axis ? 24 : 50), font, labelFont: font,
+      stroke: () => colour("--quiet"), grid: { stroke: () => colour("--rule"), width: pixelRatio }, ticks: { show: false }, ...more,
     });
     const plot = new uPlot({
-      width: fine * width, height: fine * Math.round(Math.min(Math.max(width * share, 130), 420)),
+      width: pixelRatio * width, height: pixelRatio * Math.round(Math.min(Math.max(width * share, 130), 420)),
       legend: { live: false },
       cursor: { sync: { key: this.record.name }, drag: { x: true, y: false, setScale: false }, points: { show: false } },
       scales: { x: { time: false }, y: { range: () => this.range(arrays, floor) } },
@@ -183,7 +183,7 @@ export class Explorer {
     return plot;
   }
 
-  /** What the scored samples shown span, with the noise floor where there is one, and some room. */
+  /** Range of the scored samples in view and of the noise floor, with a margin. */
   range(arrays, floor) {
     const first = Math.min(Math.max(this.span[0], this.scored), this.span[1] - 1);
     const ends = arrays.map((values) => extent(values.subarray(first, this.span[1])));
@@ -191,11 +191,11 @@ export class Explorer {
     return [low - 0.06 * (high - low), high + 0.06 * (high - low)];
   }
 
-  /** The curves of the models, the last one on top. */
-  lines(said) {
-    const width = (this.record.index.length > LONG ? 1 : 1.2) * this.fine;
+  /** The series of the models, the last one on top. */
+  lines(labelOf) {
+    const width = (this.record.index.length > LONG ? 1 : 1.2) * this.pixelRatio;
     return this.record.models.map((model, place) => ({
-      label: said(model), stroke: () => colour(MODELS[place % 4]), width, dash: this.dash(place),
+      label: labelOf(model), stroke: () => colour(MODELS[place % 4]), width, dash: this.dash(place),
     })).reverse();
   }
 
@@ -216,11 +216,11 @@ export class Explorer {
     this.map.overlay(point);
   }
 
-  /** The marked stretches, on a sheet behind the curves that is wiped without drawing these again. */
+  /** Draw the marked segments on a layer behind the curves, which need not be redrawn. */
   band(plot) {
     const { time } = this.record;
     const { width, height } = plot.bbox;
-    Object.assign(plot.bands, { width, height }); // which wipes it
+    Object.assign(plot.bands, { width, height }); // clears it
     const pen = plot.bands.getContext("2d");
     pen.fillStyle = colour("--marked");
     for (const [first, end] of this.marks) {
@@ -229,7 +229,7 @@ export class Explorer {
     }
   }
 
-  /** What is not scored, and in the residual the noise floor, behind the curves. */
+  /** Shade the samples that are not scored and, in the residual, the noise floor. */
   shade(plot, floor) {
     const { time, settle, start, dt } = this.record;
     const { left, top, width, height } = plot.bbox;
@@ -240,7 +240,7 @@ export class Explorer {
     };
     plot.ctx.save();
     if (settle) strip(start, start + settle * dt, colour("--soft"));
-    if (onPaper()) for (const [first, end] of this.marks) strip(time[first], time[end - 1], colour("--marked"));
+    if (isPrinting()) for (const [first, end] of this.marks) strip(time[first], time[end - 1], colour("--marked"));
     if (floor) {
       const [y0, y1] = [floor, -floor].map((value) => Math.min(Math.max(plot.valToPos(value, "y", true), top), top + height));
       plot.ctx.fillStyle = colour("--noise");
@@ -257,8 +257,8 @@ export class Explorer {
   zoomToMark() {
     if (!this.marks.length) return;
     const [first, end] = [this.marks[0][0], this.marks.at(-1)[1]];
-    const room = Math.max(2, Math.round(0.05 * (end - first)));
-    this.zoom(Math.max(0, first - room), Math.min(this.record.index.length, end + room));
+    const margin = Math.max(2, Math.round(0.05 * (end - first)));
+    this.zoom(Math.max(0, first - margin), Math.min(this.record.index.length, end + margin));
   }
 
   key(event) {
@@ -278,7 +278,7 @@ export class Explorer {
     event.preventDefault();
   }
 
-  /** Show a stretch of a record by its name: what a link elsewhere on the page asks for. */
+  /** Select a record by name and axis and mark an interval in it, for a button elsewhere on the page. */
   reveal(name, axis, from, to) {
     const place = this.records.findIndex((record) => record.name === name && record.axis === axis);
     if (place < 0) return;

@@ -1,17 +1,17 @@
-import { onPaper } from "./parts.js";
+import { isPrinting } from "./parts.js";
 import { extent, number, thinned, ticks } from "./signals.js";
 
 const EDGE = { left: 62, right: 14, top: 10, bottom: 42 };
-const NEAR = 0.7; // px: a shorter step of a curve is not seen
-const DRAWN = 4000; // bins of a curve: more cannot be told apart on a screen
-const MARKED = 600; // bins of what is marked: it is drawn with every move of the mouse
+const NEAR = 0.7; // px: shorter steps of a curve are invisible
+const CURVE_BINS = 4000; // more cannot be resolved on a screen
+const MARK_BINS = 600; // of the marked segments, which are redrawn with every move of the mouse
 
 /** A colour of the page's style sheet, such as "--model". */
 export function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
-/** A curve in a plane, response over drive, on a canvas. A box drawn with the mouse calls `onBox(xs, ys)`. */
+/** A plot of curves or cells over the drive, on a canvas. A box drawn with the mouse calls `onBox(xs, ys)`. */
 export class Plane {
   constructor(holder, title, onBox) {
     this.figure = holder.appendChild(document.createElement("figure"));
@@ -30,12 +30,12 @@ export class Plane {
     this.listen();
   }
 
-  /** What is drawn within `ranges`: `curves` of {xs, ys, colour, width, dash} or `cells`, and `marks` on xs, ys. */
+  /** Draw a scene within `ranges`: `curves` of {xs, ys, colour, width, dash} or `cells`, and `marks` on xs, ys. */
   show(scene) {
     this.scene = scene;
     const [x, y] = scene.ranges;
-    const room = (range) => [range[0] - 0.04 * (range[1] - range[0]), range[1] + 0.04 * (range[1] - range[0])];
-    [this.x, this.y] = [room(x), room(y)];
+    const padded = (range) => [range[0] - 0.04 * (range[1] - range[0]), range[1] + 0.04 * (range[1] - range[0])];
+    [this.x, this.y] = [padded(x), padded(y)];
     this.draw();
   }
 
@@ -62,25 +62,25 @@ export class Plane {
     for (const curve of this.scene.curves ?? []) this.curve(pen, curve, [[0, curve.xs.length]]);
     pen.restore();
     this.mark(this.scene.marks);
-    if (onPaper()) this.trace(pen);
+    if (isPrinting()) this.drawMarks(pen);
   }
 
-  /** Mark stretches, on a sheet above the drawing. */
+  /** Draw marked segments on the layer above the drawing. */
   mark(marks = []) {
     this.scene.marks = marks;
-    this.trace(this.pen(1));
+    this.drawMarks(this.pen(1));
     this.overlay();
   }
 
-  trace(pen) {
+  drawMarks(pen) {
     const { xs, ys, cells, marks } = this.scene;
-    const bins = Math.ceil(MARKED / Math.max(marks.length, 1));
+    const bins = Math.ceil(MARK_BINS / Math.max(marks.length, 1));
     this.curve(pen, { xs, ys, colour: "--mark", width: cells ? 1 : 2.5, bins }, marks);
   }
 
-  /** A pen for a sheet, in pixels of the page. The sheet is wiped by its size. */
-  pen(sheet) {
-    const { [sheet]: canvas } = this.layers;
+  /** A drawing context of a layer in CSS pixels; setting the size clears the layer. */
+  pen(layer) {
+    const { [layer]: canvas } = this.layers;
     const scale = Math.max(window.devicePixelRatio || 1, 2); // fine enough for print
     Object.assign(canvas, { width: this.width * scale, height: this.height * scale });
     const pen = canvas.getContext("2d");
@@ -117,11 +117,11 @@ export class Plane {
     pen.stroke();
   }
 
-  curve(pen, { xs, ys, colour: name, width, dash, bins = DRAWN }, stretches) {
+  curve(pen, { xs, ys, colour: name, width, dash, bins = CURVE_BINS }, segments) {
     [pen.strokeStyle, pen.lineWidth, pen.lineJoin] = [colour(name), width, "round"];
     pen.setLineDash(dash ?? []);
     pen.beginPath();
-    for (const [first, end] of stretches) {
+    for (const [first, end] of segments) {
       const shown = thinned([xs, ys], first, end, bins);
       let [left, top] = [this.toX(xs[shown[0]]), this.toY(ys[shown[0]])];
       pen.moveTo(left, top);
@@ -137,11 +137,11 @@ export class Plane {
     pen.setLineDash([]);
   }
 
-  /** Mean of the values of the points in each cell, as a colour between two sides. */
+  /** Draw the mean value of each cell as a colour on a diverging scale. */
   cells(pen) {
     const { columns, rows, largest, means } = this.scene.cells;
-    const wide = (this.toX(this.scene.cells.x[1]) - this.toX(this.scene.cells.x[0])) / columns;
-    const tall = (this.toY(this.scene.cells.y[0]) - this.toY(this.scene.cells.y[1])) / rows;
+    const cellWidth = (this.toX(this.scene.cells.x[1]) - this.toX(this.scene.cells.x[0])) / columns;
+    const cellHeight = (this.toY(this.scene.cells.y[0]) - this.toY(this.scene.cells.y[1])) / rows;
     const [middle, below, above] = ["--zero", "--below", "--above"].map((name) => rgb(colour(name)));
     means.forEach((mean, cell) => {
       if (Number.isNaN(mean)) return;
@@ -149,12 +149,12 @@ export class Plane {
       const side = mean < 0 ? below : above;
       pen.fillStyle = `rgb(${middle.map((part, i) => Math.round(part + share * (side[i] - part))).join(" ")})`;
       const [column, row] = [cell % columns, Math.floor(cell / columns)];
-      const left = this.toX(this.scene.cells.x[0]) + column * wide;
-      pen.fillRect(left, this.toY(this.scene.cells.y[0]) - (row + 1) * tall, wide + 0.6, tall + 0.6);
+      const left = this.toX(this.scene.cells.x[0]) + column * cellWidth;
+      pen.fillRect(left, this.toY(this.scene.cells.y[0]) - (row + 1) * cellHeight, cellWidth + 0.6, cellHeight + 0.6);
     });
   }
 
-  /** On top of it all where the cursor is, or the box that is being drawn. */
+  /** Draw the cursor's point, or the box being dragged, on the top layer. */
   overlay(point = null, box = null) {
     const pen = this.pen(2);
     const { xs, ys } = this.scene;
@@ -179,17 +179,17 @@ export class Plane {
     this.stack.addEventListener("pointerup", (event) => {
       if (!start) return;
       const sorted = (a, b) => (a < b ? [a, b] : [b, a]);
-      const far = Math.hypot(event.offsetX - start[0], event.offsetY - start[1]) > 4;
+      const dragged = Math.hypot(event.offsetX - start[0], event.offsetY - start[1]) > 4;
       const xs = sorted(this.fromX(start[0]), this.fromX(event.offsetX));
       const ys = sorted(this.fromY(start[1]), this.fromY(event.offsetY));
       start = null;
-      this.onBox(...(far ? [xs, ys] : [null, null]));
+      this.onBox(...(dragged ? [xs, ys] : [null, null]));
     });
     this.stack.addEventListener("pointercancel", () => { start = null; this.overlay(); });
   }
 }
 
-/** Mean of `values` from the first scored point on over a grid of cells of the plane, NaN where no point is. */
+/** Mean of `values` in each cell of a grid over the plane, from point `first` on; NaN in empty cells. */
 export function gridded(xs, ys, values, first, columns = 110, rows = 72) {
   const [x, y] = [extent(xs.subarray(first)), extent(ys.subarray(first))];
   const total = new Float64Array(columns * rows), count = new Float64Array(columns * rows);
@@ -211,5 +211,5 @@ export function tick(value) {
 }
 
 function rgb(hex) {
-  return [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
+  return [1, 3, 5].map((start) => parseInt(hex.slice(start, start + 2), 16));
 }

@@ -7,8 +7,8 @@ for (const { place, ...stairs } of content.stairs) new Staircase(document.getEle
 const explorer = new Explorer(
   document.getElementById("explorer"), await Promise.all(content.records.map(decode)), { floors: content.floors },
 );
-for (const link of document.querySelectorAll("button.reveal"))
-  link.addEventListener("click", () => {
-    const { record, axis, from, to } = link.dataset;
+for (const button of document.querySelectorAll("button.reveal"))
+  button.addEventListener("click", () => {
+    const { record, axis, from, to } = button.dataset;
     explorer.reveal(record, axis, Number(from), Number(to));
   });

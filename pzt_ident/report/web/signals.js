@@ -1,19 +1,19 @@
-// The arrays of a record, what is marked in them, and how few points show it. Nothing here draws.
+// The arrays of a record, marks in them, errors over marks, and thinning. Nothing here draws.
 
-/** A record from the payload of `report/traces.py`: typed arrays over the points kept of its samples. */
+/** A record from the payload of `report/traces.py`: typed arrays over the kept samples (points). */
 export async function decode(packed) {
   const steps = packed.kept && new Uint16Array(await inflated(packed.kept));
   const points = steps ? steps.length : packed.samples;
   const index = new Float64Array(points);
-  for (let i = 0, at = 0; i < points; i++) index[i] = steps ? (at += steps[i]) : i;
+  for (let i = 0, sample = 0; i < points; i++) index[i] = steps ? (sample += steps[i]) : i;
   const models = [];
   for (const model of packed.models) {
     const residual = await channel(model.residual);
     const sizes = model.sizes ? await channel(model.sizes) : residual;
-    models.push({ name: model.name, residual, squares: sums(points, (i) => (index[i] < packed.settle ? 0 : sizes[i] ** 2)) });
+    models.push({ name: model.name, residual, squares: cumulativeSums(points, (i) => (index[i] < packed.settle ? 0 : sizes[i] ** 2)) });
   }
   const first = packed.settle - 1;
-  const counts = sums(points, (i) => Math.max(0, index[i] - Math.max(i ? index[i - 1] : -1, first)));
+  const counts = cumulativeSums(points, (i) => Math.max(0, index[i] - Math.max(i ? index[i - 1] : -1, first)));
   return {
     ...packed, index, models, counts,
     time: index.map((value) => packed.start + packed.dt * value),
@@ -28,25 +28,25 @@ async function channel({ data, low, step }) {
 
 async function inflated(text) {
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  const plain = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return new Response(plain).arrayBuffer();
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Response(stream).arrayBuffer();
 }
 
-/** Sums of `value(i)` over the first 0, 1, 2, ... points. */
-function sums(points, value) {
+/** Cumulative sums of `value(i)`: over the first 0, 1, 2, ... points. */
+function cumulativeSums(points, value) {
   const total = new Float64Array(points + 1);
   for (let i = 0; i < points; i++) total[i + 1] = total[i] + value(i);
   return total;
 }
 
-/** The points of a stretch of time as marks: a list of [first, last + 1]. */
+/** The points of a time interval as marks: a list of segments [first, last + 1]. */
 export function marksInTime(record, from, to) {
   const first = lowerBound(record.time, Math.min(from, to));
   const end = lowerBound(record.time, Math.max(from, to) + record.dt * 1e-6);
   return end > first ? [[first, end]] : [];
 }
 
-/** The points inside a box of a plane as marks; a step across a single point outside does not part two stretches. */
+/** The points inside a box of a plane as marks; a single point outside does not split a segment. */
 export function marksInBox(xs, ys, [left, right], [low, high]) {
   const marks = [];
   for (let i = 0; i < xs.length; i++) {
@@ -65,11 +65,11 @@ export function errorOf(record, model, marks) {
     squares += model.squares[end] - model.squares[first];
     samples += record.counts[end] - record.counts[first];
   }
-  const whole = model.squares.at(-1);
-  return { rmse: samples ? Math.sqrt(squares / samples) : NaN, samples, share: whole ? squares / whole : 0 };
+  const total = model.squares.at(-1);
+  return { rmse: samples ? Math.sqrt(squares / samples) : NaN, samples, share: total ? squares / total : 0 };
 }
 
-/** Indices of the points that show a stretch: of each bin the lowest and the highest of every array, and both ends. */
+/** Indices of the points to draw of a segment: the minimum and maximum of every array in each bin, and both ends. */
 export function thinned(arrays, first, end, bins) {
   if (end - first <= 2 * bins) return Array.from({ length: end - first }, (_, i) => first + i);
   const kept = new Set([first, end - 1]);
@@ -88,7 +88,7 @@ export function thinned(arrays, first, end, bins) {
   return [...kept].sort((a, b) => a - b);
 }
 
-/** The first place of an ascending array whose value is not below. */
+/** The first index of an ascending array whose value is not below `value`. */
 export function lowerBound(values, value) {
   let low = 0, high = values.length;
   while (low < high) {
@@ -99,8 +99,8 @@ export function lowerBound(values, value) {
   return low;
 }
 
-/** Distance from the straight line through the points from the first scored one on: a loop opened. */
-export function opened(xs, ys, first) {
+/** Deviation of y from the least-squares line through the points from `first` on, which opens a narrow loop. */
+export function deviationFromLine(xs, ys, first) {
   const n = xs.length - first;
   let x = 0, y = 0, xx = 0, xy = 0;
   for (let i = first; i < xs.length; i++) { x += xs[i] / n; y += ys[i] / n; }
@@ -118,17 +118,17 @@ export function extent(values) {
   return low < high ? [low, high] : [low - 0.5, low + 0.5];
 }
 
-/** Round values that part a range into about so many steps. */
-export function ticks([low, high], wanted) {
-  const raw = (high - low) / wanted;
+/** Round values that divide a range into about `count` steps. */
+export function ticks([low, high], count) {
+  const raw = (high - low) / count;
   const power = 10 ** Math.floor(Math.log10(raw));
   const step = [1, 2, 5, 10].map((round) => round * power).find((round) => round >= raw);
-  const found = [];
-  for (let count = Math.ceil(low / step); count * step <= high + step * 1e-9; count++) found.push(Number((count * step).toPrecision(12)));
-  return found;
+  const values = [];
+  for (let i = Math.ceil(low / step); i * step <= high + step * 1e-9; i++) values.push(Number((i * step).toPrecision(12)));
+  return values;
 }
 
-/** A number as it is read: so many significant digits, no trailing zeros of a power. */
+/** A number with `digits` significant digits as text; a dash where there is none. */
 export function number(value, digits = 3) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   if (value === 0) return "0";

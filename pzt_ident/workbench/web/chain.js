@@ -1,13 +1,13 @@
 import { element, select } from "./parts.js";
 
 const KINDS = { hysteresis: "Hysteresis", mechanics: "Mechanics" };
-const TERM = 4.5; // place of a term in the operator's own equation
+const TERM = 4.5; // place of an effect that is a term in the equation of the hysteresis operator
 
-/** The model drawn as its chain of blocks, in the order of the signal, and the blocks that it may be made of: one of
- * a kind, drawn onto the chain with the mouse or chosen, takes the place of that kind. */
+/** The model as a chain of blocks in signal order, and the blocks to choose from: a block that is dragged onto the
+ * chain or clicked replaces the block of the same kind. */
 export class Chain {
-  constructor(root, palette, { choose, add, remove }) {
-    Object.assign(this, { root, palette, choose, add, remove });
+  constructor(root, palette, { setModel, add, remove }) {
+    Object.assign(this, { root, palette, setModel, add, remove });
     root.addEventListener("dragover", (event) => {
       if (!event.dataTransfer.types.includes("text/plain")) return;
       event.preventDefault();
@@ -17,39 +17,39 @@ export class Chain {
     root.addEventListener("dragleave", () => root.classList.remove("over"));
     root.addEventListener("drop", (event) => {
       root.classList.remove("over");
-      this.put(event.dataTransfer.getData("text/plain"));
+      this.place(event.dataTransfer.getData("text/plain"));
     });
   }
 
-  /** `model` and `effects` are words; `known` says of each block and effect its name, doc, place and kind. */
-  show({ model, effects }, known, begun) {
-    this.known = Object.fromEntries([...known.blocks, ...known.effects].map((block) => [block.name, block]));
+  /** `model` and `effects` are words; `catalogue` has the name, doc, place and kind of every block and effect. */
+  show({ model, effects }, catalogue, begun) {
+    this.known = Object.fromEntries([...catalogue.blocks, ...catalogue.effects].map((block) => [block.name, block]));
     this.open = begun === this.begun ? this.palette.querySelector("details")?.open : !begun;
     Object.assign(this, { model, effects, begun });
-    const place = (word) => this.known[word]?.place ?? TERM;
+    const position = (word) => this.known[word]?.place ?? TERM;
     this.root.replaceChildren();
     element(this.root, "li", { class: "end" }, "drive");
-    for (const word of [...model, ...effects].toSorted((a, b) => place(a) - place(b))) this.block(word);
+    for (const word of [...model, ...effects].toSorted((a, b) => position(a) - position(b))) this.showBlock(word);
     element(this.root, "li", { class: "end" }, "response");
-    this.choices(known);
+    this.showPalette(catalogue);
   }
 
-  block(word) {
+  showBlock(word) {
     const effect = this.effects.includes(word);
     const item = element(this.root, "li", { title: this.known[word]?.doc ?? "", ...(effect && { class: "effect" }) }, word);
     if (!effect && this.model.length === 1) return;
-    const off = element(item, "button", { type: "button", "aria-label": `Take off ${word}`, title: `Take off ${word}` }, "×");
-    off.addEventListener("click", () => (effect ? this.remove(word) : this.choose(this.model.filter((other) => other !== word))));
+    const button = element(item, "button", { type: "button", "aria-label": `Remove ${word}`, title: `Remove ${word}` }, "×");
+    button.addEventListener("click", () => (effect ? this.remove(word) : this.setModel(this.model.filter((other) => other !== word))));
   }
 
-  choices({ blocks, effects }) {
+  showPalette({ blocks, effects }) {
     this.palette.replaceChildren();
     const details = element(this.palette, "details", this.open ? { open: "" } : {});
-    element(details, "summary", {}, "Blocks to choose, or to draw onto the chain");
-    for (const [kind, said] of Object.entries(KINDS)) {
+    element(details, "summary", {}, "Choose a block, or drag it onto the chain");
+    for (const [kind, title] of Object.entries(KINDS)) {
       const row = element(details, "div", { class: "bar" });
-      element(row, "span", { class: "quiet" }, said);
-      for (const block of blocks.filter((one) => one.kind === kind)) this.chip(row, block);
+      element(row, "span", { class: "quiet" }, title);
+      for (const block of blocks.filter((item) => item.kind === kind)) this.showChip(row, block);
     }
     if (!this.begun) return;
     const free = effects.filter(({ name }) => !this.effects.includes(name));
@@ -57,17 +57,18 @@ export class Chain {
     list.addEventListener("change", () => list.value && this.add(list.value));
   }
 
-  chip(row, { name, doc }) {
-    const there = this.model.includes(name);
-    const chip = element(row, "button", { type: "button", title: doc, draggable: "true", "aria-pressed": String(there), class: "chip" }, name);
+  showChip(row, { name, doc }) {
+    const used = this.model.includes(name);
+    const chip = element(row, "button", { type: "button", title: doc, draggable: "true", "aria-pressed": String(used), class: "chip" }, name);
     chip.addEventListener("dragstart", (event) => event.dataTransfer.setData("text/plain", name));
-    chip.addEventListener("click", () => this.put(name));
+    chip.addEventListener("click", () => this.place(name));
   }
 
-  put(word) {
+  /** Put a block into the model in the place of the one of its kind. */
+  place(word) {
     const kind = this.known[word]?.kind;
     if (!(kind in KINDS) || this.model.includes(word)) return;
-    const rest = this.model.filter((other) => this.known[other]?.kind !== kind);
-    this.choose(kind === "hysteresis" ? [word, ...rest] : [...rest, word]);
+    const others = this.model.filter((other) => this.known[other]?.kind !== kind);
+    this.setModel(kind === "hysteresis" ? [word, ...others] : [...others, word]);
   }
 }

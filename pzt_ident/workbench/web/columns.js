@@ -1,52 +1,52 @@
-import { element, keepingFocus, put, row, select } from "./parts.js";
+import { element, keepingFocus, row, select, svgElement } from "./parts.js";
 import { number } from "./signals.js";
 
 const AXES = ["x", "y", "z"];
 const ROLES = [["", "not used"], ["time", "time"], ...AXES.flatMap((axis) => [[`${axis}.drive`, `drive of ${axis}`], [`${axis}.response`, `response of ${axis}`]])];
-const USUAL = { time: "s", drive: "V", response: "um" };
-const USES = [["identify", "identify: fit it"], ["validate", "validate: keep it back"], ["split", "both: fit it but for its last third"]];
-const LONG = 600; // rows of a record that may be parted
-const usual = (role) => USUAL[role.split(".").at(-1)] ?? "";
-const last = (path) => path.split("/").at(-1);
+const USUAL_UNITS = { time: "s", drive: "V", response: "um" };
+const USES = [["identify", "identification (fitted)"], ["validate", "validation (not fitted)"], ["split", "both: last third for validation"]];
+const LONG = 600; // rows; a single record of at least this length is split
+const usualUnit = (role) => USUAL_UNITS[role.split(".").at(-1)] ?? "";
+const fileName = (path) => path.split("/").at(-1);
 
-/** The columns of dropped files, or of their tables and sheets, as they were guessed, to be confirmed. A record is one
- * file, or several with the same rows, such as one file a signal. */
+/** The guessed roles of the columns of dropped files, tables or sheets, for the user to confirm. A record is one file,
+ * or several with the same number of rows, such as one file per signal. */
 export class Columns {
-  constructor(root, bar, look, confirm) {
-    Object.assign(this, { root, bar, look, confirm, records: [], name: "my-stage", rate: "" });
+  constructor(root, bar, inspect, confirm) {
+    Object.assign(this, { root, bar, inspect, confirm, records: [], name: "my-stage", rate: "" });
   }
 
   get files() { return this.records.flatMap(({ files }) => files.map(({ file }) => file)); }
 
-  /** What was found in a file, as a record after the last, in the place of another, or with one that lacks it. */
-  async add(found, place = -1) {
-    const mate = place < 0 ? this.records.findIndex((record) => mates(record, found)) : -1;
-    if (mate >= 0) return this.join(mate, found);
-    const same = this.records.findIndex((record) => key(record) === key(found));
-    this.put(found, place < 0 ? same : place);
+  /** Add the columns of a file as a new record, in the place of an old one, or to a record that they complete. */
+  async add(record, place = -1) {
+    const partner = place < 0 ? this.records.findIndex((other) => complementary(other, record)) : -1;
+    if (partner >= 0) return this.join(partner, record);
+    const same = this.records.findIndex((other) => key(other) === key(record));
+    this.put(record, place < 0 ? same : place);
   }
 
-  put(found, place) {
-    const at = place < 0 ? this.records.length : place;
-    found.chosen = this.records[at]?.chosen;
-    this.records.splice(at, 1, found);
-    this.settle();
+  put(record, place) {
+    const index = place < 0 ? this.records.length : place;
+    record.chosen = this.records[index]?.chosen;
+    this.records.splice(index, 1, record);
+    this.update();
   }
 
-  /** One record of the files of two. */
-  async join(place, found) {
-    const files = [...this.records[place].files, ...found.files].map(({ file, part }) => ({ file, part }));
-    this.put(await this.look(files), place);
+  /** Join the files of two records into one record. */
+  async join(place, record) {
+    const files = [...this.records[place].files, ...record.files].map(({ file, part }) => ({ file, part }));
+    this.put(await this.inspect(files), place);
   }
 
-  /** What the first record has is what all are read by; it is fitted, and the others judge, unless another use was
-   * chosen. A record alone is parted. */
-  settle() {
+  /** All records have the columns of the first one. Unless chosen otherwise it is for identification and the others are
+   * for validation; a single long record is split. */
+  update() {
     const first = this.records.length > 1 || this.records[0]?.rows < LONG ? "identify" : "split";
     this.records.forEach((record, place) => { record.use = record.chosen ?? (place ? "validate" : first); });
     if (this.first !== this.records[0]) {
       this.first = this.records[0];
-      this.columns = this.first?.columns.map((column) => ({ ...column, unit: column.unit ?? usual(column.role) }));
+      this.columns = this.first?.columns.map((column) => ({ ...column, unit: column.unit ?? usualUnit(column.role) }));
       this.rate = this.first?.rate || this.rate;
     }
     this.show();
@@ -60,149 +60,149 @@ export class Columns {
     if (!this.records.length) return;
     const table = element(this.root, "table", { class: "files" });
     row(table, "th", ["record", this.records.some(({ files }) => files[0].kind) ? "table or sheet" : "", "rows", "use", ""]);
-    this.records.forEach((record, place) => this.record(record, place, row(table, "td", [said(record), "", record.rows, "", ""])));
-    const split = this.records.some(({ use }) => use === "split") ? "The last third of a record is kept back: the model is judged on it, and never fitted to it. " : "";
-    element(this.root, "p", { class: "quiet" }, `${split}Is each column what it is taken for? Units decide the size of every parameter.`);
-    this.table();
-    this.last();
+    this.records.forEach((record, place) => this.recordRow(record, place, row(table, "td", [recordName(record), "", record.rows, "", ""])));
+    const split = this.records.some(({ use }) => use === "split") ? "The last third of the record is for validation: the model is not fitted to it. " : "";
+    element(this.root, "p", { class: "quiet" }, `${split}Check the role and the unit of each column: the units set the scale of every parameter.`);
+    this.columnTable();
+    this.confirmation();
   }
 
-  record(record, place, cells) {
-    this.part(record, place, cells[1]);
+  recordRow(record, place, cells) {
+    this.partChoice(record, place, cells[1]);
     const above = this.records[place - 1];
-    const joins = above && !above.files[0].kind && above.rows === record.rows ? [["join", "more columns of the record above"]] : [];
-    const use = select(cells[3], [...USES, ...joins], record.use, `Use of ${said(record)}`);
-    use.addEventListener("change", () => this.choose(record, place, use.value));
-    const off = element(cells[4], "button", { type: "button", "aria-label": `Take off ${said(record)}` }, "Take off");
-    off.addEventListener("click", () => { this.records.splice(place, 1); this.settle(); });
-    const lacks = this.lacking(record);
-    if (lacks) element(cells[4], "span", { class: "warn" }, ` has ${lacks}`);
+    const joins = above && !above.files[0].kind && above.rows === record.rows ? [["join", "columns of the record above"]] : [];
+    const use = select(cells[3], [...USES, ...joins], record.use, `Use of ${recordName(record)}`);
+    use.addEventListener("change", () => this.setUse(record, place, use.value));
+    const button = element(cells[4], "button", { type: "button", "aria-label": `Remove ${recordName(record)}` }, "Remove");
+    button.addEventListener("click", () => { this.records.splice(place, 1); this.update(); });
+    const difference = this.difference(record);
+    if (difference) element(cells[4], "span", { class: "warn" }, ` has ${difference}`);
   }
 
-  choose(record, place, use) {
+  setUse(record, place, use) {
     if (use !== "join") return Object.assign(record, { use, chosen: use }) && this.show();
     this.records.splice(place, 1);
-    this.join(place - 1, record).catch(() => { this.records.splice(place, 0, record); this.settle(); });
+    this.join(place - 1, record).catch(() => { this.records.splice(place, 0, record); this.update(); });
   }
 
-  /** What a record has not, of what the first one is read by. */
-  lacking(record) {
+  /** How the files or columns of a record differ from those of the first one, as text; empty if they do not. */
+  difference(record) {
     if (record.files.length !== this.first.files.length) return "other files than the first record";
     if (record.files.length > 1) return "";
     const headers = record.columns.map((column) => column.header);
-    const without = this.columns.filter(({ header, role }) => role && header && !headers.includes(header));
-    return without.length ? `no column ${without.map(({ header }) => header).join(", ")}` : "";
+    const missing = this.columns.filter(({ header, role }) => role && header && !headers.includes(header));
+    return missing.length ? `no column ${missing.map(({ header }) => header).join(", ")}` : "";
   }
 
-  /** Which of the tables or sheets of a file, and one more of them as a record of its own. */
-  part({ files: [file] }, place, cell) {
+  /** A choice of the table or sheet of a file, and a button that adds another one as a further record. */
+  partChoice({ files: [file] }, place, cell) {
     const parts = Object.entries(file.parts);
     if (!parts.length) return;
     const list = select(cell, parts, file.part, `Table or sheet of ${file.file}`);
-    const look = async (part, at) => this.add(await this.look([{ file: file.file, part }]), at);
-    list.addEventListener("change", () => look(list.value, place).catch(() => { list.value = file.part; }));
+    const addPart = async (part, index) => this.add(await this.inspect([{ file: file.file, part }]), index);
+    list.addEventListener("change", () => addPart(list.value, place).catch(() => { list.value = file.part; }));
     const taken = this.records.filter(({ files: [other] }) => other.file === file.file).map(({ files: [other] }) => other.part);
-    const next = parts.map(([word]) => word).filter((word) => !taken.includes(word));
-    const later = next.find((word) => parts.findIndex(([other]) => other === word) > parts.findIndex(([other]) => other === file.part)) ?? next[0];
-    if (later) element(cell, "button", { type: "button" }, "And another").addEventListener("click", () => look(later).catch(() => {}));
+    const unused = parts.map(([word]) => word).filter((word) => !taken.includes(word));
+    const following = unused.find((word) => parts.findIndex(([other]) => other === word) > parts.findIndex(([other]) => other === file.part)) ?? unused[0];
+    if (following) element(cell, "button", { type: "button" }, "Add another").addEventListener("click", () => addPart(following).catch(() => {}));
   }
 
-  table() {
+  columnTable() {
     const table = element(element(this.root, "div", { class: "wide" }), "table", { class: "guessed" });
     const several = this.first.files.length > 1;
-    row(table, "th", ["column", "it is", "unit", "from", "to", "looks like", "first values"]);
+    row(table, "th", ["column", "role", "unit", "minimum", "maximum", "preview", "first values"]);
     for (const column of this.columns) {
-      const own = column.header || `column ${column.number}`;
-      const file = several ? last(this.first.files[column.of].file) : "";
-      const name = file && !file.startsWith(own) ? `${file}: ${own}` : file || own;
+      const title = column.header || `column ${column.number}`;
+      const file = several ? fileName(this.first.files[column.of].file) : "";
+      const name = file && !file.startsWith(title) ? `${file}: ${title}` : file || title;
       const cells = row(table, "td", [name, "", "", number(column.low, 4), number(column.high, 4), "", column.first.map((value) => number(value, 4)).join("  ")]);
       const role = select(cells[1], ROLES, column.role, `Role of ${name}`);
       const unit = element(cells[2], "input", { "aria-label": `Unit of ${name}`, value: column.unit, placeholder: "unit" });
-      pictured(cells[5], column.shape, name);
-      role.addEventListener("change", () => this.take(column, role.value));
+      drawPreview(cells[5], column.shape, name);
+      role.addEventListener("change", () => this.setRole(column, role.value));
       unit.addEventListener("input", () => { column.unit = unit.value; });
     }
   }
 
-  /** A role is one column's: the one that had it loses it. */
-  take(column, role) {
+  /** Give a column a role; the column that had it loses it. */
+  setRole(column, role) {
     for (const other of this.columns) if (other.role === role) other.role = "";
-    Object.assign(column, { role, unit: column.unit || usual(role) });
+    Object.assign(column, { role, unit: column.unit || usualUnit(role) });
     this.show();
   }
 
-  last() {
+  confirmation() {
     const { bar } = this;
     this.field(bar, "Name of the job ", "name", {});
-    if (!this.columns.some(({ role }) => role === "time")) this.field(bar, "No column is the time. Sample rate ", "rate", { placeholder: "1 kHz" });
-    const go = element(bar, "button", { type: "button", class: "strong", id: "confirm" }, "Confirm and identify");
-    go.addEventListener("click", () => this.confirm(() => this.form()));
+    if (!this.columns.some(({ role }) => role === "time")) this.field(bar, "No time column. Sample rate ", "rate", { placeholder: "1 kHz" });
+    const button = element(bar, "button", { type: "button", class: "strong", id: "confirm" }, "Confirm and identify");
+    button.addEventListener("click", () => this.confirm(() => this.form()));
   }
 
   field(bar, text, key, attributes) {
-    const made = element(element(bar, "label", {}, text), "input", { value: this[key], ...attributes });
-    made.addEventListener("input", () => { this[key] = made.value; });
+    const input = element(element(bar, "label", {}, text), "input", { value: this[key], ...attributes });
+    input.addEventListener("input", () => { this[key] = input.value; });
   }
 
-  /** What the server makes a job of, less the model. Throws an Error where something is left open. */
+  /** The form that the server makes a job of, without the model. Throws an Error if something is missing. */
   form() {
-    const of = (role) => this.columns.find((column) => column.role === role);
+    const columnOf = (role) => this.columns.find((column) => column.role === role);
     const axes = {};
     for (const axis of AXES) {
-      const [drive, response] = [of(`${axis}.drive`), of(`${axis}.response`)];
-      if (drive) axes[axis] = { drive: this.place(drive), ...(response && { response: this.place(response) }) };
+      const [drive, response] = [columnOf(`${axis}.drive`), columnOf(`${axis}.response`)];
+      if (drive) axes[axis] = { drive: this.channel(drive), ...(response && { response: this.channel(response) }) };
       else if (response) throw new Error(`Which column is the drive of ${axis}?`);
     }
-    if (!Object.values(axes).some(({ response }) => response)) throw new Error("Which columns are the drive and the response? At least one axis needs both. Where they are in files of their own, drop these too.");
-    if (!of("time") && !this.rate) throw new Error("Which column is the time? Or give the sample rate.");
-    if (this.records.every(({ use }) => use === "validate")) throw new Error("No record is there to identify: choose one to fit.");
+    if (!Object.values(axes).some(({ response }) => response)) throw new Error("Which columns are the drive and the response? At least one axis needs both. If they are in separate files, drop these too.");
+    if (!columnOf("time") && !this.rate) throw new Error("Which column is the time? Or give the sample rate.");
+    if (this.records.every(({ use }) => use === "validate")) throw new Error("There is no identification record: choose one.");
     return {
       name: this.name || "my-stage",
-      records: this.records.map((record) => this.written(record)),
-      time: of("time") ? this.place(of("time")) : null,
-      sample_rate: of("time") ? null : this.rate,
+      records: this.records.map((record) => this.recordForm(record)),
+      time: columnOf("time") ? this.channel(columnOf("time")) : null,
+      sample_rate: columnOf("time") ? null : this.rate,
       axes,
     };
   }
 
-  /** A column by its heading where it has one of its own, else by its number; where each record is several files, by
-   * its unit alone, since the records say the rest. */
-  place({ header, number, unit, role }) {
-    if (this.first.files.length > 1) return { unit: unit || usual(role) };
-    const single = this.columns.filter((other) => other.header === header).length === 1;
-    return { header: single ? header : "", number, unit: unit || usual(role) };
+  /** A column by its heading if that is unique, else by its number; by its unit alone where a record is several files,
+   * since the records then name the columns. */
+  channel({ header, number, unit, role }) {
+    if (this.first.files.length > 1) return { unit: unit || usualUnit(role) };
+    const unique = this.columns.filter((other) => other.header === header).length === 1;
+    return { header: unique ? header : "", number, unit: unit || usualUnit(role) };
   }
 
-  written({ files, use, rows, columns }) {
+  recordForm({ files, use, rows, columns }) {
     const [{ file, kind, part }] = files;
     const time = this.columns.find(({ role }) => role === "time");
-    const stamps = time && columns.find(({ number, of }) => number === time.number && of === time.of);
-    const placed = files.length > 1 ? this.columns.filter(({ role }) => role).map(({ role, number, of }) => [role, { file: files[of]?.file ?? "", number }]) : [];
-    return { file, use, rows, ...(stamps && { span: stamps.high - stamps.low }), ...(kind && { [kind]: part }), channels: Object.fromEntries(placed) };
+    const timestamps = time && columns.find(({ number, of }) => number === time.number && of === time.of);
+    const channels = files.length > 1 ? this.columns.filter(({ role }) => role).map(({ role, number, of }) => [role, { file: files[of]?.file ?? "", number }]) : [];
+    return { file, use, rows, ...(timestamps && { span: timestamps.high - timestamps.low }), ...(kind && { [kind]: part }), channels: Object.fromEntries(channels) };
   }
 }
 
-/** Whether one of two records lacks what the other one has. */
-function mates(record, found) {
-  const [here, there] = [record, found].map(({ columns }) => columns.map(({ role }) => role).filter(Boolean));
-  const whole = (roles) => ["x.drive", "x.response"].every((role) => roles.includes(role));
-  const apart = record.rows === found.rows && !record.files[0].kind && !found.files[0].kind && key(record) !== key(found);
-  return apart && !here.some((role) => there.includes(role)) && !(whole(here) && whole(there)) && !(whole(here) && !there.length);
+/** Whether two records of the same length have different roles that make one record together. */
+function complementary(record, other) {
+  const [roles, otherRoles] = [record, other].map(({ columns }) => columns.map(({ role }) => role).filter(Boolean));
+  const complete = (list) => ["x.drive", "x.response"].every((role) => list.includes(role));
+  const joinable = record.rows === other.rows && !record.files[0].kind && !other.files[0].kind && key(record) !== key(other);
+  return joinable && !roles.some((role) => otherRoles.includes(role)) && !(complete(roles) && complete(otherRoles)) && !(complete(roles) && !otherRoles.length);
 }
 
-/** A record by its files. */
-function said({ files }) {
-  return files.map(({ file }) => last(file)).join(" + ");
+/** The name of a record: its files. */
+function recordName({ files }) {
+  return files.map(({ file }) => fileName(file)).join(" + ");
 }
 
-/** What tells one record from another. */
+/** A key that identifies a record by its files and their parts. */
 function key({ files }) {
   return JSON.stringify(files.map(({ file, part }) => [file, part]));
 }
 
-/** The course of a column, small. */
-function pictured(cell, shape, name) {
+/** A small plot of a column. */
+function drawPreview(cell, shape, name) {
   const points = shape.map((value, place) => `${place},${(20 * (1 - value)).toFixed(1)}`).join(" ");
-  const svg = put(cell, "svg", { viewBox: `0 -1 ${shape.length} 22`, preserveAspectRatio: "none", class: "shape", role: "img", "aria-label": `Course of ${name}` });
-  put(svg, "polyline", { points, "vector-effect": "non-scaling-stroke" });
+  const svg = svgElement(cell, "svg", { viewBox: `0 -1 ${shape.length} 22`, preserveAspectRatio: "none", class: "shape", role: "img", "aria-label": `Preview of ${name}` });
+  svgElement(svg, "polyline", { points, "vector-effect": "non-scaling-stroke" });
 }

@@ -1,9 +1,9 @@
 import { colour, tick } from "./plane.js";
 
 const COLOURS = ["--identify", "--validate", "--third", "--fourth", "--before"];
-const LEAST = 40; // ms between two drawings
+const INTERVAL = 40; // ms between two drawings, at least
 
-/** Best RMSE so far of every run against evaluations, from the lines of `events.jsonl` as they come. */
+/** Best RMSE so far of every run against evaluations, from the lines of `events.jsonl` as they arrive. */
 export class Convergence {
   constructor(root) {
     this.root = root;
@@ -28,18 +28,18 @@ export class Convergence {
     run.push([event.evaluations, event.best]);
     this.done = [...this.runs.values()].reduce((sum, points) => sum + points.at(-1)[0], 0);
     if (event.best !== null && event.best <= this.best) [this.best, this.validate] = [event.best, event.validate];
-    if (!this.waiting) this.waiting = setTimeout(() => { this.waiting = null; this.draw(); }, LEAST);
+    if (!this.waiting) this.waiting = setTimeout(() => { this.waiting = null; this.draw(); }, INTERVAL);
   }
 
   size() {
     return { width: Math.max(280, this.root.clientWidth - 4), height: 210 };
   }
 
-  draw(anew = false) {
+  draw(rebuild = false) {
     const tables = [...this.runs.values()].map((points) => [points.map(([x]) => x), points.map(([, y]) => y)]);
     if (!tables.length) return;
     const data = uPlot.join(tables);
-    if (anew || this.plot?.series.length !== data.length) {
+    if (rebuild || this.plot?.series.length !== data.length) {
       this.plot?.destroy();
       this.plot = new uPlot(this.options([...this.runs.keys()]), data, this.root);
     } else this.plot.setData(data);

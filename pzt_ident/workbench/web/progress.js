@@ -1,18 +1,18 @@
-/** What a diagnosis is at, from the lines of its `events.jsonl` as they come. */
+/** Progress of a diagnosis, from the lines of its `events.jsonl` as they arrive. */
 export class Progress {
-  constructor(changed) {
-    this.changed = changed;
+  constructor(onChange) {
+    this.onChange = onChange;
     this.clear();
   }
 
   clear() {
-    Object.assign(this, { said: "", scored: [] });
+    Object.assign(this, { sentence: "", scored: [] });
   }
 
-  take({ event, said, ...facts }) {
+  take({ event, said: sentence, ...facts }) {
     if (event === "fitted" && facts.done === 1) this.clear();
-    this.said = said ?? this.said;
+    this.sentence = sentence ?? this.sentence;
     if (event === "scored") this.scored.push(facts);
-    if (said) this.changed();
+    if (sentence) this.onChange();
   }
 }

@@ -1,56 +1,57 @@
-// Speaking to the server: the token of the address goes with every call, and what happens comes back as a stream.
+// Requests to the server, each with the token of the page's address, and the stream of its events.
 
-const [token, given] = decodeURIComponent(location.hash.slice(1)).split("&");
+const [token, dataFile] = decodeURIComponent(location.hash.slice(1)).split("&");
 
-/** The file of data that the workbench was started with. */
-export const opening = given ?? "";
+/** The data file that the workbench was started with. */
+export const initialFile = dataFile ?? "";
 
-/** Call `/api/name`: with a body it changes something. Throws an Error with what the server said. */
-export async function call(name, body, raw = false) {
+/** Request `/api/name`, with a body as POST. Throws an Error with the server's message. */
+export async function request(name, body, raw = false) {
   const options = { headers: { "x-pzt-token": token } };
   if (body !== undefined) Object.assign(options, { method: "POST", body: raw ? body : JSON.stringify(body) });
-  let answer;
+  let response;
   try {
-    answer = await fetch(`/api/${name}`, options);
+    response = await fetch(`/api/${name}`, options);
   } catch {
-    throw new Error("The workbench does not answer. Is it still running in its terminal?");
+    throw new Error("The workbench does not respond. Is it still running in its terminal?");
   }
-  if (answer.ok) return answer;
-  const said = await answer.text();
+  if (response.ok) return response;
+  const message = await response.text();
   try {
-    throw new Error(JSON.parse(said).error);
+    throw new Error(JSON.parse(message).error);
   } catch (error) {
-    throw error instanceof SyntaxError ? new Error(said) : error;
+    throw error instanceof SyntaxError ? new Error(message) : error;
   }
 }
 
-export async function ask(name, body) {
-  return (await call(name, body)).json();
+/** As `request`, the response as JSON. */
+export async function requestJson(name, body) {
+  return (await request(name, body)).json();
 }
 
-/** Tell `listen` every event from now on; comes back after the server was away. */
-export async function follow(listen, away) {
+/** Call `onEvent` with every event from now on, and `onError` when the connection is lost; reconnects every second. */
+export async function follow(onEvent, onError) {
   for (;;) {
     try {
-      const reader = (await call("events")).body.pipeThrough(new TextDecoderStream()).getReader();
+      const reader = (await request("events")).body.pipeThrough(new TextDecoderStream()).getReader();
       for (let text = "", part = await reader.read(); !part.done; part = await reader.read()) {
         text += part.value;
         const messages = text.split("\n\n");
         text = messages.pop();
-        for (const message of messages) listen(JSON.parse(message.slice("data: ".length)));
+        for (const message of messages) onEvent(JSON.parse(message.slice("data: ".length)));
       }
     } catch (error) {
-      away(error);
+      onError(error);
     }
-    await new Promise((done) => setTimeout(done, 1000));
+    await new Promise((resolve) => setTimeout(resolve, 1000));
   }
 }
 
-/** Hand a file to the browser's downloads. */
-export async function save(name, as) {
+/** Download `/api/name` as a file. */
+export async function save(name, fileName) {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(await (await call(name)).blob());
-  link.download = as;
+  link.href = URL.createObjectURL(await (await request(name)).blob());
+  link.download = fileName;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
