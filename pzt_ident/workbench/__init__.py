@@ -1,4 +1,4 @@
-"""The local web page: the story of the command line with the mouse.
+"""The local web page: the command line's workflow with the mouse.
 
-In: clicks and dropped files. Out: the same commands, run on the same folders.
+In: clicks and dropped files. Out: the same commands, run in the same folders.
 """

@@ -1,4 +1,4 @@
-"""The workbench's server: one process, this machine only, no file beyond the folder it was started in."""
+"""The workbench's HTTP server: one process, this machine only, no file outside the folder in which it was started."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from pzt_ident.job.edit import edited
 from pzt_ident.workbench import page_state
 from pzt_ident.workbench.columns import columns_of
 from pzt_ident.workbench.guard import LARGEST_UPLOAD, Guard, inside
-from pzt_ident.workbench.job_form import places
+from pzt_ident.workbench.job_form import file_sources
 from pzt_ident.workbench.session import Session
 from pzt_ident.workbench.session_results import gathered
 
 LARGEST_FORM = 1 << 20
-SECONDS_BETWEEN_LOOKS = 0.1
+POLLING_INTERVAL = 0.1  # s
 NAME = re.compile(r"\w[\w .,;+=@#%&'()\[\]-]{0,120}")
 SERVED = {".js": "text/javascript", ".css": "text/css", ".html": "text/html"}
 
@@ -35,29 +35,37 @@ Handler = Callable[[Session, Request], Awaitable[Response]]
 
 
 def make_app(session: Session, hosts: set[str], token: str) -> Guard:
-    """The application; `hosts` are the values that a request's Host may have."""
+    """The application; `hosts`: the allowed values of the Host header."""
 
     @asynccontextmanager
-    async def life(app: Starlette) -> AsyncIterator[None]:
+    async def lifespan(app: Starlette) -> AsyncIterator[None]:
         yield
         await session.stop()
 
-    posts = {"upload": upload, "look": look, "job": begin, "run": run, "stop": stop, "model": choose, "report": ticket}
-    posts |= {"add": change, "remove": change, "undo": undo, "back": back}
+    posts = {
+        "upload": upload,
+        "look": inspect,
+        "job": begin,
+        "run": run,
+        "stop": stop,
+        "model": set_model,
+        "report": make_report,
+    }
+    posts |= {"add": change, "remove": change, "undo": undo, "back": go_to}
     gets = {"state": state, "signals": signals, "events": events, "job": job_file, "drive": drive_file}
-    pages = {"/": page, "/favicon.ico": nothing, "/web/{name:path}": web, "/report/{key}": report}
+    pages = {"/": page, "/favicon.ico": no_content, "/web/{name:path}": web_file, "/report/{key}": report}
     routes = [route(session, path, handler) for path, handler in pages.items()]
     routes += [route(session, f"/api/{name}", handler) for name, handler in gets.items()]
     routes += [route(session, f"/api/{name}", handler, "POST") for name, handler in posts.items()]
-    app = Starlette(routes=routes, lifespan=life)
+    app = Starlette(routes=routes, lifespan=lifespan)
     app.state.reports = dict[str, Path]()
     return Guard(app, hosts, token)
 
 
 def route(session: Session, path: str, handler: Handler, method: str = "GET") -> Route:
-    """A handler at a path; what it raises of bad input is said."""
+    """A handler at a path; InputError and RunError become responses with status 400 and their message."""
 
-    async def answer(request: Request) -> Response:
+    async def respond(request: Request) -> Response:
         try:
             return await handler(session, request)
         except (InputError, RunError) as error:
@@ -65,16 +73,16 @@ def route(session: Session, path: str, handler: Handler, method: str = "GET") ->
         except (KeyError, TypeError, ValueError) as error:
             return JSONResponse({"error": f"not a form of the workbench: {error!r}"}, status_code=400)
 
-    return Route(path, answer, methods=[method])
+    return Route(path, respond, methods=[method])
 
 
-async def ticket(session: Session, request: Request) -> Response:
-    """Write the report of the step shown; where it can be read, by who has the address only."""
+async def make_report(session: Session, request: Request) -> Response:
+    """Write the report of the current step; returns an address that cannot be guessed."""
     from pzt_ident.report.page import write_report
 
-    made, key = await asyncio.to_thread(lambda: write_report(gathered(session))), secrets.token_urlsafe(24)
-    request.app.state.reports[key] = made
-    return JSONResponse({"url": f"/report/{key}", "file": session.relative(made)})
+    path, key = await asyncio.to_thread(lambda: write_report(gathered(session))), secrets.token_urlsafe(24)
+    request.app.state.reports[key] = path
+    return JSONResponse({"url": f"/report/{key}", "file": session.relative(path)})
 
 
 async def report(session: Session, request: Request) -> Response:
@@ -86,23 +94,23 @@ async def page(session: Session, request: Request) -> Response:
     return served("workbench.html")
 
 
-async def nothing(session: Session, request: Request) -> Response:
+async def no_content(session: Session, request: Request) -> Response:
     return Response(status_code=204)
 
 
-async def web(session: Session, request: Request) -> Response:
+async def web_file(session: Session, request: Request) -> Response:
     return served(request.path_params["name"])
 
 
 def served(name: str) -> Response:
-    """A file of the page, by its name among those that the package has."""
-    folders = [files(f"pzt_ident.{room}").joinpath("web") for room in ("report", "workbench")]
-    known = {item.name: item for folder in folders for item in folder.iterdir()}
-    known |= {f"uplot/{item.name}": item for item in known.pop("uplot").iterdir()}
+    """A file of the page by its name, which must be one of those in the package."""
+    folders = [files(f"pzt_ident.{package}").joinpath("web") for package in ("report", "workbench")]
+    web_files = {item.name: item for folder in folders for item in folder.iterdir()}
+    web_files |= {f"uplot/{item.name}": item for item in web_files.pop("uplot").iterdir()}
     kind = SERVED.get(Path(name).suffix)
-    if name not in known or kind is None:
+    if name not in web_files or kind is None:
         return PlainTextResponse("not found", 404)
-    return Response(known[name].read_bytes(), media_type=f"{kind}; charset=utf-8")
+    return Response(web_files[name].read_bytes(), media_type=f"{kind}; charset=utf-8")
 
 
 async def state(session: Session, request: Request) -> Response:
@@ -114,23 +122,23 @@ async def signals(session: Session, request: Request) -> Response:
 
 
 async def form(request: Request) -> dict[str, Any]:
-    """The body as JSON. Raises InputError where it is too large or none."""
+    """The body as a JSON mapping. Raises InputError if it is too large or not a mapping."""
     body = bytearray()
     async for part in request.stream():
         body += part
         if len(body) > LARGEST_FORM:
             raise InputError("the form is too large")
-    found = json.loads(body or b"{}")
-    if not isinstance(found, dict):
-        raise InputError("the form is no mapping")
-    return found
+    content = json.loads(body or b"{}")
+    if not isinstance(content, dict):
+        raise InputError("the form is not a mapping")
+    return content
 
 
 async def upload(session: Session, request: Request) -> Response:
-    """Keep a dropped file in the session's folder and say what is in it. It is read as numbers, never run."""
+    """Store a dropped file in the session's folder and return its columns. It is read as numbers, never executed."""
     name = request.query_params.get("name", "")
     if not NAME.fullmatch(name):
-        raise InputError(f"{name!r} cannot be the name of a file", remedy="use letters, digits, blanks and . , _ + -")
+        raise InputError(f"{name!r} cannot be the name of a file", remedy="use letters, digits, spaces and . , _ + -")
     if int(request.headers.get("content-length", 0)) > LARGEST_UPLOAD:
         return too_large()
     session.data.mkdir(parents=True, exist_ok=True)
@@ -147,9 +155,9 @@ async def upload(session: Session, request: Request) -> Response:
         if path.exists() and path.read_bytes() != part.read_bytes():
             raise InputError(f"another {name!r} was dropped before", remedy="give it another name")
         part.replace(path)
-        return await looked_at(session, (path, None))
+        return await inspected(session, (path, None))
     except InputError:
-        if new:  # it may be dropped again once it is mended
+        if new:  # so that a corrected file can be dropped
             path.unlink(missing_ok=True)
         raise
     finally:
@@ -162,31 +170,31 @@ def too_large() -> Response:
     )
 
 
-async def look(session: Session, request: Request) -> Response:
-    """What is in files of the folder that the workbench was started in, or in one of the tables or sheets of each."""
-    wanted = (await form(request))["files"]
-    return await looked_at(session, *((inside(session.root, item["file"]), item.get("part")) for item in wanted))
+async def inspect(session: Session, request: Request) -> Response:
+    """The columns of files in the folder of the workbench, or of one table or sheet of each."""
+    items = (await form(request))["files"]
+    return await inspected(session, *((inside(session.root, item["file"]), item.get("part")) for item in items))
 
 
-async def looked_at(session: Session, *files: tuple[Path, str | None]) -> Response:
-    found = await asyncio.to_thread(columns_of, *files)
-    for about, (path, _) in zip(found["files"], files, strict=True):
-        about["file"] = session.relative(path)
-    return JSONResponse(found)
+async def inspected(session: Session, *files: tuple[Path, str | None]) -> Response:
+    record = await asyncio.to_thread(columns_of, *files)
+    for file, (path, _) in zip(record["files"], files, strict=True):
+        file["file"] = session.relative(path)
+    return JSONResponse(record)
 
 
 async def begin(session: Session, request: Request) -> Response:
-    wanted = await form(request)
-    for place in places(wanted["records"]):
-        inside(session.root, place["file"])
-    await asyncio.to_thread(session.begin, wanted)
+    job_form = await form(request)
+    for source in file_sources(job_form["records"]):
+        inside(session.root, source["file"])
+    await asyncio.to_thread(session.begin, job_form)
     return await state(session, request)
 
 
-async def choose(session: Session, request: Request) -> Response:
+async def set_model(session: Session, request: Request) -> Response:
     words = [str(word) for word in (await form(request))["model"]]
     await session.stop()
-    await asyncio.to_thread(session.choose, words)
+    await asyncio.to_thread(session.set_model, words)
     session.start()
     return await state(session, request)
 
@@ -202,11 +210,11 @@ async def stop(session: Session, request: Request) -> Response:
 
 
 async def change(session: Session, request: Request) -> Response:
-    """Add an effect or take one off, and run."""
-    act = session.add if request.url.path.endswith("/add") else session.remove
+    """Add or remove an effect, and run."""
+    action = session.add if request.url.path.endswith("/add") else session.remove
     effect = str((await form(request))["effect"])
     await session.stop()
-    await asyncio.to_thread(act, effect)
+    await asyncio.to_thread(action, effect)
     session.start()
     return await state(session, request)
 
@@ -217,54 +225,54 @@ async def undo(session: Session, request: Request) -> Response:
     return await state(session, request)
 
 
-async def back(session: Session, request: Request) -> Response:
+async def go_to(session: Session, request: Request) -> Response:
     number = int((await form(request))["step"])
     await session.stop()
-    session.go(number)
+    session.go_to(number)
     return await state(session, request)
 
 
 async def job_file(session: Session, request: Request) -> Response:
-    """The job, for the folder that the workbench was started in."""
+    """The job file with paths relative to the folder in which the workbench was started."""
     job = session.job()
     return PlainTextResponse(edited(job, job.effects, session.root))
 
 
 async def drive_file(session: Session, request: Request) -> Response:
-    found = page_state.read(session.step() / "diagnosis" / "diagnosis.json")
-    if not found or not found["next_experiment"]:
+    diagnosis = page_state.read(session.step() / "diagnosis" / "diagnosis.json")
+    if not diagnosis or not diagnosis["next_experiment"]:
         raise InputError("no drive is proposed")
     return FileResponse(session.step() / "diagnosis" / "next_experiment.csv", media_type="text/csv")
 
 
 async def events(session: Session, request: Request) -> Response:
-    """Server-sent events: the lines of the `events.jsonl` of the step shown, and `changed` when the state has."""
-    return StreamingResponse(following(session, request), media_type="text/event-stream")
+    """Server-sent events: the lines of `events.jsonl` of the current step, and `changed` when the state changes."""
+    return StreamingResponse(event_stream(session, request), media_type="text/event-stream")
 
 
-async def following(session: Session, request: Request) -> AsyncIterator[str]:
-    shown, version, told = -1, -1, dict[Path, int]()
+async def event_stream(session: Session, request: Request) -> AsyncIterator[str]:
+    step, version, offsets = -1, -1, dict[Path, int]()
     while not session.closing() and not await request.is_disconnected():
-        if session.at != shown:
-            shown, told = session.at, {}
-            yield event({"event": "step", "step": shown})
+        if session.at != step:
+            step, offsets = session.at, {}
+            yield event({"event": "step", "step": step})
         for path in session.logs():
-            for line in news(path, told):
+            for line in new_lines(path, offsets):
                 yield event(page_state.printed(json.loads(line)))
         if session.version != version:
             version = session.version
             yield event({"event": "changed", "version": version})
-        await asyncio.sleep(SECONDS_BETWEEN_LOOKS)
+        await asyncio.sleep(POLLING_INTERVAL)
 
 
-def news(path: Path, told: dict[Path, int]) -> list[bytes]:
-    """The whole lines of a log that were not told yet; all of them where it began anew."""
+def new_lines(path: Path, offsets: dict[Path, int]) -> list[bytes]:
+    """The complete lines of a log beyond its offset, which is moved on; all lines if the log was started anew."""
     with suppress(FileNotFoundError), path.open("rb") as file:
-        if told.get(path, 0) > path.stat().st_size:
-            told[path] = 0
-        file.seek(told.get(path, 0))
+        if offsets.get(path, 0) > path.stat().st_size:
+            offsets[path] = 0
+        file.seek(offsets.get(path, 0))
         lines = file.read().rpartition(b"\n")[0]
-        told[path] = told.get(path, 0) + len(lines) + bool(lines)
+        offsets[path] = offsets.get(path, 0) + len(lines) + bool(lines)
         return lines.splitlines()
     return []
 

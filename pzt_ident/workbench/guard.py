@@ -1,4 +1,4 @@
-"""Who may speak to the workbench: this machine, this page, this session."""
+"""Access control: requests are accepted only for this host, from this page and with the token of this session."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ HEADERS = {
     "cross-origin-resource-policy": "same-origin",
 }
 LARGEST_UPLOAD = 256 << 20
-REPORT = "/report/"  # a page with a policy of its own
+REPORT = "/report/"  # the report brings its own content security policy
 
 
 class Guard:
-    """Lets a request through that names a trusted host, comes from this page or from none, and, under /api/, brings the
-    token. Every answer carries the policy."""
+    """ASGI middleware. A request passes if its Host is trusted, its Origin is this page or absent, and, under /api/,
+    its token is right. Every response carries the security headers."""
 
     def __init__(self, app: App, hosts: set[str], token: str) -> None:
         self.app, self.hosts, self.token = app, hosts, token
@@ -58,30 +58,30 @@ class Guard:
         await guarded({"type": "http.response.body", "body": reason.encode()})
 
     def refusal(self, path: str, headers: dict[str, list[str]]) -> tuple[int, str] | None:
-        """Status and reason; None where the request may pass."""
+        """HTTP status and reason of a refusal; None if the request may pass."""
         if len(headers.get("host", [])) != 1 or headers["host"][0].lower() not in self.hosts:
-            return 421, "not the host that the workbench was started for"
+            return 421, "wrong Host: not the one that the workbench was started for"
         if any(origin.lower() not in {f"http://{host}" for host in self.hosts} for origin in headers.get("origin", [])):
-            return 403, "a page from elsewhere may not speak to the workbench"
-        given = headers.get("x-pzt-token", [""])[0]
-        if path.startswith("/api/") and not secrets.compare_digest(given.encode(), self.token.encode()):
+            return 403, "requests from other pages are not allowed"
+        token = headers.get("x-pzt-token", [""])[0]
+        if path.startswith("/api/") and not secrets.compare_digest(token.encode(), self.token.encode()):
             return 403, "the token is missing or wrong: open the address that the terminal shows"
         return None
 
 
 def headers_of(scope: Scope) -> dict[str, list[str]]:
-    found: dict[str, list[str]] = {}
+    headers: dict[str, list[str]] = {}
     for key, value in scope["headers"]:
-        found.setdefault(key.decode("latin-1").lower(), []).append(value.decode("latin-1"))
-    return found
+        headers.setdefault(key.decode("latin-1").lower(), []).append(value.decode("latin-1"))
+    return headers
 
 
 def inside(root: Path, name: str) -> Path:
-    """The file of that name below a folder. Raises InputError where it leads out of it, or through a link."""
+    """The path of a file below `root`. Raises InputError if it lies outside, or if a part of the path is a link."""
     path = Path(name)
-    steps = [root.joinpath(*path.parts[: place + 1]) for place in range(len(path.parts))]
-    if not path.parts or path.is_absolute() or ".." in path.parts or any(sign in name for sign in "\0\\$"):
+    paths = [root.joinpath(*path.parts[: place + 1]) for place in range(len(path.parts))]
+    if not path.parts or path.is_absolute() or ".." in path.parts or any(character in name for character in "\0\\$"):
         raise InputError(f"{name!r} is not in the workbench's folder", remedy="drop the file onto the page")
-    if any(step.is_symlink() for step in steps):
+    if any(part.is_symlink() for part in paths):
         raise InputError(f"{name!r} is a link", remedy="copy the file into the folder")
-    return steps[-1]
+    return paths[-1]

@@ -1,4 +1,4 @@
-"""What the page shows of a session, read from its folders."""
+"""The state of a session for the page, read from its folders."""
 
 from __future__ import annotations
 
@@ -19,23 +19,23 @@ from pzt_ident.run.results import read_results
 from pzt_ident.workbench.guard import LARGEST_UPLOAD
 from pzt_ident.workbench.session import Session
 
-SPELLED = {"unit": unit} | dict.fromkeys(("reason", "why", "said", "sentences"), spelled)
+PRINTERS = {"unit": unit} | dict.fromkeys(("reason", "why", "said", "sentences"), spelled)
 
 
 def state(session: Session) -> dict[str, Any]:
-    """Everything but the signals; empty parts where there is nothing yet."""
+    """The whole state except the signals; parts without results are None or empty."""
     chain = session.chain()
     step = session.step() if chain else None
-    job = job_of(session) if step else None  # read first: it may bring blocks
+    job = job_of(session) if step else None  # read first: its plugins may register blocks
     return {
         "version": session.version,
         "folder": session.relative(session.folder),
         "largest": LARGEST_UPLOAD,
-        "blocks": chainable(),
+        "blocks": model_blocks(),
         "effects": effects(),
         "files": [*files_in(session.root), *(session.relative(session.data / name) for name in files_in(session.data))],
-        "steps": [about(session, entry) for entry in chain],
-        "others": [about(session, entry) for entry in session.steps if entry not in chain],
+        "steps": [step_state(session, entry) for entry in chain],
+        "others": [step_state(session, entry) for entry in session.steps if entry not in chain],
         "stage": session.stage,
         "since": session.since,
         "failure": session.failure,
@@ -44,36 +44,35 @@ def state(session: Session) -> dict[str, Any]:
         "result": read(step / "run" / "result.json") if step else None,
         "misfit": read(step / "run" / "residuals.json") if step else None,
         "diagnosis": diagnosis_of(step) if step else None,
-        "commands": session.said(),
+        "commands": session.logged_commands(),
     }
 
 
-def about(session: Session, entry: dict[str, Any]) -> dict[str, Any]:
-    """A step and what its model leaves, where it was run."""
-    found = read(session.step(entry["number"]) / "run" / "result.json")
-    rmse = found["best"]["rmse"] if found and found.get("best") else {"identify": None, "validate": None}
+def step_state(session: Session, entry: dict[str, Any]) -> dict[str, Any]:
+    """A step and the RMSE of its model by use, None if it was not run."""
+    result = read(session.step(entry["number"]) / "run" / "result.json")
+    rmse = result["best"]["rmse"] if result and result.get("best") else {"identify": None, "validate": None}
     return entry | rmse
 
 
 def over_axes(session: Session) -> dict[str, str]:
-    """The unit of errors over all axes, what stands behind their name and what they count, from the newest step that
-    has a result."""
-    found = (read(session.step(entry["number"]) / "run" / "result.json") for entry in reversed(session.steps))
-    newest: dict[str, Any] = next(filter(None, found), {})
+    """Unit, name suffix and explanation of errors over all axes, from the newest step that has a result."""
+    results = (read(session.step(entry["number"]) / "run" / "result.json") for entry in reversed(session.steps))
+    newest: dict[str, Any] = next(filter(None, results), {})
     units = newest.get("units", {})
     unit = newest["unit"] or "1" if newest else ""
     return {"unit": unit, "together": together(units), "weighed": " ".join(weighed(units))}
 
 
 def diagnosis_of(step: Path) -> dict[str, Any] | None:
-    """The diagnosis, with what each effect would be as it is printed."""
+    """The diagnosis with the estimated parameters of each effect as printed text."""
     path = step / "diagnosis" / "diagnosis.json"
     if not path.exists():
         return None
-    found = json.loads(path.read_text(encoding="utf-8"))
-    for item in found["candidates"]:
+    diagnosis = json.loads(path.read_text(encoding="utf-8"))
+    for item in diagnosis["candidates"]:
         item["would_be"] = expected(item["expected"], item["units"])
-    return printed(found) | {"reason": printed_reason(found["reason"], read_results(step / "run"))}
+    return printed(diagnosis) | {"reason": printed_reason(diagnosis["reason"], read_results(step / "run"))}
 
 
 def job_of(session: Session) -> dict[str, Any]:
@@ -89,49 +88,49 @@ def job_of(session: Session) -> dict[str, Any]:
 
 
 def signals(session: Session) -> dict[str, Any]:
-    """The records with the model of the step shown and of the step before, every sample of them."""
+    """All samples of the records with the models of the current step and of the one before."""
     models: dict[str, tuple[Trace, ...]] = {}
     for entry, name in zip(reversed(session.chain()), ("now", "before"), strict=False):
         run = session.step(entry["number"]) / "run"
         if (run / "result.json").exists():
             models[name] = read_results(run).traces
-    found = read(session.step() / "run" / "result.json") or {"noise_floor": {}}
-    return {"records": packed(models, None), "floors": found["noise_floor"]}
+    result = read(session.step() / "run" / "result.json") or {"noise_floor": {}}
+    return {"records": packed(models, None), "floors": result["noise_floor"]}
 
 
 def read(path: Path) -> Any:
-    """A JSON file; None where there is none, with its units as they are printed."""
+    """The content of a JSON file with printed units; None if there is no file."""
     if not path.exists():
         return None
     return printed(json.loads(path.read_text(encoding="utf-8")))
 
 
-def printed(found: Any, key: str = "") -> Any:
-    """The units in it, and those in its sentences, as they are printed."""
-    if isinstance(found, dict):
-        return {word: printed(item, "unit" if key == "units" else word) for word, item in found.items()}
-    if isinstance(found, list):
-        return [printed(item, key) for item in found]
-    return SPELLED[key](found) if key in SPELLED and isinstance(found, str) else found
+def printed(content: Any, key: str = "") -> Any:
+    """JSON content with units as printed, also those in sentences."""
+    if isinstance(content, dict):
+        return {name: printed(item, "unit" if key == "units" else name) for name, item in content.items()}
+    if isinstance(content, list):
+        return [printed(item, key) for item in content]
+    return PRINTERS[key](content) if key in PRINTERS and isinstance(content, str) else content
 
 
 def files_in(root: Path) -> list[str]:
-    """Data files right in a folder, if there is one."""
-    found = root.iterdir() if root.is_dir() else ()
+    """Names of the data files directly in a folder, which need not exist."""
+    paths = root.iterdir() if root.is_dir() else ()
     suffixes = readers.suffixes()
-    return sorted(path.name for path in found if path.suffix.lower() in suffixes and not path.is_symlink())
+    return sorted(path.name for path in paths if path.suffix.lower() in suffixes and not path.is_symlink())
 
 
-def chainable() -> list[dict[str, Any]]:
-    """Blocks that a model may be made of."""
-    return [described(word) for word in blocks.usable() if not blocks.is_effect(word)]
+def model_blocks() -> list[dict[str, Any]]:
+    """The blocks of which a model can be made."""
+    return [description(word) for word in blocks.usable() if not blocks.is_effect(word)]
 
 
 def effects() -> list[dict[str, Any]]:
-    return [described(word) for word in blocks.effects()]
+    return [description(word) for word in blocks.effects()]
 
 
-def described(word: str) -> dict[str, Any]:
+def description(word: str) -> dict[str, Any]:
     place = getattr(blocks[word], "place", None)
     doc = (inspect.getdoc(blocks[word]) or "").partition("\n")[0]
     return {"name": word, "doc": doc, "place": None if place is None else int(place), "kind": blocks.kind_of(word)}

@@ -86,7 +86,7 @@ def test_from_the_file_drop_to_the_fallen_error(workbench, page, tmp_path):
     expect(page.locator(".staircase text.name")).to_have_text(["as given"])
     expect(page.locator("#verdict")).to_contain_text("Missing: quadratic_gain")
     assert state_of(tmp_path)["at"] == 1
-    expect(page.locator("#others button")).to_have_text(re.compile(r"2: \+ quadratic_gain \(leaves 0\.0\d+ µm\)"))
+    expect(page.locator("#others button")).to_have_text(re.compile(r"2: \+ quadratic_gain \(RMSE 0\.0\d+ µm\)"))
 
     with page.context.expect_page() as opened:
         page.click("#report")
@@ -120,13 +120,13 @@ def test_a_reload_a_killed_worker_and_a_killed_workbench_lose_nothing(workbench,
     os.kill(next(pid for pid in running(tmp_path) if depth(pid, running(tmp_path)) == 0), signal.SIGKILL)
     assert ended(tmp_path)  # the command and its workers, too, by themselves
     page.goto(workbench("job.yaml"))
-    expect(page.locator("#error")).to_contain_text("ended before it was finished. Run goes on from here.")
-    expect(page.locator("#run")).to_have_text("Run on")
+    expect(page.locator("#error")).to_contain_text("interrupted before it finished. Resume continues from here.")
+    expect(page.locator("#run")).to_have_text("Resume")
     page.click("#run")
     expect(page.locator("#status")).to_contain_text("best RMSE 0.0")
 
     page.click("#stop")
-    expect(page.locator("#error")).to_contain_text("Stopped. Run goes on from here.")
+    expect(page.locator("#error")).to_contain_text("Stopped. Resume continues from here.")
     assert load_job(tmp_path / "workbench/steps/1/job.yaml").text.startswith("# a search that does not end")
     assert [depth(pid, running(tmp_path)) for pid in running(tmp_path)] == [0]
 
@@ -173,7 +173,7 @@ def test_sheets_axes_and_what_is_left_open(workbench, page, tmp_path):
     page.click("#here button")
     expect(page.locator("table.guessed tr")).to_have_count(6)
     assert roles(page) == ["time", "x.drive", "y.drive", "x.response", "y.response"]
-    page.click("text=And another")
+    page.click("text=Add another")
     expect(page.locator("table.files tr")).to_have_count(3)
     page.select_option("[aria-label='Role of p1 [nm]']", "y.response")
     assert roles(page) == ["time", "x.drive", "y.drive", "y.response", ""]
@@ -190,7 +190,7 @@ def test_sheets_axes_and_what_is_left_open(workbench, page, tmp_path):
     assert [(record.sheet, record.use) for record in job.records] == [("Loops", "identify"), ("Check", "validate")]
     assert (list(job.channels.axes), job.model) == (["x"], ("bouc_wen", "lumped"))
     page.click("#undo")
-    expect(page.locator("#verdict")).to_have_text("Is this what was measured?")
+    expect(page.locator("#verdict")).to_have_text("Check the columns and confirm them.")
 
 
 def test_signals_in_files_of_their_own_and_a_block_drawn_onto_the_chain(workbench, page):

@@ -66,7 +66,7 @@ def test_no_file_beside_the_data_is_run(baited, line):
 def test_nor_by_a_command_of_the_workbench(baited):
     bench = Session(baited, baited / "workbench")
     bench.folder.mkdir()
-    alone(bench._call("run", ARGUMENTS))
+    alone(bench._run_command("run", ARGUMENTS))
     assert ran(baited) == []
     assert (baited / "out" / "result.json").exists()
 

@@ -44,13 +44,13 @@ def test_add_take_off_and_undo(begun):
     assert begun.job().effects == ("creep", "drift")
     begun.add("saturation")
     assert [step["change"] for step in begun.chain()] == ["as given", "+ creep", "+ drift", "+ saturation"]
-    begun.go(4)
+    begun.go_to(4)
     assert begun.job().effects == ("drift",)
     for _ in range(9):
         begun.undo()
     assert begun.at == 0 and begun.chain() == [] and begun.logs() == []
     with pytest.raises(InputError, match="no step 6"):
-        begun.go(6)
+        begun.go_to(6)
 
 
 def test_from_the_measurement_begins_another_chain(begun):
@@ -59,7 +59,9 @@ def test_from_the_measurement_begins_another_chain(begun):
     assert [step["number"] for step in begun.chain()] == [2] and begun.job().name == "other"
 
 
-@pytest.mark.parametrize("act", [lambda b: b.add("crep"), lambda b: b.remove("creep"), lambda b: b.choose(["nothing"])])
+@pytest.mark.parametrize(
+    "act", [lambda b: b.add("crep"), lambda b: b.remove("creep"), lambda b: b.set_model(["nothing"])]
+)
 def test_what_cannot_be_changes_nothing(begun, act):
     before = (begun.folder / "state.json").read_text()
     with pytest.raises(InputError):
@@ -93,7 +95,7 @@ def test_a_block_keeps_its_settings(client, session):
     (session.root / "job.yaml").write_text(text, encoding="utf-8")
     session.open(session.root / "job.yaml")
     assert client.get("/api/state").json()["job"]["model"] == ["bouc_wen", "rod_reduced"]
-    session.choose(["prandtl_ishlinskii", "rod_reduced"])
+    session.set_model(["prandtl_ishlinskii", "rod_reduced"])
     assert "elements: 4" in session.job().text
 
 
@@ -122,8 +124,8 @@ def own(session):
 def test_a_file_of_code_waits_to_be_asked_for(session, own):
     with pytest.raises(InputError, match=r"slow\.py would run as code\n  read it, then add --plugins"):
         session.open(own)
-    said = CliRunner().invoke(main, ["workbench", "job.yaml", "--no-browser"])
-    assert said.exit_code == 2 and "would run as code" in said.stderr and session.chain() == []
+    result = CliRunner().invoke(main, ["workbench", "job.yaml", "--no-browser"])
+    assert result.exit_code == 2 and "would run as code" in result.stderr and session.chain() == []
 
 
 def test_the_users_own_effects_are_listed_and_handed_on(session, own):
@@ -133,7 +135,7 @@ def test_the_users_own_effects_are_listed_and_handed_on(session, own):
     assert "slow" in {item["name"] for item in state(trusting)["effects"]}
     assert "slow" not in {item["name"] for item in state(trusting)["blocks"]}
     assert all(line[-1] == "--plugins" for _, _, line in trusting.commands(trusting.step()))
-    assert trusting.said()[-1].endswith("--plugins")
+    assert trusting.logged_commands()[-1].endswith("--plugins")
     assert trusting.job().plugins == ("../../../slow.py",)
 
 
@@ -147,7 +149,7 @@ def test_a_session_is_of_one_job(begun):
 def test_the_log_repeats_the_session(begun):
     begun.add("creep")
     begun.remove("creep")
-    begun.choose(["bouc_wen", "lumped"])
+    begun.set_model(["bouc_wen", "lumped"])
     assert (begun.folder / "commands.txt").read_text().splitlines() == [
         "pzt-ident add workbench/steps/1/job.yaml creep -o workbench/steps/2/job.yaml",
         "pzt-ident remove workbench/steps/2/job.yaml creep -o workbench/steps/3/job.yaml",
@@ -158,12 +160,12 @@ def test_the_log_repeats_the_session(begun):
 def test_what_is_done_again_is_logged_once(begun):
     for _ in range(2):
         begun.log("pzt-ident run here/job.yaml")
-    assert begun.said() == ["pzt-ident run here/job.yaml"]
+    assert begun.logged_commands() == ["pzt-ident run here/job.yaml"]
 
 
 def test_in_a_terminal_the_log_makes_the_same_jobs(begun):
     begun.add("creep")
-    begun.choose(["bouc_wen", "lumped"])
+    begun.set_model(["bouc_wen", "lumped"])
     begun.remove("creep")
     made = [begun.step(number) / "job.yaml" for number in (2, 3, 4)]
     before = [path.read_text() for path in made]
@@ -200,7 +202,7 @@ def test_a_command_that_fails_says_why_and_one_that_is_stopped_says_so(begun, mo
     alone(story())
 
 
-def test_the_page_is_told_of_every_change(client, session):
+def test_the_page_learns_of_every_change(client, session):
     measured(session.root / "data.csv")
     found = client.post("/api/job", json=form()).json()
     assert found["job"]["model"] == ["bouc_wen"] and found["result"] is None
@@ -214,7 +216,7 @@ def test_the_page_is_told_of_every_change(client, session):
 
 
 def test_events_are_the_lines_of_the_run(session, monkeypatch):
-    from pzt_ident.workbench.app import following
+    from pzt_ident.workbench.app import event_stream
 
     measured(session.root / "data.csv")
     session.begin(form())
@@ -227,7 +229,7 @@ def test_events_are_the_lines_of_the_run(session, monkeypatch):
             return False
 
     async def first(count):
-        stream, found = following(session, Listening()), []
+        stream, found = event_stream(session, Listening()), []
         async for message in stream:
             found.append(json.loads(message.removeprefix("data: ")))
             if len(found) == count:
@@ -237,24 +239,24 @@ def test_events_are_the_lines_of_the_run(session, monkeypatch):
     assert found == [{"event": "step", "step": 1}, *lines, {"event": "changed", "version": session.version}]
 
 
-def test_a_log_that_begins_anew_is_told_from_its_first_line(tmp_path):
-    from pzt_ident.workbench.app import news
+def test_a_log_that_begins_anew_is_sent_from_its_first_line(tmp_path):
+    from pzt_ident.workbench.app import new_lines
 
-    log, told = tmp_path / "events.jsonl", {}
-    assert news(log, told) == []
+    log, offsets = tmp_path / "events.jsonl", {}
+    assert new_lines(log, offsets) == []
     log.write_bytes(b"one\ntwo\nthr")
-    assert news(log, told) == [b"one", b"two"]
+    assert new_lines(log, offsets) == [b"one", b"two"]
     log.write_bytes(b"one\ntwo\nthree\n")
-    assert news(log, told) == [b"three"] and news(log, told) == []
+    assert new_lines(log, offsets) == [b"three"] and new_lines(log, offsets) == []
     log.write_bytes(b"new\n")
-    assert news(log, told) == [b"new"]
+    assert new_lines(log, offsets) == [b"new"]
 
 
 def test_a_session_that_was_cut_off_says_so(begun):
     assert Session(begun.root, begun.folder).failure == ""
     (begun.step() / "run").mkdir()
     (begun.step() / "run" / "environment.json").write_text("{}")
-    assert "Run goes on from here" in Session(begun.root, begun.folder).failure
+    assert "Resume continues from here" in Session(begun.root, begun.folder).failure
     for _, last, _ in begun.commands(begun.step()):
         last.parent.mkdir(exist_ok=True)
         last.write_text("{}")

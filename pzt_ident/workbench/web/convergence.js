@@ -18,7 +18,7 @@ export class Convergence {
     this.plot = null;
   }
 
-  take(event) {
+  update(event) {
     if (event.event === "start") {
       this.clear();
       Object.assign(this, { unit: event.unit, together: event.together, budget: event.budget });

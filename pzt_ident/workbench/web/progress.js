@@ -9,7 +9,7 @@ export class Progress {
     Object.assign(this, { sentence: "", scored: [] });
   }
 
-  take({ event, said: sentence, ...facts }) {
+  update({ event, said: sentence, ...facts }) {
     if (event === "fitted" && facts.done === 1) this.clear();
     this.sentence = sentence ?? this.sentence;
     if (event === "scored") this.scored.push(facts);
