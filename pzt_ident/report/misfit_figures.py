@@ -73,7 +73,7 @@ def draw_shares(figure: Figure, misfit: Facts) -> None:
         patch("misfit, dominant", color=_DOMINANT),
         key("samples", color=INK, marker="|", linestyle="none", markersize=5),
     ]
-    top = heading(figure, f"Where the misfit is, axis {misfit['axis']}", keys)
+    top = heading(figure, f"Shares of the misfit, axis {misfit['axis']}", keys)
     columns = stacks(misfit, width_of(figure))
     rows = max(map(_rows, columns))
     frame = Frame(top + 1, left=_LABELS, across=_LABELS + 2)
@@ -90,9 +90,7 @@ def draw_shares(figure: Figure, misfit: Facts) -> None:
 def _draw_stack(axes: Axes, views: list[Facts]) -> None:
     ticks, labels, row = [], [], 0.0
     for view in views:
-        axes.text(
-            -0.02, row + 0.9, f"by {view['name']}", weight="bold", ha="right", transform=axes.get_yaxis_transform()
-        )
+        axes.text(-0.02, row + 0.9, view["name"], weight="bold", ha="right", transform=axes.get_yaxis_transform())
         row += 1.6
         dominant_bins = view["dominant"]
         for item in view["bins"]:

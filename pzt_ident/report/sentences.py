@@ -33,7 +33,12 @@ def printed_reason(text: str, results: Results) -> str:
     if results.share_of_noise < NOISELESS and len(results.floors) == 1:
         (floor,) = results.floors.values()
         text = FLOORS.sub(lambda match: _in_unit(match, floor or 0.0, results.unit), text)
-    return spelled(text + _better_refit(results))
+    return _prose(text + _better_refit(results))
+
+
+def _prose(text: str) -> str:
+    """A sentence with printed units and without the backticks of terminal messages."""
+    return spelled(text).replace("`", "")
 
 
 def _better_refit(results: Results) -> str:
@@ -73,7 +78,7 @@ def findings(results: Results) -> list[str]:
     diagnosed = [*_advice(results)] if results.diagnosis else []
     diagnosed += weighed(results.units)
     run = [*_parameters(results), *_notes(results), *_failures(results)] if results.result else []
-    return [spelled(sentence) for sentence in diagnosed + run]
+    return [_prose(sentence) for sentence in diagnosed + run]
 
 
 def _advice(results: Results) -> Iterator[str]:

@@ -61,7 +61,7 @@ def league(results: Results) -> Table:
         pooled("median after polish", results): lambda row: number(row["polished_rmse_median"]),
         "time [s]": lambda row: number(row["seconds_median"], 3),
         "evaluations": lambda row: count(row["evaluations"]),
-        "evaluations to 1\u00a0%": lambda row: count(row["evaluations_to_1_percent_median"]),
+        "evaluations to within 1\u00a0%": lambda row: count(row["evaluations_to_1_percent_median"]),
         "success": lambda row: percent(row["success"]),
     }
     if len(results.result["league"]) > 1:
@@ -92,7 +92,7 @@ def runs(results: Results) -> Table:
         pooled("validation RMSE before polish", results): lambda row: number(row["validate_before_polish"]),
         "evaluations": lambda row: count(row["evaluations"]),
         "polish evaluations": lambda row: count(row["polish_evaluations"]),
-        "evaluations to 1\u00a0%": lambda row: count(row["evaluations_to_1_percent"]),
+        "evaluations to within 1\u00a0%": lambda row: count(row["evaluations_to_1_percent"]),
         "time [s]": lambda row: number(row["seconds"], 3),
         "CPU [s]": lambda row: number(row["cpu_seconds"], 3),
         "failed simulations": lambda row: count(row["failed_simulations"]),

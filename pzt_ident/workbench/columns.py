@@ -156,7 +156,7 @@ def _roughness(values: np.ndarray) -> float:
 
 
 def _guess(columns: list[dict[str, Any]]) -> None:
-    """Give each role to one column: by unit or name, else by order, where of two unnamed columns the smoother one is the
+    """Give each role to one column: by unit or name, else by order, where the smoother of two unnamed columns is the
     drive. A further axis is recognised where both its names differ from those of the first by one letter or digit."""
     by_evidence = (("time", _is_time), ("x.drive", _is_drive), ("x.response", _is_length), ("x.response", _is_charge))
     for role, fits in by_evidence:

@@ -236,12 +236,10 @@ class Session:
         if code == 130 or code == -signal.SIGTERM:
             raise RunError("Stopped. Resume continues from here.")
         if code < 0:
-            raise RunError(f"`pzt-ident {name}` was killed by signal {-code}. Resume continues from here.")
+            raise RunError(f"pzt-ident {name} was killed by signal {-code}. Resume continues from here.")
         if code:
             lines = errors.decode(errors="replace").strip().splitlines()
-            raise RunError(
-                self.readable("\n".join(lines[-12:])).removeprefix("Error: ") or f"`pzt-ident {name}` failed"
-            )
+            raise RunError(self.readable("\n".join(lines[-12:])).removeprefix("Error: ") or f"pzt-ident {name} failed")
 
     async def stop(self) -> None:
         """Stop the running command and its workers; returns when they have ended."""
