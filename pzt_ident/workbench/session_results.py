@@ -8,6 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.files import write_json
 from pzt_ident.workbench.session import Session
 
@@ -72,17 +73,16 @@ def effects(results: list[StepResult]) -> list[str]:
 def step_of(
     entry: dict[str, Any], result: dict[str, Any], before: dict[str, Any] | None = None, floor: float = 0.0
 ) -> dict[str, Any]:
-    """One step of the staircase; `explained`: the removed share of the squared error above the noise."""
+    """One step of the staircase."""
     sign, _, word = entry["change"].partition(" ")
     previous, best = (before or result)["best"]["rmse"]["identify"], result["best"]
-    above = max(previous**2 - floor**2, 1e-300)
     return {
         "change": entry["change"],
         "added": word if sign == "+" else None,
         "removed": word if sign == "−" else None,
         "class": [word] if sign == "+" else [],
         "rmse": best["rmse"],
-        "explained": (previous**2 - best["rmse"]["identify"] ** 2) / above,
+        "explained": share_explained(previous, best["rmse"]["identify"], floor),
         "expected": None,
         "parameters": {
             name: {key: item[key] for key in ("value", "unit")} for name, item in best["parameters"].items()
