@@ -138,8 +138,8 @@ class Two(Modes):
     place = Place.MECHANICS
     modes = Setting(2, (1, 9), "Modes.")
     weights = ("push", "shape")
-    frequency = Parameter("Hz", (1, 10), "Frequency.", count="modes", each="stage")
-    push = Parameter("1", (-5, 5), "Push.", count="modes", each="later axis")
+    frequency = Parameter("Hz", (1, 10), "Frequency.", count="modes", per="stage")
+    push = Parameter("1", (-5, 5), "Push.", count="modes", per="later axis")
     shape = Parameter("1", (-5, 5), "Shape.", count="modes")
 
     def prepare(frequency, dt):

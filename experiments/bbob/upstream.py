@@ -17,10 +17,10 @@ Function = Callable[[np.ndarray], float]
 
 def pyswarms(function: Function, seed: int, bounds_by: str = "periodic") -> None:
     """GlobalBestPSO with the inertia and pulls of its constriction equivalent, 20 particles, default bound handling."""
-    from pzt_ident.optimizers._swarm import quiet
+    from pzt_ident.optimizers._swarm import without_logging
 
     np.random.seed(seed)  # noqa: NPY002
-    with quiet():
+    with without_logging():
         from pyswarms.single import GlobalBestPSO
 
         bounds = np.full(DIMENSIONS, LOW), np.full(DIMENSIONS, HIGH)

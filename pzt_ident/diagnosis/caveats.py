@@ -62,7 +62,7 @@ def broken_conditions(fit: Fit) -> str:
     return "".join(
         f" Record {simulator.record.name}: {condition}."
         for simulator in simulators
-        for condition in simulator.broken(theta)
+        for condition in simulator.violations(theta)
     )
 
 

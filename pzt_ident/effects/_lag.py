@@ -5,9 +5,8 @@ from pzt_ident.model.first_order_hold import decay
 
 
 class Lag(Block):
-    """The state is w = y - u: over a sample w <- keep w - share du, keep = exp(-dt / T), share = (1 - keep) T / dt.
-
-    At T = 0 both are exactly zero.
+    """T y' + y = u with the state w = y - u: over a sample w <- keep w - share du, keep = exp(-dt / T),
+    share = (1 - keep) T / dt. At T = 0 both are exactly zero.
     """
 
     sizes = tuple(0.004 * 1.5**k for k in range(14))

@@ -10,7 +10,7 @@ from pzt_ident.model.registry import blocks
 class AmplifierLag(Lag):
     """The voltage follows the command through output resistance and capacitance: tau U_a' + U_a = U, tau = R C.
 
-    Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems. Ahead of the hysteresis.
+    Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems. Acts ahead of the hysteresis.
     """
 
     place = Place.AMPLIFIER

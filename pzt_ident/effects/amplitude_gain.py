@@ -7,9 +7,10 @@ from pzt_ident.model.registry import blocks
 
 @blocks.register
 class AmplitudeGain(Block):
-    """Rayleigh's law, more walls move under a larger drive: y = (1 + growth U_pp) f, U_pp that of the record.
+    """Rayleigh's law, more domain walls move under a larger drive: y = (1 + growth U_pp) f.
 
-    Damjanovic & Demartin (1996), J. Phys. D 29, 2057. Absorbed by the gain in data of one amplitude.
+    U_pp is the peak-to-peak drive of the record. Damjanovic & Demartin (1996), J. Phys. D 29, 2057. In data of one
+    amplitude the gain absorbs it.
     """
 
     place = Place.STATIC

@@ -8,10 +8,10 @@ from pzt_ident.model.registry import blocks
 class Asymmetry(Term):
     """Domains switch more easily in one direction of the voltage: dh/dt <- dh/dt + delta u |du/dt|.
 
-    The form of the asymmetric Bouc-Wen operator of Zhu & Wang (2012), Sens. Actuators A 181, 51; delta is the
-    operator's asymmetry times alpha d.
+    Asymmetric Bouc-Wen operator of Zhu & Wang (2012), Sens. Actuators A 181, 51; delta is the parameter `asymmetry` of
+    the operator times alpha d.
     """
 
     look_alikes = ("quadratic_gain", "creep")
-    separate_by = "Cycle one loop until it has settled and compare the branches turned about its centre."
+    separate_by = "Cycle one loop until it has settled and compare one branch with the other rotated by 180 degrees."
     remedy = "Invert the asymmetric operator in the feedforward, or work on one branch only."

@@ -12,22 +12,23 @@ BRANCHES = 10
 class Creep(Bank):
     """Domains go on switching after a change: y = f + sum_i x_i,  tau_i dx_i/dt + x_i = ratio / 10 (f - f(0)).
 
-    Croft, Shed & Devasia (2001), J. Dyn. Syst. Meas. Control 123, 35. The times stand evenly on a logarithmic scale
-    over `decades` around tau: one Kelvin-Voigt element at 0, close to a logarithm of time within wide ones.
+    Croft, Shed & Devasia (2001), J. Dyn. Syst. Meas. Control 123, 35. The time constants are spaced evenly on a
+    logarithmic scale over `decades` around tau: a single Kelvin-Voigt element for 0 decades, nearly a logarithm of time
+    for many.
     """
 
     place = Place.CREEP
     branches = BRANCHES
     ratio = Parameter("1", (-0.1, 0.4), "Final creep over the prompt response.", null=0)
     tau = Parameter("s", (0.01, 1000), "Geometric centre of the time constants.", scale="log")
-    decades = Parameter("1", (0, 7), "Decades that the time constants are spread over.")
+    decades = Parameter("1", (0, 7), "Decades over which the time constants are spread.")
     look_alikes = ("thermal_relaxation", "drift", "amplitude_gain")
     separate_by = "Step up and hold, step down and hold, back by 5 % and hold, then a null record at constant voltage."
     remedy = "Wait after large steps, or add the identified creep to the feedforward."
 
     def prepare(ratio, tau, decades, branch, dt):
-        own = tau * 10 ** (decades * ((branch + 0.5) / BRANCHES - 0.5))
-        return ratio / BRANCHES, *decay(own, dt)
+        branch_tau = tau * 10 ** (decades * ((branch + 0.5) / BRANCHES - 0.5))
+        return ratio / BRANCHES, *decay(branch_tau, dt)
 
     def start(u, weight, keep, share):
         return 0.0, u, u

@@ -1,4 +1,4 @@
-"""Force of one axis that moves another through the guide's stiffness."""
+"""Force of one axis that moves another one through the stiffness of the guide."""
 
 from pzt_ident.model.block import Coupling, Place
 from pzt_ident.model.parameter import Parameter
@@ -7,9 +7,10 @@ from pzt_ident.model.registry import blocks
 
 @blocks.register
 class CrossCoupling(Coupling):
-    """The guide passes force from axis to axis: f1 <- f1 + (k12 / k11) f2, ahead of the mechanics of axis 1.
+    """The guide transmits force from axis to axis: f1 <- f1 + (k12 / k11) f2, ahead of the mechanics of axis 1.
 
-    Lin & Lin (2012), Mechatronics 22, 614, eq. 6 and 20: only the ratios k12 / k11 and k21 / k22 matter.
+    Lin & Lin (2012), Mechatronics 22, 614, eq. 6 and 20; only the ratios k12 / k11 and k21 / k22 can be
+    identified.
     """
 
     place = Place.COUPLING

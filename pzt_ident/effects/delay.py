@@ -1,4 +1,4 @@
-"""Time that passes between command and voltage."""
+"""Dead time between command and voltage."""
 
 from pzt_ident.model.block import Place, Shift
 from pzt_ident.model.parameter import Parameter
@@ -9,7 +9,7 @@ from pzt_ident.model.registry import blocks
 class Delay(Shift):
     """Transport and sampling delay of command or reading: y(t) = u(t - time), for any fraction of a sample.
 
-    Phase in proportion to frequency without loss of amplitude, where a lag loses it.
+    Its phase lag is proportional to frequency, without the loss of amplitude of a lag.
     """
 
     place = Place.DELAY

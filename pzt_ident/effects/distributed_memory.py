@@ -11,8 +11,8 @@ PLAYS = 10
 class DistributedMemory(Bank):
     """Domains of many coercive voltages: y = d (u + sum_i w_i F_i[u]) - h, plays of half-width r_i = reach i / 10.
 
-    Prandtl-Ishlinskii plays, p <- max(u - r, min(u + r, p)); Kuhnen (2003), Eur. J. Control 9, 407. They keep their
-    return points, where Bouc-Wen drifts through nested loops.
+    Prandtl-Ishlinskii plays, p <- max(u - r, min(u + r, p)); Kuhnen (2003), Eur. J. Control 9, 407. Plays
+    close nested loops, Bouc-Wen drifts through them.
     """
 
     place = Place.READOUT

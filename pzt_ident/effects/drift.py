@@ -11,7 +11,7 @@ from pzt_ident.model.registry import blocks
 class Drift(Addition):
     """Stage and frame warm up and expand, whatever the drive: y = x + size (1 - exp(-t / tau)), t from the start.
 
-    Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems. Close to a ramp where tau is long.
+    Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems. Nearly a ramp for a long tau.
     """
 
     place = Place.OUTPUT
@@ -19,8 +19,8 @@ class Drift(Addition):
     tau = Parameter("s", (10, 3000), "Thermal time constant.", scale="log")
     look_alikes = ("creep", "thermal_relaxation")
     separate_by = (
-        "Record at a constant voltage that has rested for as long before: drift is there too, creep and relaxation are "
-        "not."
+        "Record at a constant voltage that has rested for as long before: drift shows there too, creep and relaxation "
+        "do not."
     )
     remedy = "Let the rig warm up, shield it from draughts, and re-zero it before and after each record."
 

@@ -1,4 +1,4 @@
-"""Error of an encoder that repeats with its grating."""
+"""Error of an encoder with the period of its grating."""
 
 from math import pi
 
@@ -9,7 +9,7 @@ from pzt_ident.model.registry import blocks
 
 @blocks.register
 class EncoderCyclicError(Block):
-    """Unequal signals between lines of the grating: y = x + a sin(2 pi x / p) + b (cos(2 pi x / p) - 1).
+    """Imperfect encoder signals between lines of the grating: y = x + a sin(2 pi x / p) + b (cos(2 pi x / p) - 1).
 
     Fleming (2013), Sensors and Actuators A 190, 106 (sub-divisional error). Zero at x = 0; valid for |x| < 1000 p.
     """

@@ -7,7 +7,7 @@ from pzt_ident.model.registry import blocks
 
 @blocks.register
 class KinematicCoupling(Coupling):
-    """The sensor of axis 1 stands askew or off the axis of rotation (Abbe): y1 <- x1 + ratio x2, behind the mechanics.
+    """The sensor of axis 1 is misaligned or has an Abbe offset: y1 <- x1 + ratio x2, behind the mechanics.
 
     Yong, Moheimani, Kenton & Leang (2012), Rev. Sci. Instrum. 83, 121101.
     """

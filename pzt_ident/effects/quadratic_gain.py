@@ -7,9 +7,9 @@ from pzt_ident.model.registry import blocks
 
 @blocks.register
 class QuadraticGain(Block):
-    """Electrostriction bends both branches the same way: y = d (u + curvature u^2) - h.
+    """Electrostriction curves both branches the same way: y = d (u + curvature u^2) - h.
 
-    Hall (2001), J. Mater. Sci. 36, 4575. The memory h is driven by u itself.
+    Hall (2001), J. Mater. Sci. 36, 4575. The hysteretic part h is driven by u itself.
     """
 
     place = Place.READOUT

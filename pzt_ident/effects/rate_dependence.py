@@ -6,10 +6,10 @@ from pzt_ident.model.registry import blocks
 
 @blocks.register
 class RateDependence(Term):
-    """Domain walls that follow late: alpha <- alpha (1 + rate log10(|du/dt| / (100 V/s))).
+    """Domain walls follow the field late: alpha <- alpha (1 + rate log10(|du/dt| / (100 V/s))).
 
-    Logarithmic in the rate, as in Ang, Khosla & Riviere (2007), IEEE/ASME Trans. Mechatronics 12, 134, and zero for
-    small amplitudes, where a lag is linear in the rate and in the amplitude. Absorbed by alpha in data of one rate.
+    Logarithmic in the rate, as in Ang, Khosla & Riviere (2007), IEEE/ASME Trans. Mechatronics 12, 134. Unlike a lag,
+    which is linear in rate and amplitude, it vanishes for small amplitudes. In data of one rate alpha absorbs it.
     """
 
     look_alikes = ("amplifier_lag", "sensor_lag", "viscous_damping", "thermal_relaxation")

@@ -12,7 +12,7 @@ from pzt_ident.model.registry import blocks
 class Resonance(Beside):
     """A second mode in parallel to the first: y = (1 - share) x + share G2 f, G2 = 1 / (s^2/w^2 + 2 zeta s/w + 1).
 
-    Solved exactly for f linear on each step. A negative share makes a pole before a zero.
+    Solved exactly for f linear on each step. For a negative share the pole comes before the zero.
     """
 
     place = Place.MODE

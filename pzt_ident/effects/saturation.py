@@ -1,4 +1,4 @@
-"""A response that runs out at large voltages."""
+"""A response that saturates at large voltages."""
 
 from pzt_ident.model.block import Block, Place, expm1
 from pzt_ident.model.parameter import Parameter
@@ -7,9 +7,9 @@ from pzt_ident.model.registry import blocks
 
 @blocks.register
 class Saturation(Block):
-    """All domains switched: y = d U tanh(u / U) - h, knee = 1 / U.
+    """All domains are switched: y = d U tanh(u / U) - h, knee = 1 / U.
 
-    Royston & Houston (1998), J. Acoust. Soc. Am. 104, 2814. Odd in u, and u (1 - (knee u)^2 / 3) for small ones.
+    Royston & Houston (1998), J. Acoust. Soc. Am. 104, 2814. Odd in u; u (1 - (knee u)^2 / 3) for small u.
     """
 
     place = Place.READOUT

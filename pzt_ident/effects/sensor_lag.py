@@ -10,7 +10,7 @@ from pzt_ident.model.registry import blocks
 class SensorLag(Lag):
     """The reading follows the displacement through the sensor's low-pass: tau y' + y = x.
 
-    Fleming (2013), Sensors and Actuators A 190, 106. Behind everything else.
+    Fleming (2013), Sensors and Actuators A 190, 106. Acts behind everything else.
     """
 
     place = Place.SENSOR

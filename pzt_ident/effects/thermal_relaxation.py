@@ -1,4 +1,4 @@
-"""Hysteresis that forgets with time."""
+"""Hysteresis that decays with time."""
 
 from pzt_ident.model.block import Term
 from pzt_ident.model.registry import blocks
@@ -6,13 +6,13 @@ from pzt_ident.model.registry import blocks
 
 @blocks.register
 class ThermalRelaxation(Term):
-    """Domains that switch by heat let the hysteretic part relax: dh/dt <- dh/dt - h / tau, or the logarithm of time.
+    """Thermally activated switching lets the hysteretic part relax: dh/dt <- dh/dt - h / tau, or with log time.
 
-    Smith, Seelecke, Ounaies & Smith (2003), J. Intell. Mater. Syst. Struct. 14, 719, in its simplest form: of
-    Bouc-Wen an exponential, of plays a logarithm. Unlike creep it does not grow with the step but with h, and a small
-    step back arrests it.
+    Smith, Seelecke, Ounaies & Smith (2003), J. Intell. Mater. Syst. Struct. 14, 719, in its simplest form:
+    exponential for Bouc-Wen, logarithmic in time for plays. Unlike creep it grows not with the step but with h, and a
+    small step back stops it.
     """
 
     look_alikes = ("creep", "drift", "rate_dependence")
     separate_by = "Step up, wait, step back by five percent and hold for a minute: relaxation stops, creep goes on."
-    remedy = "End every approach with a small step back, which arrests the relaxation."
+    remedy = "End every approach with a small step back, which stops the relaxation."

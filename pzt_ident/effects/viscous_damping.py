@@ -8,7 +8,7 @@ from pzt_ident.model.registry import blocks
 class ViscousDamping(Term):
     """Air films, cables and grease add damping: b <- b + extra_damping in the equation of the mechanics.
 
-    Below the resonance the response lags by b omega / k, and ringing fades sooner.
+    Below the resonance the response lags by b omega / k, and ringing decays faster.
     """
 
     sizes = tuple(0.002 * 1.5**k for k in range(16))

@@ -1,5 +1,5 @@
-"""Simulation, exact and fast.
+"""Simulation of many candidates at once.
 
-In: a chain of blocks, a record, and candidates (theta, in SI units). Out: their responses, the errors they leave, and
-the sums of squares of these. Each block is compiled once and runs over many candidates as SIMD lanes.
+In: a chain of blocks, a record, and candidates (theta, in SI units). Out: their responses, the errors (model
+minus measurement), and the sums of squared errors. Each block is compiled once and runs over candidates as SIMD lanes.
 """

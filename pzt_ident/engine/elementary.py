@@ -1,4 +1,4 @@
-"""Elementary functions that run in SIMD lanes, in the place of those that a block's author writes."""
+"""Elementary functions that run in SIMD lanes; they replace those of pzt_ident.model.block in compiled blocks."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from numba.extending import intrinsic, overload, register_jitable
 from pzt_ident.model import block
 
 
-def bitwise(result: Any, make: Any) -> Any:
+def bitwise(result: Any, build: Any) -> Any:
     """An intrinsic of one float64 that works on its bits."""
 
     def function(context: Any, x: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-            return make(builder, builder.bitcast(args[0], WHOLE), lambda value: ir.Constant(WHOLE, value))
+            return build(builder, builder.bitcast(args[0], INTEGER), lambda value: ir.Constant(INTEGER, value))
 
         return result(types.float64), generate
 
     return intrinsic(function)
 
 
-WHOLE = ir.IntType(64)
+INTEGER = ir.IntType(64)
 two_to_the = bitwise(  # 2^n from n + SHIFT
     types.float64,
     lambda ir_, bits, const: ir_.bitcast(ir_.shl(ir_.add(bits, const(1023)), const(52)), ir.DoubleType()),
@@ -58,17 +58,17 @@ def expm1(x):
 
 @register_jitable(forceinline=True)
 def log1p(x):
-    """log(1 + x) for x > -1, with the rounding of 1 + x taken back; Chebyshev fit to (atanh(s) / s - 1) / s^2."""
-    whole = 1 + x
-    m = mantissa(whole)
+    """log(1 + x) for x > -1, corrected for the rounding of 1 + x; Chebyshev fit to (atanh(s) / s - 1) / s^2."""
+    argument = 1 + x
+    m = mantissa(argument)
     high = m > 1.4142135623730951
     m = 0.5 * m if high else m
-    n = float(exponent(whole) + (1 if high else 0))
+    n = float(exponent(argument) + (1 if high else 0))
     s = (m - 1) / (m + 1)
     z = s * s
     p = 0.11111105549855646 + z * (0.09091445840219947 + z * (0.0766581834977067 + z * 0.07308749346957806))
     p = 0.3333333333333335 + z * (0.19999999999949516 + z * (0.14285714313095244 + z * p))
-    rounding = (x - (whole - 1)) / whole
+    rounding = (x - (argument - 1)) / argument
     return n * LN2_HIGH + (2 * s + (2 * s * z * p + (rounding + n * LN2_LOW)))
 
 
@@ -91,7 +91,7 @@ def sin(x):
 
 @register_jitable(forceinline=True)
 def cos(x):
-    """By sin(x + pi / 2), so that x is reduced before anything is added to it."""
+    """sin(x + pi / 2), with x reduced before pi / 2 is added."""
     n = (x / pi + 0.5 + SHIFT) - SHIFT
     return half_wave(x, n, n - 0.5)
 
@@ -112,17 +112,19 @@ def erf(x):
     return x * (p / q)
 
 
-def in_place_of(function: Callable[[float], float], lanes: Any) -> None:
+def replace(function: Callable[[float], float], lanes: Any) -> None:
+    """Have compiled code call `lanes` where an author calls `function`."""
+
     @overload(function, jit_options={"forceinline": True})
-    def chosen(x):
+    def replacement(x):
         return lambda x: lanes(x)
 
 
-for known, lanes in (
+for function, lanes in (
     (block.expm1, expm1),
     (block.log1p, log1p),
     (block.erf, erf),
     (block.sin, sin),
     (block.cos, cos),
 ):
-    in_place_of(known, lanes)
+    replace(function, lanes)

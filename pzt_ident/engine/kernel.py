@@ -1,8 +1,8 @@
-"""Blocks compiled once each, run over many candidates as SIMD lanes and over tiles of time that stay in the cache.
+"""The driver that runs compiled blocks over many candidates as SIMD lanes and over tiles of time that fit the cache.
 
-A group of WIDTH candidates goes through a tile of TILE samples block after block. Each block is one C function of its
-own, written out from the template for its kind (lanes.py), compiled by numba and cached on disk under a name that holds
-the hash of its source; the driver calls it through its address, so no combination of blocks is ever compiled.
+A group of WIDTH candidates goes through a tile of TILE samples, block after block. Each block is one C function,
+rendered from the template of its kind (lanes/), compiled by numba and cached on disk under a name with the hash of its
+source; the driver calls it by its address, so no combination of blocks is ever compiled.
 """
 
 from __future__ import annotations
@@ -27,22 +27,22 @@ setattr(numba.config, "CACHE_DIR", os.environ.get("NUMBA_CACHE_DIR", ""))  # noq
 WIDTH = 24
 TILE = 64
 UNROLL = 2
-PADDING = 4  # samples behind the last one, which a loop over several at once may touch
+PADDING = 4  # samples after the last one, which an unrolled loop may read
 OPTIONS: dict[str, Any] = {"fastmath": {"contract"}, "error_model": "numpy", "cache": True}
 
 pointer = types.CPointer(types.float64)
 SIGNATURE = types.void(types.intp, types.intp, types.intp, pointer, pointer, pointer, pointer)
 
 
-class Apart(Compiler):
-    """Compiles with pointers that never point at the same numbers, so that coefficients stay in registers."""
+class NoAliasCompiler(Compiler):
+    """Compiles with pointers that never overlap, so that coefficients stay in registers."""
 
     def define_pipelines(self) -> Any:
         self.state.flags.noalias = True
         return super().define_pipelines()
 
 
-compiled = cfunc(SIGNATURE, pipeline_class=Apart, **OPTIONS)
+compiled = cfunc(SIGNATURE, pipeline_class=NoAliasCompiler, **OPTIONS)
 
 
 @intrinsic
@@ -52,10 +52,10 @@ def call(
     """Call the C function at an address; the last four are addresses of float64."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        whole, real = ir.IntType(64), ir.DoubleType().as_pointer()
-        kind = ir.FunctionType(ir.VoidType(), [whole] * 3 + [real] * 4)
-        function = builder.inttoptr(args[0], kind.as_pointer())
-        builder.call(function, [*args[1:4], *(builder.inttoptr(a, real) for a in args[4:])])
+        integer, floats = ir.IntType(64), ir.DoubleType().as_pointer()
+        function_type = ir.FunctionType(ir.VoidType(), [integer] * 3 + [floats] * 4)
+        function = builder.inttoptr(args[0], function_type.as_pointer())
+        builder.call(function, [*args[1:4], *(builder.inttoptr(argument, floats) for argument in args[4:])])
         return context.get_dummy_value()
 
     return types.void(*[types.int64] * 8), generate
@@ -63,7 +63,7 @@ def call(
 
 @intrinsic
 def widen(context: Any) -> Any:
-    """Vectors of 512 bits in this function where the processor has them; LLVM takes 256 of its own accord."""
+    """Use vectors of 512 bits in this function where the processor has them; LLVM's default is 256."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         set.add(builder.function.attributes, '"prefer-vector-width"="512"')
@@ -74,14 +74,14 @@ def widen(context: Any) -> Any:
 
 @intrinsic
 def spread(context: Any, tile: Any, row: Any, value: Any) -> Any:
-    """The same number in every lane of a row of the tile: LLVM would store them one by one."""
+    """Store the same number in every lane of a row of the tile by one instruction; LLVM would store them one by one."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        one = ir.VectorType(ir.DoubleType(), 1)
-        first = builder.insert_element(ir.Constant(one, ir.Undefined), args[2], ir.Constant(ir.IntType(32), 0))
+        scalar = ir.VectorType(ir.DoubleType(), 1)
+        first = builder.insert_element(ir.Constant(scalar, ir.Undefined), args[2], ir.Constant(ir.IntType(32), 0))
         lanes = ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), [0] * WIDTH)
         place = builder.gep(args[0], [builder.mul(args[1], ir.Constant(args[1].type, WIDTH))])
-        vector = builder.shuffle_vector(first, ir.Constant(one, ir.Undefined), lanes)
+        vector = builder.shuffle_vector(first, ir.Constant(scalar, ir.Undefined), lanes)
         builder.store(vector, builder.bitcast(place, vector.type.as_pointer()), align=8)
         return context.get_dummy_value()
 
@@ -98,30 +98,30 @@ def fill(samples, first, fresh, drive, runs, scratch, tile):
 
 @compiled
 def keep_prompt(samples, first, fresh, drive, runs, scratch, tile):
-    """What the operator's prompt response is driven by, ahead of the readout."""
+    """Keep the drive ahead of the readout blocks, the input of the operator's prompt response."""
     for i in range(samples * WIDTH):
         tile[TILE * WIDTH + i] = tile[i]
 
 
 @compiled
 def keep_force(samples, first, fresh, drive, runs, scratch, tile):
-    """What the mechanics is driven by."""
+    """Keep the force on the mechanics."""
     for i in range(samples * WIDTH):
         tile[2 * TILE * WIDTH + i] = tile[i]
 
 
 @compiled
 def errors(samples, first, fresh, response, runs, sums, tile):
-    """Sum of e and e^2, e = y - response."""
+    """Add up e and e^2, e = y - response."""
     widen()  # type: ignore[call-arg]
-    whole = samples - samples % 2
-    for i in range(0, whole, 2):
+    even = samples - samples % 2
+    for i in range(0, even, 2):
         r0, r1 = response[first + i], response[first + i + 1]
         for j in range(WIDTH):
             e0, e1 = tile[i * WIDTH + j] - r0, tile[(i + 1) * WIDTH + j] - r1
             sums[j] += e0 + e1
             sums[WIDTH + j] += e0 * e0 + e1 * e1
-    for i in range(whole, samples):
+    for i in range(even, samples):
         for j in range(WIDTH):
             e0 = tile[i * WIDTH + j] - response[first + i]
             sums[j] += e0
@@ -129,17 +129,17 @@ def errors(samples, first, fresh, response, runs, sums, tile):
 
 
 @njit(nogil=True, cache=True)
-def run(program, signals, scratch, axes, samples, since, stride, output, take):
+def run(program, signals, scratch, axes, samples, since, stride, output, output_axes):
     """Run every group through every tile.
 
-    program: (steps, 5) of address, scratch row, row of signals, tile, from which sample on.
-    signals: (rows, 1 + samples + PADDING), a sample of rest before the record; the row behind a drive's holds its runs.
-    scratch: (groups, rows * WIDTH). output: (groups * WIDTH, axes, samples after `since` / stride) or empty, filled
-    from the signals of the axes in `take`, every `stride`-th sample.
+    program: (steps, 5), each step the address of a function, its row of the scratch, row of signals, tile, and first
+    sample. signals: (rows, 1 + samples + PADDING), with a sample of rest before the record; the row after that of a
+    drive holds its runs. scratch: (groups, rows * WIDTH). output: (groups * WIDTH, axes, samples after `since` /
+    stride) or empty; it is filled with every `stride`-th sample of the axes in output_axes.
     """
-    room = np.zeros(TILES * axes * TILE * WIDTH + 8)
-    start = (-room.ctypes.data // 8) % 8  # on a cache line
-    tiles = room[start : start + TILES * axes * TILE * WIDTH].reshape(TILES * axes, TILE * WIDTH)
+    buffer = np.zeros(TILES * axes * TILE * WIDTH + 8)
+    start = (-buffer.ctypes.data // 8) % 8  # on a cache line
+    tiles = buffer[start : start + TILES * axes * TILE * WIDTH].reshape(TILES * axes, TILE * WIDTH)
     for group in range(scratch.shape[0]):
         for first in range(0, samples, TILE):
             count = min(TILE, samples - first)
@@ -159,47 +159,45 @@ def run(program, signals, scratch, axes, samples, since, stride, output, take):
             if output.size:
                 begin = max(first, since)
                 begin += (since - begin) % stride
-                for axis in range(take.size):
+                for axis in range(output_axes.size):
                     for i in range(begin, first + count, stride):
                         for j in range(WIDTH):
                             output[group * WIDTH + j, axis, (i - since) // stride] = tiles[
-                                TILES * take[axis], (i - first) * WIDTH + j
+                                TILES * output_axes[axis], (i - first) * WIDTH + j
                             ]
 
 
 def runs_of(drive: np.ndarray) -> np.ndarray:
-    """For each sample the end (excluded) of the monotone run of the drive that it stands in: positive where all steps
-    from there to the end are the same to 1e-11, else negative. drive: (samples,), the first one at rest."""
+    """For each sample the end (excluded) of the monotone run of the drive that it is in: positive if all steps from the
+    sample to the end are equal to 1e-11, negative otherwise. drive: (samples,), starting at rest."""
     move = np.diff(drive, prepend=drive[:1])
     number = np.arange(drive.size)
     direction = np.where(move >= 0, 1, -1)
-    turn = np.append(direction[1:] != direction[:-1], True)
-    other = np.append(np.abs(move[1:] - move[:-1]) > 1e-11 * np.abs(move[:-1]), True) | turn
-    same = next_true(other)
-    long = same - number >= 2 * UNROLL
-    begins = (
-        np.append(long[1:] & ~long[:-1], True) | turn
-    )  # where a stretch of varying steps gives way to a constant one
-    return np.where(long, same, -next_true(begins)).astype(float)
+    reverses = np.append(direction[1:] != direction[:-1], True)
+    changes = np.append(np.abs(move[1:] - move[:-1]) > 1e-11 * np.abs(move[:-1]), True) | reverses
+    constant_end = next_true(changes)
+    constant = constant_end - number >= 2 * UNROLL
+    varying_ends = np.append(constant[1:] & ~constant[:-1], True) | reverses
+    return np.where(constant, constant_end, -next_true(varying_ends)).astype(float)
 
 
 def next_true(flags: np.ndarray) -> np.ndarray:
-    """One past the first true at or behind each place; the last one is true."""
+    """For each place, one past the first true flag at or after it; the last flag is true."""
     ends = np.flatnonzero(flags) + 1
     return ends[np.searchsorted(ends, np.arange(flags.size), side="right")]
 
 
 def address(function: Any) -> int:
-    """Where a compiled C function stands."""
+    """Address of a compiled C function."""
     return int(function.address)
 
 
-def aligned(*shape: int) -> np.ndarray:
-    """Zeros that begin on a cache line."""
+def aligned_zeros(*shape: int) -> np.ndarray:
+    """Zeros that start on a cache line."""
     size = prod(shape)
-    raw = np.zeros(size + 8)
-    shift = (-raw.ctypes.data // 8) % 8
-    return raw[shift : shift + size].reshape(shape)
+    buffer = np.zeros(size + 8)
+    shift = (-buffer.ctypes.data // 8) % 8
+    return buffer[shift : shift + size].reshape(shape)
 
 
 VERSION = f"{numba.__version__}-{WIDTH}-{TILE}-{UNROLL}"

@@ -1,4 +1,4 @@
-"""Numbers that a bank works out by NumPy once for each distinct candidate, before the lanes."""
+"""Numbers that a bank computes with NumPy once for each distinct candidate, ahead of the kernel."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 class Precomputation:
-    """A bank's `solve` over candidates. columns: of theta, by parameter; known: what is the same for all."""
+    """A bank's `solve` over candidates. columns: of theta, by parameter; known: values that all candidates share."""
 
     def __init__(self, block: type[Bank], columns: Mapping[str, int | list[int]], known: Mapping[str, float]) -> None:
         self.block = block
@@ -23,13 +23,13 @@ class Precomputation:
         self.known = dict(known)
 
     def __call__(self, theta: Array) -> Array:
-        """(candidates, branches, words of `solved`); NaN where a candidate has none."""
-        needed = [column for own in self.columns.values() for column in np.atleast_1d(own)]
-        kinds, first, which = np.unique(theta[:, needed], axis=0, return_index=True, return_inverse=True)
-        found = np.full((len(kinds), self.block.branches, len(self.block.solved)), np.nan)
+        """(candidates, branches, words of `solved`); NaN where `solve` fails."""
+        needed = [column for columns in self.columns.values() for column in np.atleast_1d(columns)]
+        distinct, first, index = np.unique(theta[:, needed], axis=0, return_index=True, return_inverse=True)
+        solved = np.full((len(distinct), self.block.branches, len(self.block.solved)), np.nan)
         for i, candidate in enumerate(theta[first]):
-            if np.isfinite(kinds[i]).all():
+            if np.isfinite(distinct[i]).all():
                 with suppress(np.linalg.LinAlgError), np.errstate(all="ignore"):
-                    own = self.known | {word: candidate[column] for word, column in self.columns.items()}
-                    found[i] = np.transpose(self.block.solve(SimpleNamespace(**own)))  # type: ignore[attr-defined]
-        return found[which.ravel()]
+                    values = self.known | {word: candidate[column] for word, column in self.columns.items()}
+                    solved[i] = np.transpose(self.block.solve(SimpleNamespace(**values)))  # type: ignore[attr-defined]
+        return solved[index.ravel()]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.record import Record
 from pzt_ident.engine.precomputed import Precomputation
-from pzt_ident.model.block import TILES, Bank, Beside, Block, Coupling, Modes, Operator, Place, Shift, asked
+from pzt_ident.model.block import TILES, Bank, Beside, Block, Coupling, Modes, Operator, Place, Shift, argument_names
 from pzt_ident.model.chain import Chain
 
 Array = NDArray[np.float64]
@@ -21,9 +21,9 @@ class Program:
     """`steps` are rows of (address, row of the scratch, row of signals, tile, first sample), in signal order; `rows`
     is the number of rows of the scratch, WIDTH numbers each.
 
-    Where what a block's `prepare` is given comes from: `given` pairs a row of the scratch with a column of theta,
-    `known` with a number that is the same for every candidate, `precomputed` are those that a bank works out by NumPy,
-    with the rows (branches, words) that they go to.
+    Sources of the arguments of a block's `prepare`: `given` pairs a row of the scratch with a column of theta, `known`
+    with a number that is the same for every candidate, and `precomputed` holds those that a bank computes with NumPy,
+    with their rows (branches, words).
     """
 
     def __init__(self, model: Chain, record: Record) -> None:
@@ -56,11 +56,11 @@ class Program:
         return self.model.oversample * self.record.steps
 
     def _append(self, block: type[Block], axis: int) -> None:
-        """A block of one axis, in the variant that the others around it ask for."""
+        """Add a block of one axis, in the variant that the blocks around it require."""
         from pzt_ident.engine.lanes import Variant
 
         operator = block.place == Place.OPERATOR
-        readout = operator and self.model.reads_out
+        readout = operator and self.model.has_readout
         terms = issubclass(block, Operator) and bool(self.model.terms(block))
         driven = axis in self._fresh and issubclass(block, Operator) and not (readout or terms)
         if not (driven or issubclass(block, Shift)):
@@ -69,13 +69,13 @@ class Program:
         self._add(block, axis, Variant(driven, readout, terms))
 
     def _keep(self, number: int, axis: int) -> None:
-        """Ahead of the first block of a stage, put aside what a readout or a path beside the mechanics needs of it."""
+        """Ahead of the first readout block or guide, keep the signal that the operator or a path beside needs later."""
         from pzt_ident.engine.kernel import address, keep_force, keep_prompt
 
         blocks = self.model.blocks
         beside = any(issubclass(block, Beside) for block in blocks)
-        stages = [(keep_prompt, Place.READOUT, self.model.reads_out), (keep_force, Place.GUIDE, beside)]
-        for keep, first, needed in stages:
+        kept = [(keep_prompt, Place.READOUT, self.model.has_readout), (keep_force, Place.GUIDE, beside)]
+        for keep, first, needed in kept:
             enters = blocks[number].place >= first and (number == 0 or blocks[number - 1].place < first)
             if enters and needed:
                 self._fill(self._fresh & {axis})
@@ -88,29 +88,29 @@ class Program:
         self._fresh -= axes
 
     def _add(self, block: type[Block], axis: int, variant: Any) -> None:
-        """The step of a block, and where each of its copies (branches, or pairs of axes) has its parameters from."""
+        """Add the step of a block, and the sources of the parameters of its copies (branches, or pairs of axes)."""
         from pzt_ident.engine.lanes import compile_block
 
-        form = self.model.form(block)
+        form = self.model.form_of(block)
         compiled = compile_block(form, variant)  # type: ignore[arg-type]
-        tile = TILES * axis + (1 if block.place == Place.READOUT and self.model.reads_out else 0)
+        tile = TILES * axis + (1 if block.place == Place.READOUT and self.model.has_readout else 0)
         self.steps.append((compiled.address, self.rows, 2 * axis, tile, 0))
-        words = (*form.arguments(), *(asked(block.terms) if variant.terms else ()))  # type: ignore[attr-defined]
+        words = (*form.arguments(), *(argument_names(block.terms) if variant.terms else ()))  # type: ignore[attr-defined]
         row = self.rows + compiled.layout.first_given
-        for one, other in self._places(block, axis):
-            row = self._place(block, one, other, words, row)
+        for target, source in self._places(block, axis):
+            row = self._place(block, target, source, words, row)
         self.rows += compiled.layout.rows
 
     def _places(self, block: type[Block], axis: int) -> list[tuple[int, int]]:
-        """The axes, or ordered pairs of axes, that have parameters of their own."""
+        """The pairs (axis, axis), or ordered pairs of different axes, that have their own parameters."""
         if issubclass(block, Coupling):
             axes = range(len(self.model.axes))
             return [(a, b) for a in axes for b in axes if b != a]
-        own = self.model.measured[0] if issubclass(block, Modes) else axis
-        return [(own, own)]
+        owner = self.model.measured[0] if issubclass(block, Modes) else axis
+        return [(owner, owner)]
 
     def _place(self, block: type[Block], axis: int, other: int, words: tuple[str, ...], row: int) -> int:
-        """Parameters of a block on one axis, or pair of axes, from a row of the scratch on; the row behind them."""
+        """Add the parameters of a block on an axis or pair of axes from a scratch row on; returns the next row."""
         columns = self.model.columns(block, axis, other)
         known = self._known(block, axis)
         branches = range(block.branches) if issubclass(block, Bank | Modes) else [0]
@@ -130,15 +130,15 @@ class Program:
         return row
 
     def _known(self, block: type[Block], axis: int) -> dict[str, float]:
-        """What `prepare` may ask for beside the parameters of the model."""
+        """What `prepare` may ask for besides the parameters of the model."""
         drive = self.record.drive[axis]
         nulls = {p.name: p.null for p in block.parameters().values() if p.null is not None}
         span, peak = float(np.ptp(drive)), float(np.abs(drive).max())
         return nulls | block.numbers() | {"dt": self.record.dt / self.substeps, "span": span, "peak": peak}
 
     def _weigh(self, block: type[Modes], mode: int, row: int) -> int:
-        """What push and motion of each axis count for a mode: their own, 1 for the push of the first axis, 0 for one
-        that is not measured. From a row of the scratch on; the row behind them."""
+        """Add the weights of a mode for force and motion of each axis from a row of the scratch on: 1 for the force of
+        the first axis, 0 for an axis that is not measured, a parameter otherwise. Returns the next row."""
         for word, axis in product(block.weights, range(len(self.model.axes))):
             columns = self.model.columns(block, axis, axis)
             if columns is None or word not in columns:
@@ -149,12 +149,12 @@ class Program:
         return row
 
     def scratch(self, theta: Array, rows: int) -> Array:
-        """What every block's `prepare` is given, in lanes: (groups, rows * WIDTH)."""
-        from pzt_ident.engine.kernel import WIDTH, aligned
+        """The scratch with the arguments of every block's `prepare`, in lanes: (groups, rows * WIDTH)."""
+        from pzt_ident.engine.kernel import WIDTH, aligned_zeros
 
         groups = -(-theta.shape[0] // WIDTH)
         lanes = np.minimum(np.arange(groups * WIDTH), theta.shape[0] - 1).reshape(groups, 1, WIDTH)
-        scratch = aligned(groups, rows, WIDTH)
+        scratch = aligned_zeros(groups, rows, WIDTH)
         given, columns, known, values = self._sources
         scratch[:, given] = theta[lanes, columns]
         scratch[:, known] = values

@@ -1,4 +1,4 @@
-"""A model on one record, simulated for many candidates at once, and what it leaves of the measurement."""
+"""Simulation of a model on one record for many candidates at once, and its errors."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SIGNALS: WeakKeyDictionary[Record, dict[Any, Array]] = WeakKeyDictionary()
 
 
 class Simulator:
-    """A chain of blocks made ready for one record.
+    """A chain of blocks on one record.
 
     theta is (candidates, parameters) in SI units, in the order of the chain's entries.
     """
@@ -30,7 +30,7 @@ class Simulator:
         self._program = Program(model, record)
         self._additions = Additions(model, record)
         self._measured = np.array(model.measured, dtype=np.int64)
-        self._sums = self._program.rows  # row of the scratch behind those of the blocks
+        self._sums = self._program.rows  # row of the scratch after those of the blocks
         self._rows = self._sums + 2 * len(model.measured)
 
     @property
@@ -40,11 +40,11 @@ class Simulator:
 
     @property
     def scored(self) -> int:
-        """Samples that count."""
+        """Number of samples that are scored, those after the settling."""
         return self.record.samples - self.record.settle
 
     def simulate(self, theta: Array) -> Array:
-        """(candidates, measured axes, samples), before the free offset."""
+        """Responses without the free offset, SI units: (candidates, measured axes, samples)."""
         from pzt_ident.engine.kernel import WIDTH
 
         theta = np.atleast_2d(theta)
@@ -54,7 +54,7 @@ class Simulator:
         return output[: theta.shape[0]]
 
     def squares(self, theta: Array) -> Array:
-        """Sum of squared errors over the scored samples, each record's free offset removed: (candidates, axes)."""
+        """Sum of squared errors over the scored samples, without the free offset: (candidates, measured axes)."""
         from pzt_ident.engine.kernel import WIDTH
 
         theta = np.atleast_2d(theta)
@@ -64,46 +64,48 @@ class Simulator:
         scratch = self._run(theta, self._scoring, np.empty((0, 0, 0)))
         sums = scratch.reshape(scratch.shape[0], self._rows, WIDTH)[:, self._sums :]
         with np.errstate(invalid="ignore", over="ignore"):
-            left = sums[:, 1::2] - (sums[:, 0::2] / np.sqrt(self.scored)) ** 2  # overflows no sooner than the first
-        left = np.maximum(left, 0)  # rounding leaves less than nothing of a perfect fit
-        return left.swapaxes(1, 2).reshape(-1, len(self.model.measured))[: theta.shape[0]]
+            squares = (
+                sums[:, 1::2] - (sums[:, 0::2] / np.sqrt(self.scored)) ** 2
+            )  # overflows only where the sum of squares does
+        squares = np.maximum(squares, 0)  # negative by rounding for a perfect fit
+        return squares.swapaxes(1, 2).reshape(-1, len(self.model.measured))[: theta.shape[0]]
 
     def residuals(self, theta: Array) -> Array:
-        """Model minus measurement over the scored samples, what each record adds of its own removed."""
+        """Model minus measurement over the scored samples, without offset and additions; see `errors`."""
         return self.errors(theta)[:, :, self.record.settle :]
 
     def errors(self, theta: Array) -> Array:
         """Model minus measurement over all samples: (candidates, measured axes, samples). The offset of the record and
-        the amounts of its additions are those of least squares over the scored samples."""
+        the amounts of its additions are subtracted; they follow from least squares over the scored samples."""
         theta = np.atleast_2d(theta)
         error = self.simulate(theta) - self.record.response[list(self.model.measured)]
         self._additions.remove(error, theta)
         return error
 
     def added(self, theta: Array) -> dict[str, Array]:
-        """What each addition puts into the record with one candidate, as `Additions.sizes` has it."""
-        left = self.record.response[list(self.model.measured)] - self.simulate(theta)[0]
-        return self._additions.sizes(left, theta)
+        """Standard deviation of each addition with one candidate; see `Additions.sizes`."""
+        residual = self.record.response[list(self.model.measured)] - self.simulate(theta)[0]
+        return self._additions.sizes(residual, theta)
 
-    def broken(self, theta: Array) -> tuple[str, ...]:
-        """What one candidate breaks of the conditions of its blocks' equations over this record."""
+    def violations(self, theta: Array) -> tuple[str, ...]:
+        """Sentences on the conditions of the blocks' equations that one candidate violates on this record."""
         sentences = []
         for block in self.model.blocks:
-            if block.watch:
-                margin = Simulator(self.model.watched(block), self.record).simulate(theta)
+            if block.margin:
+                margin = Simulator(self.model.margin_chain(block), self.record).simulate(theta)
                 if share := float(np.mean(margin <= 0)):
-                    sentences.append(f"at {share:.1%} of its samples {block.broken}")
+                    sentences.append(f"at {share:.1%} of its samples {block.violation}")
         return tuple(sentences)
 
     @cached_property
     def _scoring(self) -> NDArray[np.int64]:
-        """The program with the sums of errors behind it."""
+        """The program, followed by the sums of errors."""
         from pzt_ident.engine.kernel import address, errors
 
         since = self.record.run_in * self.record.samples + self.record.settle
-        behind = 2 * len(self.model.axes)
+        responses = 2 * len(self.model.axes)  # first row of signals after those of the drives
         sums = [
-            (address(errors), self._sums + 2 * i, behind + i, TILES * a, since)
+            (address(errors), self._sums + 2 * i, responses + i, TILES * a, since)
             for i, a in enumerate(self.model.measured)
         ]
         return np.array(self._program.steps + sums, dtype=np.int64)
@@ -120,15 +122,15 @@ class Simulator:
 
     @property
     def _signals(self) -> Array:
-        """What the kernel reads of the record, the same array for every model that takes its steps."""
-        known = SIGNALS.setdefault(self.record, {})
+        """The signals that the kernel reads, one array for all models with the same substeps and measured axes."""
+        cached = SIGNALS.setdefault(self.record, {})
         key = self.substeps, self.model.oversample > 1, self.model.measured
-        if key not in known:
-            known[key] = self._make_signals()
-        return known[key]
+        if key not in cached:
+            cached[key] = self._build_signals()
+        return cached[key]
 
-    def _make_signals(self) -> Array:
-        """Each drive over the run-in and the record and behind it its runs, then the responses about their means; a
+    def _build_signals(self) -> Array:
+        """Rows: each drive over run-in and record, followed by its runs, then the responses about their means; with a
         sample of rest ahead and padding behind."""
         from pzt_ident.engine.kernel import PADDING, runs_of
 

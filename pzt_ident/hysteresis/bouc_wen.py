@@ -6,20 +6,20 @@ from pzt_ident.model.block import Operator, Place, expm1, log1p
 from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks
 
-RATE = 100.0  # V/s, at which alpha is meant
+RATE = 100.0  # V/s, drive rate at which alpha is not changed by `rate`
 
 
 @blocks.register
 class BoucWen(Operator):
     """y = d u - h,  dh/dt = alpha d du/dt - beta |du/dt| h - gamma du/dt |h|.
 
-    Lin & Lin (2012), Mechatronics 22, 614, eq. 5. The state is h / (alpha d), in volts. On a monotone step of length s,
-    counted along the motion, q(s) = q0 exp(-r s) + (1 - exp(-r s)) / r, with r = beta - gamma where q < 0 and
+    Lin & Lin (2012), Mechatronics 22, 614, eq. 5. The state is h / (alpha d), in volts. On a monotone step of length s
+    the state along the motion, q, is q(s) = q0 exp(-r s) + (1 - exp(-r s)) / r, with r = beta - gamma where q < 0 and
     r = beta + gamma where q > 0.
 
-    Effects, each off at zero:
-    dh/dt = alpha d (1 + rate log10(|du/dt| / RATE)) du/dt + asymmetry alpha d u |du/dt| - ... - relaxation h,
-    the bracket held over a step at its value in the middle and h relaxing behind it: second order in the step, and
+    Effects, each without influence at zero:
+    dh/dt = alpha d (1 + rate log10(|du/dt| / RATE)) du/dt + asymmetry alpha d u |du/dt| - ... - relaxation h.
+    Over a step the factors on du/dt keep their value in the middle, and h relaxes after it: second order in the step,
     first order in dt * relaxation.
     """
 
@@ -33,7 +33,7 @@ class BoucWen(Operator):
         "1/drive", (-1, 1), "Part of the drive term that grows with the voltage.", 0, effect="asymmetry"
     )
     rate = Parameter("1", (-0.3, 0.3), "Growth of alpha per decade of drive rate.", 0, effect="rate_dependence")
-    relaxation = Parameter("1/s", (0, 1), "Fading of h with time, 1 / tau.", 0, effect="thermal_relaxation")
+    relaxation = Parameter("1/s", (0, 1), "Decay rate of h, 1 / tau.", 0, effect="thermal_relaxation")
 
     def prepare(gain, alpha, beta, gamma):
         return (gain, alpha * gain), regime(beta + gamma), regime(beta - gamma)
@@ -76,6 +76,6 @@ class BoucWen(Operator):
 
 
 def regime(rate):
-    """Rate and its inverse; a rate of zero is taken as one too small to matter."""
+    """Rate and its inverse, the rate 1e-200 at least in magnitude."""
     rate = rate if abs(rate) > 1e-200 else 1e-200
     return rate, 1 / rate

@@ -1,4 +1,4 @@
-"""The domain wall model: pinned walls that bend reversibly and jump irreversibly."""
+"""The domain wall model: irreversible_step walls that bend reversibly and jump irreversibly."""
 
 from math import nan
 
@@ -8,7 +8,7 @@ from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
 ANHYSTERETIC = (1.0, 0.0, 0.0, 0.0)
-"""P_an / P_s = tanh((E + alpha P) / a), the curve of all walls that no reversal has rescaled; see `anhysteretic`."""
+"""Share, field, worth and shift of P_an / P_s = tanh((E + alpha P) / a), before any rescaling; see `anhysteretic`."""
 
 
 @blocks.register
@@ -16,15 +16,15 @@ class DomainWall(Block):
     """y = b P,  P = c P_an + (1 - c) P_irr,  P_an = P_s tanh((E + alpha P) / a),
     dP_irr/dE = g / (k - alpha g), g = max(sign(dE) (P_an - P_irr), 0).
 
-    Smith & Salapaka, Model Development for the Positioning Mechanisms in an Atomic Force Microscope, eqs. 3 to 8, u
-    for E and P over P_s. P is solved for at each stage of a fourth-order Runge-Kutta step in E. Begins unpolarized at
-    no field. Where g comes to k / alpha (against eq. 9) the walls run away; here they then jump, at most onto the
-    anhysteretic curve, and the result says so. A candidate with c alpha P_s >= a, for which P has no single solution,
-    fails. Minor loops do not close, as in all models of this kind, unless they are biased.
+    Smith & Salapaka, Model Development for the Positioning Mechanisms in an Atomic Force Microscope, eqs. 3 to 8, with
+    u for E and P relative to P_s. P is solved for at each stage of a fourth-order Runge-Kutta step in E, from an
+    unpolarized state at zero field. Where g reaches k / alpha, which violates eq. 9, the walls run away: they then
+    jump, at most onto the anhysteretic curve, and the result reports it. A candidate with c alpha P_s >= a, for which
+    P has no unique solution, fails. As in all models of this kind minor loops do not close, unless they are biased.
     """
 
     place = Place.OPERATOR
-    broken = (
+    violation = (
         "domain walls run away, against condition (9) of Smith & Salapaka, k > alpha |P_an - P_irr|: there the model "
         "jumps onto its anhysteretic curve. Raise `domain_wall.pinning`, lower `domain_wall.coupling` (with alpha P_s "
         "above a they always do), or sample the drive more finely"
@@ -32,9 +32,9 @@ class DomainWall(Block):
     minor_loops = Form("open", ("open", "biased"), "`biased` closes minor loops, eq. 5 of the paper.")
     saturation = Parameter("response", (0, 20), "Response at the saturation polarization, b P_s.")
     width = Parameter("drive", (0.05, 100), "Field over which the anhysteretic polarization rises, a.", scale="log")
-    coupling = Parameter("1", (0, 1), "Field of the saturated neighbourhood over the width, alpha P_s / a.")
-    pinning = Parameter("drive", (1e-3, 10), "Field that the walls are pinned by, k.", scale="log")
-    reversible = Parameter("1", (0, 1), "Share of the polarization that bends back, c.")
+    coupling = Parameter("1", (0, 1), "Mean field of the saturated polarization over the width, alpha P_s / a.")
+    pinning = Parameter("drive", (1e-3, 10), "Field at which irreversible_step walls break free, k.", scale="log")
+    reversible = Parameter("1", (0, 1), "Share of the polarization from reversible bending of walls, c.")
 
     def refuse(least, most):
         if least.reversible < 0 or most.reversible > 1:
@@ -57,27 +57,27 @@ class DomainWall(Block):
         return nan if runs_away else saturation, 1 / width, coupling, pinning / width, reversible
 
     def start(u, saturation, per_width, coupling, pinning, reversible):
-        return pinned(0.0, 0.0, u, ANHYSTERETIC, per_width, coupling, pinning, reversible)[0], u
+        return irreversible_step(0.0, 0.0, u, ANHYSTERETIC, per_width, coupling, pinning, reversible)[0], u
 
     def step(pin, before, u, saturation, per_width, coupling, pinning, reversible):
-        pin, _ = pinned(pin, before, u, ANHYSTERETIC, per_width, coupling, pinning, reversible)
+        pin, _ = irreversible_step(pin, before, u, ANHYSTERETIC, per_width, coupling, pinning, reversible)
         an = anhysteretic(pin, u, ANHYSTERETIC, per_width, coupling, reversible)
         return pin, u, saturation * (reversible * an + (1 - reversible) * pin)
 
 
 class Biased(DomainWall):
-    """P_an rescaled to go through the last reversal that is no end of a minor loop, (E1, P1), and on the way back to it
-    the same reflected through (E0, P0), half-way between that reversal and the one after it:
+    """P_an is rescaled to pass through the reversal (E1, P1) at which a minor loop begins, and on the way back to it
+    reflected through (E0, P0), halfway between that reversal and the next:
     P_an = g Pt(E, P) - (1 - g) P_s after a rise, P_an = 2 P0 - (g Pt(2 E0 - E, 2 P0 - P) - (1 - g) P_s) back,
-    g = (P1 + P_s) / (Pt(E1, P1) + P_s), Pt of eq. 4.
+    g = (P1 + P_s) / (Pt(E1, P1) + P_s), with Pt of eq. 4.
 
-    Eq. 5, its two signs. Since P is continuous, P_irr is P at each reversal. Back at (E1, P1) the loop has closed and
-    is forgotten: the plain curve goes on. A reversal on the way back takes the place of the first, so of loops within
-    loops the innermost one closes. g is at most 1.
+    Smith & Salapaka, eq. 5, for both directions. P is continuous, so P_irr = P at each reversal. On return to (E1, P1)
+    the loop is closed and deleted, and the plain curve continues. A reversal on the way back replaces the first one: of
+    nested loops the innermost closes. g is at most 1.
     """
 
     def start(u, saturation, per_width, coupling, pinning, reversible):
-        pin, _ = pinned(0.0, 0.0, u, ANHYSTERETIC, per_width, coupling, pinning, reversible)
+        pin, _ = irreversible_step(0.0, 0.0, u, ANHYSTERETIC, per_width, coupling, pinning, reversible)
         an = anhysteretic(pin, u, ANHYSTERETIC, per_width, coupling, reversible)
         way = 1.0 if u > 0 else -1.0 if u < 0 else 0.0
         return pin, u, reversible * an + (1 - reversible) * pin, way, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0
@@ -86,40 +86,42 @@ class Biased(DomainWall):
         pin, before, p, way, side, end, p_end, share, field, worth, shift,
         u, saturation, per_width, coupling, pinning, reversible,
     ):  # fmt: skip
-        loop, curve, _ = turned(
+        loop, curve, _ = biased_step(
             pin, before, p, way, side, end, p_end, (share, field, worth, shift),
             u, per_width, coupling, pinning, reversible,
         )  # fmt: skip
         return *loop, *curve, saturation * loop[2]
 
 
-class Room(DomainWall):
-    """What eq. 9 wants above zero, (k - alpha g) / k."""
+class Margin(DomainWall):
+    """The margin of eq. 9, (k - alpha g) / k, which must stay above zero."""
 
     def step(pin, before, u, saturation, per_width, coupling, pinning, reversible):
-        pin, room = pinned(pin, before, u, ANHYSTERETIC, per_width, coupling, pinning, reversible)
-        return pin, u, room
+        pin, margin = irreversible_step(pin, before, u, ANHYSTERETIC, per_width, coupling, pinning, reversible)
+        return pin, u, margin
 
 
-class BiasedRoom(Biased):
+class BiasedMargin(Biased):
+    """The margin of eq. 9 with biased minor loops."""
+
     def step(
         pin, before, p, way, side, end, p_end, share, field, worth, shift,
         u, saturation, per_width, coupling, pinning, reversible,
     ):  # fmt: skip
-        loop, curve, room = turned(
+        loop, curve, margin = biased_step(
             pin, before, p, way, side, end, p_end, (share, field, worth, shift),
             u, per_width, coupling, pinning, reversible,
         )  # fmt: skip
-        return *loop, *curve, room
+        return *loop, *curve, margin
 
 
 DomainWall.forms = {"biased": Biased}
-DomainWall.watch, Biased.watch = Room, BiasedRoom
+DomainWall.margin, Biased.margin = Margin, BiasedMargin
 
 
-def turned(pin, before, p, way, side, end, p_end, curve, u, per_width, coupling, pinning, reversible):
-    """The state of `Biased` at u, its curve, and the room of eq. 9. side: the way that led to the end of the minor
-    loop, 0 outside of any."""
+def biased_step(pin, before, p, way, side, end, p_end, curve, u, per_width, coupling, pinning, reversible):
+    """State and anhysteretic curve of `Biased` at u, and the margin of eq. 9. way: direction of the field. side:
+    direction in which the end of the minor loop (end, p_end) was reached, 0 outside of minor loops."""
     now = 1.0 if u > before else -1.0 if u < before else way
     turns = now * way < 0
     away, back = turns and side != -way, turns and side == -way
@@ -135,13 +137,13 @@ def turned(pin, before, p, way, side, end, p_end, curve, u, per_width, coupling,
     pin = (p_end - reversible * at) / max(1 - reversible, 1e-12) if closed else pin
     before, side = (end, 0.0) if closed else (before, side)
     curve = share, field, worth, shift
-    pin, room = pinned(pin, before, u, curve, per_width, coupling, pinning, reversible)
+    pin, margin = irreversible_step(pin, before, u, curve, per_width, coupling, pinning, reversible)
     an = anhysteretic(pin, u, curve, per_width, coupling, reversible)
-    return (pin, u, reversible * an + (1 - reversible) * pin, now, side, end, p_end), curve, room
+    return (pin, u, reversible * an + (1 - reversible) * pin, now, side, end, p_end), curve, margin
 
 
-def pinned(pin, before, u, curve, per_width, coupling, pinning, reversible):
-    """P_irr / P_s at u, and the least of k - alpha g over k on the way, which eq. 9 wants above zero."""
+def irreversible_step(pin, before, u, curve, per_width, coupling, pinning, reversible):
+    """P_irr / P_s at u by a Runge-Kutta step from `before`, and the least margin of eq. 9, 1 - alpha g / k, in it."""
     move = u - before
     walls = per_width, coupling, pinning, reversible
     s1, r1 = slope(pin, before, move, curve, *walls)
@@ -155,16 +157,17 @@ def pinned(pin, before, u, curve, per_width, coupling, pinning, reversible):
 
 
 def slope(pin, u, move, curve, per_width, coupling, pinning, reversible):
+    """dP_irr/dE in units of P_s / a, and the margin of eq. 9."""
     sign = 1.0 if move >= 0 else -1.0
     ahead = sign * (anhysteretic(pin, u, curve, per_width, coupling, reversible) - pin)
     ahead = ahead if ahead > 0 else 0 * ahead
-    room = 1 - coupling * ahead / pinning
-    return ahead / (pinning * max(room, 1e-3)), room
+    margin = 1 - coupling * ahead / pinning
+    return ahead / (pinning * max(margin, 1e-3)), margin
 
 
 def anhysteretic(pin, u, curve, per_width, coupling, reversible):
-    """p = share tanh((u + alpha P_s (c p + (1 - c) p_irr - worth)) / a - field) + shift by Newton's method; it
-    contracts, so it has one solution."""
+    """P_an / P_s, the root p of p = share tanh((u + alpha P_s (c p + (1 - c) p_irr - worth)) / a - field) + shift, by
+    Newton's method; the right side is a contraction, so the root is unique."""
     share, field, worth, shift = curve
     at = u * per_width + coupling * ((1 - reversible) * pin - worth) - field
     inner = coupling * reversible

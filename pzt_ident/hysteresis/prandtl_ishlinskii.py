@@ -11,8 +11,9 @@ PLAYS = 8
 class PrandtlIshlinskii(Bank):
     """y = w0 u + sum_i w_i F_i[u], F_i the play of half-width r_i = reach i / 8: p <- max(u - r, min(u + r, p)).
 
-    Krasnosel'skii & Pokrovskii (1989), Systems with Hysteresis; Kuhnen (2003), Eur. J. Control 9, 407. Starts virgin:
-    every play lets the first input through up to its half-width. Linear in the weights; return points are kept.
+    Krasnosel'skii & Pokrovskii (1989), Systems with Hysteresis; Kuhnen (2003), Eur. J. Control 9, 407. The initial
+    state is virgin: each play is at zero if the first input is within its half-width. Linear in the weights. Minor
+    loops close.
     """
 
     place = Place.OPERATOR
@@ -21,7 +22,7 @@ class PrandtlIshlinskii(Bank):
     weight = Parameter("response/drive", (-0.5, 1.5), "Weight of the i-th play.", count=PLAYS)
     reach = Parameter("drive", (0.05, 1), "Half-width of the widest play.", value=0.5)
 
-    def stands(reach, branch):
+    def threshold(reach, branch):
         return reach * (branch + 1) / PLAYS
 
     def prepare(gain, weight, reach, branch):

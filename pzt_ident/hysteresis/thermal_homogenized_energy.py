@@ -1,9 +1,9 @@
-"""The homogenized energy model with thermal activation: its domains relax, so loops depend on the rate and creep."""
+"""The homogenized energy model with thermal activation: loops depend on the rate, and the response creeps."""
 
 from math import erf, erfc, exp, expm1, log, pi, sqrt
 
 from pzt_ident.hysteresis._play import play
-from pzt_ident.hysteresis.homogenized_energy import HomogenizedEnergy, spread_of
+from pzt_ident.hysteresis.homogenized_energy import HomogenizedEnergy, refuse_negative_spread
 from pzt_ident.model.block import Place, Relays
 from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks
@@ -20,15 +20,16 @@ class ThermalHomogenizedEnergy(Relays):
     Smith et al., Model Development for Atomic Force Microscope Stage Mechanisms, eqs. 8 to 12 and 15. With the thermal
     width s = 1 / sqrt(B eta), B = V / kT, a = -(E + EI + Ec) / (eta s), g(a) = sqrt(2 / pi) / erfcx(a / sqrt 2):
     <P+> = P_R + (E + EI) / eta + s g(a) and p+- = (1 / T) N / (N + s / g(a)), N the integral of the Boltzmann density
-    over a shell of 0.1 s behind the inflection point. The energy is taken as linear over it: of p+- that neglects the
-    share (0.1)^2 / 6 Ec / (eta P_R - Ec). Both are mirrored for p-+ and <P->. Coercive fields, lognormal, are at 64
-    nodes of equal probability below eta P_R; beyond it a domain has no inflection point, and its mass is left out.
-    Interaction fields lie an eighth of their deviation apart. Loops and steps of more than that do not see it (4 % of
-    their creep); creep after a step of a thirtieth of the deviation is off by some 8 %, of a hundredth by 20 to 30 %.
+    over a shell of 0.1 s behind the inflection point. The energy is approximated as linear over the shell, a relative
+    error of p+- of (0.1)^2 / 6 Ec / (eta P_R - Ec). p-+ and <P-> are the mirror images. There are 64 lognormal coercive
+    fields of equal probability below eta P_R; beyond it a domain has no inflection point, and its mass is left out. The
+    spacing of the interaction fields is an eighth of their standard deviation. For loops and for larger steps its error
+    is small (4 % of the creep); creep after a step of a thirtieth of the standard deviation is off by about 8 %, after
+    a hundredth by 20 to 30 %.
     """
 
     place = Place.OPERATOR
-    seen = ("coercive",)
+    compared_with_drive = ("coercive",)
     gain, remanence = HomogenizedEnergy.gain, HomogenizedEnergy.remanence
     coercive, spread, interaction = HomogenizedEnergy.coercive, HomogenizedEnergy.spread, HomogenizedEnergy.interaction
     thermal = Parameter(
@@ -37,7 +38,7 @@ class ThermalHomogenizedEnergy(Relays):
     dwell = Parameter("s", (1e-6, 1), "Time constant of a domain without a barrier, T.", scale="log")
     quadratic, poled, bias = HomogenizedEnergy.quadratic, HomogenizedEnergy.poled, HomogenizedEnergy.bias
 
-    refuse = spread_of("thermal_homogenized_energy")
+    refuse = refuse_negative_spread("thermal_homogenized_energy")
 
     def prepare(gain, remanence, coercive, spread, interaction, thermal, dwell, quadratic, poled, bias, dt, peak):
         least = 2 * (peak + abs(bias) + remanence) / (COLUMNS - INTERACTIONS)
@@ -67,17 +68,17 @@ class ThermalHomogenizedEnergy(Relays):
         return rate, exp(-rate * dt), remanence + width * hazard
 
     def output(u, total, gain, remanence, quadratic, bias):
-        worth = u - bias + total - remanence
-        return (gain + quadratic * worth) * worth
+        field = u - bias + total - remanence
+        return (gain + quadratic * field) * field
 
 
 def normal(z):
-    """Phi."""
+    """Phi, the standard normal distribution function."""
     return 0.5 * (1 + erf(z / sqrt(2.0)))
 
 
 def quantile(p):
-    """Inverse of Phi: Newton's steps from 0 do not overshoot, since Phi bends towards 1/2."""
+    """Inverse of Phi by Newton's method; steps from 0 do not overshoot, since Phi is concave above, convex below."""
     z = 0.0
     for _ in range(16):
         z += min(max((p - normal(z)) * sqrt(2 * pi) * exp(0.5 * z * z), -2.0), 2.0)
@@ -85,7 +86,7 @@ def quantile(p):
 
 
 def erfcx(y):
-    """exp(y^2) erfc(y), to 3e-12."""
+    """Scaled complementary error function exp(y^2) erfc(y), relative error 3e-12."""
     if y > 20:
         v = 0.5 / (y * y)
         return (1 - v * (1 - 3 * v * (1 - 5 * v * (1 - 7 * v)))) / (sqrt(pi) * y)
@@ -94,6 +95,6 @@ def erfcx(y):
 
 
 def shell(v):
-    """(1 - exp(-v)) / v, of the energy falling linearly over the shell."""
+    """(1 - exp(-v)) / v: mean Boltzmann factor over the shell, in which the energy falls linearly by v."""
     v = max(v, -600.0)
     return -expm1(-v) / v if abs(v) > 1e-9 else 1.0

@@ -121,7 +121,7 @@ def _model(document: Document, items: tuple[str | Choice, ...], earlier: Earlier
             message = f"{word!r} beside {folders[folder]!r}: two blocks of {folder}"
             document.fault(loc, message, "keep one of the two")
         elif not isinstance(item, str):
-            _settings(document, ("model", i), item, blocks[word].formed(item.settings).make)
+            _settings(document, ("model", i), item, blocks[word].form_of(item.settings).make)
         folders[folder] = word
 
 
@@ -158,7 +158,7 @@ def _rule_out(document: Document, words: tuple[str, ...], earlier: Earlier) -> N
 
 
 def _effects(document: Document, words: tuple[str, ...], earlier: Earlier) -> None:
-    model_blocks = blocks.formed(earlier.get("model", ()))
+    model_blocks = blocks.forms_of(earlier.get("model", ()))
     terms = {declared.effect for block in model_blocks for declared in block.parameters().values() if declared.effect}
     known = terms | set(blocks.effects())
     for i, word in enumerate(words):

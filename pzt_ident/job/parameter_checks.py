@@ -93,9 +93,9 @@ def _unknown_name(document: Document, name: str, earlier: Earlier, entries: Mapp
             fault = f"belongs to the effect {declared.effect!r}", f"add `effects: [{declared.effect}]`"
         elif declared.per_record:
             fault = "is solved for in every record by itself", "take it out"
-        elif declared.each == "stage":
+        elif declared.per == "stage":
             fault = "belongs to the whole stage, not to an axis", f"write {block}.{word}"
-        elif declared.each == "later axis":
+        elif declared.per == "later axis":
             fault = "is relative to that of the first axis, which has none", "take it out"
     else:
         similar = [known for known in entries if f"{block}." in known and known.count(".") == name.count(".")]

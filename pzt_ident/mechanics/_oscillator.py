@@ -7,8 +7,8 @@ from pzt_ident.model.first_order_hold import oscillate, oscillator
 
 
 class Oscillator(Block):
-    """Solved exactly for f linear on each step (first-order hold), at rest at the start; prepare gives the coefficients
-    of hold.oscillate."""
+    """Solved exactly for f linear on each step (first-order hold), at rest at the start; prepare returns the
+    coefficients of first_order_hold.oscillate."""
 
     place = Place.MECHANICS
 
@@ -21,5 +21,5 @@ class Oscillator(Block):
 
 
 def mode(mass, damping, stiffness, dt):
-    """Coefficients of the mass on its spring."""
+    """Coefficients of a mass on a spring and damper for first_order_hold.oscillate."""
     return oscillator(sqrt(stiffness / mass), damping / (2 * sqrt(stiffness * mass)), dt)

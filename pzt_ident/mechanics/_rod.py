@@ -3,17 +3,17 @@
 import numpy as np
 
 from pzt_ident.mechanics._linear import Linear, sections
-from pzt_ident.mechanics._solid import Solid, resolved
+from pzt_ident.mechanics._solid import Solid, modes_resolved
 from pzt_ident.model.parameter import Parameter, Setting
 
 
 class RodData(Solid):
-    """Parameters of a rod fixed at x = 0, at the end of which a mass, a damper and a spring pull.
+    """Parameters of a rod that is fixed at x = 0, with a mass, a damper and a spring at its end.
 
-    rho A u_tt = N_x, N = Y A u_x + C A u_xt - A a1 (P - P_R), N(l) = -k u - c u_t - m u_tt. The polarization is the
-    same over the length, so it is a force at the end alone. Smith, Hatch, De, Salapaka, del Rosario & Raye, Model
-    Development for Atomic Force Microscope Stage Mechanisms, eq. 17 to 20; the area that their N and eq. 42 lack is
-    here.
+    rho A u_tt = N_x, N = Y A u_x + C A u_xt - A a1 (P - P_R), N(l) = -k u - c u_t - m u_tt. The polarization is
+    uniform over the length, so it acts as a force at the end. Smith, Hatch, De, Salapaka, del Rosario & Raye, Model
+    Development for Atomic Force Microscope Stage Mechanisms, eq. 17 to 20; the area, missing
+    in their N and eq. 42, is included here.
     """
 
     area = Parameter("m^2", (1e-8, 1e-2), "Area of the cross section.", scale="log")
@@ -26,18 +26,20 @@ class RodElements(RodData, Linear):
     """Linear finite elements of the same length, eq. 40 to 41. f is the displacement of the end at rest."""
 
     elements = Setting(8, (1, 100), "Linear finite elements.")
-    modes = Setting(0, (0, 100), "Slowest modes that are stepped, those above at rest under the force; 0 for all.")
+    modes = Setting(
+        0, (0, 100), "Number of slowest modes that are simulated, the faster ones follow the force at once; 0 for all."
+    )
 
     def count(elements, modes):
-        return resolved(elements, modes, 3, "rod")
+        return modes_resolved(elements, modes, 3, "rod")
 
     def solve(rod):
         end = np.eye(rod.elements)[-1]
-        return tuple(each[: rod.modes or rod.elements] for each in sections(*matrices(rod), end, end))
+        return tuple(values[: rod.modes or rod.elements] for values in sections(*matrices(rod), end, end))
 
 
 def matrices(rod):
-    """M, Q and K of eq. 41 with what pulls at the end, (elements, elements) each."""
+    """M, Q and K of eq. 41 with mass, damper and spring at the end, (elements, elements) each."""
     mass, strain = hats(rod.elements, rod.length)
     mass, damping = rod.density * rod.area * mass, rod.viscosity * rod.area * strain
     stiffness = rod.modulus * rod.area * strain

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 
 from pzt_ident.mechanics._linear import Linear, sections
-from pzt_ident.mechanics._solid import Solid, resolved
+from pzt_ident.mechanics._solid import Solid, modes_resolved
 from pzt_ident.model.parameter import Parameter, Setting
 
 CLAMPED = ((1, 0), (1, 0), (2, 0))
@@ -27,13 +27,13 @@ class ShellSplines(ShellData, Linear):
 
     elements = Setting(12, (4, 60), "Cubic spline elements along the shell.")
     harmonic = Setting(0, (0, 20), "Waves of the field around the shell: 0 lengthens it, 1 bends it.")
-    modes = Setting(3, (1, 30), "Slowest modes that are stepped, those above at rest under the force.")
+    modes = Setting(3, (1, 30), "Number of slowest modes that are simulated, the faster ones follow the force at once.")
 
     def count(elements, modes):
-        return resolved(elements, modes, 2, "shell")
+        return modes_resolved(elements, modes, 2, "shell")
 
     def solve(shell):
-        return tuple(each[: shell.modes] for each in sections(*matrices(shell)))
+        return tuple(values[: shell.modes] for values in sections(*matrices(shell)))
 
 
 @cache
@@ -49,28 +49,28 @@ def integrals(elements):
     return np.einsum("aqi,bqj,q->abij", values, values, np.tile(weights / 2 / elements, elements))
 
 
-def matrices(shell, left_out=CLAMPED):
-    """M, Q, K, load and output of cos(m t) u, sin(m t) v (not for m = 0) and cos(m t) w, over R and int cos^2."""
+def matrices(shell, clamped=CLAMPED):
+    """M, Q, K, load and output of cos(m t) u, sin(m t) v (not for m = 0) and cos(m t) w, divided by R int cos^2."""
     m, r, nu = shell.harmonic, shell.radius, shell.poisson
     orders = np.add.outer(np.arange(3), np.arange(3))[:, :, None, None]
-    own = integrals(shell.elements) * float(shell.length) ** (1 - orders)
+    products = integrals(shell.elements) * float(shell.length) ** (1 - orders)
     stretch = shell.modulus * shell.thickness / (1 - nu**2)
     bend, shear = stretch * shell.thickness**2 / 12, (1 - nu) / 2
-    hoop = np.sum(own[0, 0], axis=1)
-    uu = stretch * (own[1, 1] + shear * (m / r) ** 2 * own[0, 0])
-    vv = stretch * ((m / r) ** 2 * own[0, 0] + shear * own[1, 1])
-    ww = stretch / r**2 * own[0, 0] + bend * (own[2, 2] + (m / r) ** 4 * own[0, 0])
-    ww += bend * (m / r) ** 2 * (4 * shear * own[1, 1] - nu * (own[2, 0] + own[0, 2]))
-    uv, uw = stretch * m / r * (nu * own[1, 0] - shear * own[0, 1]), stretch * nu / r * own[1, 0]
-    vw = stretch * m / r**2 * own[0, 0]
+    hoop = np.sum(products[0, 0], axis=1)
+    uu = stretch * (products[1, 1] + shear * (m / r) ** 2 * products[0, 0])
+    vv = stretch * ((m / r) ** 2 * products[0, 0] + shear * products[1, 1])
+    ww = stretch / r**2 * products[0, 0] + bend * (products[2, 2] + (m / r) ** 4 * products[0, 0])
+    ww += bend * (m / r) ** 2 * (4 * shear * products[1, 1] - nu * (products[2, 0] + products[0, 2]))
+    uv, uw = stretch * m / r * (nu * products[1, 0] - shear * products[0, 1]), stretch * nu / r * products[1, 0]
+    vw = stretch * m / r**2 * products[0, 0]
     stiffness = np.block([[uu, uv, uw], [uv.T, vv, vw], [uw.T, vw.T, ww]])
-    mass = np.kron(np.eye(3), shell.density * shell.thickness * own[0, 0])
+    mass = np.kron(np.eye(3), shell.density * shell.thickness * products[0, 0])
     size = len(hoop)
     mass[size - 1, size - 1] += (shell.end_mass + shell.load) / (2 * np.pi * r)
-    load = np.concatenate([np.sum(own[1, 0], axis=1), m / r * hoop, hoop / r]) * shell.thickness / (1 - nu)
+    load = np.concatenate([np.sum(products[1, 0], axis=1), m / r * hoop, hoop / r]) * shell.thickness / (1 - nu)
     output = np.eye(3 * size)[size - 1 if m == 0 else -1]
-    kept = [i * size + np.arange(first, size - last) for i, (first, last) in enumerate(left_out) if i != 1 or m > 0]
-    free = np.concatenate(kept)
+    degrees = [i * size + np.arange(first, size - last) for i, (first, last) in enumerate(clamped) if i != 1 or m > 0]
+    free = np.concatenate(degrees)
     stiffness = stiffness[np.ix_(free, free)]
     damping = shell.viscosity / shell.modulus * stiffness
     return mass[np.ix_(free, free)], damping, stiffness, load[free], output[free]

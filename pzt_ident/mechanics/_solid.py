@@ -1,11 +1,11 @@
-"""What rods and shells have in common."""
+"""Parameters that rods and shells share."""
 
 from pzt_ident.errors import InputError
 from pzt_ident.model.parameter import Parameter
 
 
 class Solid:
-    """Parameters of a body of piezoceramic that is held at x = 0."""
+    """Parameters of a piezoceramic body that is fixed at x = 0."""
 
     density = Parameter("kg/m^3", (1e3, 2e4), "Density of the material.", scale="log")
     modulus = Parameter("Pa", (1e9, 5e11), "Young's modulus, Y.", scale="log")
@@ -15,10 +15,10 @@ class Solid:
     load = Parameter("kg", (0, 1), "Mass of a payload, added to that at the end.", null=0, effect="load_mass")
 
 
-def resolved(elements, modes, per_mode, word):
-    """The modes to step, all of them where 0. Raises InputError where the elements are too few for the highest."""
+def modes_resolved(elements, modes, per_mode, word):
+    """The number of modes to simulate, 0 for all. Raises InputError if the elements are too few for the highest."""
     if elements < per_mode * modes:
         message = f"{elements} elements are too few for mode {modes}"
-        remedy = f"give `elements: {per_mode * modes}`, which leaves 5 % of its frequency, or fewer modes"
+        remedy = f"give `elements: {per_mode * modes}`, with which its frequency is off by 5 %, or fewer modes"
         raise InputError(message, where=word, remedy=remedy)
     return modes or elements

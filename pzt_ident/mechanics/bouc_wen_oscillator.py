@@ -9,9 +9,9 @@ from pzt_ident.model.registry import blocks
 class BoucWenOscillator(Block):
     """m y'' + c y' + k y + z = u,  z' = alpha y' - beta |y'| z - gamma y' |z|, from rest.
 
-    Noel & Schoukens (2016), Hysteretic benchmark with a dynamic nonlinearity, with nu = 1, where beta and gamma are
-    the products beta gamma and beta delta of the benchmark. Fourth-order Runge-Kutta on a drive interpolated to
-    `oversample` steps a sample.
+    Noel & Schoukens (2016), Hysteretic benchmark with a dynamic nonlinearity, with nu = 1; beta and gamma here
+    are the products beta gamma and beta delta of the benchmark. Fourth-order Runge-Kutta with `oversample` steps per
+    sample of the interpolated drive.
     """
 
     place = Place.MECHANICS
@@ -29,8 +29,8 @@ class BoucWenOscillator(Block):
     def start(u, per_mass, damping, stiffness, alpha, beta, gamma, dt):
         return 0.0, 0.0, 0.0, u, 0.0
 
-    def step(y, v, z, before, begun, u, per_mass, damping, stiffness, alpha, beta, gamma, dt):
-        dt = begun * dt  # no time has passed at the first sample
+    def step(y, v, z, before, started, u, per_mass, damping, stiffness, alpha, beta, gamma, dt):
+        dt = started * dt  # no time has passed at the first sample
         half = dt / 2
         middle = (before + u) / 2
         a1, r1 = slope(y, v, z, before, per_mass, damping, stiffness, alpha, beta, gamma)

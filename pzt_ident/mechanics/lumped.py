@@ -6,7 +6,7 @@ from pzt_ident.model.first_order_hold import oscillate
 from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks
 
-SOFTEST = 0.19  # the slope of the spring is then 0.43 of what it is at x = 0
+SOFTEST = 0.19  # limit of -c x^2, at which the slope of the spring is 0.43 of that at x = 0
 
 
 @blocks.register
@@ -30,19 +30,19 @@ class Lumped(Oscillator):
 
 
 class Stiffening(Lumped):
-    """m x'' + b x' + k (x + c x^3) = k f: the linear oscillator under f - c x^3, linear between samples.
+    """m x'' + b x' + k (x + c x^3) = k f: the linear oscillator with the input f - c x^3, linear between samples.
 
-    x is on both sides of a step: x + (1 + b1) c x^3 = p. A soft spring is linear from c x^2 = -SOFTEST on.
+    A step is implicit in x: x + (1 + b1) c x^3 = p. A softening spring is linear beyond c x^2 = -SOFTEST.
     """
 
     def prepare(mass, damping, stiffness, load, extra_damping, cubic, dt):
         return cubic, *mode(mass + load, damping + extra_damping, stiffness, dt)
 
     def start(u, cubic, r11, r12, r21, r22, b1, b2):
-        return 0.0, 0.0, bent(u, cubic, 1.0)
+        return 0.0, 0.0, cubic_root(u, cubic, 1.0)
 
     def step(w, v, f, u, cubic, r11, r12, r21, r22, b1, b2):
-        x = bent(u + r11 * w + r12 * v + b1 * (u - f), cubic, 1 + b1)
+        x = cubic_root(u + r11 * w + r12 * v + b1 * (u - f), cubic, 1 + b1)
         now = u - x * max(cubic * x * x, -SOFTEST)
         w, v = oscillate(w, v, now - f, r11, r12, r21, r22, b1, b2)
         return w, v, now, now + w
@@ -51,14 +51,14 @@ class Stiffening(Lumped):
 Lumped.forms = {"cubic_stiffness": Stiffening}
 
 
-def bent(p, c, share):
-    """x of x + share c x^3 = p, by s = x / p, s + z s^3 = 1, from (1 + 3 z)^(-1/3)."""
+def cubic_root(p, c, share):
+    """The root x of x + share c x^3 = p: with s = x / p, s + z s^3 = 1, starting from s = (1 + 3 z)^(-1/3)."""
     most = share * SOFTEST
     z = max(share * c * p * p, -most * (1 - most) * (1 - most))
-    return p * closer(closer(closer(1 + expm1(log1p(3 * z) / -3), z), z), z)
+    return p * halley_step(halley_step(halley_step(1 + expm1(log1p(3 * z) / -3), z), z), z)
 
 
-def closer(s, z):
-    """Halley's step for s + z s^3 - 1 = 0: after three the error is of rounding for all z >= -1/8."""
-    miss, slope = s + z * s * s * s - 1, 1 + 3 * z * s * s
-    return s - miss * slope / (slope * slope - 3 * z * s * miss)
+def halley_step(s, z):
+    """Halley's step for s + z s^3 - 1 = 0: after three the error is rounding for all z >= -1/8."""
+    value, slope = s + z * s * s * s - 1, 1 + 3 * z * s * s
+    return s - value * slope / (slope * slope - 3 * z * s * value)

@@ -10,8 +10,8 @@ class LumpedRod(RodData, Oscillator):
     """m x'' + b x' + k x = k f, m = rho A l + m_l, b = C A / l + c_l, k = Y A / l + k_l, solved as `lumped`.
 
     Smith, Hatch, De, Salapaka, del Rosario & Raye, Model Development for Atomic Force Microscope Stage Mechanisms, eq.
-    21 and 22. All of the rod's mass moves with its end, where a third would be consistent with a strain that is the
-    same everywhere; `rod` is distributed.
+    21 and 22. The whole mass of the rod moves with its end; a third of it would be consistent with a uniform strain.
+    `rod` is distributed.
     """
 
     def prepare(

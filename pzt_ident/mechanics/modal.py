@@ -1,4 +1,4 @@
-"""Modes of a stage that all its axes push and move."""
+"""Modes of a stage that all its axes drive and that move all its axes."""
 
 from math import pi
 
@@ -14,15 +14,15 @@ class Modal(Oscillator, Modes):
     """y_a = sum_i shape_ai q_i,  q_i'' / w_i^2 + 2 damping_i q_i' / w_i + q_i = sum_b push_bi f_b.
 
     Several inputs and outputs (Preumont 2011, Vibration Control of Active Structures, ch. 2); exact for f linear on
-    each step. Sensors may stand elsewhere than actuators. The size of a mode is in its shape: the first axis pushes
-    every mode by its f itself. Shapes hold the static gains too, so the gain of an operator in front is to be fixed.
+    each step. Sensors and actuators may be at different places. Modes are scaled so that the first axis drives each of
+    them with its f. The shapes contain the static gains, so the gain of the operator must be fixed.
     """
 
     modes = Setting(2, (1, 100), "Modes of the stage.")
     weights = ("push", "shape")
-    frequency = Parameter("Hz", (10, 2e4), "Natural frequency of the mode.", scale="log", count="modes", each="stage")
-    damping = Parameter("1", (1e-3, 0.5), "Damping ratio of the mode.", scale="log", count="modes", each="stage")
-    push = Parameter("1", (-5, 5), "Force on the mode over that of the first axis.", count="modes", each="later axis")
+    frequency = Parameter("Hz", (10, 2e4), "Natural frequency of the mode.", scale="log", count="modes", per="stage")
+    damping = Parameter("1", (1e-3, 0.5), "Damping ratio of the mode.", scale="log", count="modes", per="stage")
+    push = Parameter("1", (-5, 5), "Force on the mode over that of the first axis.", count="modes", per="later axis")
     shape = Parameter("1", (-5, 5), "Displacement of the axis over that of the mode.", count="modes")
 
     def prepare(frequency, damping, dt):

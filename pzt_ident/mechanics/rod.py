@@ -10,5 +10,5 @@ class Rod(RodElements):
 
     Smith, Hatch, De, Salapaka, del Rosario & Raye, Model Development for Atomic Force Microscope Stage Mechanisms, eq.
     17 to 20 and 40 to 41: linear finite elements, whose modes are solved exactly for a force that is linear on each
-    step. The force is given as the displacement of the end that it holds at rest.
+    step. The input f is the static displacement of the end under the force.
     """

@@ -10,10 +10,10 @@ from pzt_ident.model.registry import blocks
 
 @blocks.register
 class RodReduced(RodData, Balanced):
-    """`rod` by its few balanced sections: max |G - G_r| <= 2 sum sigma_i over the Hankel singular values left out.
+    """`rod` by a few balanced sections: max |G - G_r| <= 2 sum sigma_i over the Hankel singular values left out.
 
     Glover (1984), Int. J. Control 39, 1115; Liu & Anderson (1989), Int. J. Control 50, 1379. Exact at rest. The
-    balancing takes some ms a candidate where parameters of the rod are searched, none where they are fixed.
+    balancing takes some ms per candidate if parameters of the rod are searched, and none if they are fixed.
     """
 
     elements = Setting(40, (1, 100), "Linear finite elements that are reduced.")

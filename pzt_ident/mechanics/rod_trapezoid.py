@@ -10,7 +10,7 @@ class RodTrapezoid(RodElements):
     """z1 = W z0 + (F0 + F1) / 2 V B, the modified trapezoid rule on the finite elements of a rod.
 
     Smith, Hatch, De, Salapaka, del Rosario & Raye, Model Development for Atomic Force Microscope Stage Mechanisms, eq.
-    42, section by section, which is the same. Second order in the step; `rod` is exact.
+    42, applied to each section, which is equivalent. Second order in the step; `rod` is exact.
     """
 
     def prepare(omega, zeta, share, speed, dt):

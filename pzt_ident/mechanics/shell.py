@@ -10,7 +10,7 @@ class Shell(ShellSplines):
 
     Smith, Hatch, De, Salapaka, del Rosario & Raye, Model Development for Atomic Force Microscope Stage Mechanisms, eq.
     24 to 29 and 43 to 44: cos(m theta) and cubic splines, whose modes are solved exactly for a field that is linear on
-    each step. The field is given as the displacement that it holds at rest: along the axis for a field that is the same
-    all around (m = 0), radial at theta = 0 for one as cos(m theta), which bends the tube for m = 1. Donnell's curvature
-    resists even a shift of the section: the less, the thinner the wall; too stiff for m = 1 of a thick tube.
+    each step. The input f is the static displacement under the field: axial for a uniform field (m = 0), radial at
+    theta = 0 for a field of cos(m theta), which bends the tube for m = 1. Donnell's curvature resists even a shift of
+    the cross section, less so for a thin wall; a thick tube is too stiff for m = 1.
     """

@@ -1,8 +1,8 @@
 """What an author of a model block writes: one sample of one candidate.
 
-`prepare` turns parameters into coefficients, once per candidate. `start` gives the state at rest under the first
-input, `step` one sample. All are scalars in, scalars out; `step` has conditional expressions instead of branches. The
-functions are declared without self. The kernel compiles them and batches candidates as SIMD lanes (lanes/).
+`prepare` turns parameters into coefficients, once per candidate. `start` returns the state at rest under the first
+input, `step` advances it by one sample. All take and return scalars; `step` has conditional expressions instead of
+branches. The functions are declared without self. The engine compiles them and runs many candidates as SIMD lanes.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from functools import cache
 from typing import Any, ClassVar
 
 from pzt_ident.errors import InputError, nearest
-from pzt_ident.model.contract import called
+from pzt_ident.model.contract import call_function
 from pzt_ident.model.parameter import Form, Parameter, Setting
 
-TILES = 3  # signals that an axis carries: its own, what drives its operator's prompt response, and its mechanics
+TILES = 3  # signals of an axis: its own, the input of its operator's prompt response, the force on its mechanics
 
 
 class Place(IntEnum):
-    """Where a block stands in the signal chain, from the drive to the response."""
+    """Position of a block in the signal chain, from the drive to the response."""
 
     DELAY = 0
     SLEW = 1
@@ -40,61 +40,59 @@ class Place(IntEnum):
 
 
 def expm1(x: float) -> float:
-    """exp(x) - 1 for blocks: the kernel puts a form in its place that runs in SIMD lanes."""
+    """exp(x) - 1 for blocks; compiled blocks use a version that runs in SIMD lanes."""
     return math.expm1(x)
 
 
 def log1p(x: float) -> float:
-    """log(1 + x) for blocks, likewise; where x <= -1 the value means nothing but raises nothing."""
+    """log(1 + x) for blocks, likewise; undefined for x <= -1, but raises no error there."""
     return math.log1p(x) if x > -1 else math.nan
 
 
 def sin(x: float) -> float:
-    """sin(x) for blocks, likewise; good to 1e-15 while |x| < 1e4."""
+    """sin(x) for blocks, likewise; accurate to 1e-15 for |x| < 1e4."""
     return math.sin(x) if math.isfinite(x) else math.nan
 
 
 def cos(x: float) -> float:
-    """cos(x) for blocks, likewise; good to 1e-15 while |x| < 1e4."""
+    """cos(x) for blocks, likewise; accurate to 1e-15 for |x| < 1e4."""
     return math.cos(x) if math.isfinite(x) else math.nan
 
 
 def erf(x: float) -> float:
-    """erf(x) for blocks, likewise; good to 1e-14."""
+    """erf(x) for blocks, likewise; accurate to 1e-14."""
     return math.erf(x)
 
 
 class Block:
     """One box of the signal chain, acting on each axis with that axis' own parameters.
 
-    prepare(*parameters[, dt][, span][, peak][, settings]) -> coefficients; dt in s, span and peak the peak-to-peak
-    drive of the axis and its largest magnitude.
+    prepare(*parameters[, dt][, span][, peak][, settings]) -> coefficients; dt: sample time in s; span, peak: the
+    peak-to-peak drive of the axis and its largest magnitude.
     start(u, *coefficients) -> states.
     step(*states, u, *coefficients) -> (*states, y).
 
-    refuse(least, most), where it is there, raises InputError for bounds between which no candidate can be simulated:
-    two namespaces of parameters in SI units.
+    refuse(least, most), optional, raises InputError for bounds between which no candidate can be simulated; least and
+    most are namespaces of parameters in SI units.
 
-    What can be missing from a model is an effect and says more of itself: which effects leave the same trace, the
-    experiment that tells them apart, and what to do about it on the rig.
+    An effect, a block that may be missing from a model, also declares which effects leave the same trace
+    (look_alikes), the experiment that tells them apart (separate_by), and the remedy on the rig.
     """
 
-    kind: ClassVar[str] = "block"  # by which its functions are known, contract.KINDS
+    kind: ClassVar[str] = "block"  # key of its functions in contract.kinds.KINDS
     name: ClassVar[str] = ""
     place: ClassVar[Place]
     oversample: ClassVar[int] = 1
     look_alikes: ClassVar[tuple[str, ...]] = ()
     separate_by: ClassVar[str] = ""
     remedy: ClassVar[str] = ""
-    sizes: ClassVar[tuple[float, ...]] = (0.05,)  # of its range, at which its trace is looked for: one if it is linear
-    seen: ClassVar[tuple[str, ...]] = ()  # parameters that a record shows only where its drive is of their size
-    trials: ClassVar[Mapping[str, int]] = {}  # values over the range of a parameter that means nothing at the null
-    chosen: ClassVar[dict[str, Any]] = {}
-    forms: ClassVar[
-        Mapping[str, type[Block]]
-    ] = {}  # itself, by the word of an effect or a `Form` that changes its step
-    watch: ClassVar[type[Block] | None] = None  # itself, giving what its equation wants above zero
-    broken: ClassVar[str] = ""  # what is said where that is not
+    sizes: ClassVar[tuple[float, ...]] = (0.05,)  # shares of its range at which an effect is scored; one if linear
+    compared_with_drive: ClassVar[tuple[str, ...]] = ()  # parameters that only a drive of their size can identify
+    trials: ClassVar[Mapping[str, int]] = {}  # values tried of each parameter that has no influence at the null
+    chosen_settings: ClassVar[dict[str, Any]] = {}
+    forms: ClassVar[Mapping[str, type[Block]]] = {}  # variants, by the word of a `Form` or of an effect in their step
+    margin: ClassVar[type[Block] | None] = None  # variant whose output must stay above zero for the equation to hold
+    violation: ClassVar[str] = ""  # the sentence for a margin of zero or less
 
     def __init_subclass__(cls) -> None:
         for word, function in list(vars(cls).items()):
@@ -103,35 +101,36 @@ class Block:
 
     @classmethod
     def parameters(cls) -> dict[str, Parameter]:
-        """Declared parameters by name, in the order of declaration; a counted one is its name with `_1`, `_2`, ..."""
-        found = {}
+        """Declared parameters by name, in the order of declaration; a counted one appears as `name_1`, `name_2`, ..."""
+        parameters = {}
         for owner in reversed(cls.__mro__):
             for word, declared in vars(owner).items():
                 if isinstance(declared, Parameter):
                     count = cls.setting(declared.count) if isinstance(declared.count, str) else declared.count
                     names = [word] if count is None else [f"{word}_{k + 1}" for k in range(count)]
-                    found.update(dict.fromkeys(names, declared))
-        return found
+                    parameters.update(dict.fromkeys(names, declared))
+        return parameters
 
     @classmethod
     def settings(cls) -> dict[str, Setting | Form]:
-        """What a job may choose of how the block is built, by name."""
-        owned = [item for owner in reversed(cls.__mro__) for item in vars(owner).items()]
-        return {word: item for word, item in owned if isinstance(item, Setting | Form)}
+        """The settings that a job may choose, by name."""
+        attributes = [item for owner in reversed(cls.__mro__) for item in vars(owner).items()]
+        return {word: value for word, value in attributes if isinstance(value, Setting | Form)}
 
     @classmethod
     def setting(cls, word: str) -> Any:
-        return cls.chosen.get(word, cls.settings()[word].value)
+        """The value of a setting, as chosen or by default."""
+        return cls.chosen_settings.get(word, cls.settings()[word].value)
 
     @classmethod
     def numbers(cls) -> dict[str, int]:
-        """The whole numbers among the settings, as chosen; `prepare` may ask for them."""
+        """The settings that are whole numbers; `prepare` may ask for them."""
         return {word: cls.setting(word) for word, item in cls.settings().items() if isinstance(item, Setting)}
 
     @classmethod
     def make(cls, **settings: Any) -> type[Block]:
-        """The block with these settings. Raises InputError for an unknown one, or one that does not fit."""
-        form = cls.formed(settings)
+        """The block with these settings. Raises InputError for an unknown setting or value."""
+        form = cls.form_of(settings)
         known = form.settings()
         for word, value in settings.items():
             if word not in known:
@@ -140,30 +139,31 @@ class Block:
                 remedy = f"only its form {' or '.join(owners)} has it" if owners else remedy
                 raise InputError(f"unknown setting {word!r}", where=cls.name, remedy=remedy)
             known[word].check(value, f"{cls.name}.{word}")
-        return _made(form, cls.name, tuple(sorted(settings.items())))  # type: ignore[arg-type]
+        return _configured(form, cls.name, tuple(sorted(settings.items())))  # type: ignore[arg-type]
 
     @classmethod
-    def formed(cls, settings: Mapping[str, Any]) -> type[Block]:
-        """The form that is chosen by the words among some settings, right or wrong as they are."""
+    def form_of(cls, settings: Mapping[str, Any]) -> type[Block]:
+        """The form that the settings choose; the settings are not checked."""
         words = [settings.get(word) for word, item in cls.settings().items() if isinstance(item, Form)]
-        return _made(next((cls.forms[str(word)] for word in words if str(word) in cls.forms), cls), cls.name, ())  # type: ignore[arg-type]
+        form = next((cls.forms[str(word)] for word in words if str(word) in cls.forms), cls)
+        return _configured(form, cls.name, ())  # type: ignore[arg-type]
 
     @classmethod
     @cache
     def arguments(cls) -> tuple[str, ...]:
-        """What `prepare` asks for."""
-        return asked(cls.prepare)  # type: ignore[attr-defined]
+        """The arguments of `prepare`."""
+        return argument_names(cls.prepare)  # type: ignore[attr-defined]
 
 
 @cache
-def _made(block: type[Block], name: str, chosen: tuple[tuple[str, Any], ...]) -> type[Block]:
-    """One class for the same choice, so that it is compiled once."""
-    own: dict[str, Any] = {"__module__": block.__module__, "__doc__": block.__doc__, "name": name}
-    own |= {"chosen": {**block.chosen, **dict(chosen)}}
-    return type(block.__name__, (block,), own) if chosen or block.name != name else block
+def _configured(block: type[Block], name: str, settings: tuple[tuple[str, Any], ...]) -> type[Block]:
+    """One class for the same settings, so that it is compiled once."""
+    attributes: dict[str, Any] = {"__module__": block.__module__, "__doc__": block.__doc__, "name": name}
+    attributes["chosen_settings"] = {**block.chosen_settings, **dict(settings)}
+    return type(block.__name__, (block,), attributes) if settings or block.name != name else block
 
 
-def asked(function: Callable[..., object]) -> tuple[str, ...]:
+def argument_names(function: Callable[..., object]) -> tuple[str, ...]:
     return tuple(inspect.signature(function).parameters)
 
 
@@ -174,33 +174,34 @@ class Operator(Block):
     q <- keep q + add in each of two regimes: `against` the motion, q < 0, and `along` it, q >= 0.
 
     prepare(*parameters) -> (shared, along, against), a tuple of coefficients each.
-    travel(distance, *along or against) -> (keep, add) for a step of |dU| = distance.
-    near(further, keep, add, *along or against) -> the same for distance + further, from those for distance, good to
-    3e-13 while |rate further| <= 0.1, the rate being the first coefficient of a regime.
-    exact(q, distance, along, against) -> q, through a sign change of q, for any q.
+    travel(distance, *along or against) -> (keep, add) for a step of |du| = distance.
+    near(further, keep, add, *along or against) -> (keep, add) for distance + further, from those for distance, accurate
+    to 3e-13 for |rate further| <= 0.1, the rate being the first coefficient of a regime.
+    exact(q, distance, along, against) -> q, for any q, also through a sign change of q.
     output(h, u, *shared) -> y.
 
-    Effects inside the operator's own equation are parameters that name them. They are asked for only where a job
-    lists one: terms(*parameters[, dt][, span]) -> coefficients,
-    lift(distance, u, sign, *coefficients) -> the factor on what drives q, u in the middle of the step, sign of du, and
-    fade(*coefficients) -> the share of h that is left after a sample.
+    Effects inside the operator's equation are parameters with an `effect`. Only where a job lists one of these, three
+    more functions are called: terms(*parameters[, dt][, span]) -> coefficients,
+    lift(distance, u, sign, *coefficients) -> factor on the drive of q, with u in the middle of the step and the sign of
+    du, and fade(*coefficients) -> the share of h that is left after a sample.
     """
 
     kind = "operator"
 
 
 class Bank(Block):
-    """Branches in parallel under one input: `step` is one branch and returns its contribution to the total.
+    """Parallel branches under one input: `step` is one branch and returns its contribution to the total.
 
-    prepare may ask for `branch`, counted from 0, and is given each branch its own of a counted parameter.
+    prepare may ask for `branch`, counted from 0; of a counted parameter, each branch is given its own value.
     output(u, total, *coefficients of the first branch) -> y.
-    stands(*parameters[, settings], branch), optional: the drive that a branch's own of a counted parameter stands for.
-    rests(*states, low, high, *coefficients) -> whether no input between low and high moves the branch: optional, it
+    threshold(*parameters[, settings], branch) -> the drive at which a branch acts, such as the half-width of a play.
+    Optional; the report states it beside the counted parameters.
+    rests(*states, low, high, *coefficients) -> whether no input between low and high moves the branch. Optional; it
     saves the steps of a branch that holds still over a tile in every lane.
 
-    What needs NumPy is done once per distinct candidate: solve(own) -> one array (branches,) for each word of `solved`,
-    which `prepare` may ask for; own.word is a parameter (an array where it is counted), a setting or dt. Where a job
-    chooses the size, count(*settings) -> branches; it raises InputError where settings do not go together.
+    What needs NumPy is computed once per distinct candidate: solve(values) -> one array (branches,) for each word of
+    `solved`, which `prepare` may ask for; values.word is a parameter (an array if counted), a setting or dt. Where a
+    job chooses the size, count(*settings) -> branches; it raises InputError for settings that exclude each other.
     """
 
     kind = "bank"
@@ -210,68 +211,71 @@ class Bank(Block):
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
         count = getattr(cls, "count", None)
-        if inspect.isfunction(count) and set(asked(count)) <= set(cls.settings()):
-            cls.branches = called(cls, "count", *(cls.setting(word) for word in asked(count)))
+        if inspect.isfunction(count) and set(argument_names(count)) <= set(cls.settings()):
+            cls.branches = call_function(cls, "count", *(cls.setting(word) for word in argument_names(count)))
 
 
 class Relays(Block):
-    """Domains of `coercives` coercive fields, equally many of each, over `interactions` interaction fields that lie a
-    spacing apart about 0. Of each kind a share x points up. Per second a share `rate` of them leaves the side that they
-    are on, which depends on how much further its effective field is from where it would not hold without activation.
-    x relaxes exactly over a step of the field in its middle. Where all domains of a kind are on one side and none
-    leaves, to 1e-15, they are not stepped.
+    """Relays with thermal activation: domains with `coercives` coercive fields, equally many of each, times
+    `interactions` interaction fields at a constant spacing about 0. The state of each pair is the share x of its
+    domains that point up.
+
+    Domains leave the side that they are on at a rate (1/s) that depends on how far the effective field is beyond the
+    field at which the side would be lost without thermal activation (`further`). Over a sample x relaxes exactly at
+    the rates in the middle of the step of the field. Pairs of which all domains are on one side, and leave it at a
+    rate below rounding (1e-15), are not stepped.
 
     prepare(*parameters) -> (shape, energy, shared), a tuple of coefficients each; shape[0] is the spacing.
-    field(u, *shape) -> in the material. coercive_field(i, *shape) -> that of node i.
-    mass(low, high, *shape) -> weight of the interaction fields between.
-    start(field, coercive, low, high, *shape) -> the share that points up under the first one.
-    leave(further, *energy) -> (rate, what is left on that side after a sample, response of a domain on it): tabulated
-    once a candidate, `fine` points a spacing, and interpolated.
+    field(u, *shape) -> field in the material. coercive_field(i, *shape) -> coercive field of node i.
+    mass(low, high, *shape) -> weight of the interaction fields between low and high.
+    start(field, coercive, low, high, *shape) -> the share x under the first field.
+    leave(further, *energy) -> (rate, share left on that side after a sample, response of a domain on that side);
+    tabulated once per candidate, at `fine` points per spacing, and interpolated.
     output(u, total, *shared) -> y.
     """
 
     kind = "relays"
     coercives: ClassVar[int] = 64
     interactions: ClassVar[int] = 64
-    columns: ClassVar[int] = 256  # spacings that the table of `leave` covers
-    fine: ClassVar[int] = 32
+    columns: ClassVar[int] = 256  # width of the table of `leave`, in spacings
+    fine: ClassVar[int] = 32  # points of the table per spacing
 
 
 class Term(Block):
-    """An effect inside the equation of other blocks, which is written there: parameters of theirs name it."""
+    """An effect inside the equation of other blocks, which have parameters with its name as their `effect`."""
 
     kind = "term"
 
 
 class Shift(Block):
-    """A delay: y(t) = u(t - prepare(...)[0] samples) of the drive, which is linear between its samples."""
+    """A delay of the drive: y(t) = u(t - prepare(...)[0] samples), u linear between its samples."""
 
     kind = "shift"
 
 
 class Beside(Block):
-    """A path beside the mechanics: step(*states, x, f, *coefficients) -> (*states, y), from f, the force that the
-    mechanics is driven by, and x, what comes out of it; start(f, *coefficients) is under the first force."""
+    """A path beside the mechanics: step(*states, x, f, *coefficients) -> (*states, y), with f the force on the
+    mechanics and x its displacement; start(f, *coefficients) -> states under the first force."""
 
     kind = "beside"
 
 
 class Addition(Block):
-    """What adds to the response of each record in amounts of that record's own: y = x + sum_i a_i b_i(t).
+    """A disturbance added to the response, with amounts of its own for each record: y = x + sum_i a_i b_i(t).
 
-    basis(t, *parameters) -> (b_1, b_2, ...), arrays over t, s from the start of the record. The amounts, parameters
-    of each record, are taken in closed form together with the offset, on any record.
+    basis(t, *parameters) -> (b_1, b_2, ...), arrays over t in s from the start of the record. The amounts a_i, the
+    parameters that are `per_record`, are solved for in closed form together with the offset.
     """
 
     kind = "addition"
 
 
 class Modes(Block):
-    """Mechanics of all axes together: each mode takes the force p = sum_a enters_a f_a, and its displacement q moves
-    every axis, y_a = sum_modes leaves_a q.
+    """Mechanics of all axes together: each mode is driven by p = sum_a enters_a f_a, and its displacement q moves every
+    axis, y_a = sum_modes leaves_a q.
 
     prepare(*parameters of a mode[, dt]) -> coefficients; start(p, *coefficients) -> states;
-    step(*states, p, *coefficients) -> (*states, q). `weights` are the words of enters and leaves.
+    step(*states, p, *coefficients) -> (*states, q). `weights` names the two parameters that are enters and leaves.
     """
 
     kind = "modes"
@@ -286,6 +290,6 @@ class Modes(Block):
 
 class Coupling(Block):
     """Acts across axes: step(y, other, *coefficients) -> y, once for each other axis; `other` and the first y are the
-    inputs. Its parameters exist once for each ordered pair of axes."""
+    inputs of the block. There is one set of parameters for each ordered pair of axes."""
 
     kind = "coupling"

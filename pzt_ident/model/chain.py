@@ -1,4 +1,4 @@
-"""Blocks in signal order, and the parameters that each has on each axis."""
+"""Blocks in signal order, and their parameters on each axis."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.model.block import Addition, Block, Coupling, Modes, Place, Term, asked
+from pzt_ident.model.block import Addition, Block, Coupling, Modes, Place, Term, argument_names
 from pzt_ident.model.parameter import Parameter
 
 Array = NDArray[np.float64]
@@ -30,11 +30,11 @@ class Entry:
 class Chain:
     """A chain of blocks over all axes of a stage.
 
-    theta is (candidates, parameters) in SI units, in the order of `slots`; a simulation is (candidates, measured axes,
-    samples). An axis without a response is simulated as far as the last coupling, with the parameters of the first
-    measured axis but for those that it is `given`, such as `y.lumped.mass`. Parameter names carry the axis where more
-    than one is measured. A parameter that belongs to an effect is there only where the effect is among the blocks. One
-    in `shared`, such as `bouc_wen.alpha`, is the same on every axis.
+    theta is (candidates, parameters) in SI units, in the order of `entries`; a simulation is (candidates, measured
+    axes, samples). An axis without a response is simulated as far as the last coupling, with the parameters of the
+    first measured axis except those in `given`, such as `y.lumped.mass`. Parameter names contain the axis if more
+    than one is measured. A parameter of an effect exists only if the effect is among the blocks. A parameter in
+    `shared`, such as `bouc_wen.alpha`, has one value for all axes.
     """
 
     def __init__(
@@ -55,20 +55,20 @@ class Chain:
         )
 
     def terms(self, block: type[Block]) -> set[str]:
-        """The effects that act inside a block's equation."""
+        """The listed effects that act inside a block's equation."""
         return self._listed & {parameter.effect for parameter in block.parameters().values() if parameter.effect}
 
-    def form(self, block: type[Block]) -> type[Block]:
+    def form_of(self, block: type[Block]) -> type[Block]:
         """The block, with the listed effects in its equation."""
         return next((form for effect, form in block.forms.items() if effect in self._listed), block)
 
     @property
-    def reads_out(self) -> bool:
-        """Whether the prompt response of an operator is driven by another signal than its memory."""
+    def has_readout(self) -> bool:
+        """Whether the prompt response of the operator has another input than its memory."""
         return {Place.READOUT, Place.OPERATOR} <= {block.place for block in self.blocks}
 
     def _entries(self, block: type[Block], given: Collection[str]) -> list[Entry]:
-        found = []
+        entries = []
         for axis in range(len(self.axes)):
             measured = axis in self.measured
             prefix = f"{self.axes[axis]}." if not measured or len(self.measured) > 1 else ""
@@ -76,50 +76,50 @@ class Chain:
             for other in others:
                 suffix = f"_from_{self.axes[other]}" if len(others) > 1 else ""
                 for word, parameter in block.parameters().items():
-                    plain, each = f"{block.name}.{word}", self._each(block, word, parameter)
+                    plain, per = f"{block.name}.{word}", self._per(block, word, parameter)
                     if parameter.per_record or (parameter.effect and parameter.effect not in self._listed):
                         continue
-                    name = plain if each == "stage" else f"{prefix}{plain}{suffix}"
-                    own = measured or (name in given and self.alone(block, parameter))
-                    if own and (each == "axis" or (each == "stage") == (axis == self.measured[0])):
-                        found.append(Entry(name, block, word, axis, other, parameter))
-        return found
+                    name = plain if per == "stage" else f"{prefix}{plain}{suffix}"
+                    exists = measured or (name in given and self.allowed_without_response(block, parameter))
+                    if exists and (per == "axis" or (per == "stage") == (axis == self.measured[0])):
+                        entries.append(Entry(name, block, word, axis, other, parameter))
+        return entries
 
     @staticmethod
-    def alone(block: type[Block], parameter: Parameter) -> bool:
-        """Whether an axis can have the parameter without a response of its own."""
-        return not issubclass(block, Coupling | Modes | Addition) and parameter.each == "axis"
+    def allowed_without_response(block: type[Block], parameter: Parameter) -> bool:
+        """Whether an axis that is not measured can have a value of its own of the parameter."""
+        return not issubclass(block, Coupling | Modes | Addition) and parameter.per == "axis"
 
-    def _each(self, block: type[Block], word: str, parameter: Parameter) -> str:
-        """Who has one of its own, as the block declares it or the job shares it."""
-        return "stage" if f"{block.name}.{word}" in self.shared else parameter.each
+    def _per(self, block: type[Block], word: str, parameter: Parameter) -> str:
+        """What has a value of its own (see Parameter.per), as the block declares it or the job shares it."""
+        return "stage" if f"{block.name}.{word}" in self.shared else parameter.per
 
     def spellings(self, entry: Entry) -> tuple[str, ...]:
-        """The names that a job may call a parameter by, the most particular first."""
+        """The names of a parameter that a job may use, the most specific first."""
         plain = f"{entry.block.name}.{entry.word}"
-        if self._each(entry.block, entry.word, entry.parameter) == "stage":
+        if self._per(entry.block, entry.word, entry.parameter) == "stage":
             return (plain,)
         paired = (f"{plain}_from_{self.axes[entry.other]}",) if entry.other != entry.axis else ()
         return *(f"{self.axes[entry.axis]}.{name}" for name in (*paired, plain)), *paired, plain
 
-    def watched(self, block: type[Block]) -> Chain:
-        """The chain as far as a block, of which it gives what its equation wants above zero."""
-        made, watch = copy(self), block.watch
-        assert watch
-        made.blocks = (*self.blocks[: self.blocks.index(block)], watch)
-        made.entries = tuple(replace(entry, block=watch) if entry.block is block else entry for entry in self.entries)
-        return made
+    def margin_chain(self, block: type[Block]) -> Chain:
+        """The chain up to and including a block, whose output is replaced by its margin."""
+        chain, margin = copy(self), block.margin
+        assert margin
+        chain.blocks = (*self.blocks[: self.blocks.index(block)], margin)
+        chain.entries = tuple(replace(entry, block=margin) if entry.block is block else entry for entry in self.entries)
+        return chain
 
-    def stands(self, column: int, theta: Array) -> float | None:
-        """The drive that a counted parameter of one candidate stands for, None where its block says nothing of that."""
+    def threshold_of(self, column: int, theta: Array) -> float | None:
+        """The drive at which the branch of a counted parameter acts, for one candidate; None if its block has none."""
         entry = self.entries[column]
-        stands = getattr(entry.block, "stands", None)
-        if stands is None or entry.parameter.count is None:
+        threshold = getattr(entry.block, "threshold", None)
+        if threshold is None or entry.parameter.count is None:
             return None
         columns = self.columns(entry.block, entry.axis, entry.other) or {}
-        known = {word: theta[at] for word, at in columns.items()} | entry.block.numbers()
         branch = np.flatnonzero(np.array(columns[entry.parameter.name]) == column)[0]
-        return float(stands(*((known | {"branch": branch})[word] for word in asked(stands))))
+        values = {word: theta[place] for word, place in columns.items()} | entry.block.numbers() | {"branch": branch}
+        return float(threshold(*(values[word] for word in argument_names(threshold))))
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -133,22 +133,22 @@ class Chain:
         """Columns of theta that hold a block's parameters; None for a pair onto an axis that is not measured."""
         if axis not in self.measured and issubclass(block, Coupling | Modes):
             return None
-        found: dict[str, int | list[int]] = {}
-        own = self._own(block, axis, other)
+        columns: dict[str, int | list[int]] = {}
+        by_word = self._columns_by_word(block, axis, other)
         for word, parameter in {entry.word: entry.parameter for entry in self.entries if entry.block is block}.items():
-            if word in own and parameter.count is None:
-                found[parameter.name] = own[word]
-            elif word in own:
-                found.setdefault(parameter.name, []).append(own[word])  # type: ignore[union-attr]
-        return found
+            if word in by_word and parameter.count is None:
+                columns[parameter.name] = by_word[word]
+            elif word in by_word:
+                columns.setdefault(parameter.name, []).append(by_word[word])  # type: ignore[union-attr]
+        return columns
 
-    def _own(self, block: type[Block], axis: int, other: int) -> dict[str, int]:
-        """Column of each parameter of a block; an axis that is not measured has those of the first that is, but for
-        what it is given."""
+    def _columns_by_word(self, block: type[Block], axis: int, other: int) -> dict[str, int]:
+        """Column of each parameter of a block. An axis that is not measured has the columns of the first measured axis,
+        except for its `given` parameters."""
         measured = axis in self.measured
-        found = {} if measured else self._own(block, self.measured[0], self.measured[0])
+        columns = {} if measured else self._columns_by_word(block, self.measured[0], self.measured[0])
         for column, entry in enumerate(self.entries):
-            stage = self._each(entry.block, entry.word, entry.parameter) == "stage"
+            stage = self._per(entry.block, entry.word, entry.parameter) == "stage"
             if entry.block is block and (stage or (entry.axis, entry.other) == (axis, other)):
-                found[entry.word] = column
-        return found
+                columns[entry.word] = column
+        return columns

@@ -1,4 +1,4 @@
-"""What the words of a job stand for, from the declarations of blocks, effects and optimizers."""
+"""Descriptions of the words that a job may use, from the declarations of blocks, effects and optimizers."""
 
 from __future__ import annotations
 
@@ -15,21 +15,21 @@ Facts = dict[str, Any]
 
 
 def words(kind: str) -> dict[str, str]:
-    """The words of a kind (`blocks`, `effects` or `optimizers`) with the first line of what they are."""
+    """The words of a kind (`blocks`, `effects` or `optimizers`) with the first line of their docstrings."""
     if kind == "optimizers":
         return {item.name: _headline(item) for item in optimizers}
-    own = {item.name: _headline(item) for item in blocks if blocks.is_effect(item.name) == (kind == "effects")}
-    return (_terms() if kind == "effects" else {}) | own
+    headlines = {item.name: _headline(item) for item in blocks if blocks.is_effect(item.name) == (kind == "effects")}
+    return (_terms() if kind == "effects" else {}) | headlines
 
 
 def _terms() -> dict[str, str]:
-    """Effects that are parameters of other blocks, with those blocks."""
-    found: dict[str, list[str]] = {}
+    """Effects that are terms in the equations of other blocks, with the names of those blocks."""
+    owners: dict[str, list[str]] = {}
     for block in blocks:
         for declared in block.parameters().values():
-            if declared.effect and block.name not in found.setdefault(declared.effect, []):
-                found[declared.effect].append(block.name)
-    return {effect: "a term of " + ", ".join(owners) for effect, owners in sorted(found.items())}
+            if declared.effect and block.name not in owners.setdefault(declared.effect, []):
+                owners[declared.effect].append(block.name)
+    return {effect: "a term of " + ", ".join(names) for effect, names in sorted(owners.items())}
 
 
 def _headline(item: type) -> str:
@@ -44,14 +44,14 @@ def description_of(name: str) -> Facts:
         return _optimizer(name)
     terms = _terms()
     if name in terms:
-        return {"name": name, "kind": "effect", "doc": terms[name], "parameters": _owned(name)}
+        return {"name": name, "kind": "effect", "doc": terms[name], "parameters": _parameters_of_effect(name)}
     raise InputError(f"unknown word {name!r}", remedy=nearest(name, [*blocks.words(), *optimizers.words(), *terms]))
 
 
-def _owned(effect: str) -> list[Facts]:
+def _parameters_of_effect(effect: str) -> list[Facts]:
     """The parameters of all blocks that belong to an effect."""
-    every = [row | {"name": f"{block.name}.{row['name']}"} for block in blocks for row in _declared(block)]
-    return [row for row in every if row["effect"] == effect]
+    rows = [row | {"name": f"{block.name}.{row['name']}"} for block in blocks for row in _parameters(block)]
+    return [row for row in rows if row["effect"] == effect]
 
 
 def _block(name: str) -> Facts:
@@ -60,35 +60,35 @@ def _block(name: str) -> Facts:
     if kind == "effects":
         facts |= {key: getattr(block, key) for key in ("look_alikes", "separate_by", "remedy")}
     if issubclass(block, Term):
-        return facts | {"parameters": _owned(name)}
-    forms = [block, *(block.make(**{word: each}) for word, each in _forms(block))]
+        return facts | {"parameters": _parameters_of_effect(name)}
+    forms = [block, *(block.make(**{word: value}) for word, value in _forms(block))]
     settings = {word: item for form in forms for word, item in form.settings().items()}
     rows = [{"name": word, "default": item.value, "unit": "1"} | _choices(item) for word, item in settings.items()]
-    own = {"settings": rows} if rows else {}
-    return facts | {"place": block.place.name.lower(), "parameters": _declared(block)} | own
+    chosen = {"settings": rows} if rows else {}
+    return facts | {"place": block.place.name.lower(), "parameters": _parameters(block)} | chosen
 
 
 def _forms(block: type[Any]) -> list[tuple[str, str]]:
-    """Settings with the words that make another form of a block."""
-    every = [(word, each) for word, item in block.settings().items() for each in getattr(item, "words", ())]
-    return [(word, each) for word, each in every if each in block.forms]
+    """The settings and their values that choose another form of a block."""
+    values = [(word, value) for word, item in block.settings().items() for value in getattr(item, "words", ())]
+    return [(word, value) for word, value in values if value in block.forms]
 
 
 def _choices(item: Setting | Form) -> Facts:
     return {key: value for key, value in asdict(item).items() if key != "value"}
 
 
-def _declared(block: type[Any]) -> list[Facts]:
-    """Parameters of a block, and what another form of it has beside them."""
+def _parameters(block: type[Any]) -> list[Facts]:
+    """The parameters of a block, and those that only one of its forms has."""
     keys = ("unit", "bounds", "null", "value", "scale", "effect", "per_record", "doc")
-    own = {name: (declared, "") for name, declared in block.parameters().items()}
-    for word, each in _forms(block):
-        more = block.make(**{word: each}).parameters()
+    rows = {name: (declared, "") for name, declared in block.parameters().items()}
+    for word, value in _forms(block):
+        others = block.make(**{word: value}).parameters()
         usual = f"{word}: {block.setting(word)}"
-        own = {name: (item, form if name in more else usual) for name, (item, form) in own.items()}
-        own |= {name: (item, f"{word}: {each}") for name, item in more.items() if name not in own}
+        rows = {name: (item, form if name in others else usual) for name, (item, form) in rows.items()}
+        rows |= {name: (item, f"{word}: {value}") for name, item in others.items() if name not in rows}
     return [
-        {"name": name, "form": form} | {key: getattr(item, key) for key in keys} for name, (item, form) in own.items()
+        {"name": name, "form": form} | {key: getattr(item, key) for key in keys} for name, (item, form) in rows.items()
     ]
 
 

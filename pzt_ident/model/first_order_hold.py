@@ -4,7 +4,7 @@ from math import cos, exp, expm1, sin, sqrt
 
 
 def decay(tau, dt):
-    """What a lag of the time constant `tau` keeps over a sample, and its share of the input's change."""
+    """Of a lag with time constant `tau`: the factor on its deviation over a sample of dt, and on the input's change."""
     if tau == 0:
         return 0.0, 0.0
     lost = -expm1(-dt / tau)
@@ -14,8 +14,8 @@ def decay(tau, dt):
 def oscillator(omega, zeta, dt):
     """x'' / omega^2 + 2 zeta x' / omega + x = f: coefficients for `oscillate`.
 
-    With w = x - f and v = x' / omega, (w, v) turns by exp(A T) and is pushed by b (f1 - f0). Valid undamped, over- and
-    critically damped, and beyond Nyquist.
+    With w = x - f and v = x' / omega, a step is (w, v) <- exp(A T) (w, v) + b (f1 - f0). Valid without damping, under-,
+    over- and critically damped, and above the Nyquist frequency.
     """
     angle = omega * dt
     cosine, sine = rotation(zeta, angle)
@@ -26,20 +26,20 @@ def oscillator(omega, zeta, dt):
 
 
 def trapezoid(omega, zeta, dt):
-    """The same by the modified trapezoid rule: Smith et al., Model Development for AFM Stage Mechanisms, eq. 42.
+    """Coefficients by the modified trapezoid rule: Smith et al., Model Development for AFM Stage Mechanisms, eq. 42.
 
     (I - A T / 2) z1 = (I + A T / 2) z0 + T B (f0 + f1) / 2, written for the deviation from rest.
     """
     half = omega * dt / 2
     lag = 2 * zeta * half
-    whole = 1 + lag + half * half
-    r11, r12 = (1 + lag - half * half) / whole, 2 * half / whole
-    r21, r22 = -r12, (1 - lag - half * half) / whole
-    return r11, r12, r21, r22, -(1 + lag) / whole, half / whole
+    divisor = 1 + lag + half * half
+    r11, r12 = (1 + lag - half * half) / divisor, 2 * half / divisor
+    r21, r22 = -r12, (1 - lag - half * half) / divisor
+    return r11, r12, r21, r22, -(1 + lag) / divisor, half / divisor
 
 
 def oscillate(w, v, push, r11, r12, r21, r22, b1, b2):
-    """(w, v) after a sample over which f moves by `push`; x = f + w."""
+    """(w, v) after a sample over which f changes by `push`; x = f + w."""
     return r11 * w + r12 * v + b1 * push, r21 * w + r22 * v + b2 * push
 
 

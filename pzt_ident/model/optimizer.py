@@ -18,7 +18,7 @@ Search = Generator[Array, Array, None]
 
 
 def setting(default: Any, unit: str, bounds: tuple[float, float], doc: str) -> Any:
-    """Declare a number an optimizer can be set to; bounds are inclusive."""
+    """Declare a setting that is a number; bounds are inclusive."""
     return field(default=default, metadata={"unit": unit, "bounds": bounds, "doc": doc})
 
 
@@ -29,11 +29,11 @@ def choice(default: str, words: tuple[str, ...], doc: str) -> Any:
 
 @dataclass(frozen=True)
 class Optimizer(ABC):
-    """Typed settings and one generator. A leaf is a frozen dataclass whose fields are made by `setting` or `choice`.
+    """Typed settings and one generator. A subclass is a frozen dataclass with fields from `setting` or `choice`.
 
-    `wants` residuals: it is sent an (M, N) residual array where the problem has residuals, else losses (M,).
-    `convergent`: its steps shrink towards an optimum, so that in 6000 evaluations it comes within 1e-4 of the bottom of
-    |x - c|^2 in 4 dimensions; one that is not, within 1e-2.
+    `wants`: with "residuals" it is sent residuals (M, N) if the problem has them, otherwise losses (M,).
+    `convergent`: its steps shrink towards an optimum, so that within 6000 evaluations it finds the minimum of |x - c|^2
+    in 4 dimensions to 1e-4; others to 1e-2.
     Raises InputError for a setting of the wrong type or out of its bounds.
     """
 
@@ -45,7 +45,7 @@ class Optimizer(ABC):
     @property
     @abstractmethod
     def evaluations(self) -> int:
-        """The budget that these settings stand for."""
+        """The number of evaluations that these settings allow."""
 
     @abstractmethod
     def search(self, dimensions: int, rng: np.random.Generator) -> Search:
@@ -53,11 +53,11 @@ class Optimizer(ABC):
 
     @abstractmethod
     def with_budget(self, evaluations: int) -> Self:
-        """The same settings for a budget of at least so many evaluations."""
+        """The same settings for a budget of at least this many evaluations."""
 
     @classmethod
     def make(cls, **settings: Any) -> Self:
-        """As the constructor, but an unknown setting raises InputError with the nearest words."""
+        """The constructor, which for an unknown setting raises InputError with the nearest words."""
         known = [item.name for item in fields(cls)]
         for word in settings:
             if word not in known:
@@ -86,7 +86,7 @@ class Generational(Optimizer):
 
 @dataclass(frozen=True)
 class Budgeted(Optimizer):
-    """An optimizer that takes as many evaluations a generation as it comes to need."""
+    """An optimizer whose generations differ in size."""
 
     budget: int = setting(17_500, "1", (1, 1_000_000_000), "Evaluations.")
 

@@ -10,22 +10,22 @@ from pzt_ident.errors import InputError, nearest
 
 @dataclass(frozen=True)
 class Parameter:
-    """A quantity of a block: everything else (bounds, schema, report, sensitivities) is derived from this.
+    """A quantity of a block; schema, bounds, report and sensitivities are all derived from this declaration.
 
-    `unit` is written as in a job file. The words `drive` and `response` stand for the units of the axis' own
-    channels, `first` for that of the first response, and the bounds of such a parameter are multiples of the data's own
-    spans: `Parameter("response/drive", (0, 2))` of a record over 100 V and 8 um goes from 0 to 0.16 um/V.
+    `unit` is written as in a job file. The words `drive` and `response` stand for the units of the axis' channels,
+    `first` for the unit of the first response; the bounds of such a parameter are multiples of the peak-to-peak spans
+    of the data: `Parameter("response/drive", (0, 2))` of a record over 100 V and 8 um goes from 0 to 0.16 um/V.
 
-    `null` is the value at which the block is exactly the identity; None where there is none.
+    `null` is the value at which the block is exactly the identity; None if there is none.
     `effect` names the effect that the parameter belongs to; unless the job lists it, the parameter stays at its null.
-    `count` makes a parameter one of each branch of the block, `weight_1`, `weight_2`, ...; where a job chooses how
-    many, it is the setting's name. `each` says who has one of its own: every axis, the stage as a whole, or every axis
-    after the first, to which it is relative and which has the null.
-    `per_record` gives every record one of its own, for what begins anew or at another phase with each measurement.
-    `value` is what it is fixed to unless the job frees it with bounds.
-    `linear` has it solved for inside the search where the job says nothing of it: the response must be linear in all
-    such parameters together, and they are not negative, or not positive where the response falls with the drive.
-    `smooth` names the parameter that weighs the squared second differences of a counted one of these.
+    `count` makes one parameter for each branch of the block, `weight_1`, `weight_2`, ...; a number, or the name of the
+    setting that holds it. `per` tells what has a value of its own: every axis, the whole stage, or every axis after the
+    first, relative to the first one, which has the null.
+    `per_record` gives every record a value of its own, for what starts anew or at another phase in each measurement.
+    `value` is the fixed value, unless the job frees the parameter with bounds.
+    `linear` has it solved for inside the search, unless the job gives it bounds or a value: the response must be linear
+    in all such parameters together; they are not negative, or not positive where the response falls with the drive.
+    `smooth` names the parameter that weighs the squared second differences of a counted linear parameter.
     """
 
     unit: str
@@ -35,7 +35,7 @@ class Parameter:
     scale: Literal["linear", "log"] = "linear"
     effect: str | None = None
     count: int | str | None = None
-    each: Literal["axis", "stage", "later axis"] = "axis"
+    per: Literal["axis", "stage", "later axis"] = "axis"
     per_record: bool = False
     value: float | None = None
     linear: bool = False
@@ -48,14 +48,14 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Setting:
-    """What a job chooses of how a block is built, a whole number: `{name: rod, elements: 16}`."""
+    """A whole number that a job may choose for a block: `{name: rod, elements: 16}`."""
 
     value: int
     bounds: tuple[int, int]
     doc: str
 
     def check(self, value: Any, where: str) -> None:
-        """Raises InputError for what is not a whole number within the bounds."""
+        """Raises InputError unless the value is a whole number within the bounds."""
         low, high = self.bounds
         if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
             remedy = f"give a whole number from {low} to {high}"
@@ -64,13 +64,13 @@ class Setting:
 
 @dataclass(frozen=True)
 class Form:
-    """Which of its forms a job chooses of a block, by a word: `{name: homogenized_energy, density: free}`."""
+    """A form of a block that a job may choose by a word: `{name: homogenized_energy, density: free}`."""
 
     value: str
     words: tuple[str, ...]
     doc: str
 
     def check(self, value: Any, where: str) -> None:
-        """Raises InputError for another word."""
+        """Raises InputError for an unknown word."""
         if value not in self.words:
             raise InputError(f"{value!r} is no such form", where=where, remedy=nearest(str(value), self.words))

@@ -1,4 +1,4 @@
-"""From the word in a job file to the thing in the file of that name."""
+"""From the word in a job file to the class in the file of that name."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ T = TypeVar("T", bound=type[Any])
 
 
 class Registry(Generic[T]):
-    """Classes by their file's name. Folders are imported word by word at the first look-up; others add theirs by
-    entry points of `group`, or by `register` in a file of theirs.
+    """Classes by the name of their file. Modules of the packages are imported one by one at the first look-up; others
+    add classes by entry points of `group`, or by `register` in a file of their own.
 
-    Raises InputError with the nearest words for an unknown one, and for a word that several claim.
+    Raises InputError with the nearest words for an unknown word, and for a word that is claimed twice.
     """
 
     def __init__(self, kind: str, packages: tuple[str, ...], group: str) -> None:
@@ -32,7 +32,7 @@ class Registry(Generic[T]):
         self._items: dict[str, T] = {}
 
     def register(self, item: T) -> T:
-        """Raises InputError for a class that breaks the contract of its kind, or whose word is taken."""
+        """Raises InputError for a class that violates the contract of its kind, or whose word is taken."""
         check(item, self.group)
         package, _, word = item.__module__.rpartition(".")
         taken = word in self._files() or self._items.get(word, item).__module__ != item.__module__
@@ -56,63 +56,63 @@ class Registry(Generic[T]):
         return (self[word] for word in self.usable())
 
     def words(self) -> list[str]:
-        """Every known word, without importing what stands behind it."""
+        """Every known word, without importing its module."""
         return sorted({*self._items, *self._files(), *self._entries})
 
     def usable(self) -> list[str]:
-        """The words that something stands behind; warns of what an entry point spoils."""
-        found = []
+        """The words that can be loaded; warns of faulty entry points."""
+        usable = []
         for word in self.words():
             try:
                 self._load(word)
-                found.append(word)
+                usable.append(word)
             except InputError as error:
                 warnings.warn(str(error), stacklevel=2)
-        return found
+        return usable
 
     def _files(self) -> dict[str, str]:
-        found = {}
+        modules = {}
         for package in self.packages:
             for module in pkgutil.iter_modules(importlib.import_module(package).__path__):
                 if not module.name.startswith("_"):
-                    found[module.name] = f"{package}.{module.name}"
-        return found
+                    modules[module.name] = f"{package}.{module.name}"
+        return modules
 
     @cached_property
     def _entries(self) -> dict[str, list[EntryPoint]]:
-        found: dict[str, list[EntryPoint]] = {}
+        entries: dict[str, list[EntryPoint]] = {}
         for entry in entry_points(group=self.group):
-            found.setdefault(entry.name, []).append(entry)
-        return found
+            entries.setdefault(entry.name, []).append(entry)
+        return entries
 
     def _load(self, word: str) -> None:
         path, entries = self._files().get(word), self._entries.get(word, [])
         for entry in entries if path else entries[1:]:
-            self._refuse(word, said(entry), "give the entry point another name, or uninstall it")
+            self._refuse(word, described(entry), "give the entry point another name, or uninstall it")
         if path:
             importlib.import_module(path)
         for entry in entries:
-            item = loaded(entry)
+            item = load_entry_point(entry)
             if self._items.setdefault(word, item) is not item:
-                self._refuse(word, said(entry), "give the entry point another name, or uninstall it")
+                self._refuse(word, described(entry), "give the entry point another name, or uninstall it")
 
     def _refuse(self, word: str, where: str, remedy: str) -> NoReturn:
         owner = "a built-in" if word in self._files() else "another"
         raise InputError(f"{word!r} is taken by {owner} {self.kind}", where=where, remedy=remedy)
 
 
-def said(entry: EntryPoint) -> str:
+def described(entry: EntryPoint) -> str:
     by = f" of {entry.dist.name} {entry.dist.version}" if entry.dist else ""
     return f"entry point `{entry.name} = {entry.value}`{by}"
 
 
-def loaded(entry: EntryPoint) -> Any:
-    """What it stands for. Raises InputError where that fails."""
+def load_entry_point(entry: EntryPoint) -> Any:
+    """The object of an entry point. Raises InputError if it cannot be loaded."""
     try:
         return entry.load()
     except Exception as error:
         message = error.message if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
-        raise InputError(message, where=said(entry), remedy="mend its package, or uninstall it") from error
+        raise InputError(message, where=described(entry), remedy="repair its package, or uninstall it") from error
 
 
 class Choice(Protocol):
@@ -130,10 +130,10 @@ def word_of(item: str | Choice) -> str:
 
 class Blocks(Registry[Any]):
     def plug(self, path: Path, is_other: Callable[[ModuleType], bool] = lambda module: False) -> None:
-        """Run a file of the user's, which registers the block that it is named like. `is_other`: whether a module that
+        """Run a Python file of the user, which registers a block of the file's name. `is_other`: whether a module that
         registers none is something else than a block, such as a reader of files.
 
-        Raises InputError where there is no such file, it fails, it registers nothing, or its name is taken.
+        Raises InputError if there is no such file, it fails, it registers no block, or its name is taken.
         """
         word, where = path.stem, str(path)
         module = f"pzt_ident_plugins.{word}"
@@ -159,37 +159,37 @@ class Blocks(Registry[Any]):
         spec = importlib.util.spec_from_file_location(module, path.resolve())
         if spec is None or spec.loader is None:
             raise InputError("is no Python file", where=str(path), remedy="name it `<effect>.py`")
-        sys.modules[module] = made = importlib.util.module_from_spec(spec)
+        sys.modules[module] = loaded = importlib.util.module_from_spec(spec)
         try:
-            spec.loader.exec_module(made)
+            spec.loader.exec_module(loaded)
         except InputError:
             raise
         except Exception as error:
-            raise InputError(f"{type(error).__name__}: {error}", where=str(path), remedy="mend the file") from error
+            raise InputError(f"{type(error).__name__}: {error}", where=str(path), remedy="repair the file") from error
 
     def chain(self, items: Iterable[str | Choice]) -> list[Any]:
-        """The blocks of a job's items, as their settings make them; an effect that is only a term has none.
+        """The blocks of a job's items, with their settings; unknown words are left out.
 
-        Raises InputError for an unknown setting, or one that does not fit.
+        Raises InputError for an unknown setting or value.
         """
         known = [item for item in items if word_of(item) in self]
         return [self[item] if isinstance(item, str) else self[item.name].make(**item.settings) for item in known]
 
-    def formed(self, items: Iterable[str | Choice]) -> list[Any]:
-        """The blocks of a job's items in the forms that these choose, whether or not their settings fit."""
+    def forms_of(self, items: Iterable[str | Choice]) -> list[Any]:
+        """The blocks of a job's items in the forms that these choose; the settings are not checked."""
         known = [item for item in items if word_of(item) in self]
-        return [self[word_of(item)].formed({} if isinstance(item, str) else item.settings) for item in known]
+        return [self[word_of(item)].form_of({} if isinstance(item, str) else item.settings) for item in known]
 
     def effects(self) -> list[str]:
-        """The words of what may be missing from a model."""
+        """The words of all effects."""
         return [word for word in self.usable() if self.is_effect(word)]
 
     def is_effect(self, word: str) -> bool:
-        """Whether a block may be missing from a model: it says what to do about it on the rig."""
+        """Whether a block may be missing from a model: an effect has a remedy on the rig."""
         return bool(self[word].remedy)
 
     def folder(self, word: str) -> str:
-        """The last part of the package that the word's class was declared in, for example `hysteresis`."""
+        """The folder of the file that declares a word's class, for example `hysteresis`."""
         return str(self[word].__module__.rpartition(".")[0].rpartition(".")[2])
 
     def kind_of(self, word: str) -> str:

@@ -1,4 +1,4 @@
-"""The flight of a particle swarm on pyswarms' operators."""
+"""The iteration of a particle swarm, with the operators of pyswarms."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from pzt_ident.optimizers._foreign import numpy_seeded
 
 
 @contextmanager
-def quiet() -> Iterator[None]:
-    """pyswarms configures logging, and writes report.log, whenever it is imported or a handler is made."""
-    kept = os.environ.get("LOG_CFG")
+def without_logging() -> Iterator[None]:
+    """Keep pyswarms from configuring logging and writing report.log when it is imported or a handler is created."""
+    configured = os.environ.get("LOG_CFG")
     os.environ["LOG_CFG"] = str(Path(__file__).with_name("_pyswarms_logging.yaml"))
     try:
         yield
     finally:
-        if kept is None:
+        if configured is None:
             del os.environ["LOG_CFG"]
         else:
-            os.environ["LOG_CFG"] = kept
+            os.environ["LOG_CFG"] = configured
 
 
 def fly(
@@ -32,9 +32,9 @@ def fly(
 ) -> Search:
     """v <- w v + c1 r1 (p - x) + c2 r2 (g - x), |v| <= vmax; x <- x + v.
 
-    A particle is reflected at the bounds and its velocity is then the move it really made.
+    Particles are reflected at the bounds; their velocity is then the actual move.
     """
-    with quiet():
+    with without_logging():
         from pyswarms import backend
         from pyswarms.backend.topology import Star
 

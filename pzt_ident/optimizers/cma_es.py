@@ -14,10 +14,10 @@ from pzt_ident.model.registry import optimizers
 @optimizers.register
 @dataclass(frozen=True)
 class CMAES(Budgeted):
-    """CMA-ES in pycma's form, restarted when it has converged: x ~ m + sigma N(0, C), C learnt from the better half.
+    """CMA-ES of pycma, restarted when it has converged: x ~ m + sigma N(0, C), C learned from the better half.
 
-    Restarts alternate between populations that double and small ones from narrower starts, so that both have used
-    about the same number of evaluations (BIPOP).
+    Restarts alternate between doubled populations and small ones with a smaller sigma, with about the same number of
+    evaluations for both kinds (BIPOP).
     """
 
     source = "Hansen & Ostermeier (2001), Evol. Comput. 9, 159; Hansen (2009), BBOB workshop, BIPOP"
@@ -47,21 +47,21 @@ class CMAES(Budgeted):
 
         settings = {"bounds": [0, 1], "popsize": population, "randn": lambda *size: rng.standard_normal(size)}
         quiet = {"seed": np.nan, "verbose": -9, "verb_log": 0, "verb_disp": 0, "tolflatfitness": 5}
-        # A single coordinate is searched in the company of one that does not count: pycma wants at least two.
-        hidden = 2 - min(mean.size, 2)
-        strategy = cma.CMAEvolutionStrategy(np.append(mean, [0.5] * hidden), sigma, settings | quiet)
+        # pycma needs at least two coordinates: a single one is searched with a dummy.
+        dummies = 2 - min(mean.size, 2)
+        strategy = cma.CMAEvolutionStrategy(np.append(mean, [0.5] * dummies), sigma, settings | quiet)
         spent = 0
         while not strategy.stop():
-            asked = strategy.ask()
-            points = np.clip([one[: mean.size] for one in asked], 0, 1)
+            candidates = strategy.ask()
+            points = np.clip([candidate[: mean.size] for candidate in candidates], 0, 1)
             losses = yield points
             spent += len(points)
-            strategy.tell(asked, list(ranked(losses)))
+            strategy.tell(candidates, list(finite_losses(losses)))
         return spent
 
 
-def ranked(losses: Array) -> Array:
-    """Failures just worse than the worst success, since pycma averages losses."""
+def finite_losses(losses: Array) -> Array:
+    """The losses with failures just above the worst success, since pycma averages losses."""
     finite = losses[np.isfinite(losses)]
     worst = finite.max() if finite.size else 0.0
     return np.where(np.isfinite(losses), losses, worst + abs(worst) + 1.0)

@@ -1,4 +1,4 @@
-"""Clonal selection algorithm (CLONALG) on a binary code; Gray, in which a step to the next value is one flip."""
+"""Clonal selection algorithm (CLONALG) on a binary Gray code, in which neighbouring values differ by one bit."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Bits = NDArray[np.bool_]
 @optimizers.register
 @dataclass(frozen=True)
 class CSA(Generational):
-    """Clonal selection: many clones of the fittest, mutated the less the fitter; the worst antibodies are renewed.
+    """Clonal selection: the fittest antibodies have most clones and least mutation; the worst are replaced.
 
     The antibody of rank r has round(clones N / r) clones, each bit of which flips with probability
     mutation exp(-decay affinity), the affinity falling from 1 (best) to 0 (worst of the selected). Every clone
@@ -30,7 +30,9 @@ class CSA(Generational):
     selected: float = setting(0.3, "1", (0, 1), "Share of the population that is cloned.")
     clones: float = setting(0.5, "1", (0, 100), "Clones of the best antibody over the population.")
     mutation: float = setting(0.05, "1/bit", (0, 1), "Probability that a bit of the worst selected antibody flips.")
-    decay: float = setting(2.0, "1", (0, 100), "How much rarer mutation is for the best antibody: exp(-decay).")
+    decay: float = setting(
+        2.0, "1", (0, 100), "Mutation of the best antibody relative to the worst selected: exp(-decay)."
+    )
     renewed: float = setting(0.1, "1", (0, 1), "Share of the population that receptor editing replaces.")
 
     def search(self, dimensions: int, rng: np.random.Generator) -> Search:
@@ -44,14 +46,14 @@ class CSA(Generational):
             antibodies, losses = antibodies[order], losses[order]
             clones = antibodies[parents] ^ hypermutation(rates[parents], shape, rng)
             newcomers = rng.random((fresh, *shape)) < 0.5
-            told = yield self.decode(np.concatenate([clones, newcomers]))
-            mature(antibodies, losses, clones, told[: len(clones)], parents)
+            clone_losses = yield self.decode(np.concatenate([clones, newcomers]))
+            mature(antibodies, losses, clones, clone_losses[: len(clones)], parents)
             if fresh:
                 worst = np.argsort(losses, kind="stable")[-fresh:]
-                antibodies[worst], losses[worst] = newcomers, told[len(clones) :]
+                antibodies[worst], losses[worst] = newcomers, clone_losses[len(clones) :]
 
     def clones_of(self) -> NDArray[np.int64]:
-        """Clones of each selected antibody by rank, one at least."""
+        """Number of clones of each selected antibody by rank, at least one."""
         rank = np.arange(1, max(1, round(self.selected * self.population)) + 1)
         return np.maximum(1, np.rint(self.clones * self.population / rank)).astype(np.int64)
 
@@ -67,15 +69,15 @@ class CSA(Generational):
 
 
 def hypermutation(rates: Array, shape: tuple[int, int], rng: np.random.Generator) -> Bits:
-    """Bits to flip (M, P, bits), one at least, since a clone like its parent teaches nothing."""
+    """Bits to flip (M, P, bits), at least one, since a clone equal to its parent gives no information."""
     draws = rng.random((len(rates), *shape)) / rates[:, None, None]
     return (draws < 1) | (draws == draws.min(axis=(1, 2), keepdims=True))
 
 
-def mature(antibodies: Bits, losses: Array, clones: Bits, told: Array, parents: NDArray[np.int64]) -> None:
-    """The best clone of each antibody takes its parent's place if it is better."""
-    order = np.lexsort((told, parents))
+def mature(antibodies: Bits, losses: Array, clones: Bits, clone_losses: Array, parents: NDArray[np.int64]) -> None:
+    """Replace each antibody by its best clone if that is better, in place."""
+    order = np.lexsort((clone_losses, parents))
     _, first = np.unique(parents[order], return_index=True)
     best = order[first]
-    better = best[told[best] < losses[parents[best]]]
-    antibodies[parents[better]], losses[parents[better]] = clones[better], told[better]
+    better = best[clone_losses[best] < losses[parents[best]]]
+    antibodies[parents[better]], losses[parents[better]] = clones[better], clone_losses[better]

@@ -12,7 +12,7 @@ from pzt_ident.model.registry import optimizers
 
 ROUNDING = float(np.finfo(np.float64).eps)
 STEP = ROUNDING**0.5  # of a forward difference
-SMALLEST = 1e-11  # move that ends a start
+SMALLEST = 1e-11  # step below which a start ends
 
 
 @optimizers.register
@@ -20,8 +20,8 @@ SMALLEST = 1e-11  # move that ends a start
 class LeastSquares(Budgeted):
     """Levenberg-Marquardt from many starts: (J'J + mu D) s = -J'r within the bounds, J by a batch of differences.
 
-    Without residuals the model of the loss is quadratic with a BFGS Hessian in place of J'J. The first start is the
-    best of `samples` random points, and so is every further one.
+    Without residuals the model of the loss is quadratic with a BFGS Hessian in place of J'J. Each start is the best of
+    `samples` random points.
     """
 
     source = "Marquardt (1963), J. SIAM 11, 431; Nielsen (1999), IMM-REP-1999-05; Nocedal & Wright (2006), ch. 6 and 10"
@@ -39,27 +39,27 @@ class LeastSquares(Budgeted):
 
 
 def size(answer: Array) -> float:
-    """Half the squared norm of residuals, or a loss as it is; infinite where either is not finite."""
+    """Half the squared norm of residuals, or the loss itself; infinite if not finite."""
     value = 0.5 * float(answer @ answer) if np.ndim(answer) else float(answer)
     return value if np.isfinite(value) else np.inf
 
 
 def descend(x: Array, answer: Array) -> Generator[Array, Array, None]:
-    """From one start to a place where no step within the bounds makes the loss fall."""
+    """From one start to a point at which no step within the bounds reduces the loss. answer: residuals or loss at x."""
     hessian = None
     before: tuple[Array, Array] | None = None
     damping, growth = 1e-3, 2.0
     while True:
-        wide = np.full(x.size, STEP) if np.ndim(answer) or hessian is None else widths(float(answer), hessian)
-        steps = np.where(x + wide > 1, -wide, wide)
-        tried = yield np.clip(x + np.diag(steps), 0, 1)
-        if not np.isfinite(tried).all():
+        sizes = np.full(x.size, STEP) if np.ndim(answer) or hessian is None else widths(float(answer), hessian)
+        steps = np.where(x + sizes > 1, -sizes, sizes)
+        shifted = yield np.clip(x + np.diag(steps), 0, 1)
+        if not np.isfinite(shifted).all():
             return
         if np.ndim(answer):
-            jacobian = ((tried - answer) / steps[:, None]).T
+            jacobian = ((shifted - answer) / steps[:, None]).T
             gradient, hessian = jacobian.T @ answer, jacobian.T @ jacobian
         else:
-            gradient = (tried - answer) / steps
+            gradient = (shifted - answer) / steps
             hessian = secant(hessian, before, x, gradient)
         before = x, gradient
         while True:
@@ -68,7 +68,7 @@ def descend(x: Array, answer: Array) -> Generator[Array, Array, None]:
                 return
             candidates = np.clip(x + np.outer([1.0, 0.25], step), 0, 1)
             answers = yield candidates
-            chosen = int(np.argmin([size(one) for one in answers[:2]]))
+            chosen = int(np.argmin([size(candidate) for candidate in answers[:2]]))
             expected = -(gradient @ step + 0.5 * step @ hessian @ step)
             gained = size(answer) - size(answers[chosen])
             if gained > 0:
@@ -84,8 +84,8 @@ def descend(x: Array, answer: Array) -> Generator[Array, Array, None]:
 
 def widths(loss: float, hessian: Array) -> Array:
     """Steps at which the rounding error of a difference equals its curvature error: 2 sqrt(eps |f| / H_ii)."""
-    bend = np.maximum(np.diag(hessian), 1e-300)
-    return np.clip(2 * np.sqrt(ROUNDING * abs(loss) / bend), 1e-10, 1e-6)
+    curvature = np.maximum(np.diag(hessian), 1e-300)
+    return np.clip(2 * np.sqrt(ROUNDING * abs(loss) / curvature), 1e-10, 1e-6)
 
 
 def bounded_step(x: Array, gradient: Array, hessian: Array, damping: float) -> Array:

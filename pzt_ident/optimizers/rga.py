@@ -14,7 +14,7 @@ from pzt_ident.optimizers._foreign import random_seeded
 
 
 class Fitness(NamedTuple):
-    """What DEAP's operators read: the larger, the fitter."""
+    """The fitness that DEAP's operators read; larger is better."""
 
     values: tuple[float]
 
@@ -29,16 +29,17 @@ class Individual(NamedTuple):
 class RGA(Generational):
     """Real-coded genetic algorithm: universal sampling, elites, arithmetic crossover, shrinking mutation, migration.
 
-    Each subpopulation keeps its elites, makes `crossover` of the others by v = eta v1 + (1 - eta) v2 and the rest by
-    v = v1 + N(0, sigma_i^2), sigma_i = mutation (1 - shrink i / G), G the generations in the budget.
+    Each subpopulation keeps its elites and replaces the others by children: the share `crossover` of them by
+    v = eta v1 + (1 - eta) v2, the remaining ones by v = v1 + N(0, sigma_i^2),
+    sigma_i = mutation (1 - shrink i / G), G the generations in the budget.
     """
 
     source = "Baker (1987), Proc. ICGA, 14; Lin & Lin (2012), Eq. 10-13"
 
-    elites: int = setting(2, "1", (0, 1000), "Best individuals that live on unchanged in each subpopulation.")
-    crossover: float = setting(0.8, "1", (0, 1), "Share of the children made by crossover.")
+    elites: int = setting(2, "1", (0, 1000), "Best individuals of each subpopulation that are kept unchanged.")
+    crossover: float = setting(0.8, "1", (0, 1), "Share of the children from crossover.")
     mutation: float = setting(0.2, "range", (0, 10), "Standard deviation of the first mutation.")
-    shrink: float = setting(1.0, "1", (0, 1), "How far the mutation has shrunk at the end of the budget.")
+    shrink: float = setting(1.0, "1", (0, 1), "Relative decrease of the mutation at the end of the budget.")
     shrink_form: str = choice("linear", ("linear", "recursion"), "Linear, or the product that Eq. 12 prints.")
     subpopulations: int = setting(2, "1", (1, 1000), "Subpopulations on a ring.")
     interval: int = setting(20, "1", (1, 1_000_000), "Generations between migrations.")
@@ -59,14 +60,14 @@ class RGA(Generational):
             for deme in demes:
                 deme[:] = deme[np.argsort(losses[deme], kind="stable")]
                 children.append(self.breed(points[deme], losses[deme], sigma, rng))
-            born = np.concatenate([deme[self.elites :] for deme in demes])
-            points[born] = np.concatenate(children)
-            losses[born] = yield points[born]
+            replaced = np.concatenate([deme[self.elites :] for deme in demes])
+            points[replaced] = np.concatenate(children)
+            losses[replaced] = yield points[replaced]
 
     def next_sigma(self, sigma: float, generation: int) -> float:
         """Eq. 12: sigma_i = sigma_(i-1) (1 - shrink i / G) as printed, or the linear fall that its text describes."""
-        left = max(0.0, 1 - self.shrink * generation / self.generations)
-        return sigma * left if self.shrink_form == "recursion" else self.mutation * left
+        factor = max(0.0, 1 - self.shrink * generation / self.generations)
+        return sigma * factor if self.shrink_form == "recursion" else self.mutation * factor
 
     def breed(self, points: Array, losses: Array, sigma: float, rng: np.random.Generator) -> Array:
         """The children of one subpopulation, sorted best first: (n, P) -> (n - elites, P)."""
@@ -80,19 +81,19 @@ class RGA(Generational):
 
 
 def select(losses: Array, count: int, rng: np.random.Generator) -> NDArray[np.int64]:
-    """Stochastic universal sampling of rows on a line with lengths 1 / sqrt(rank), shuffled."""
+    """Rows by stochastic universal sampling with fitness 1 / sqrt(rank), shuffled."""
     from deap import tools
 
     ranks = np.empty(len(losses))
     ranks[np.argsort(losses, kind="stable")] = np.arange(1, len(losses) + 1)
     line = [Individual(row, Fitness((length,))) for row, length in enumerate(1 / np.sqrt(ranks))]
     with random_seeded(rng):
-        chosen = tools.selStochasticUniversalSampling(line, count)
-    return rng.permutation([individual.row for individual in chosen])
+        selected = tools.selStochasticUniversalSampling(line, count)
+    return rng.permutation([individual.row for individual in selected])
 
 
 def migrate(losses: Array, demes: list[NDArray[np.int64]], fraction: float) -> NDArray[np.int64]:
-    """Rows after the best of each subpopulation have replaced the worst of the next on the ring."""
+    """Rows after migration: the best of each subpopulation replace the worst of the next one on the ring."""
     from deap import tools
 
     islands = [[Individual(int(row), Fitness((-losses[row],))) for row in deme] for deme in demes]

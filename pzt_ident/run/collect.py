@@ -63,7 +63,7 @@ def facts_of(record: Record, problem: Problem, point: np.ndarray) -> dict[str, A
         "sample_rate": 1 / record.dt,
         "settle": record.settle * record.dt,
         "axes": [record.axes[a] for a in record.measured],
-        "notes": [*record.notes, *simulator.broken(problem.parameters(point))],
+        "notes": [*record.notes, *simulator.violations(problem.parameters(point))],
     }
 
 

@@ -145,7 +145,7 @@ def searched(
             Stop(**task.stop),
             residuals=lambda points: problem.residuals(points) * np.sqrt(problem.scored),
             callback=note,
-            told=known,
+            earlier_losses=known,
         )
     seconds, cpu_seconds = elapsed(), time.process_time() - cpu
     tell(generation_event(task, outcome.evaluations, rmse(problem, outcome.point, size), seconds))

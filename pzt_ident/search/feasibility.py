@@ -1,4 +1,4 @@
-"""What cannot be identified from these records: each raises InputError and says why."""
+"""Checks of whether a model can be identified from the records; each raises InputError with the reason."""
 
 from __future__ import annotations
 
@@ -20,41 +20,44 @@ if TYPE_CHECKING:
     from pzt_ident.search.problem import Problem
 
 CHARGE = ("C", "C/m2")
-SMALL, LARGE = 1e-3, 5.0  # of the drive's span, between which it can tell of a field
+SMALL, LARGE = 1e-3, 5.0  # of the drive's span: fields between these can be identified from it
 Unit = Callable[[Entry, Record], str]
 
 
 def check_units(model: Chain, record: Record, unit: Unit) -> None:
-    """Raises InputError where one number would be of another kind on every axis, or mechanics would move a charge.
+    """Raises InputError if a shared parameter has different kinds of units, or mechanics would move a charge.
 
-    unit: that of a parameter, as the user writes it.
+    unit: of a parameter on a record, as the user writes it.
     """
     for entry in model.entries:
         units = [unit(replace(entry, axis=axis), record) for axis in model.measured]
-        if f"{entry.block.name}.{entry.word}" in model.shared and not all(same_kind(each, units[0]) for each in units):
-            said = f"{entry.name} is in {' and in '.join(units)}: no one number is both"
-            remedy = "take it out of `shared`; free densities of all responses are one with `density: shared`"
-            raise InputError(said, where="shared", remedy=remedy)
+        if f"{entry.block.name}.{entry.word}" in model.shared and not all(
+            same_kind(other, units[0]) for other in units
+        ):
+            message = f"{entry.name} is in {' and in '.join(units)}: no single number fits both"
+            remedy = "take it out of `shared`; for one free density of all responses write `density: shared`"
+            raise InputError(message, where="shared", remedy=remedy)
     moving = [block.name for block in model.blocks if block.place == Place.MECHANICS]
     for axis in model.measured:
-        own = record.response_units[axis]
-        if moving and any(same_kind(str(own), each) for each in CHARGE):
-            said = (
-                f"{moving[0]!r} would move the response of axis {model.axes[axis]}, which is in {own}: no displacement"
+        response_unit = record.response_units[axis]
+        if moving and any(same_kind(str(response_unit), unit_of_charge) for unit_of_charge in CHARGE):
+            message = (
+                f"{moving[0]!r} moves a displacement, but the response of axis {model.axes[axis]} is in {response_unit}"
             )
             remedy = "fit charge and polarization without mechanics, on drives that are slow for it"
-            raise InputError(said, where="model", remedy=remedy)
+            raise InputError(message, where="model", remedy=remedy)
 
 
 def check_feasible(problem: Problem, identify: list[Record]) -> None:
-    """Raises InputError where the records to identify are too short, or cannot tell of a parameter, or a block refuses
-    its bounds."""
+    """Raises InputError if the identification records are too short, their drive cannot identify a parameter, or a
+    block refuses its bounds."""
     check_lengths(problem, identify)
     check_bounds(problem)
     check_drive(problem, identify)
 
 
 def check_lengths(problem: Problem, identify: list[Record]) -> None:
+    """Raises InputError if an identification record has no more scored samples than there are free parameters."""
     free = problem.dimensions + problem.linear.columns.size
     for record in identify:
         scored = record.samples - record.settle
@@ -62,12 +65,12 @@ def check_lengths(problem: Problem, identify: list[Record]) -> None:
             raise InputError(
                 f"{scored} scored samples for {free} free parameters",
                 where=record.file or record.name,
-                remedy="give a longer stretch, a shorter `settle`, or fix parameters",
+                remedy="give a longer record, a shorter `settle`, or fix parameters",
             )
 
 
 def check_bounds(problem: Problem) -> None:
-    """Raises InputError where a block refuses the bounds."""
+    """Raises InputError if a block refuses the bounds of its parameters."""
     least, most = (problem.parameters_at(bounds) for bounds in (problem.lower, problem.upper))
     for block, axis in product(problem.model.blocks, problem.model.measured):
         if refuse := getattr(block, "refuse", None):
@@ -76,10 +79,10 @@ def check_bounds(problem: Problem) -> None:
 
 
 def check_drive(problem: Problem, identify: list[Record]) -> None:
-    """Raises InputError where the drive is far from all that the job lets a parameter be: the numbers of one of them
-    are in another unit, such as V for V/m, or the drive never leaves the linear range."""
+    """Raises InputError if the span of the drive is far outside the bounds of a field: one of them has another unit,
+    such as V for V/m, or the drive never leaves the linear range."""
     for column, entry in enumerate(problem.model.entries):
-        if entry.word in entry.block.seen:
+        if entry.word in entry.block.compared_with_drive:
             unit = problem.all_units[column]
             low, high = problem.range_of(column)
             span = max(float(np.ptp(record.drive[entry.axis])) for record in identify) / factor(unit)
@@ -88,11 +91,11 @@ def check_drive(problem: Problem, identify: list[Record]) -> None:
 
 
 def _out_of_reach(name: str, unit: str, low: float, high: float, span: float) -> InputError:
-    says = "nothing switches: the response is linear" if low > span else "everything switches at once"
+    consequence = "nothing switches: the response is linear" if low > span else "everything switches at once"
     bound = f"at least {low:g} {unit}" if low > span else f"at most {high:g} {unit}"
-    problem = f"is {bound} beside a drive of {span:.3g} {unit} peak to peak, so {says}"
+    message = f"is {bound} beside a drive of {span:.3g} {unit} peak to peak, so {consequence}"
     remedy = (
-        "are they in the same unit? A drive in volts over 20 mm has the unit `50 V/m`. Else drive further, "
-        "or let the parameter be of the size of the drive"
+        "are they in the same unit? A drive in volts over 20 mm has the unit `50 V/m`. Otherwise use a larger drive, "
+        "or give the parameter bounds of the size of the drive"
     )
-    return InputError(problem, where=name, remedy=remedy)
+    return InputError(message, where=name, remedy=remedy)

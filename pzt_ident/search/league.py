@@ -1,4 +1,4 @@
-"""Optimizers side by side: their own results, before any polish, at equal evaluations."""
+"""Comparison of the optimizers: their results before the polish, at equal evaluations."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-NEAR = 1.01  # of the best RMSE that any run found
+NEAR = 1.01  # times the best RMSE of all runs
 
 
 def rank(runs: list[dict[str, Any]], histories: dict[str, np.ndarray]) -> list[dict[str, Any]]:
-    """One row an optimizer, best first, and in each run the evaluations after which it was within one percent.
+    """One row per optimizer, best first. Adds to each run the evaluations after which it was within one percent.
 
-    histories: (generations, 3) of evaluations, seconds, best RMSE, by run. Success is the share of runs within one
-    percent of the best RMSE found by any run, polished or not.
+    histories: by run, (generations, 3) with evaluations, seconds and best RMSE. Success is the share of runs within one
+    percent of the best RMSE of all runs, polished or not.
     """
     best = min(min(run["rmse"]["identify"], run["rmse_before_polish"]["identify"]) for run in runs)
     for run in runs:
@@ -22,39 +22,40 @@ def rank(runs: list[dict[str, Any]], histories: dict[str, np.ndarray]) -> list[d
         near = np.flatnonzero(losses <= NEAR * best)
         run["evaluations_to_1_percent"] = int(evaluations[near[0]]) if near.size else None
     rows = [
-        row(name, [run for run in runs if run["optimizer"] == name])
+        summary_of(name, [run for run in runs if run["optimizer"] == name])
         for name in dict.fromkeys(r["optimizer"] for r in runs)
     ]
     rows.sort(key=lambda row: row["rmse_median"])
-    own = {row["optimizer"]: by_repeat(runs, row["optimizer"]) for row in rows}
-    return [row | paired(own[rows[0]["optimizer"]], own[row["optimizer"]]) for row in rows]
+    rmse = {row["optimizer"]: rmse_by_repeat(runs, row["optimizer"]) for row in rows}
+    return [row | paired_comparison(rmse[rows[0]["optimizer"]], rmse[row["optimizer"]]) for row in rows]
 
 
-def by_repeat(runs: list[dict[str, Any]], optimizer: str) -> dict[int, float]:
+def rmse_by_repeat(runs: list[dict[str, Any]], optimizer: str) -> dict[int, float]:
     return {run["repeat"]: run["rmse_before_polish"]["identify"] for run in runs if run["optimizer"] == optimizer}
 
 
-def paired(leader: dict[int, float], other: dict[int, float]) -> dict[str, Any]:
-    """Repeat by repeat against the optimizer that leads: in how many it was ahead, out of how many that differ, and the
-    two-sided sign test, which few repeats can never make small (five: 0.06 at best)."""
+def paired_comparison(leader: dict[int, float], other: dict[int, float]) -> dict[str, Any]:
+    """The leading optimizer against another, repeat by repeat: in how many repeats it was ahead, how many differ, and
+    the p-value of the two-sided sign test, which cannot be small for few repeats (five: 0.06 at best)."""
     pairs = [(leader[repeat], other[repeat]) for repeat in leader.keys() & other.keys()]
     ahead, differ = sum(a < b for a, b in pairs), sum(a != b for a, b in pairs)
     tail = sum(comb(differ, k) for k in range(min(ahead, differ - ahead) + 1)) / 2**differ
     return {"leader_ahead": ahead, "pairs": differ, "sign_test": min(1.0, 2 * tail)}
 
 
-def row(optimizer: str, runs: list[dict[str, Any]]) -> dict[str, Any]:
-    own = np.array([run["rmse_before_polish"]["identify"] for run in runs])
+def summary_of(optimizer: str, runs: list[dict[str, Any]]) -> dict[str, Any]:
+    """One row of the comparison."""
+    rmse = np.array([run["rmse_before_polish"]["identify"] for run in runs])
     reached = [run["evaluations_to_1_percent"] for run in runs]
     known = [value for value in reached if value is not None]
-    lower, median, upper = np.percentile(own, [25, 50, 75])
+    lower, median, upper = np.percentile(rmse, [25, 50, 75])
     return {
         "optimizer": optimizer,
         "runs": len(runs),
         "rmse_median": median,
         "rmse_lower_quartile": lower,
         "rmse_upper_quartile": upper,
-        "rmse_best": own.min(),
+        "rmse_best": rmse.min(),
         "polished_rmse_median": np.median([run["rmse"]["identify"] for run in runs]),
         "seconds_median": np.median([run["seconds"] for run in runs]),
         "cpu_seconds_median": np.median([run["cpu_seconds"] for run in runs]),

@@ -1,4 +1,4 @@
-"""Parameters that a response is linear in, solved for inside the search instead of searched."""
+"""Parameters in which the response is linear, solved for inside the search instead of being searched."""
 
 from __future__ import annotations
 
@@ -12,17 +12,18 @@ from numpy.typing import NDArray
 from pzt_ident.model.chain import Chain
 
 Array = NDArray[np.float64]
-Whole = NDArray[np.intp]
+Indices = NDArray[np.intp]
 Residuals = Callable[[Array], Array]
 
-PASSES = 4  # at most, where a block behind bends what is linear
-STRAIGHT = 1e-9  # of the residual: what one pass may miss
-LEAST = 1e-6  # of the largest column: one that no record shows is rounding
+MAX_PASSES = 4  # of linearisation, where a block behind makes the response nonlinear
+LINEAR = 1e-9  # of the residual: the error of prediction below which no further pass is needed
+NEGLIGIBLE = 1e-6  # of the largest column: below it a column is rounding
 
 
 class LinearSolution(NamedTuple):
-    """values: (linear,), zero where no record shows a parameter. columns: (samples, linear), what one of its size does
-    to the residuals, zero there too. prior: rows (n, linear) beside them. residual: (samples,). units: (linear,)."""
+    """values: (linear,), zero for a parameter that no record depends on. columns: (samples, linear), change of the
+    residual by one unit of each parameter, zero there too. prior: (n, linear), rows of the smoothness prior. residual:
+    (samples,). units: (linear,), see `Linear`."""
 
     values: Array
     columns: Array
@@ -32,9 +33,10 @@ class LinearSolution(NamedTuple):
 
 
 class Linear:
-    """Some columns of theta that are a function of the others and of the records.
+    """The columns of theta that are solved for, as a function of the other columns.
 
-    residuals: theta (candidates, parameters) -> (candidates, samples). units: a size and sign of each.
+    residuals: theta (candidates, parameters) -> (candidates, samples). units: (linear,), typical size of each parameter
+    with the sign that it may have.
     """
 
     def __init__(self, model: Chain, columns: Sequence[int], units: Array, residuals: Residuals) -> None:
@@ -51,12 +53,12 @@ class Linear:
         ]
 
     def fill(self, theta: Array) -> None:
-        """Put the solved values into theta (candidates, parameters)."""
+        """Write the solved values into theta (candidates, parameters), in place."""
         if self.columns.size:
             theta[:, self.columns] = [self.solved(row).values for row in theta]
 
     def solved(self, row: Array) -> LinearSolution:
-        """Of one candidate, whatever its linear columns hold."""
+        """The solution for one candidate, which does not depend on its linear columns."""
         others = row.copy()
         others[self.columns] = 0
         return self._solved(others.tobytes())
@@ -73,46 +75,47 @@ class Linear:
         return solve(residuals, self._units, self._curves, weight)
 
 
-def solve(residuals: Residuals, units: Array, curves: Sequence[Whole], weight: float) -> LinearSolution:
-    """Non-negative multiples of `units` that leave the least squares, with those of second differences beside them.
+def solve(residuals: Residuals, units: Array, curves: Sequence[Indices], weight: float) -> LinearSolution:
+    """Non-negative least squares in multiples of `units`, with squared second differences as a smoothness prior.
 
-    residuals: (candidates, linear) -> (candidates, samples). units: a size and sign of each parameter. curves: the
-    places of those that are neighbours of each other. weight: of a squared second difference over the squares of the
-    errors, all neighbours alike. Lawson & Hanson (1974), Solving Least Squares Problems, ch. 23; relinearised where one
-    pass does not do. Values are NaN where the residuals are not finite.
+    residuals: (candidates, linear) -> (candidates, samples). units: (linear,), size and sign of each parameter. curves:
+    indices of the parameters of each smooth curve, in order. weight: of the squared second differences relative to the
+    squared errors. Lawson & Hanson (1974), Solving Least Squares Problems, ch. 23; linearised again where the response
+    is not linear. Values are NaN where the residuals are not finite.
     """
     from scipy.optimize import nnls
 
     values = np.zeros(units.size)
-    for _ in range(PASSES):
+    for _ in range(MAX_PASSES):
         residual, *moved = residuals(values + np.vstack([np.zeros(units.size), np.diag(units)]))
         columns = (np.array(moved) - residual).T
         if not np.isfinite(columns).all():
-            nothing = np.full(units.size, np.nan)
-            return LinearSolution(nothing, columns, np.zeros((0, units.size)), residual, units)
+            unknown = np.full(units.size, np.nan)
+            return LinearSolution(unknown, columns, np.zeros((0, units.size)), residual, units)
         sizes = np.linalg.norm(columns, axis=0)
-        seen = sizes > LEAST * sizes.max(initial=0)
-        columns[:, ~seen] = 0
-        prior = bends(np.where(seen, sizes, 0), curves, weight)
-        q, r = np.linalg.qr(columns[:, seen] / sizes[seen])
+        visible = sizes > NEGLIGIBLE * sizes.max(initial=0)
+        columns[:, ~visible] = 0
+        prior = second_differences(np.where(visible, sizes, 0), curves, weight)
+        q, r = np.linalg.qr(columns[:, visible] / sizes[visible])
         target = q.T @ (columns @ (values / units) - residual)
-        system = np.vstack([r, prior[:, seen] / sizes[seen]])
-        shares = np.zeros(units.size)
-        shares[seen] = nnls(system, np.append(target, np.zeros(len(prior))), maxiter=100 * units.size)[0] / sizes[seen]
-        expected = residual + columns @ (shares - values / units)
-        values = shares * units
+        system = np.vstack([r, prior[:, visible] / sizes[visible]])
+        multiples = np.zeros(units.size)
+        solution = nnls(system, np.append(target, np.zeros(len(prior))), maxiter=100 * units.size)[0]
+        multiples[visible] = solution / sizes[visible]
+        expected = residual + columns @ (multiples - values / units)
+        values = multiples * units
         residual = residuals(values[None])[0]
-        if np.linalg.norm(residual - expected) <= STRAIGHT * np.linalg.norm(expected):
+        if np.linalg.norm(residual - expected) <= LINEAR * np.linalg.norm(expected):
             break
     return LinearSolution(values, columns, prior, residual, units)
 
 
-def bends(sizes: Array, curves: Sequence[Whole], weight: float) -> Array:
-    """Rows of the second differences along each curve, as large as a typical column that is seen."""
+def second_differences(sizes: Array, curves: Sequence[Indices], weight: float) -> Array:
+    """Rows of the second differences along each curve, (n, linear), scaled by the median of the visible columns."""
     rows = [np.zeros((0, sizes.size))]
-    for places in curves:
-        own = np.zeros((max(places.size - 2, 0), sizes.size))
-        own[:, places] = np.diff(np.eye(places.size), 2, axis=0)
-        shown = sizes[places][sizes[places] > 0]
-        rows.append(np.sqrt(weight) * (np.median(shown) if shown.size else 0.0) * own)
+    for curve in curves:
+        differences = np.zeros((max(curve.size - 2, 0), sizes.size))
+        differences[:, curve] = np.diff(np.eye(curve.size), 2, axis=0)
+        visible = sizes[curve][sizes[curve] > 0]
+        rows.append(np.sqrt(weight) * (np.median(visible) if visible.size else 0.0) * differences)
     return np.vstack(rows)

@@ -1,4 +1,4 @@
-"""Search the unit cube: when to stop an optimizer, and the loop that drives it."""
+"""The search of the unit cube: when to stop an optimizer, and the loop that runs it."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ Function = Callable[[Array], Array]
 
 @dataclass(frozen=True)
 class Stop:
-    """When a search ends, whichever comes first; the evaluations are never exceeded.
+    """The limits of a search, which ends at the first one reached; the evaluations are never exceeded.
 
-    evaluations; seconds of wall time; target: a loss that is good enough; stagnation: generations in which the best
-    loss has not fallen by more than the share `tolerance`.
+    seconds: of wall time. target: a loss that is good enough. stagnation: number of generations in which the best loss
+    has not fallen by more than the fraction `tolerance`.
     """
 
     evaluations: int
@@ -41,7 +41,7 @@ class Stop:
 
 
 class State(NamedTuple):
-    """What a callback is told once a generation: the best so far and the losses (M,) of this generation."""
+    """Argument of the callback after each generation: the best point so far, and the losses (M,) of this generation."""
 
     generation: int
     evaluations: int
@@ -52,7 +52,7 @@ class State(NamedTuple):
 
 
 class History(NamedTuple):
-    """One number each per generation: evaluations so far, seconds so far, best loss so far."""
+    """Evaluations, seconds and best loss so far, after each generation: (generations,) each."""
 
     evaluations: NDArray[np.int64]
     seconds: Array
@@ -60,9 +60,9 @@ class History(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """The best point (P,) and its loss, NaN and inf where every candidate failed.
+    """The best point (P,) and its loss; NaN and inf if every candidate failed.
 
-    `stopped_by` is the word of Stop that ended the search, or `callback`.
+    `stopped_by` is the field of Stop that ended the search, or `callback`.
     """
 
     point: Array
@@ -78,7 +78,7 @@ def rms(residuals: Array) -> Array:
 
 
 def finite(losses: ArrayLike) -> Array:
-    """The losses with inf for whatever is not finite, NaN included, so that a failure is never good."""
+    """The losses with inf in place of all values that are not finite, NaN and -inf included."""
     losses = np.asarray(losses, dtype=np.float64)
     return np.where(np.isfinite(losses), losses, np.inf)
 
@@ -91,34 +91,34 @@ def optimize(
     stop: Stop,
     residuals: Function | None = None,
     callback: Callable[[State], bool | None] | None = None,
-    told: Iterable[ArrayLike] = (),
+    earlier_losses: Iterable[ArrayLike] = (),
 ) -> Outcome:
     """Run an optimizer until `stop` ends it.
 
-    evaluate: candidates (M, P) in the unit cube to losses (M,). residuals: to (M, N), the root mean square of a row
-    being its loss; used instead of evaluate by an optimizer that wants them. seed: anything that NumPy's default_rng
-    takes; the outcome is a function of it alone. callback: once a generation; True ends the search. told: the losses
-    of the generations of an earlier run, which is continued bit for bit without evaluating them again (residuals are
-    evaluated again). Raises InputError where they belong to another run.
+    evaluate: candidates (M, P) in the unit cube -> losses (M,). residuals: candidates -> (M, N), the loss being the
+    root mean square of a row; used instead of evaluate by an optimizer that wants them. seed: anything that NumPy's
+    default_rng takes; the outcome depends on nothing else. callback: called after each generation; True ends the
+    search. earlier_losses: the losses of each generation of an earlier run, which is continued bit for bit without
+    evaluating them again (residuals are evaluated again). Raises InputError if they belong to another run.
     """
     by_residuals = residuals is not None and optimizer.wants == "residuals"
     search = optimizer.search(dimensions, np.random.default_rng(seed))
     progress = _Progress(stop, dimensions)
-    replay = iter(told)
+    replay = iter(earlier_losses)
     points = next(search)
     while True:
         points = points[: stop.evaluations - progress.evaluations]
-        known = next(replay, None)
+        recorded = next(replay, None)
         if by_residuals and residuals is not None:
             answer = np.asarray(residuals(points), dtype=np.float64)
             losses = rms(answer)
         else:
-            losses = finite(evaluate(points) if known is None else known)
+            losses = finite(evaluate(points) if recorded is None else recorded)
             answer = losses.copy()
-        _same_shape(losses, points, "function" if known is None else "checkpoint")
-        state = progress.take(points, losses)
+        _check_shape(losses, points, "function" if recorded is None else "checkpoint")
+        state = progress.record(points, losses)
         ended = progress.ended_by()
-        if known is None and callback is not None and callback(state):
+        if recorded is None and callback is not None and callback(state):
             ended = ended or "callback"
         if ended:
             search.close()
@@ -126,14 +126,15 @@ def optimize(
         points = search.send(answer)
 
 
-def _same_shape(losses: Array, points: Array, where: str) -> None:
+def _check_shape(losses: Array, points: Array, where: str) -> None:
+    """Raises InputError unless there is one loss for each candidate."""
     if losses.shape != points.shape[:1]:
         message = f"losses of shape {losses.shape} for {len(points)} candidates"
         raise InputError(message, where=where, remedy="one loss for each candidate, from the same job and seed")
 
 
 class _Progress:
-    """The best so far and three numbers a generation."""
+    """The best point so far, and a row of the history per generation."""
 
     def __init__(self, stop: Stop, dimensions: int) -> None:
         self.stop, self.started = stop, time.perf_counter()
@@ -141,7 +142,8 @@ class _Progress:
         self.rows: list[tuple[int, float, float]] = []
         self.improved, self.threshold = 0, math.inf
 
-    def take(self, points: Array, losses: Array) -> State:
+    def record(self, points: Array, losses: Array) -> State:
+        """Add a generation."""
         self.evaluations += len(losses)
         best = int(np.argmin(losses))
         if losses[best] < self.loss:
@@ -154,6 +156,7 @@ class _Progress:
         return State(len(self.rows), self.evaluations, self.loss, self.point, losses, seconds)
 
     def ended_by(self) -> str:
+        """The field of Stop whose limit is reached, or nothing."""
         generation, (_, seconds, loss) = len(self.rows), self.rows[-1]
         stop = self.stop
         if stop.target is not None and loss <= stop.target:
@@ -181,11 +184,11 @@ def minimize(
     vectorized: bool = False,
     **settings: Any,
 ) -> Outcome:
-    """Minimize your own function of a point (P,) within bounds, a (low, high) for each coordinate.
+    """Minimize a function of a point (P,) within bounds, a (low, high) for each coordinate.
 
-    vectorized: the function takes points (M, P) and returns losses (M,). settings: those of the optimizer, see
-    `pzt-ident show NAME`. The outcome's point is in your coordinates and a function of the seed alone.
-    Raises InputError for bounds that are not finite or reversed, and for an unknown optimizer or setting.
+    vectorized: the function takes points (M, P) and returns losses (M,). settings: of the optimizer, see
+    `pzt-ident show NAME`. The outcome's point is in the function's coordinates and depends on the seed alone.
+    Raises InputError for infinite or reversed bounds and for an unknown optimizer or setting.
     """
     low, high = _box(bounds)
     chosen = optimizers[optimizer].make(**settings).with_budget(evaluations)
@@ -199,6 +202,7 @@ def minimize(
 
 
 def _box(bounds: Sequence[tuple[float, float]]) -> tuple[Array, Array]:
+    """Lower and upper bounds (P,). Raises InputError for infinite or reversed ones."""
     box = np.asarray(bounds, dtype=np.float64)
     if box.ndim != 2 or box.shape[1] != 2 or not len(box):
         raise InputError(f"shape {box.shape}", where="bounds", remedy="give a (low, high) for each coordinate")

@@ -21,11 +21,11 @@ from pzt_ident.search.linear import Linear
 Array = NDArray[np.float64]
 
 
-CLEAR = 0.5  # correlation above which a response rises with its drive
+CLEAR = 0.5  # correlation of drive and response above which the gain is taken as positive
 
 
 class ParameterSpec(Protocol):
-    """What a job may say of a parameter, in the user's units: bounds free it, a value alone fixes it."""
+    """What a job may give for a parameter, in the user's units: bounds make it free, a value alone fixes it."""
 
     @property
     def bounds(self) -> tuple[float, float] | None: ...
@@ -35,20 +35,20 @@ class ParameterSpec(Protocol):
 
 @dataclass(frozen=True)
 class FixedValue:
-    """The wish for a value."""
+    """A specification that fixes a parameter at a value."""
 
     value: float
     bounds: None = None
 
 
 class Problem:
-    """Find the free parameters that leave the least RMSE on the records to identify.
+    """Find the free parameters with the least RMSE on the identification records.
 
-    The loss is sqrt(mean over measured axes of (RMSE / size)^2), pooled over records, each record's and axis' free
-    offset removed (Lin & Lin 2012, eq. 8 and 19), in SI units; sizes are 1 unless given, one a measured axis, to weigh
-    responses of different kinds. A simulation that fails is infinite here, and counted.
+    The loss is sqrt(mean over measured axes of (RMSE / size)^2), pooled over records, without the free offset of each
+    record and axis (Lin & Lin 2012, eq. 8 and 19), in SI units. sizes: (measured axes,), 1 by default, to weigh
+    responses of different kinds. A simulation that fails has an infinite loss, and is counted in `failed`.
     names, units, lower, upper: of the free parameters, in the user's units. Points are (candidates, free) in [0, 1].
-    Raises InputError for a record shorter than the model needs or bounds that the model cannot take.
+    Raises InputError for a record shorter than the model needs or bounds that the model refuses.
     """
 
     def __init__(
@@ -71,12 +71,11 @@ class Problem:
         check_feasible(self, identify)
 
     def _assign(self, identify: list[Record], specs: Mapping[str, ParameterSpec]) -> None:
-        """Which parameters are free, within which bounds, and what the others are fixed to."""
-        count = len(self.model.entries)
+        """Sort the parameters into free ones with bounds, fixed ones and linear ones."""
         check_units(self.model, identify[0], self._unit)
         self.all_units = [self._unit(entry, identify[0]) for entry in self.model.entries]
         self._factor = np.array([factor(unit) for unit in self.all_units])
-        self.theta = np.full(count, np.nan)
+        self.theta = np.full(len(self.model.entries), np.nan)
         free, lower, upper, linear = [], [], [], []
         for column, entry in enumerate(self.model.entries):
             spec = next((specs[name] for name in self.model.spellings(entry) if name in specs), None)
@@ -88,40 +87,51 @@ class Problem:
             elif parameter.linear and not spec:
                 linear.append(column)
             else:
-                own = spec.bounds if spec else None
-                low, high = own or self._bounds(entry, identify) / self._factor[column]
+                given_bounds = spec.bounds if spec else None
+                low, high = given_bounds or self._bounds(entry, identify) / self._factor[column]
                 free.append(column)
                 lower.append(low)
                 upper.append(high)
+        self.lower, self.upper = np.array(lower), np.array(upper)
+        self._describe_free(free)
+        self._set_linear(linear, identify)
+
+    def _describe_free(self, free: list[int]) -> None:
+        """Names, units and scales of the free columns of theta."""
         self.free = np.array(free, dtype=int)
-        entries = [self.model.entries[column] for column in linear]
-        turn = [np.sign(drive_correlation(identify, entry.axis)) or 1.0 for entry in entries]
-        units = np.array([sign * self._size(entry, identify) for sign, entry in zip(turn, entries, strict=True)])
-        self.linear = Linear(self.model, linear, units, self._scaled)
         self.names = tuple(self.model.names[column] for column in free)
         self.units = tuple(self.all_units[column] for column in free)
-        self.lower, self.upper = np.array(lower), np.array(upper)
         scales = np.array([self.model.entries[column].parameter.scale == "log" for column in free], dtype=bool)
         self.log = scales & (self.lower > 0)
-        self._any_log = bool(self.log.any())
+        self._has_log_scale = bool(self.log.any())
+
+    def _set_linear(self, linear: list[int], identify: list[Record]) -> None:
+        """Columns of theta that are solved for, with the sign of the slope of response over drive."""
+        entries = [self.model.entries[column] for column in linear]
+        signs = [np.sign(drive_correlation(identify, entry.axis)) or 1.0 for entry in entries]
+        units = np.array([sign * self._size(entry, identify) for sign, entry in zip(signs, entries, strict=True)])
+        self.linear = Linear(self.model, linear, units, self._scaled)
 
     def _unit(self, entry: Entry, record: Record) -> str:
+        """Unit of a parameter as the user writes it: that of the declaration with the units of the record."""
         first = record.response_units[self.model.measured[0]]
         response = record.response_units[entry.axis] or first
-        own = {"drive": str(record.drive_units[entry.axis]), "response": str(response), "first": str(first)}
-        divisor = {f"/{word}": f"/({unit})" if re.search(r"[/* ]", unit) else f"/{unit}" for word, unit in own.items()}
-        return re.sub(r"/?(drive|response|first)", lambda word: (own | divisor)[word[0]], entry.parameter.unit)
+        units = {"drive": str(record.drive_units[entry.axis]), "response": str(response), "first": str(first)}
+        divisors = {
+            f"/{word}": f"/({unit})" if re.search(r"[/* ]", unit) else f"/{unit}" for word, unit in units.items()
+        }
+        return re.sub(r"/?(drive|response|first)", lambda match: (units | divisors)[match[0]], entry.parameter.unit)
 
     def _bounds(self, entry: Entry, records: list[Record]) -> Array:
-        """Declared bounds in SI units; those of a gain also with the other sign, unless the response rises with the
-        drive: an inverting amplifier turns it round, and so does a drive above the resonance."""
+        """Declared bounds in SI units; those of a gain include the other sign, unless the response clearly rises with
+        the drive: an inverting amplifier reverses the sign, and so does a drive above the resonance."""
         low, high = entry.parameter.bounds
         if entry.parameter.unit == "response/drive" and drive_correlation(records, entry.axis) <= CLEAR:
             low, high = min(low, -high), max(high, -low)
         return np.array([low, high]) * self._size(entry, records)
 
     def _size(self, entry: Entry, records: list[Record]) -> float:
-        """What declared bounds are multiples of, in SI units: the data's own spans where the unit names them."""
+        """The quantity in SI units that declared bounds are multiples of: spans of the data if the unit names them."""
         spans = {
             "drive": max(float(np.ptp(record.drive[entry.axis])) for record in records),
             "response": max(float(np.ptp(record.response[entry.axis])) for record in records),
@@ -131,13 +141,13 @@ class Problem:
         if not named:
             return factor(entry.parameter.unit)
         if "drive" in named and spans["drive"] == 0:
-            problem = f"the drive of axis {self.model.axes[entry.axis]} is constant: nothing to scale {entry.name} by"
-            remedy = "is it the right column? Else give the parameter `bounds` or a `value`"
-            raise InputError(problem, where=records[0].file or records[0].name, remedy=remedy)
+            message = f"the drive of axis {self.model.axes[entry.axis]} is constant: nothing to scale {entry.name} by"
+            remedy = "is it the right column? Otherwise give the parameter `bounds` or a `value`"
+            raise InputError(message, where=records[0].file or records[0].name, remedy=remedy)
         size = 1.0
-        for joint, token, power in re.findall(r"([*/]?)([\w.]+)(?:\^(\d+))?", entry.parameter.unit):
-            one = spans[token] if token in spans else factor(token)
-            size *= one ** ((-1 if joint == "/" else 1) * int(power or 1))
+        for operation, token, power in re.findall(r"([*/]?)([\w.]+)(?:\^(\d+))?", entry.parameter.unit):
+            base = spans[token] if token in spans else factor(token)
+            size *= base ** ((-1 if operation == "/" else 1) * int(power or 1))
         return size
 
     def parameters_at(self, values: Array) -> Array:
@@ -147,7 +157,7 @@ class Problem:
         return theta
 
     def range_of(self, column: int) -> tuple[float, float]:
-        """Bounds of a parameter in the user's units; twice its value where it is fixed."""
+        """Bounds of a parameter in the user's units; (value, value) if it is fixed."""
         place = np.flatnonzero(self.free == column)
         if place.size:
             return float(self.lower[place[0]]), float(self.upper[place[0]])
@@ -155,7 +165,7 @@ class Problem:
 
     @property
     def scored(self) -> int:
-        """Scored samples of the records to identify, over all measured axes."""
+        """Number of scored samples of the identification records, over all measured axes."""
         return sum(simulator.scored for simulator in self.simulators["identify"]) * len(self.model.measured)
 
     @property
@@ -166,13 +176,13 @@ class Problem:
         """Free parameters in the user's units: (candidates, free)."""
         points = np.atleast_2d(points)
         linear = self.lower + points * (self.upper - self.lower)
-        if not self._any_log:
+        if not self._has_log_scale:
             return linear
         base = np.where(self.log, self.lower, 1.0)
         return np.where(self.log, base * (np.where(self.log, self.upper, 1.0) / base) ** points, linear)
 
     def unit_point(self, values: Mapping[str, float]) -> Array:
-        """The point of the cube for values by name in the user's units, moved into the bounds."""
+        """The point of the cube for values by name in the user's units, clipped to the bounds."""
         given = np.array([values[name] for name in self.names])
         with np.errstate(divide="ignore", invalid="ignore"):
             logarithmic = np.log(given / self.lower) / np.log(self.upper / self.lower)
@@ -189,7 +199,7 @@ class Problem:
         return theta
 
     def by_axis(self, points: Array, use: str = "identify") -> Array:
-        """RMSE of each measured axis over all records of that use, in SI units: (candidates, axes)."""
+        """RMSE of each measured axis over all records of a use, in SI units: (candidates, axes)."""
         theta = self.parameters(points)
         simulators = self.simulators[use]
         squares = simulators[0].squares(theta)
@@ -203,7 +213,7 @@ class Problem:
         return rmse
 
     def loss(self, points: Array, use: str = "identify") -> Array:
-        """(candidates,); infinite where the simulation failed, NaN where there is no record of that use."""
+        """(candidates,); infinite if the simulation failed, NaN if there is no record of this use."""
         if not self.simulators[use]:
             return np.full(np.atleast_2d(points).shape[0], np.nan)
         rmse = self.by_axis(points, use) / self.sizes
@@ -211,55 +221,55 @@ class Problem:
 
     def residuals(self, points: Array) -> Array:
         """(candidates, scored samples of all records and axes), scaled so that the norm is the loss; inf if failed."""
-        found = self._scaled(self.parameters(points))
+        residuals = self._scaled(self.parameters(points))
         with np.errstate(all="ignore"):
-            wrong = ~np.isfinite(np.square(found).sum(axis=1))
-        self.failed += int(wrong.sum())
-        found[wrong] = np.inf
-        return found
+            failed = ~np.isfinite(np.square(residuals).sum(axis=1))
+        self.failed += int(failed.sum())
+        residuals[failed] = np.inf
+        return residuals
 
     def _scaled(self, theta: Array) -> Array:
         with np.errstate(all="ignore"):
-            each = [simulator.residuals(theta) / self.sizes[:, None] for simulator in self.simulators["identify"]]
-            return np.hstack([part.reshape(len(theta), -1) for part in each]) / np.sqrt(self.scored)
+            scaled = [simulator.residuals(theta) / self.sizes[:, None] for simulator in self.simulators["identify"]]
+            return np.hstack([part.reshape(len(theta), -1) for part in scaled]) / np.sqrt(self.scored)
 
     def jacobian(self, point: Array, step: float = 1e-5) -> Array:
-        """Central differences of the residuals over the cube, one-sided on its faces and beside points that fail, zero
-        between two of them: (samples, free)."""
+        """Jacobian of the residuals over the cube by central differences, one-sided on its faces and beside points that
+        fail, zero between two failed points: (samples, free)."""
         point = np.asarray(point, dtype=float)
         ends = np.concatenate([np.minimum(point + step, 1), np.maximum(point - step, 0)])
         count = self.dimensions
-        tries = np.where(np.tile(np.eye(count, dtype=bool), (2, 1)), ends[:, None], point)
-        found = self.residuals(tries)
-        failed = np.isinf(found[:, 0])
+        shifted = np.where(np.tile(np.eye(count, dtype=bool), (2, 1)), ends[:, None], point)
+        residuals = self.residuals(shifted)
+        failed = np.isinf(residuals[:, 0])
         if failed.any():
-            found[failed], ends[failed] = self.residuals(point), np.tile(point, 2)[failed]
-        apart = ends[:count] - ends[count:]
-        return ((found[:count] - found[count:]) / np.where(apart > 0, apart, 1)[:, None]).T
+            residuals[failed], ends[failed] = self.residuals(point), np.tile(point, 2)[failed]
+        width = ends[:count] - ends[count:]
+        return ((residuals[:count] - residuals[count:]) / np.where(width > 0, width, 1)[:, None]).T
 
     @property
     def every_simulator(self) -> list[Simulator]:
-        """Those of the records to identify, then of those to validate."""
+        """The simulators of the identification records, then of the validation records."""
         return [simulator for simulators in self.simulators.values() for simulator in simulators]
 
     def simulator_of(self, record: Record) -> Simulator:
         return next(simulator for simulator in self.every_simulator if simulator.record is record)
 
     def errors(self, point: Array) -> Iterator[tuple[Record, Array]]:
-        """Each record with model minus measurement over all its samples, (measured axes, samples), SI units."""
+        """Each record with model minus measurement over all its samples: (measured axes, samples), SI units."""
         theta = self.parameters(point)
         return ((simulator.record, simulator.errors(theta)[0]) for simulator in self.every_simulator)
 
     def polish(self, point: Array, evaluations: int = 2000) -> tuple[Array, int]:
-        """Least squares from a point, with the batched Jacobian: the point reached and the simulations it took."""
+        """Least squares from a point, with the batched Jacobian: the point reached and the number of simulations."""
         from scipy.optimize import least_squares
 
         start = np.clip(point, 1e-9, 1 - 1e-9)
         size = self.loss(start)[0] or 1.0
         if not np.isfinite(size):
             return np.asarray(point), 1
-        each = 2 * self.dimensions
-        found = least_squares(
+        per_jacobian = 2 * self.dimensions
+        result = least_squares(
             lambda x: self.residuals(x)[0] / size,
             start,
             lambda x: self.jacobian(x) / size,
@@ -268,7 +278,7 @@ class Problem:
             ftol=1e-10,
             xtol=1e-10,
             gtol=1e-12,
-            max_nfev=max(2, evaluations // (each + 1)),
+            max_nfev=max(2, evaluations // (per_jacobian + 1)),
         )
-        better = self.loss(found.x)[0] < self.loss(point)[0]
-        return (found.x if better else np.asarray(point)), int(found.nfev + each * found.njev)
+        better = self.loss(result.x)[0] < self.loss(point)[0]
+        return (result.x if better else np.asarray(point)), int(result.nfev + per_jacobian * result.njev)

@@ -26,7 +26,11 @@ def test_every_class_of_the_package_passes(item):
 
 @pytest.mark.parametrize("block", list(blocks), ids=lambda block: block.name)
 def test_every_block_passes_in_all_its_forms(block):
-    for form in (block, *block.forms.values(), *(form.watch for form in (block, *block.forms.values()) if form.watch)):
+    for form in (
+        block,
+        *block.forms.values(),
+        *(form.margin for form in (block, *block.forms.values()) if form.margin),
+    ):
         check_loaded(form, blocks)
 
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from pzt_ident.hysteresis._play import relaxed, relaxing
+from pzt_ident.hysteresis._play import relaxation_coefficients, relaxed_play
 from rig import path, response
 
 KNOWN = {"bouc_wen.gain": 0.08, "bouc_wen.alpha": 0.4, "bouc_wen.beta": 0.04, "bouc_wen.gamma": -0.01}
@@ -55,10 +55,10 @@ FLUCTUATION, HALF = 40.0, 900.0
 def ramp(steps, rate, start=-2000.0, stop=2000.0):
     """The play of a ramp from where it lies on its upper edge, (steps + 1,), and the field."""
     field = np.linspace(start, stop, steps + 1)
-    heat = relaxing(FLUCTUATION, (stop - start) / rate / steps)
+    heat = relaxation_coefficients(FLUCTUATION, (stop - start) / rate / steps)
     p = [start - HALF]
     for before, u in pairwise(field):
-        p.append(relaxed(p[-1], before, u, HALF, *heat))
+        p.append(relaxed_play(p[-1], before, u, HALF, *heat))
     return np.array(p), field
 
 
@@ -75,9 +75,9 @@ def test_the_half_width_of_a_play_grows_with_the_logarithm_of_the_rate(rate):
 
 
 def test_a_play_in_a_hold_goes_on_with_the_logarithm_of_time():
-    heat, p, found = relaxing(FLUCTUATION, 0.5), 100.0, []
+    heat, p, found = relaxation_coefficients(FLUCTUATION, 0.5), 100.0, []
     for _ in range(400):
-        p = relaxed(p, 1000.0, 1000.0, HALF, *heat)
+        p = relaxed_play(p, 1000.0, 1000.0, HALF, *heat)
         found.append(p)
     t = 0.5 * np.arange(1, 401)
     np.testing.assert_allclose(found, 100 + FLUCTUATION * np.log(1 + t), atol=1e-7)
@@ -87,9 +87,9 @@ def test_a_play_is_its_differential_equation():
     """Through both edges, where they are so near that each is felt at the other."""
     half, dt = 4 * FLUCTUATION, 0.01
     drive = path(0, 600, -500, 200, 150, points=400)
-    heat, p, found = relaxing(FLUCTUATION, dt), 0.0, []
+    heat, p, found = relaxation_coefficients(FLUCTUATION, dt), 0.0, []
     for before, u in pairwise(drive):
-        p = relaxed(p, before, u, half, *heat)
+        p = relaxed_play(p, before, u, half, *heat)
         found.append(p)
 
     def slope(t, p):

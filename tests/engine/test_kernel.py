@@ -8,7 +8,7 @@ from pzt_ident.engine import kernel
 
 @pytest.mark.parametrize("shape", [(1,), (3, 5, kernel.WIDTH), (0, 4)])
 def test_scratch_begins_on_a_cache_line(shape):
-    scratch = kernel.aligned(*shape)
+    scratch = kernel.aligned_zeros(*shape)
     assert scratch.shape == shape
     assert not scratch.any()
     assert scratch.size == 0 or scratch.ctypes.data % 64 == 0

@@ -115,12 +115,12 @@ def test_walls_that_break_condition_9_are_said_to(word):
     """alpha P_s > a has walls run away that start to move, those of DW1 never do."""
     model, field = Chain([block_of(word)], "x", [0]), record(path(0, 13500, -1000, 4000, points=100))
 
-    def broken(**known):
+    def violations(**known):
         values = smith.domain_wall(**known)
-        return Simulator(model, field).broken(np.array([[values[name] for name in model.names]]))
+        return Simulator(model, field).violations(np.array([[values[name] for name in model.names]]))
 
-    assert broken(**smith.DW1) == ()
-    (said,) = broken(alpha=4.5e6, k=2e3, c=0.1)
+    assert violations(**smith.DW1) == ()
+    (said,) = violations(alpha=4.5e6, k=2e3, c=0.1)
     assert "condition (9)" in said and "% of its samples" in said and "`domain_wall.pinning`" in said
 
 

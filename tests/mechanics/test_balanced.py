@@ -113,6 +113,6 @@ def test_a_reduced_body_moves_like_the_whole_one(word, given):
 
 
 def test_an_order_beyond_the_elements_is_refused():
-    with pytest.raises(InputError, match="3 elements have no 4 sections") as raised:
+    with pytest.raises(InputError, match="3 elements do not have 4 sections") as raised:
         blocks["rod_reduced"].make(elements=3, order=4)
     assert "elements: 8" in raised.value.remedy

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from pzt_ident.optimizers.cma_es import CMAES, ranked
+from pzt_ident.optimizers.cma_es import CMAES, finite_losses
 from pzt_ident.search.loop import Stop, optimize
 
 
@@ -36,7 +36,7 @@ def test_the_population_doubles_from_start_to_start_with_small_ones_between():
 
 
 def test_failures_rank_behind_the_worst_success():
-    losses = ranked(np.array([3.0, np.inf, -1.0, np.nan]))
+    losses = finite_losses(np.array([3.0, np.inf, -1.0, np.nan]))
     assert losses[[0, 2]].tolist() == [3, -1]
     assert (losses[[1, 3]] > 3).all() and np.isfinite(losses).all()
-    assert np.isfinite(ranked(np.full(4, np.inf))).all()
+    assert np.isfinite(finite_losses(np.full(4, np.inf))).all()

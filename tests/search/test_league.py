@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 from scipy.stats import binomtest
 
-from pzt_ident.search.league import by_repeat, paired, rank, row
+from pzt_ident.search.league import paired_comparison, rank, rmse_by_repeat, summary_of
 
 
 @pytest.mark.parametrize("ahead", range(6))
 def test_the_sign_test_is_the_binomial_one(ahead):
     leader = dict.fromkeys(range(6), 1.0)
     other = {repeat: 2.0 if repeat < ahead else 0.5 if repeat < 5 else 1.0 for repeat in range(6)}
-    found = paired(leader, other)
+    found = paired_comparison(leader, other)
     assert (found["leader_ahead"], found["pairs"]) == (ahead, 5)
     assert found["sign_test"] == pytest.approx(binomtest(ahead, 5).pvalue)
 
@@ -21,13 +21,13 @@ def test_only_repeats_that_both_have_are_paired():
         {"optimizer": name, "repeat": repeat, "rmse_before_polish": {"identify": value}}
         for name, repeat, value in (("pso", 0, 1.0), ("pso", 1, 2.0), ("rga", 1, 3.0), ("rga", 2, 0.1))
     ]
-    found = paired(by_repeat(runs, "pso"), by_repeat(runs, "rga"))
+    found = paired_comparison(rmse_by_repeat(runs, "pso"), rmse_by_repeat(runs, "rga"))
     assert (found["leader_ahead"], found["pairs"]) == (1, 1)
 
 
 def test_the_leader_against_itself_says_nothing():
     own = {0: 1.0, 1: 2.0}
-    assert paired(own, own) == {"leader_ahead": 0, "pairs": 0, "sign_test": 1.0}
+    assert paired_comparison(own, own) == {"leader_ahead": 0, "pairs": 0, "sign_test": 1.0}
 
 
 def run(optimizer, repeat, own, polished=None, **more):
@@ -51,7 +51,7 @@ def history(*steps):
 
 def test_quartiles_of_five_are_the_second_and_the_fourth():
     """Of what the optimizers found themselves; the polish has a column of its own."""
-    found = row(
+    found = summary_of(
         "pso",
         [run("pso", i, own, 1.0 + i / 10, evaluations_to_1_percent=None) for i, own in enumerate([5.0, 1, 9, 3, 2])],
     )
@@ -61,7 +61,9 @@ def test_quartiles_of_five_are_the_second_and_the_fourth():
 
 
 def test_quartiles_between_runs_are_interpolated():
-    found = row("pso", [run("pso", i, own, evaluations_to_1_percent=None) for i, own in enumerate([4.0, 1, 3, 2])])
+    found = summary_of(
+        "pso", [run("pso", i, own, evaluations_to_1_percent=None) for i, own in enumerate([4.0, 1, 3, 2])]
+    )
     assert [found[f"rmse_{word}"] for word in ("lower_quartile", "median", "upper_quartile")] == [1.75, 2.5, 3.25]
 
 
@@ -72,7 +74,7 @@ def test_costs_are_medians_and_evaluations_the_most_of_any_run():
         run("pso", i, 1.0, evaluations_to_1_percent=None, **dict(zip(names, c, strict=True)))
         for i, c in enumerate(costs)
     ]
-    found = row("pso", runs)
+    found = summary_of("pso", runs)
     assert (found["seconds_median"], found["cpu_seconds_median"], found["evaluations"]) == (2, 4, 300)
 
 
@@ -88,7 +90,7 @@ def test_costs_are_medians_and_evaluations_the_most_of_any_run():
     ],
 )
 def test_evaluations_to_one_percent_are_a_median_where_more_than_half_got_there(reached, median, success):
-    found = row("pso", [run("pso", i, 1.0, evaluations_to_1_percent=value) for i, value in enumerate(reached)])
+    found = summary_of("pso", [run("pso", i, 1.0, evaluations_to_1_percent=value) for i, value in enumerate(reached)])
     assert (found["evaluations_to_1_percent_median"], found["success"]) == (median, success)
 
 

@@ -98,10 +98,16 @@ def test_the_losses_that_a_callback_keeps_stay_as_they_were():
 
 
 def test_replayed_generations_are_neither_evaluated_nor_told_again():
-    told, calls = [], []
-    whole = optimize(Walk(), 2, bowl, 0, Stop(60), callback=lambda state: told.append(state.losses))
+    recorded, calls = [], []
+    whole = optimize(Walk(), 2, bowl, 0, Stop(60), callback=lambda state: recorded.append(state.losses))
     again = optimize(
-        Walk(), 2, bowl, 0, Stop(60), told=told[:4], callback=lambda state: calls.append(state.generation) and None
+        Walk(),
+        2,
+        bowl,
+        0,
+        Stop(60),
+        earlier_losses=recorded[:4],
+        callback=lambda state: calls.append(state.generation) and None,
     )
     assert calls == [5, 6]
     assert (again.loss, again.evaluations) == (whole.loss, whole.evaluations)
@@ -109,24 +115,24 @@ def test_replayed_generations_are_neither_evaluated_nor_told_again():
 
 
 def test_a_whole_checkpoint_is_an_outcome():
-    told = []
-    whole = optimize(Walk(), 2, bowl, 0, Stop(25), callback=lambda state: told.append(state.losses))
-    again = optimize(Walk(), 2, None, 0, Stop(25), told=told)
+    recorded = []
+    whole = optimize(Walk(), 2, bowl, 0, Stop(25), callback=lambda state: recorded.append(state.losses))
+    again = optimize(Walk(), 2, None, 0, Stop(25), earlier_losses=recorded)
     np.testing.assert_array_equal(again.point, whole.point)
 
 
 def test_a_foreign_checkpoint_is_refused():
     with pytest.raises(InputError, match=r"checkpoint: losses of shape \(7,\) for 10 candidates"):
-        optimize(Walk(), 2, bowl, 0, Stop(60), told=[np.ones(7)])
+        optimize(Walk(), 2, bowl, 0, Stop(60), earlier_losses=[np.ones(7)])
 
 
 def test_residuals_replay_identically():
     """They are evaluated again, since losses are all that was kept."""
     residuals = lambda x: np.column_stack([x[:, 0] - 0.2, 10 * (x[:, 1] - x[:, 0] ** 2)])  # noqa: E731
-    optimizer, told = optimizers["least_squares"].make(), []
+    optimizer, recorded = optimizers["least_squares"].make(), []
     run = lambda **more: optimize(optimizer, 2, None, 3, Stop(90), residuals=residuals, **more)  # noqa: E731
-    whole = run(callback=lambda state: told.append(state.losses))
-    again = run(told=told[:3])
+    whole = run(callback=lambda state: recorded.append(state.losses))
+    again = run(earlier_losses=recorded[:3])
     assert again.loss == whole.loss
     np.testing.assert_array_equal(again.history.best, whole.history.best)
 

@@ -263,7 +263,7 @@ def test_a_number_of_two_kinds_cannot_be_shared():
         [blocks["homogenized_energy"].make(density="free")], TWO["axes"], [0, 1], ["homogenized_energy.weight_3"]
     )
     with pytest.raises(
-        InputError, match=r"weight_3 is in um and in uC/cm2: no one number is both.*\n.*density: shared"
+        InputError, match=r"weight_3 is in um and in uC/cm2: no single number fits both.*\n.*density: shared"
     ):
         Problem(model, [record])
 
@@ -288,7 +288,7 @@ def test_no_mechanics_moves_a_charge():
     drive = np.vstack([np.sin(np.arange(200) / 30)] * 2)
     record = Record("r", "identify", 1e-3, drive, drive * 1e-6, **TWO)
     model = Chain([blocks["bouc_wen"], blocks["lumped"]], TWO["axes"], [0, 1])
-    with pytest.raises(InputError, match="'lumped' would move the response of axis y, which is in uC/cm2"):
+    with pytest.raises(InputError, match="'lumped' moves a displacement, but the response of axis y is in uC/cm2"):
         Problem(model, [record])
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.signal import resample
 
-from pzt_ident.model.block import Bank, Beside, Coupling, Modes, Operator, Place, Relays, Shift, asked
+from pzt_ident.model.block import Bank, Beside, Coupling, Modes, Operator, Place, Relays, Shift, argument_names
 
 SIZES = ("span", "peak")  # of the drive of the axis itself
 
@@ -44,7 +44,9 @@ def through(chain, model, record, theta, signals, aside=None):
             signals = together(block, given, model.measured[0], signals)
             continue
         terms = bool(model.terms(block))
-        signals = [act(model.form(block), *each, terms) for each in zip(given, signals, aside or signals, strict=True)]
+        signals = [
+            act(model.form_of(block), *each, terms) for each in zip(given, signals, aside or signals, strict=True)
+        ]
     return signals
 
 
@@ -105,7 +107,7 @@ def parameters(model, block, record, axis, other, theta):
 def asking(function, values, branch=0):
     """The author's `prepare` or `terms`, of one branch."""
     own = {word: each[branch] if len(each) > 1 else each[0] for word, each in values.items()} | {"branch": branch}
-    return function(*(own[word] for word in asked(function)))
+    return function(*(own[word] for word in argument_names(function)))
 
 
 def act(block, values, signal, aside, terms):

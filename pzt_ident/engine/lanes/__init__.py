@@ -1,6 +1,6 @@
-"""The lane loop around an author's block: written out from a template, compiled by numba, kept on the disk.
+"""The loop over lanes around an author's block: rendered from a template, compiled by numba, cached on disk.
 
-One file of source a block, named by the hash of all that it is made of, so that a cached kernel is never stale.
+One source file per block, named by the hash of everything it depends on, so that a cached kernel is never stale.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, NamedTuple
 
-from pzt_ident.engine.lanes.refusal import refusal
+from pzt_ident.engine.lanes.compile_error import compile_error
 from pzt_ident.files import cache_folder
-from pzt_ident.model.block import Bank, Beside, Block, Coupling, Modes, Operator, Place, Relays, Shift, asked
-from pzt_ident.model.contract import tried
+from pzt_ident.model.block import Bank, Beside, Block, Coupling, Modes, Operator, Place, Relays, Shift, argument_names
+from pzt_ident.model.contract import try_functions
 
 TEMPLATES = Path(__file__).parent
 FUNCTIONS = (
@@ -30,10 +30,10 @@ FUNCTIONS = (
 
 
 class Layout(NamedTuple):
-    """Rows of WIDTH numbers in a block's scratch: states of all copies (branches, or pairs of axes), coefficients of
-    all, what `prepare` is given of all, then work. An operator's coefficients are shared, along, against, those of
-    relays shape, energy, shared: `first` and `second` count the former two. Its terms have coefficients and a share of
-    what is given of their own."""
+    """Numbers of rows, of WIDTH numbers each, in a block's scratch: states of all copies (branches, or pairs of axes),
+    then coefficients of all, coefficients of the terms, arguments of `prepare` of all (`given`), arguments of `terms`,
+    and work space. An operator's coefficients are (shared, along, against), those of relays (shape, energy, shared):
+    `first` and `second` are the sizes of the first two of these groups."""
 
     states: int
     coefficients: int
@@ -60,8 +60,9 @@ class Compiled(NamedTuple):
 
 
 class Variant(NamedTuple):
-    """`driven`: the block reads the drive, the same in every lane, and is the first of its axis. `readout`: what drives
-    an operator's prompt response has a tile of its own. `terms`: effects act in its equation. `axes`: of a coupling."""
+    """`driven`: the block is the first of its axis and reads the drive, which is the same in every lane. `readout`: the
+    input of an operator's prompt response has a tile of its own. `terms`: effects act in the block's equation. `axes`:
+    number of axes of a coupling or of modes."""
 
     driven: bool = False
     readout: bool = False
@@ -71,15 +72,15 @@ class Variant(NamedTuple):
 
 @cache
 def compile_block(block: type[Block], variant: Variant = Variant()) -> Compiled:  # noqa: B008
-    """The block's C function."""
+    """The block's C function, from the cache or newly compiled."""
     from pzt_ident.engine import elementary, kernel
 
     template = template_of(block, variant)
     layout = layout_of(block, variant)
     text = (TEMPLATES / f"{template}.jinja").read_text()
-    known = [inspect.getsource(module) for module in (kernel, elementary)]
-    sources = [text, kernel.VERSION, str(layout), str(variant), *known, *authors(block)]
-    sources.append(block.__module__)  # which the cached code looks up
+    modules = [inspect.getsource(module) for module in (kernel, elementary)]
+    sources = [text, kernel.VERSION, str(layout), str(variant), *modules, *author_sources(block)]
+    sources.append(block.__module__)  # the cached code looks it up
     key = hashlib.sha256("\0".join(sources).encode()).hexdigest()[:16]
     path = cache_folder() / f"{block.__name__.lower()}_{template}_{key}.py"
     if not path.exists():
@@ -90,46 +91,47 @@ def compile_block(block: type[Block], variant: Variant = Variant()) -> Compiled:
 def template_of(block: type[Block], variant: Variant) -> str:
     if issubclass(block, Operator):
         return "driven_operator" if variant.driven else "operator"
-    named = {Coupling: "coupling", Modes: "modes", Bank: "bank", Shift: "shift", Relays: "relays"}
-    return next((name for kind, name in named.items() if issubclass(block, kind)), "plain")
+    templates = {Coupling: "coupling", Modes: "modes", Bank: "bank", Shift: "shift", Relays: "relays"}
+    return next((name for kind, name in templates.items() if issubclass(block, kind)), "plain")
 
 
-def rests(block: type[Block]) -> bool:
-    """Whether the branches of a bank say when they hold still."""
+def has_rests(block: type[Block]) -> bool:
+    """Whether the block is a bank with a function `rests`."""
     return issubclass(block, Bank) and getattr(block, "rests", None) is not None
 
 
-def relays_room(block: type[Relays]) -> int:
-    """Shares, weights, coercive fields, sums, the weight below each, between where each coercive field's are not at
-    rest, the field before, six tables; whether lanes are alike."""
+def relays_work(block: type[Relays]) -> int:
+    """Rows of work space, as relays.jinja lays it out: shares, weights, coercive fields, sums, cumulative weights, the
+    range of moving shares of each coercive field, the last field, six tables; whether the lane is a copy."""
     tables = 6 * (block.fine + 1) * block.columns
     return (block.coercives + 3) * block.interactions + 3 * block.coercives + 3 + tables
 
 
 def layout_of(block: type[Block], variant: Variant) -> Layout:
-    """Counted by asking the block itself, with parameters in the middle of their bounds."""
-    groups = tried(block)
+    """Counted by calling the block's functions once, with parameters in the middle of their bounds."""
+    groups = try_functions(block)
     operator, relays = issubclass(block, Operator), issubclass(block, Relays)
     names = ("shared", "along", "against") if operator else ("shape", "energy", "shared")
-    whole = groups.get("coefficients", ())
-    parts = [len(groups[name]) for name in names] if operator or relays else [0, 0, len(whole)]
+    ungrouped = groups.get("coefficients", ())
+    parts = [len(groups[name]) for name in names] if operator or relays else [0, 0, len(ungrouped)]
     states = len(groups.get("states", ()))
     axes = variant.axes
     copies = (
         block.branches if issubclass(block, Bank | Modes) else axes * (axes - 1) if issubclass(block, Coupling) else 1
     )
-    work = 7 if operator else 3 if rests(block) else relays_room(block) if issubclass(block, Relays) else 0
-    asking = asked(block.terms) if variant.terms else ()  # type: ignore[attr-defined]
+    work = 7 if operator else 3 if has_rests(block) else relays_work(block) if issubclass(block, Relays) else 0
+    given_terms = argument_names(block.terms) if variant.terms else ()  # type: ignore[attr-defined]
     terms = len(groups["terms"]) if variant.terms else 0
     given = len(block.arguments()) + (2 * axes if issubclass(block, Modes) else 0)
-    return Layout(states, sum(parts), given, copies, work, parts[0], parts[1], terms, len(asking))
+    return Layout(states, sum(parts), given, copies, work, parts[0], parts[1], terms, len(given_terms))
 
 
 def render(text: str, block: type[Block], layout: Layout, variant: Variant, kernel: ModuleType) -> str:
+    """The kernel's source; the header of each template names the symbols."""
     from jinja2 import Environment, StrictUndefined
 
-    made = Environment(trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined).from_string(text)
-    return made.render(
+    template = Environment(trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined).from_string(text)
+    return template.render(
         S=[f"s{i}" for i in range(layout.states)],
         K=[f"k{i}" for i in range(layout.coefficients)],
         G=layout.given,
@@ -140,7 +142,7 @@ def render(text: str, block: type[Block], layout: Layout, variant: Variant, kern
         T=[f"e{i}" for i in range(layout.terms)],
         GT=layout.given_terms,
         readout=variant.readout,
-        rests=rests(block),
+        rests=has_rests(block),
         block=block,
         rows=layout.rows,
         work=layout.rows - layout.work,
@@ -168,13 +170,13 @@ def compiled(path: Path, block: type[Block]) -> Any:
     try:
         return load(path, block)
     except NumbaError as error:
-        own = functions(block)
-        called = {helper for function in own.values() for helper in helpers(function)}
-        raise refusal(block, str(error), own, called) from None
+        authored = functions(block)
+        called = {helper for function in authored.values() for helper in helpers(function)}
+        raise compile_error(block, str(error), authored, called) from None
 
 
 def load(path: Path, block: type[Block]) -> Any:
-    """Import the written-out source with the author's functions in it."""
+    """Import the rendered source with the author's functions in it."""
     spec = importlib.util.spec_from_file_location(path.stem, path)
     assert spec and spec.loader
     module = importlib.util.module_from_spec(spec)
@@ -186,13 +188,13 @@ def load(path: Path, block: type[Block]) -> Any:
 
 
 def functions(block: type[Block]) -> dict[str, FunctionType]:
-    """What an author has written; a parameter may have the name of a function of another kind of block."""
-    found = {word: getattr(block, word, None) for word in FUNCTIONS}
-    return {word: function for word, function in found.items() if isinstance(function, FunctionType)}
+    """The functions of the author, by name; a parameter may have the name of a function of another kind of block."""
+    attributes = {word: getattr(block, word, None) for word in FUNCTIONS}
+    return {word: function for word, function in attributes.items() if isinstance(function, FunctionType)}
 
 
 def jitted(function: FunctionType) -> Any:
-    """The function and the plain functions that it calls, as numba sees them."""
+    """The function for numba, with the plain functions that it calls registered."""
     from numba import njit
     from numba.extending import register_jitable
 
@@ -202,16 +204,18 @@ def jitted(function: FunctionType) -> Any:
 
 
 def helpers(function: FunctionType) -> set[FunctionType]:
-    found: set[FunctionType] = set()
+    """The plain functions that a function calls, directly or through others."""
+    called: set[FunctionType] = set()
     for word in function.__code__.co_names:
         helper = function.__globals__.get(word)
         if isinstance(helper, FunctionType) and helper.__module__ != Block.__module__:
-            found |= {helper} | helpers(helper)
-    return found
+            called |= {helper} | helpers(helper)
+    return called
 
 
-def authors(block: type[Block]) -> list[str]:
+def author_sources(block: type[Block]) -> list[str]:
     """The sources of all files that a block's functions come from."""
-    own = functions(block).values()
-    every = {block.__module__} | {each.__module__ for function in own for each in {function} | helpers(function)}
-    return [inspect.getsource(sys.modules[name]) for name in sorted(every)]
+    authored = functions(block).values()
+    called = {helper for function in authored for helper in {function} | helpers(function)}
+    modules = {block.__module__} | {function.__module__ for function in called}
+    return [inspect.getsource(sys.modules[name]) for name in sorted(modules)]

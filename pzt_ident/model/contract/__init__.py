@@ -1,8 +1,8 @@
-"""What a block or an optimizer owes its kind: `check` says what it lacks.
+"""What a block or an optimizer must declare and define; `check` raises InputError for what is missing or wrong.
 
-A class is checked where it is registered, so that a mistake is told in its author's own words before anything is
-compiled. Its functions are tried there too, unless they call others that stand further down in the file: then where the
-block is compiled, or the job that plugs it in is checked.
+A class is checked when it is registered, so that a mistake is reported in the author's own names before anything is
+compiled. Its functions are also called once, unless they call others that are defined further down in the file: those
+are called when the block is compiled or a job that lists it as a plugin is checked.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ from pzt_ident.model.contract.declared import (
     fault,
     parameters,
 )
-from pzt_ident.model.contract.functions import TooSoon, called, check_asked, tried
+from pzt_ident.model.contract.functions import NotYetDefined, call_function, check_asked, try_functions
 from pzt_ident.model.contract.kinds import ANY, BRANCHED, KINDS, kind_of, kinds
 from pzt_ident.model.contract.optimizer import check_optimizer
 
-__all__ = ["called", "check", "check_loaded", "tried"]
+__all__ = ["call_function", "check", "check_loaded", "try_functions"]
 
 
 def check(item: Any, registry: str = "") -> None:
-    """Raises InputError where a class is no sound block or optimizer: what is wrong, in which function, and what to do.
+    """Raises InputError for a faulty block or optimizer: what is wrong, in which function, and the remedy.
 
-    registry: the group of the registry that it is meant for; found from the class where it is not given.
+    registry: the entry-point group of the registry; derived from the class if empty.
     """
     if not inspect.isclass(item):
         raise InputError("is no class", where=str(getattr(item, "__name__", item)), remedy="decorate a class")
@@ -48,8 +48,8 @@ def check_block(block: Any) -> None:
     if not kind:
         raise InputError("is no block", where=block.__name__, remedy="derive it from Block or one of its kinds")
     bases = kinds(block)
-    taken = set(KINDS[kind]) | {word for base in bases for word in (*vars(base), *base.__annotations__)}
-    check_words(block, {word.removesuffix("?") for word in (*taken, *ANY)})
+    reserved = set(KINDS[kind]) | {word for base in bases for word in (*vars(base), *base.__annotations__)}
+    check_words(block, {word.removesuffix("?") for word in (*reserved, *ANY)})
     check_docstring(block)
     if kind != "term":
         check_place(block)
@@ -61,17 +61,16 @@ def check_block(block: Any) -> None:
     check_asked(block)
     check_counts(block, kind in BRANCHED, kind == "addition")
     check_effect(block, kind == "term", bases)
-    with suppress(TooSoon):
-        tried(block)
+    with suppress(NotYetDefined):
+        try_functions(block)
 
 
 def check_loaded(block: Any, known: Any) -> None:
-    """What can be told of a block only once its file and those of other effects have been read. known: the registry of
-    blocks."""
-    tried(block)
-    named = [("look_alikes", word) for word in block.look_alikes]
-    named += [(word, item.effect) for word, item in parameters(block).items() if item.effect]
-    for where, word in named:
+    """The checks of a block that need its whole file and the other effects. known: the registry of blocks."""
+    try_functions(block)
+    references = [("look_alikes", word) for word in block.look_alikes]
+    references += [(word, item.effect) for word, item in parameters(block).items() if item.effect]
+    for where, word in references:
         if word not in known:
             raise fault(block, where, f"unknown effect {word!r}", nearest(word, known.effects()))
         if not known[word].remedy:

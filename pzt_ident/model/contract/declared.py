@@ -1,4 +1,4 @@
-"""What a block declares beside its functions: parameters, settings, its place, and what an effect says of itself."""
+"""Checks of what a block declares: parameters, settings, place, and the texts of an effect."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from pzt_ident.data.units import factor
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.model.parameter import Form, Parameter, Setting
 
-STANDS_FOR = {"drive": "V", "response": "m", "first": "m"}
-TYPES = {"unit": str, "doc": str, "effect": str | None, "count": int | str | None, "smooth": str | None}
-WORDS = {"scale": ("linear", "log"), "each": ("axis", "stage", "later axis")}
+UNIT_EXAMPLES = {"drive": "V", "response": "m", "first": "m"}
+FIELD_TYPES = {"unit": str, "doc": str, "effect": str | None, "count": int | str | None, "smooth": str | None}
+FIELD_WORDS = {"scale": ("linear", "log"), "per": ("axis", "stage", "later axis")}
 TEXT, COUNT = "a text", "a whole number from 1 on"
 TUPLE = 'a tuple of words, such as `("creep",)`'
-FACTS = {
-    TUPLE: ("look_alikes", "seen", "solved", "weights"),
-    TEXT: ("separate_by", "remedy", "broken"),
+ATTRIBUTES = {
+    TUPLE: ("look_alikes", "compared_with_drive", "solved", "weights"),
+    TEXT: ("separate_by", "remedy", "violation"),
     COUNT: ("oversample",),
     "a tuple of numbers": ("sizes",),
     "a table by parameter": ("trials",),
     "a table of blocks by word": ("forms",),
 }
-"""What the facts are that a block may declare."""
+"""Class attributes that a block may declare, by what their value must be."""
 
 
 def fault(item: Any, where: str, message: str, remedy: str) -> InputError:
@@ -33,13 +33,13 @@ def fault(item: Any, where: str, message: str, remedy: str) -> InputError:
 
 
 def declared(block: Any, kinds: type[Any] | tuple[type[Any], ...]) -> dict[str, Any]:
-    """What a block and what it is derived from declare of some kinds, by its word in the class."""
-    owned = [item for owner in reversed(block.__mro__) for item in vars(owner).items()]
-    return {word: item for word, item in owned if isinstance(item, kinds)}
+    """The attributes of some kinds that a block and its base classes declare, by attribute name."""
+    attributes = [item for owner in reversed(block.__mro__) for item in vars(owner).items()]
+    return {word: value for word, value in attributes if isinstance(value, kinds)}
 
 
 def parameters(block: Any) -> dict[str, Parameter]:
-    """By the words that `prepare` has for them: a counted one once."""
+    """By the name under which `prepare` asks for them; one with a `count` appears once."""
     return declared(block, Parameter)
 
 
@@ -52,18 +52,18 @@ def check_docstring(item: Any) -> None:
 def check_place(block: Any) -> None:
     place = getattr(block, "place", None)
     if not isinstance(place, IntEnum):
-        said = "has no `place`" if place is None else f"has {place!r} for its `place`"
-        raise fault(block, "place", said, "say where it stands in the signal chain, such as `place = Place.READOUT`")
+        message = "has no `place`" if place is None else f"has {place!r} for its `place`"
+        raise fault(block, "place", message, "say where it stands in the signal chain, such as `place = Place.READOUT`")
 
 
 def check_words(block: Any, taken: Iterable[str]) -> None:
-    """A parameter or setting must not hide what every block has, nor be one object under two names."""
+    """A parameter or setting must not hide an attribute of every block, nor be one object under two names."""
     for word, item in declared(block, Parameter | Setting | Form).items():  # type: ignore[arg-type]
         if word in taken:
             raise fault(block, word, f"{word!r} is a word of every block of this kind", "rename the parameter")
         if isinstance(item, Parameter) and item.name != word:
-            said = f"is the same object as the parameter {item.name!r}"
-            raise fault(block, word, said, "declare it anew, or copy it with dataclasses.replace")
+            message = f"is the same object as the parameter {item.name!r}"
+            raise fault(block, word, message, "declare it anew, or copy it with dataclasses.replace")
 
 
 def check_facts(block: Any) -> None:
@@ -77,19 +77,19 @@ def check_facts(block: Any) -> None:
             isinstance(value, Mapping) and all(isinstance(form, type) for form in value.values())
         ),
     }
-    for due, words in FACTS.items():
+    for expected, words in ATTRIBUTES.items():
         for word in words:
             value = getattr(block, word, None)
-            if hasattr(block, word) and not fits[due](value):
-                raise fault(block, word, f"{value!r} is not {due}", f"give {due}")
+            if hasattr(block, word) and not fits[expected](value):
+                raise fault(block, word, f"{value!r} is not {expected}", f"give {expected}")
 
 
 def check_settings(block: Any) -> None:
     for word, item in block.settings().items():
         if isinstance(item, Setting) and not ordered(item.bounds):
-            raise fault(block, word, f"bounds {item.bounds!r} are no range", "give (least, most), the lesser first")
+            raise fault(block, word, f"bounds {item.bounds!r} are no range", "give (least, most), the smaller first")
         item.check(item.value, f"{block.__name__}.{word}")
-    for listed in ("seen", "trials", "weights"):
+    for listed in ("compared_with_drive", "trials", "weights"):
         for word in getattr(block, listed, ()):
             if word not in parameters(block):
                 raise fault(block, listed, f"unknown parameter {word!r}", nearest(word, parameters(block)))
@@ -106,26 +106,28 @@ def ordered(bounds: Any) -> bool:
 
 def check_parameters(block: Any) -> None:
     for word, item in parameters(block).items():
-        for fact, kind in TYPES.items():
+        for fact, kind in FIELD_TYPES.items():
             if not isinstance(getattr(item, fact), kind):
                 raise fault(
                     block, word, f"{fact} {getattr(item, fact)!r} is no such thing", f"see `{fact}` of Parameter"
                 )
         _check_numbers(block, word, item)
         _check_unit(block, word, item)
-        for fact, known in WORDS.items():
+        for fact, known in FIELD_WORDS.items():
             if getattr(item, fact) not in known:
-                said = f"unknown {fact} {getattr(item, fact)!r}"
-                raise fault(block, word, said, nearest(str(getattr(item, fact)), known))
+                message = f"unknown {fact} {getattr(item, fact)!r}"
+                raise fault(block, word, message, nearest(str(getattr(item, fact)), known))
         if item.effect and item.null is None:
-            raise fault(block, word, "belongs to an effect, but has no null", "give the value at which it is not there")
+            raise fault(
+                block, word, "belongs to an effect, but has no null", "give the value at which it has no effect"
+            )
         if item.smooth is not None and item.smooth not in parameters(block):
             raise fault(block, word, f"unknown parameter {item.smooth!r}", nearest(item.smooth, parameters(block)))
 
 
 def _check_numbers(block: Any, word: str, item: Parameter) -> None:
     if not ordered(item.bounds):
-        remedy = "give (least, most), finite and the lesser first"
+        remedy = "give (least, most), finite and the smaller first"
         raise fault(block, word, f"bounds {item.bounds!r} are no range", remedy)
     low, high = item.bounds
     if item.scale == "log" and low <= 0:
@@ -133,46 +135,46 @@ def _check_numbers(block: Any, word: str, item: Parameter) -> None:
     for fact in ("null", "value"):
         number = getattr(item, fact)
         if number is not None and not (isinstance(number, int | float) and low <= number <= high):
-            said = f"{fact} {number!r} is out of its bounds ({low:g}, {high:g})"
-            raise fault(block, word, said, f"give {fact} a number from {low:g} to {high:g}")
+            message = f"{fact} {number!r} is out of its bounds ({low:g}, {high:g})"
+            raise fault(block, word, message, f"give {fact} a number from {low:g} to {high:g}")
 
 
 def _check_unit(block: Any, word: str, item: Parameter) -> None:
     try:
-        factor(re.sub(r"\b(drive|response|first)(?=\b|\d)", lambda found: STANDS_FOR[found[0]], item.unit))
+        factor(re.sub(r"\b(drive|response|first)(?=\b|\d)", lambda match: UNIT_EXAMPLES[match[0]], item.unit))
     except InputError as error:
-        remedy = f"{error.remedy}; `drive`, `response` and `first` stand for units of the data"
+        remedy = f"{error.remedy}; `drive`, `response` and `first` stand for the units of the data"
         raise fault(block, word, error.message, remedy) from None
 
 
 def check_counts(block: Any, branched: bool, many: bool) -> None:
-    """Of branches, and of parameters that each branch has its own of. many: a count needs no branches."""
+    """Checks the number of branches and the counted parameters. many: a count needs no branches."""
     for word, item in parameters(block).items():
         if isinstance(item.count, str) and item.count not in block.settings():
             remedy = nearest(item.count, block.settings()) if block.settings() else "declare it as a Setting"
             raise fault(block, word, f"is counted by the unknown setting {item.count!r}", remedy)
     branches = getattr(block, "branches", None)
     if branched and (not isinstance(branches, int) or branches < 1):
-        said = "has no `branches`" if branches is None else f"has {branches!r} `branches`"
-        raise fault(block, "branches", said, "say how many with a whole number, `count` or a setting")
+        message = "has no `branches`" if branches is None else f"has {branches!r} `branches`"
+        raise fault(block, "branches", message, "say how many with a whole number, `count` or a setting")
     for word, item in parameters(block).items():
         count = block.setting(item.count) if isinstance(item.count, str) else item.count
         if count is not None and not many and count != branches:
-            said = f"there are {count} of it for {branches if branched else 'no'} branches"
-            raise fault(block, word, said, "count one a branch" if branched else "leave out `count`")
+            message = f"there are {count} of it for {branches if branched else 'no'} branches"
+            raise fault(block, word, message, "count one per branch" if branched else "leave out `count`")
 
 
 def check_effect(block: Any, term: bool, kinds: tuple[type, ...]) -> None:
-    """What is an effect, having a remedy, says how to tell it. kinds: the classes that declare nothing of their own."""
-    own = {word for base in block.__mro__ if base not in kinds for word in vars(base)}
+    """A block with a remedy is an effect and must say how to tell it apart. kinds: the base classes of all blocks."""
+    declared_words = {word for base in block.__mro__ if base not in kinds for word in vars(base)}
     if not block.remedy:
         if block.look_alikes or block.separate_by or term:
             raise fault(block, "remedy", "is an effect without `remedy`", "say what to do about it on the rig")
         return
-    if "look_alikes" not in own:
+    if "look_alikes" not in declared_words:
         remedy = 'name the effects that leave the same trace, `look_alikes = ("creep",)`, or `()` where none does'
         raise fault(block, "look_alikes", "is an effect without look-alikes", remedy)
     if not block.separate_by:
         raise fault(block, "separate_by", "is an effect without `separate_by`", "say which experiment tells it apart")
     if not term and all(item.null is None for item in parameters(block).values()):
-        raise fault(block, "", "is an effect without a null", "give a parameter the `null` at which it is not there")
+        raise fault(block, "", "is an effect without a null", "give a parameter the `null` at which it has no effect")

@@ -1,4 +1,4 @@
-"""The functions of each kind of block: what they are given and what they give."""
+"""The functions of each kind of block: their arguments and results."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ KINDS = {
     | {
         "output": "u, total, *coefficients -> y",
         "rests?": "*states, low, high, *coefficients -> still",
-        "stands?": "branches -> drive",
+        "threshold?": "branches -> drive",
         "count?": "settings -> branches",
-        "solve?": "own",
+        "solve?": "values",
     },
     "relays": {
         "prepare": "given -> (shape), (energy), (shared)",
@@ -46,56 +46,60 @@ KINDS = {
     "modes": PREPARED | {"start": "p, *coefficients -> +states", "step": "*states, p, *coefficients -> *states, q"},
     "coupling": PREPARED | {"step": "y, other, *coefficients -> y"},
 }
-"""By kind: function -> what it is given -> what it gives. `?`: may be left out. `*` stands for all of a group, which is
-as many as the function that gives it gives; `+` for one or more; `(...)` for a tuple of one or more; a comma at the end
-for a tuple of one; a name in WORDED for what a function asks for by name. What gives nothing here is not tried."""
+"""By kind of block: function name -> "arguments -> results". `?`: the function is optional. `*`: all values of a group,
+as many as the function that returns it returns; `+`: one or more; `(...)`: a tuple of one or more; a comma at the end:
+a tuple of one; a name in ASKED_BY_NAME: arguments that the function asks for by name. A function without results is not
+called by the check."""
 
 ANY = {"refuse?": "least, most"}
-WORDED = ("given", "own parameters", "branches", "settings")
+ASKED_BY_NAME = ("given", "own parameters", "branches", "settings")
 BRANCHED = ("bank", "modes")
 
 
-class Owed(NamedTuple):
+class Signature(NamedTuple):
+    """Arguments and results of one function; packed: it returns a tuple."""
+
     arguments: tuple[str, ...]
     results: tuple[str, ...]
     packed: bool
 
     @property
-    def worded(self) -> str:
-        return next((token for token in self.arguments if token in WORDED), "")
+    def asked_by_name(self) -> str:
+        return next((token for token in self.arguments if token in ASKED_BY_NAME), "")
 
 
 def kinds(block: Any) -> tuple[type, ...]:
-    """The classes that a block's author derives it from."""
+    """The base classes of a block that an author derives from."""
     return tuple(base for base in block.__mro__ if KINDS.get(str(vars(base).get("kind"))) is not None)
 
 
 def kind_of(block: Any) -> str:
-    """The kind of a block; empty for what is none."""
+    """The kind of a block; empty for a class that is no block."""
     return next((vars(base)["kind"] for base in kinds(block)), "")
 
 
-def owed(block: Any) -> dict[str, Owed]:
-    """The functions that a block must have, or has."""
-    found = {}
+def signatures(block: Any) -> dict[str, Signature]:
+    """The signatures of the functions that a block must define or does define, by name."""
+    signatures_by_name = {}
     for name, text in (KINDS[kind_of(block)] | ANY).items():
         word = name.removesuffix("?")
-        if word == name or getattr(block, word, None) is not None or _asked_for(block, word):
-            found[word] = _parsed(text)
-    return found
+        if word == name or getattr(block, word, None) is not None or _required(block, word):
+            signatures_by_name[word] = _parsed(text)
+    return signatures_by_name
 
 
-def _asked_for(block: Any, word: str) -> bool:
-    """Whether what else a block declares makes a function of it necessary that others do without."""
+def _required(block: Any, word: str) -> bool:
+    """Whether another declaration of the block makes an optional function necessary."""
     if word == "solve":
         return bool(block.solved)
-    inside = [item.effect for item in parameters(block).values() if item.effect and item.effect not in block.forms]
+    effects = [item.effect for item in parameters(block).values() if item.effect and item.effect not in block.forms]
     terms = ("terms", "lift", "fade")
-    return word in terms and (bool(inside) or any(getattr(block, each, None) is not None for each in terms))
+    return word in terms and (bool(effects) or any(getattr(block, term, None) is not None for term in terms))
 
 
 @cache
-def _parsed(text: str) -> Owed:
-    given, _, gives = text.partition(" -> ")
-    results = tuple(token.strip() for token in gives.rstrip(",").split(",") if token.strip())
-    return Owed(tuple(given.split(", ")), results, gives.endswith(",") or len(results) > 1 or gives[:1] in ("*", "+"))
+def _parsed(text: str) -> Signature:
+    arguments, _, returned = text.partition(" -> ")
+    results = tuple(token.strip() for token in returned.rstrip(",").split(",") if token.strip())
+    is_tuple = returned.endswith(",") or len(results) > 1 or returned[:1] in ("*", "+")
+    return Signature(tuple(arguments.split(", ")), results, is_tuple)

@@ -1,4 +1,4 @@
-"""What numba says of a function that it cannot compile, in the words of its author."""
+"""The error for a function that numba cannot compile, with the line of its author."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ PLACE = re.compile(r"""(?:File "|\bat )(?P<file>[^"\n]+?)(?:", line | \()(?P<lin
 REMEDY = "write it with numbers, tuples, conditional expressions and the functions of math and of pzt_ident.model.block"
 
 
-def refusal(
+def compile_error(
     block: type[Any], trace: str, functions: Mapping[str, FunctionType], helpers: Iterable[FunctionType]
 ) -> InputError:
-    """The error that names the function and the line, the innermost of the author's. trace: numba's message."""
-    every = {**functions, **{helper.__name__: helper for helper in helpers}}
+    """The error with the function and the innermost line that the author wrote. trace: numba's message."""
+    candidates = {**functions, **{helper.__name__: helper for helper in helpers}}
     for file, number in _places(trace):
-        for word, function in every.items():
-            if _holds(function, file, number):
+        for word, function in candidates.items():
+            if _contains(function, file, number):
                 where = f"{block.__name__}.{word}" if word in functions else f"{block.__name__}: {word}"
                 line = linecache.getline(str(file), number).strip()
                 return InputError(f"line {number} cannot be compiled: `{line}`", where=where, remedy=REMEDY)
@@ -32,11 +32,11 @@ def refusal(
 
 
 def _places(trace: str) -> Iterator[tuple[Path, int]]:
-    for found in PLACE.finditer(trace):
-        yield Path(found["file"]).resolve(), int(found["line"])
+    for match in PLACE.finditer(trace):
+        yield Path(match["file"]).resolve(), int(match["line"])
 
 
-def _holds(function: FunctionType, file: Path, number: int) -> bool:
+def _contains(function: FunctionType, file: Path, number: int) -> bool:
     code = function.__code__
     last = max((line for *_, line in code.co_lines() if line is not None), default=code.co_firstlineno)
     return Path(code.co_filename).resolve() == file and code.co_firstlineno <= number <= last
