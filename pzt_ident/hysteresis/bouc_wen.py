@@ -26,8 +26,8 @@ class BoucWen(Operator):
     place = Place.OPERATOR
     gain = Parameter("response/drive", (0, 3), "Displacement per volt without hysteresis, d.")
     alpha = Parameter("1", (0, 1), "Share of the prompt response that hysteresis takes back just after a rest.")
-    beta = Parameter("1/drive", (0, 60), "Forgetting per volt on both branches.")
-    gamma = Parameter("1/drive", (-30, 60), "Forgetting per volt, with the sign of h along the motion.")
+    beta = Parameter("1/drive", (0, 60), "Decay of h per volt on both branches.")
+    gamma = Parameter("1/drive", (-30, 60), "Decay of h per volt, with the sign of h along the motion.")
 
     asymmetry = Parameter(
         "1/drive", (-1, 1), "Part of the drive term that grows with the voltage.", 0, effect="asymmetry"

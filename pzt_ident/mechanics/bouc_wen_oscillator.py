@@ -20,8 +20,8 @@ class BoucWenOscillator(Block):
     damping = Parameter("N*s/m", (0, 1e3), "Viscous damping.")
     stiffness = Parameter("N/m", (1e2, 1e8), "Linear stiffness; stiffness + alpha is the initial one.", scale="log")
     alpha = Parameter("N/m", (0, 1e6), "Initial stiffness of the hysteretic spring.")
-    beta = Parameter("1/response", (-5, 20), "Forgetting per displacement on both branches.")
-    gamma = Parameter("1/response", (-20, 20), "Forgetting per displacement, with the sign of z along the motion.")
+    beta = Parameter("1/response", (-5, 20), "Decay of z per displacement on both branches.")
+    gamma = Parameter("1/response", (-20, 20), "Decay of z per displacement, with the sign of z along the motion.")
 
     def prepare(mass, damping, stiffness, alpha, beta, gamma, dt):
         return 1 / mass, damping, stiffness, alpha, beta, gamma, dt

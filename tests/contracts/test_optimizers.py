@@ -87,10 +87,10 @@ def test_finds_the_bottom_of_a_bowl(word, centre):
 
 @pytest.mark.parametrize("word", WORDS)
 @pytest.mark.parametrize("cut", [1, 2, 7])
-def test_goes_on_from_the_losses_told(word, cut):
-    told = []
-    whole, outcome = walk(word, 3, 5, 1200, callback=lambda state: told.append(state.losses.copy()))
-    rest, again = walk(word, 3, 5, 1200, told=told[:cut])
+def test_goes_on_from_the_recorded_losses(word, cut):
+    recorded = []
+    whole, outcome = walk(word, 3, 5, 1200, callback=lambda state: recorded.append(state.losses.copy()))
+    rest, again = walk(word, 3, 5, 1200, earlier_losses=recorded[:cut])
     np.testing.assert_array_equal(np.vstack(rest), np.vstack(whole[cut:]))
     assert (again.loss, *again.point) == (outcome.loss, *outcome.point)
 

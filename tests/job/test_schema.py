@@ -223,7 +223,7 @@ def test_a_block_may_have_settings():
     job = Job.from_text(ROD)
     assert job.model == ("bouc_wen", Choice("rod", {"elements": 9, "modes": 3}))
     assert job == pickle.loads(pickle.dumps(job))
-    assert [block.chosen for block in blocks.chain(job.model)] == [{}, {"elements": 9, "modes": 3}]
+    assert [block.chosen_settings for block in blocks.chain(job.model)] == [{}, {"elements": 9, "modes": 3}]
 
 
 @pytest.mark.parametrize(
