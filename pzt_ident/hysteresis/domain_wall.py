@@ -1,4 +1,4 @@
-"""The domain wall model: irreversible_step walls that bend reversibly and jump irreversibly."""
+"""The domain wall model: pinned walls that bend reversibly and jump irreversibly."""
 
 from math import nan
 
@@ -33,7 +33,7 @@ class DomainWall(Block):
     saturation = Parameter("response", (0, 20), "Response at the saturation polarization, b P_s.")
     width = Parameter("drive", (0.05, 100), "Field over which the anhysteretic polarization rises, a.", scale="log")
     coupling = Parameter("1", (0, 1), "Mean field of the saturated polarization over the width, alpha P_s / a.")
-    pinning = Parameter("drive", (1e-3, 10), "Field at which irreversible_step walls break free, k.", scale="log")
+    pinning = Parameter("drive", (1e-3, 10), "Pinning field of the walls, k.", scale="log")
     reversible = Parameter("1", (0, 1), "Share of the polarization from reversible bending of walls, c.")
 
     def refuse(least, most):

@@ -121,7 +121,10 @@ def caution(problem: Problem, i: int, value: float, error: float, correlation: A
 def verdict_of(place: float, error: float, flat: float) -> tuple[str, str]:
     """Verdict and reason from the value, its standard error and the flat interval, as shares of the search range."""
     if not error < LOOSE:
-        return "not determined", "its standard error is as wide as its search range: these data do not determine it"
+        return (
+            "not determined",
+            "its standard error is a fifth of its search range or more: these data do not determine it",
+        )
     if flat > WIDE:
         return "not determined", f"over {flat:.0%} of its search range it changes the RMSE by less than 1 %"
     for side, reached in (("lower", place < EDGE), ("upper", place > 1 - EDGE)):

@@ -98,7 +98,7 @@ def call_function(block: Any, word: str, *arguments: Any) -> Any:
             where = f"{block.__name__}.{word}"
             raise NotYetDefined(f"{error.name!r} is not defined yet", where=where, remedy="move it up") from error
         line = inspect.getinnerframes(error.__traceback__, context=0)[-1].lineno if error.__traceback__ else 0
-        remedy = "it is call_function with parameters in the middle of their bounds"
+        remedy = "it is called with parameters in the middle of their bounds"
         raise fault(block, word, f"raises {type(error).__name__} in line {line}: {error}", remedy) from error
 
 

@@ -72,4 +72,4 @@ def _call(item: Any, where: str, function: Any, *arguments: Any) -> Any:
         raise fault(item, error.where.rpartition(".")[2], error.message, error.remedy) from None
     except Exception as error:
         message = f"raises {type(error).__name__}: {error}"
-        raise fault(item, where, message, "it is call_function with the default settings") from error
+        raise fault(item, where, message, "it is called with the default settings") from error
