@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.diagnosis import misfit
+from pzt_ident.diagnosis.projection import Projection
 from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.model.block import Addition, Coupling, Term
 from pzt_ident.model.registry import blocks
@@ -33,7 +34,8 @@ class Score:
     explained: share of the misfit that the effect would remove if it were linear and without bounds;
     explained_in_bounds: the share within the bounds. guess: expected parameters, in the user's `units`. visibility:
     share of the effect's trace, at the least size that leaves one, that the fitted parameters cannot produce. power:
-    that share of the largest plausible trace, root mean square in noise floors. trace: (samples,).
+    that share of the largest plausible trace, root mean square in noise floors. remaining: the residual that would be
+    left, (samples,).
     """
 
     effect: str
@@ -43,7 +45,7 @@ class Score:
     units: dict[str, str] = field(default_factory=dict)
     visibility: float = 0.0
     power: float = 0.0
-    trace: Array = field(default_factory=lambda: np.zeros(0), repr=False)
+    remaining: Array = field(default_factory=lambda: np.zeros(0), repr=False)
 
 
 @dataclass(frozen=True)
@@ -87,17 +89,14 @@ class Scorer:
 
     def __init__(self, case: Case, fit: Fit) -> None:
         self.case, self.fit = case, fit
-        jacobian = fit.problem.jacobian(fit.point)
-        norms = np.linalg.norm(jacobian, axis=0)
-        u, s, _ = np.linalg.svd(jacobian / np.where(norms > 0, norms, 1), full_matrices=False)
-        self.basis = u[:, s > 1e-7 * s.max(initial=1e-300)]
+        self.projection = Projection(fit.problem.jacobian(fit.point), fit.point)
         self.full_residual = fit.problem.residuals(fit.point)[0]
-        self.residual = self.project(self.full_residual)
+        self.residual = self.projection.remainder(self.full_residual)
         self.misfit = squared_misfit(case, fit)
 
-    def project(self, signals: Array) -> Array:
-        """The part of signals, (samples,) or (samples, signals), that the fitted parameters cannot produce."""
-        return signals - self.basis @ (self.basis.T @ signals)
+    def explained(self, remaining: Array) -> float:
+        """Share of the misfit that is gone where so much of the residual remains."""
+        return float((self.residual @ self.residual - remaining @ remaining) / self.misfit)
 
     def score(self, effect: str) -> Score:
         """The score of an effect. On axes without a response it acts as the effects of the fit do; if it is the first
@@ -119,17 +118,16 @@ class Scorer:
         score, visible, strongest = Score(effect), dict[float, float](), 0.0
         guesses: list[dict[str, float]] = []
         for trial, traces in self._trials(effect, problem):
-            projected = self.project(traces.T)
-            norm, projected_norm = np.linalg.norm(traces, axis=1).max(), np.linalg.norm(projected, axis=0).max()
+            norm = np.linalg.norm(traces, axis=1).max()
             if norm > LEAST_TRACE * np.linalg.norm(self.full_residual):
+                projected_norm = max(np.linalg.norm(self.projection.remainder(trace)) for trace in traces)
                 visible[trial.size] = max(visible.get(trial.size, 0.0), float(projected_norm / norm))
             if trial.size == max(blocks[effect].sizes):
                 strongest = max(strongest, float(norm / trial.size / self.case.floor))
-            amounts = self._best_amounts(projected, problem.lower[trial.amplitudes] >= trial.start[trial.amplitudes])
-            remaining = self.residual + projected @ amounts
-            explained = (self.residual @ self.residual - remaining @ remaining) / self.misfit
-            if explained > score.explained:
-                score.explained, score.trace = float(explained), projected @ amounts
+            one_sided = problem.lower[trial.amplitudes] >= trial.start[trial.amplitudes]
+            amounts, remaining = self.projection.fit(self.full_residual, traces.T, one_sided)
+            if self.explained(remaining) > score.explained:
+                score.explained, score.remaining = self.explained(remaining), remaining
                 guesses = [self._guess(problem, trial, scales) for scales in (amounts, np.ones(amounts.size))]
         self._take_best_guess(score, problem, guesses)
         visibility = visible[min(visible)] if visible else 0.0
@@ -144,18 +142,6 @@ class Scorer:
             explained = (self.residual @ self.residual - least**2) / self.misfit
             score.explained_in_bounds = float(np.clip(explained, 0, score.explained))
 
-    def _best_amounts(self, traces: Array, one_sided: NDArray[np.bool_]) -> Array:
-        """Least-squares multiples of the traces (samples, amplitudes) against the residual, as if the effect were
-        linear; 0 where `one_sided` and the multiple would be negative."""
-        amounts, free = np.zeros(traces.shape[1]), np.ones(traces.shape[1], dtype=bool)
-        while free.any():
-            amounts[~free] = 0
-            amounts[free] = np.linalg.lstsq(traces[:, free], -self.residual, rcond=1e-8)[0]
-            if not (one_sided & (amounts < 0)).any():
-                return amounts
-            free &= ~(one_sided & (amounts < 0))
-        return np.zeros(traces.shape[1])
-
     def _guess(self, problem: Problem, trial: Trial, amounts: Array) -> dict[str, float]:
         """The effect's parameters at multiples of the trial's steps, within their bounds."""
         values = trial.start.copy()
@@ -167,7 +153,7 @@ class Scorer:
         """Norm of the projected residual with a guess, simulated and not linearised."""
         known = self.fit.values | guess
         values = np.array([known[name] for name in problem.names])
-        return float(np.linalg.norm(self.project(self._residuals(problem, values[None])[0])))
+        return float(np.linalg.norm(self.projection.remainder(self._residuals(problem, values[None])[0])))
 
     def _trials(self, effect: str, problem: Problem) -> Iterator[tuple[Trial, Array]]:
         """Each trial, and the changes of the response (amplitudes, samples) by its steps."""
@@ -209,10 +195,9 @@ class Scorer:
         for values in self._addition_trials(effect, problem, columns):
             point = np.array([known.get(name, 0.0) for name in problem.names])
             point[columns] = values
-            remaining = self.project(self._residuals(problem, point[None])[0])
-            explained = (self.residual @ self.residual - remaining @ remaining) / self.misfit
-            if explained > score.explained:
-                score.explained, score.trace = float(explained), remaining - self.residual
+            remaining = self.projection.remainder(self._residuals(problem, point[None])[0])
+            if self.explained(remaining) > score.explained:
+                score.explained, score.remaining = self.explained(remaining), remaining
                 score.guess = {problem.names[i]: float(value) for i, value in zip(columns, values, strict=True)}
         score.explained_in_bounds, score.visibility, score.power = score.explained, 1.0, float("inf")
         return score

@@ -36,9 +36,8 @@ def test_the_trace_is_what_the_residual_lacks():
     case = stage.case(stage.EFFECTS["quadratic_gain"])
     scorer = Scorer(case, first_fit(case, 0))
     score = scorer.score("quadratic_gain")
-    left = scorer.residual + score.trace
-    assert np.linalg.norm(left) == pytest.approx(case.floor, rel=0.1)
-    assert np.abs(scorer.basis.T @ score.trace).max() < 1e-9 * np.linalg.norm(score.trace)
+    assert np.linalg.norm(score.remaining) == pytest.approx(case.floor, rel=0.1)
+    assert np.abs(scorer.projection.basis.T @ score.remaining).max() < 1e-9 * np.linalg.norm(scorer.residual)
 
 
 STEPS = [np.repeat([0.0, *levels, 0], 300) for levels in ([20, 60, 30, 100, 50], [40, 10, 90])]
@@ -122,7 +121,7 @@ def test_power_is_what_the_strongest_plausible_effect_would_leave():
     off, full = problem.residuals(
         np.array([problem.unit_point(fit.values | {"amplifier_lag.tau": tau}) for tau in (0, 5e-3)])
     )
-    left = np.linalg.norm(Scorer(case, fit).project(full - off)) / case.floor
+    left = np.linalg.norm(Scorer(case, fit).projection.remainder(full - off)) / case.floor
     assert score.power == pytest.approx(left, rel=0.1)
 
 
