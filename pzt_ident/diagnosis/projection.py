@@ -27,7 +27,7 @@ class Projection:
         self.basis = u[:, kept]
         self._steps = (vt[kept].T / s[kept]) / scales[:, None]  # (free, kept): basis coefficients to parameter steps
         self._responses = s[kept, None] * vt[kept] * scales  # (kept, free): parameter steps to basis coefficients
-        self._least, self._most = -point, 1 - point
+        self._least, self._most = np.minimum(-point, 0), np.maximum(1 - point, 0)
 
     def remainder(self, signal: Array) -> Array:
         """What is left of a signal (samples,) at best."""
@@ -43,36 +43,31 @@ class Projection:
         if self._reachable(-self._steps @ coefficients):
             return amounts, outside + trace_outside @ amounts
         q, r = np.linalg.qr(trace_outside)
-        matrix = np.block([[self._responses, trace_inside], [np.zeros((len(r), self._responses.shape[1])), r]])
-        target = np.concatenate([inside, q.T @ outside])
-        amounts, coefficients = self._bounded(matrix, target, one_sided)
-        return amounts, outside + trace_outside @ amounts + self.basis @ coefficients[: inside.size]
+        matrix = np.block([[self._responses, trace_inside], [np.zeros((len(r), self._least.size)), r]])
+        least = np.concatenate([self._least, np.where(one_sided, 0, -np.inf)])
+        most = np.concatenate([self._most, np.full(one_sided.size, np.inf)])
+        steps = bounded(matrix, np.concatenate([inside, q.T @ outside]), least, most)
+        amounts, coefficients = steps[self._least.size :], inside + matrix[: inside.size] @ steps
+        return amounts, outside + trace_outside @ amounts + self.basis @ coefficients
 
     def _reachable(self, steps: Array) -> bool:
         return bool((steps >= self._least - OVERSHOOT).all() and (steps <= self._most + OVERSHOOT).all())
 
-    def _bounded(self, matrix: Array, target: Array, one_sided: NDArray[np.bool_]) -> tuple[Array, Array]:
-        """Bounded least squares (Stark & Parker 1995): the multiples, and what is left of the target."""
-        from scipy.optimize import lsq_linear
-
-        least = np.concatenate([np.minimum(self._least, 0), np.where(one_sided, 0, -np.inf)])
-        most = np.concatenate([np.maximum(self._most, 0), np.full(one_sided.size, np.inf)])
-        norms = np.linalg.norm(matrix, axis=0)
-        scales = np.where(norms > 0, norms, 1)
-        wide = np.where(most > least, most, least + 1e-300)
-        solution = lsq_linear(matrix / scales, -target, (least * scales, wide * scales), method="bvls")
-        steps = solution.x / scales
-        return steps[len(self._least) :], target + matrix @ steps
-
 
 def _amounts(signal: Array, traces: Array, one_sided: NDArray[np.bool_]) -> Array:
-    """Least-squares multiples of the traces (samples, amplitudes) that take the signal away; 0 where `one_sided` and
-    the multiple would be negative."""
-    amounts, free = np.zeros(traces.shape[1]), np.ones(traces.shape[1], dtype=bool)
-    while free.any():
-        amounts[~free] = 0
-        amounts[free] = np.linalg.lstsq(traces[:, free], -signal, rcond=1e-8)[0]
-        if not (one_sided & (amounts < 0)).any():
-            return amounts
-        free &= ~(one_sided & (amounts < 0))
-    return np.zeros(traces.shape[1])
+    """Least-squares multiples of the traces (samples, amplitudes) that take the signal away."""
+    amounts = np.asarray(np.linalg.lstsq(traces, -signal, rcond=1e-8)[0])
+    if not (one_sided & (amounts < 0)).any():
+        return amounts
+    q, r = np.linalg.qr(traces)
+    return bounded(r, q.T @ signal, np.where(one_sided, 0, -np.inf), np.full(one_sided.size, np.inf))
+
+
+def bounded(matrix: Array, target: Array, least: Array, most: Array) -> Array:
+    """Steps x within bounds that leave least of target + matrix x (Stark & Parker 1995)."""
+    from scipy.optimize import lsq_linear
+
+    norms = np.linalg.norm(matrix, axis=0)
+    scales = np.where(norms > 0, norms, 1)
+    wide = np.where(most > least, most, least + 1e-300)
+    return np.asarray(lsq_linear(matrix / scales, -target, (least * scales, wide * scales), method="bvls").x / scales)

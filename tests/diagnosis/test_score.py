@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import stage
-from pzt_ident.diagnosis.refit import first_fit
+from pzt_ident.diagnosis.refit import Case, first_fit
 from pzt_ident.diagnosis.score import Scorer, applicable, squared_misfit
+from pzt_ident.job.sections import Setting
 
 
 def scored(case, effect):
@@ -161,3 +162,28 @@ def test_what_lies_beyond_the_bounds_is_not_promised():
     assert score.explained_in_bounds < 0.9 * score.explained
     within = scored(stage.case({"sensor_lag.tau": 3e-3}), "sensor_lag")
     assert within.explained_in_bounds == within.explained
+
+
+LATE = {
+    "delay": {"delay.time": 2e-3},
+    "amplifier_lag": {"amplifier_lag.tau": 1e-3},
+    "sensor_lag": {"sensor_lag.tau": 5e-4},
+}
+SHEET = {
+    "lumped.mass": Setting(bounds=(0.1, 0.3)),
+    "lumped.damping": Setting(bounds=(0, 1000)),
+    "lumped.stiffness": Setting(bounds=(4e7, 6e7)),
+}
+TIMES = np.arange(4000) * 5e-4
+DRIVES = [40 * (1 - np.cos(2 * np.pi * (3 * TIMES + rate * TIMES**2))) for rate in (6, 4)]
+
+
+@pytest.mark.parametrize("effect", LATE)
+def test_an_effect_is_seen_behind_a_parameter_that_ends_on_its_bound(effect):
+    """A damping that these drives do not determine imitates a lag as far as its bounds allow, and no further."""
+    stiff = {"lumped.mass": 0.2, "lumped.damping": 60.0, "lumped.stiffness": 5e7}
+    model = ("bouc_wen", "lumped")
+    case = Case(model, (), stage.records(LATE[effect] | stiff, DRIVES, dt=5e-4, model=model, effects=LATE), SHEET)
+    fit = first_fit(case, 0)
+    assert "lumped.damping" in fit.on_bounds
+    assert Scorer(case, fit).score(effect).explained > 0.9
