@@ -14,6 +14,7 @@ Array = NDArray[np.float64]
 
 LINE_RATIO = 30.0  # power of a spectral line over that of the frequencies around it
 LEAST_SCALE = 5e-3  # of the span of a response
+ROUNDING = 1e-12  # of a signal: what is left below is no noise
 
 
 class Floor(NamedTuple):
@@ -167,6 +168,8 @@ def without_lines(signal: Array, degree: int, most: int = 5, near: int = 25) -> 
 
     noise = signal - basis @ (basis.T @ signal)
     for _ in range(most):
+        if np.abs(noise).max() <= ROUNDING * np.abs(signal).max():
+            break
         power = np.abs(np.fft.rfft(noise * np.hanning(noise.size))) ** 2
         peak = int(np.argmax(power[3:])) + 3 if power.size > 2 * near else 0
         around = np.concatenate([power[max(1, peak - near) : max(1, peak - 2)], power[peak + 3 : peak + near]])

@@ -196,3 +196,13 @@ def test_the_widest_record_sets_the_least_size():
     records = [record([top * drive] * 2, [top * drive, 7 * top * drive], **more) for top in (1.0, 0.3)]
     for ordered in (records, records[::-1]):
         assert error_scales(ordered) == pytest.approx(5e-3 * 100 * np.array([1, 7]))
+
+
+@pytest.mark.parametrize("samples", [200, 1000, 4321])
+def test_a_rest_that_is_exactly_constant_has_no_noise(samples):
+    """What rounding leaves of it is taken for no line."""
+    levels = np.random.default_rng(3).uniform(-10, 10, 60)
+    drive = np.concatenate([np.linspace(0, 1, 50), np.ones(samples)])[None]
+    for level in levels:
+        response = np.concatenate([np.linspace(0, level, 50), np.full(samples, level)])
+        assert all(value <= 1e-12 * abs(level) for value, _ in rest_noise(drive, response))
