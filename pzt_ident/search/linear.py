@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from pzt_ident.model.chain import Chain
 
@@ -46,10 +46,9 @@ class Linear:
         entries = [model.entries[column] for column in columns]
         names = [f"{entry.axis} {entry.parameter.name}" if entry.parameter.smooth else "" for entry in entries]
         self._curves = [np.flatnonzero(np.array(names) == name) for name in dict.fromkeys(names) if name]
+        firsts = [entries[curve[0]] for curve in self._curves]
         self._weights = [
-            (model.columns(entry.block, entry.axis, entry.axis) or {})[entry.parameter.smooth]
-            for entry in entries
-            if entry.parameter.smooth
+            (model.columns(entry.block, entry.axis, entry.axis) or {})[str(entry.parameter.smooth)] for entry in firsts
         ]
 
     def fill(self, theta: Array) -> None:
@@ -71,17 +70,16 @@ class Linear:
             theta[:, self.columns] = values
             return self._residuals(theta)
 
-        weight = float(row[self._weights[0]]) if self._weights else 0.0  # type: ignore[call-overload]
-        return solve(residuals, self._units, self._curves, weight)
+        return solve(residuals, self._units, self._curves, row[self._weights])
 
 
-def solve(residuals: Residuals, units: Array, curves: Sequence[Indices], weight: float) -> LinearSolution:
+def solve(residuals: Residuals, units: Array, curves: Sequence[Indices], weights: ArrayLike) -> LinearSolution:
     """Non-negative least squares in multiples of `units`, with squared second differences as a smoothness prior.
 
     residuals: (candidates, linear) -> (candidates, samples). units: (linear,), size and sign of each parameter. curves:
-    indices of the parameters of each smooth curve, in order. weight: of the squared second differences relative to the
-    squared errors. Lawson & Hanson (1974), Solving Least Squares Problems, ch. 23; linearised again where the response
-    is not linear. Values are NaN where the residuals are not finite.
+    indices of the parameters of each smooth curve, in order. weights: of the squared second differences of each curve
+    relative to the squared errors. Lawson & Hanson (1974), Solving Least Squares Problems, ch. 23; linearised again where
+    the response is not linear. Values are NaN where the residuals are not finite.
     """
     from scipy.optimize import nnls
 
@@ -95,7 +93,7 @@ def solve(residuals: Residuals, units: Array, curves: Sequence[Indices], weight:
         sizes = np.linalg.norm(columns, axis=0)
         visible = sizes > NEGLIGIBLE * sizes.max(initial=0)
         columns[:, ~visible] = 0
-        prior = second_differences(np.where(visible, sizes, 0), curves, weight)
+        prior = second_differences(np.where(visible, sizes, 0), curves, np.asarray(weights))
         q, r = np.linalg.qr(columns[:, visible] / sizes[visible])
         target = q.T @ (columns @ (values / units) - residual)
         system = np.vstack([r, prior[:, visible] / sizes[visible]])
@@ -110,10 +108,10 @@ def solve(residuals: Residuals, units: Array, curves: Sequence[Indices], weight:
     return LinearSolution(values, columns, prior, residual, units)
 
 
-def second_differences(sizes: Array, curves: Sequence[Indices], weight: float) -> Array:
+def second_differences(sizes: Array, curves: Sequence[Indices], weights: Array) -> Array:
     """Rows of the second differences along each curve, (n, linear), scaled by the median of the visible columns."""
     rows = [np.zeros((0, sizes.size))]
-    for curve in curves:
+    for curve, weight in zip(curves, weights, strict=True):
         differences = np.zeros((max(curve.size - 2, 0), sizes.size))
         differences[:, curve] = np.diff(np.eye(curve.size), 2, axis=0)
         visible = sizes[curve][sizes[curve] > 0]

@@ -17,7 +17,7 @@ from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks
 from pzt_ident.report.page import write_report
 from pzt_ident.run.identify import run
-from pzt_ident.search.linear import solve
+from pzt_ident.search.linear import Linear, solve
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.uncertainty import estimates
 from rig import path, record, response
@@ -144,7 +144,7 @@ def test_what_is_bent_behind_is_relinearised():
     """y = q + 0.1 q^3 of two columns: found to rounding, though no pass is exact."""
     columns, truth = np.random.default_rng(0).normal(size=(2, 50)), np.array([0.4, 0.7])
     bent = lambda values: (q := values @ columns) + 0.1 * q**3  # noqa: E731
-    found = solve(lambda values: bent(values) - bent(truth), np.full(2, 1e-3), [], 0.0)
+    found = solve(lambda values: bent(values) - bent(truth), np.full(2, 1e-3), [], [])
     np.testing.assert_allclose(found.values, truth, rtol=1e-3)
 
 
@@ -227,10 +227,25 @@ def test_neighbours_are_smoothed_by_their_second_differences():
     """Normal equations by hand: the weight counts in squares of the middle one of the columns' sizes, 2."""
     sizes, measured, weight = np.diag([1.0, 2.0, 4.0]), np.array([3.0, 1.0, 20.0]), 0.3
     bend = np.array([1.0, -2.0, 1.0])
-    found = solve(lambda values: values @ sizes - measured, np.ones(3), [np.arange(3)], weight)
+    found = solve(lambda values: values @ sizes - measured, np.ones(3), [np.arange(3)], [weight])
     expected = np.linalg.solve(sizes @ sizes + weight * 2**2 * np.outer(bend, bend), sizes @ measured)
     assert expected.min() > 0
     np.testing.assert_allclose(found.values, expected, rtol=1e-9)
-    np.testing.assert_allclose(
-        solve(lambda values: values @ sizes - measured, np.ones(3), [], weight).values, [3, 0.5, 5]
-    )
+    np.testing.assert_allclose(solve(lambda values: values @ sizes - measured, np.ones(3), [], []).values, [3, 0.5, 5])
+
+
+def test_each_curve_is_smoothed_by_its_own_weight():
+    """Two curves of three values each, of which the second is not smoothed."""
+    measured = np.array([3.0, 0.5, 5.0, 3.0, 0.5, 5.0])
+    solution = solve(lambda values: values - measured, np.ones(6), [np.arange(3), np.arange(3, 6)], [1e9, 0.0])
+    np.testing.assert_allclose(np.diff(solution.values[:3], 2), 0, atol=1e-6)
+    np.testing.assert_allclose(solution.values[3:], measured[3:])
+
+
+def test_a_free_density_on_two_axes_has_a_smoothness_of_each():
+    block = blocks["homogenized_energy"].make(density="free")
+    chain = Chain([block], ["x", "y"], [0, 1])
+    columns = [i for i, entry in enumerate(chain.entries) if entry.parameter.linear]
+    linear = Linear(chain, columns, np.ones(len(columns)), lambda theta: theta)
+    names = [chain.names[column] for column in linear._weights]
+    assert names == ["x.homogenized_energy.smoothness", "y.homogenized_energy.smoothness"]
