@@ -78,8 +78,8 @@ def solve(residuals: Residuals, units: Array, curves: Sequence[Indices], weights
 
     residuals: (candidates, linear) -> (candidates, samples). units: (linear,), size and sign of each parameter. curves:
     indices of the parameters of each smooth curve, in order. weights: of the squared second differences of each curve
-    relative to the squared errors. Lawson & Hanson (1974), Solving Least Squares Problems, ch. 23; linearised again where
-    the response is not linear. Values are NaN where the residuals are not finite.
+    relative to the squared errors. Lawson & Hanson (1974), Solving Least Squares Problems, ch. 23; linearised again
+    where the response is not linear. Values are NaN where the residuals are not finite.
     """
     from scipy.optimize import nnls
 
