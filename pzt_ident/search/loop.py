@@ -203,9 +203,13 @@ def minimize(
 
 def _box(bounds: Sequence[tuple[float, float]]) -> tuple[Array, Array]:
     """Lower and upper bounds (P,). Raises InputError for infinite or reversed ones."""
-    box = np.asarray(bounds, dtype=np.float64)
+    remedy = "give a (low, high) for each coordinate"
+    try:
+        box = np.asarray(bounds, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"{bounds!r} are no numbers", where="bounds", remedy=remedy) from None
     if box.ndim != 2 or box.shape[1] != 2 or not len(box):
-        raise InputError(f"shape {box.shape}", where="bounds", remedy="give a (low, high) for each coordinate")
+        raise InputError(f"shape {box.shape}", where="bounds", remedy=remedy)
     for i, (low, high) in enumerate(box):
         if not (math.isfinite(low) and math.isfinite(high) and low < high):
             raise InputError(f"({low:g}, {high:g})", where=f"bounds[{i}]", remedy="give finite numbers, low < high")
