@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.api.arguments import of_kind
 from pzt_ident.api.fit import Fit
 from pzt_ident.api.printed import html, table_text
 from pzt_ident.api.refit import as_given, from_refit
@@ -156,6 +157,7 @@ def improve(fit: Fit) -> Improvement:
 @contextmanager
 def _case(fit: Fit) -> Iterator[tuple[fits.Case, fits.Fit, Path]]:
     """The case of a fit, the better of it and of a fit from other starts, and a folder for what is written."""
+    of_kind(fit, Fit, "fit", "give what pzt_ident.identify or pzt_ident.load returned")
     with np.errstate(all="ignore"), TemporaryDirectory() as folder:
         case = results.case_of(fit.statement)
         other = fits.first_fit(case, fit.statement.job.seed)

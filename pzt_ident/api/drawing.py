@@ -25,6 +25,9 @@ def shown(plate: Plate, width: float) -> Figure:
     """A plate `width` mm wide, on a figure that a notebook shows."""
     from matplotlib.figure import Figure
 
+    if isinstance(width, bool) or not isinstance(width, int | float) or not 20 <= width <= 2000:
+        raise InputError(f"{width!r} is no width", where="plot", remedy="give mm from 20 to 2000, such as 88 or 180")
+
     class Shown(Figure):
         def _repr_png_(self) -> bytes:
             content = BytesIO()
@@ -85,5 +88,5 @@ def _named(traces: list[Trace], record: str | None, axis: str) -> list[Trace]:
         ("axis", axis, [trace.axis for trace in traces]),
     ):
         if name is not None and name not in known:
-            raise InputError(f"there is no {kind} {name!r}", where="plot", remedy=nearest(name, set(known)))
+            raise InputError(f"there is no {kind} {name!r}", where="plot", remedy=nearest(str(name), set(known)))
     return [trace for trace in traces if record in (None, trace.record) and trace.axis == axis]

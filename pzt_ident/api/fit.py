@@ -12,15 +12,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pzt_ident.api.arguments import Signals, path_of, writable
 from pzt_ident.api.model import Model
 from pzt_ident.api.printed import html, table_text
-from pzt_ident.api.record import Record, Signals
-from pzt_ident.api.statement import drive_record, file_of, has_stamps
+from pzt_ident.api.record import Record
+from pzt_ident.api.statement import drive_record, file_of, has_stamps, statement_of
+from pzt_ident.api.wording import as_arguments
 from pzt_ident.data.noise import units_and_floors
 from pzt_ident.data.notation import listed, number, quantity, unit, with_error
 from pzt_ident.data.over_axes import together
 from pzt_ident.data.units import factor
 from pzt_ident.engine.simulator import simulate
+from pzt_ident.errors import InputError, nearest
 from pzt_ident.files import write_json
 from pzt_ident.job.schema import Job
 from pzt_ident.run.checkpoint import Checkpoint
@@ -52,6 +55,13 @@ class Parameter:
     note: str = ""
 
 
+class Parameters(dict[str, Parameter]):
+    """By name; an unknown one is refused with the nearest known ones."""
+
+    def __missing__(self, name: Any) -> Parameter:
+        raise InputError(f"unknown parameter {name!r}", where="parameters", remedy=nearest(str(name), self))
+
+
 class Fit:
     """The best of the runs of an identification, with its model, its records and what the data determine.
 
@@ -73,7 +83,7 @@ class Fit:
         self.point = np.asarray(self.best["point"], dtype=np.float64)
 
     @property
-    def parameters(self) -> dict[str, Parameter]:
+    def parameters(self) -> Parameters:
         """Every parameter of the model by name, the identified ones first."""
         identified = {
             name: Parameter(
@@ -88,9 +98,10 @@ class Fit:
             for name, item in self.best["parameters"].items()
         }
         fixed = self.best["fixed"].items()
-        return identified | {
-            name: Parameter(name, item["value"], None, item["unit"], None, "fixed") for name, item in fixed
-        }
+        return Parameters(
+            identified
+            | {name: Parameter(name, item["value"], None, item["unit"], None, "fixed") for name, item in fixed}
+        )
 
     @property
     def rmse(self) -> dict[str, float | None]:
@@ -132,15 +143,9 @@ class Fit:
         """The model's response to a drive, in the units of the responses: (samples,), of several axes (samples, axes).
         t and u are those of a `Record`, or t is one. The offset is the record's own, so that the response has none.
 
-        Raises InputError where an axis is missing or a shape does not fit.
+        Raises InputError where an axis is missing, in another kind of unit, or a shape does not fit.
         """
-        like = self.statement.records[0]
-        given = (
-            t
-            if isinstance(t, Record)
-            else Record(t, u, drive=dict(zip(like.axes, like.drive_units, strict=True)), name="drive")
-        )
-        record = drive_record(given, like)
+        record = drive_record(t, u, self.statement.records[0])
         theta = self.statement.problem.parameters(self.point)
         return _columns(simulate(self.statement.problem.model, record, theta)[0], [*record.units.values()])
 
@@ -156,7 +161,12 @@ class Fit:
     def save(self, folder: str | Path) -> Path:
         """Write what `pzt-ident run` writes, and the data, into an empty folder; `pzt_ident.load` reads it again, and
         every command works on it. Raises InputError where something is in it."""
-        folder = Path(folder)
+        folder = path_of(folder, "save")
+        with as_arguments(), writable(folder):
+            self._write(folder)
+        return folder
+
+    def _write(self, folder: Path) -> None:
         text = self.statement.job.text
         job = Job.from_text(text, folder, "job.yaml")
         begin(folder, job, text, self.statement.records)
@@ -170,17 +180,18 @@ class Fit:
             checkpoint.save(task.losses)
             write_json(task.result, run)
         collect(statement, folder, tasks, {})
-        return folder
 
     def report(self, path: str | Path) -> Path:
         """Write the report as one HTML file that needs nothing else."""
         from pzt_ident.files import write_text
         from pzt_ident.report.page import write_report
 
+        path = path_of(path, "report")
         with TemporaryDirectory() as scratch:
             page = write_report(self.save(Path(scratch) / "fit"))
-            write_text(Path(path), page.read_text(encoding="utf-8"))
-        return Path(path)
+            with writable(path):
+                write_text(path, page.read_text(encoding="utf-8"))
+        return path
 
     def plot(self, record: str | None = None, axis: str | None = None, width: float = 180) -> Figure:
         """Measured and modelled response of a record over time, and the residual; of the first record and axis unless
@@ -194,6 +205,9 @@ class Fit:
         from pzt_ident.api.drawing import loop_figure
 
         return loop_figure(self, axis, width)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _again, (self.statement.job.text, self.model, self.records, self.sections, self.runs)
 
     def __str__(self) -> str:
         return f"{self._headline()}\n\n{table_text(*self._table())}"
@@ -217,6 +231,11 @@ class Fit:
             for item in self.parameters.values()
         ]
         return ["parameter", "value", "unit", "verdict"], rows
+
+
+def _again(text: str, model: Model, records: Records, *more: Any) -> Fit:
+    """A fit from another process."""
+    return Fit(statement_of(text, records), model, records, *more)
 
 
 def _columns(signals: Array, units: Sequence[str]) -> Array:

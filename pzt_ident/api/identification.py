@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from pzt_ident.api.arguments import of_kind, path_of
 from pzt_ident.api.fit import Fit
 from pzt_ident.api.model import Model
 from pzt_ident.api.record import Record
@@ -50,18 +51,17 @@ def identify(
     Raises InputError with the sentences of the command line, RunError where every simulation failed.
     """
     chain = Model(model) if isinstance(model, str) else model
-    records = {"identify": _listed(train), "validate": _listed(validate)}
-    if not records["identify"]:
-        raise InputError("no record to identify from", where="train", remedy="give at least one")
-    named_apart(records)
-    chosen = {"name": optimizer} if isinstance(optimizer, str) else dict(optimizer)
+    of_kind(chain, Model, "model", "give pzt_ident.Model('bouc_wen', 'lumped')")
+    records = named_apart({"identify": _listed(train, "train"), "validate": _listed(validate, "validate")})
+    chosen = {"name": optimizer} if isinstance(optimizer, str) else optimizer
+    of_kind(chosen, Mapping, "optimizer", "give a word, or {'name': 'pso', 'population': 40}")
     sections = {
         "parameters": _parameters(bounds or {}, fixed or {}),
-        "optimizers": [chosen],
+        "optimizers": [dict(chosen)],
         "repeats": repeats,
         "seed": seed,
         "polish": polish,
-        "stop": {"evaluations": evaluations} if evaluations else {},
+        "stop": {"evaluations": evaluations} if evaluations is not None else {},
     }
     statement = statement_of(job_text(name, chain, records, sections), records)
     runs = []
@@ -78,7 +78,15 @@ def load(folder: str | Path, *, plugins: bool = False) -> Fit:
 
     Raises InputError where the folder holds no finished run, or its data have changed.
     """
-    folder = Path(folder)
+    folder = path_of(folder, "load")
+    try:
+        return _read(folder, plugins)
+    except (OSError, UnicodeDecodeError) as error:
+        remedy = "give the folder of a finished run"
+        raise InputError(f"cannot be read: {error}", where=str(folder), remedy=remedy) from None
+
+
+def _read(folder: Path, plugins: bool) -> Fit:
     results, begun = read_results(folder), read_environment(folder)
     home = folder if (folder / "data").is_dir() else Path(begun["job_folder"])
     job = Job.from_text(results.job, home, str(folder / "job.yaml"), plugins)
@@ -95,16 +103,32 @@ def load(folder: str | Path, *, plugins: bool = False) -> Fit:
     return Fit(statement_of(job_text(job.name, chain, records, sections), records), chain, records, sections, runs)
 
 
-def _listed(records: Record | Sequence[Record] | None) -> tuple[Record, ...]:
-    return () if records is None else (records,) if not isinstance(records, Sequence) else tuple(records)
+def _listed(records: Record | Sequence[Record] | None, where: str) -> tuple[Record, ...]:
+    listed = (records,) if isinstance(records, Record) else records
+    remedy = "give pzt_ident.Record(t, u, y), or a list of them"
+    if where == "train" and (listed is None or (isinstance(listed, Sequence) and not listed)):
+        raise InputError("no record to identify from", where=where, remedy=remedy)
+    for record in listed if isinstance(listed, list | tuple) else [] if listed is None else [listed]:
+        of_kind(record, Record, where, remedy)
+    return tuple(listed or ())
 
 
 def _parameters(bounds: Bounds, fixed: Mapping[str, float]) -> dict[str, Any]:
     """The section `parameters` of a job. Raises InputError where one is both bounded and fixed."""
+    of_kind(bounds, Mapping, "bounds", "give {'bouc_wen.alpha': (0, 1)}")
+    of_kind(fixed, Mapping, "fixed", "give {'lumped.mass': 0.157}")
     if both := sorted(set(bounds) & set(fixed)):
         raise InputError(f"{both[0]!r} has bounds and a value", where="fixed", remedy="keep one of the two")
-    limits = {name: {"bounds": [_number(end) for end in ends]} for name, ends in bounds.items()}
-    return limits | {name: {"value": _number(value)} for name, value in fixed.items()}
+    limits: dict[str, Any] = {}
+    for name, ends in bounds.items():
+        if isinstance(ends, str | Mapping) or np.ndim(ends) != 1 or np.size(ends) != 2:
+            raise InputError(f"{ends!r} is no pair", where=f"bounds: {name}", remedy="give (low, high)")
+        limits[name] = {"bounds": [_number(end) for end in ends]}
+    for name, value in fixed.items():
+        if value is None:
+            raise InputError("None is no value", where=f"fixed: {name}", remedy="give a number, or leave it out")
+        limits[name] = {"value": _number(value)}
+    return limits
 
 
 def _number(value: Any) -> Any:

@@ -21,26 +21,26 @@ class Model:
     """
 
     def __init__(self, *words: Word, effects: Sequence[str] = (), shared: Sequence[str] = ()) -> None:
+        if not words:
+            raise InputError("no block", where="model", remedy="give words, as in Model('bouc_wen', 'lumped')")
         self.blocks = tuple(map(_choice, words))
-        self.effects, self.shared = tuple(effects), tuple(shared)
+        self.effects, self.shared = _words(effects, "effects"), _words(shared, "shared")
         for item in self.blocks:
-            _known(word_of(item))
+            _known(word_of(item), blocks.words(), "model", "block")
         for effect in self.effects:
-            _known(effect)
+            _known(effect, blocks.effects(), "effects", "effect")
+            if self.effects.count(effect) > 1:
+                raise InputError(f"{effect!r} occurs twice", where="effects", remedy="give each effect once")
         blocks.chain((*self.blocks, *self.effects))
 
     @classmethod
     def of(cls, job: Job) -> Model:
         """That of a job."""
-        made = cls(effects=job.effects, shared=job.shared)
-        made.blocks = job.model
-        return made
+        return cls(*map(_settings, job.model), effects=job.effects, shared=job.shared)
 
     def with_effects(self, effects: Sequence[str]) -> Model:
         """The same chain with these effects in the place of its own."""
-        changed = Model(effects=effects, shared=self.shared)
-        changed.blocks = self.blocks
-        return changed
+        return Model(*map(_settings, self.blocks), effects=effects, shared=self.shared)
 
     def __repr__(self) -> str:
         return " -> ".join([*map(word_of, self.blocks), *(f"+ {effect}" for effect in self.effects)])
@@ -55,6 +55,18 @@ def _choice(word: Word) -> str | Choice:
     return Choice(word["name"], {key: value for key, value in word.items() if key != "name"})
 
 
-def _known(word: str) -> None:
-    if word not in blocks:
-        raise InputError(f"unknown block or effect {word!r}", where="model", remedy=nearest(word, blocks.words()))
+def _settings(item: str | Choice) -> Word:
+    return item if isinstance(item, str) else {"name": item.name, **item.settings}
+
+
+def _words(words: str | Sequence[str], where: str) -> tuple[str, ...]:
+    """One word, or several."""
+    listed = (words,) if isinstance(words, str) else words
+    if not isinstance(listed, list | tuple) or not all(isinstance(word, str) for word in listed):
+        raise InputError(f"{words!r} is no list of words", where=where, remedy="give words, as in ['creep']")
+    return tuple(listed)
+
+
+def _known(word: Any, words: Sequence[str], where: str, kind: str) -> None:
+    if word not in words:
+        raise InputError(f"unknown {kind} {word!r}", where=where, remedy=nearest(str(word), words))

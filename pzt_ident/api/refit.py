@@ -25,7 +25,7 @@ def with_effect(fit: Fit, effect: str) -> Fit:
     if effect in fit.model.effects:
         raise InputError(f"{effect!r} is in the model already", where="add", remedy="add another effect")
     if effect not in blocks.effects():
-        raise InputError(f"unknown effect {effect!r}", where="add", remedy=nearest(effect, blocks.effects()))
+        raise InputError(f"unknown effect {effect!r}", where="add", remedy=nearest(str(effect), blocks.effects()))
     effects = (*fit.model.effects, effect)
     restated(fit, effects)  # refused before anything is fitted
     with np.errstate(all="ignore"):

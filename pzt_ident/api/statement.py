@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
 from io import StringIO
+from itertools import chain, count
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import numpy as np
 
+from pzt_ident.api.arguments import Signals
 from pzt_ident.api.model import Model
 from pzt_ident.api.record import Record
+from pzt_ident.api.wording import as_arguments
 from pzt_ident.data import record as data
 from pzt_ident.data.readers import read_records
+from pzt_ident.data.units import same_kind
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import Job
 from pzt_ident.job.sections import Choice
 from pzt_ident.run.statement import Statement
 
-Numbers = Mapping[str, Any]
+ARGUMENT = {"identify": "train", "validate": "validate"}
 
 
 def job_text(name: str, model: Model, records: Mapping[str, Sequence[Record]], sections: Mapping[str, Any]) -> str:
@@ -32,8 +37,8 @@ def job_text(name: str, model: Model, records: Mapping[str, Sequence[Record]], s
     content["channels"] = ({"time": "time [s]"} if stamps else {}) | {"axes": axes}
     content["model"] = [_item(item) for item in model.blocks]
     content["effects"] = list(model.effects)
-    rest = {"shared": list(model.shared)} | dict(sections)
-    return _yaml(content | {key: value for key, value in rest.items() if value not in (None, {}, [])})
+    content |= {"shared": list(model.shared)} | dict(sections)
+    return _yaml({key: _plain(value, key) for key, value in content.items() if not _blank(value)})
 
 
 def sections_of(job: Job) -> dict[str, Any]:
@@ -61,29 +66,41 @@ def sections_of(job: Job) -> dict[str, Any]:
 def statement_of(text: str, records: Mapping[str, Sequence[Record]]) -> Statement:
     """What the job of a text states about records in memory.
 
-    Raises InputError with the sentences of the command line, without places in a file that nobody has seen.
+    Raises InputError with the sentences of the command line, in the words of the arguments.
     """
-    job = Job.from_text(text, Path(), "")
     stamps = has_stamps(records)
     arrays = {file_of(record): record.table(stamps) for each in records.values() for record in each}
-    signals = read_records(job.records, job.channels.axes, job.channels.time, job.folder, arrays)
-    return Statement(job, signals)
+    with as_arguments():
+        job = Job.from_text(text, Path(), "")
+        signals = read_records(job.records, job.channels.axes, job.channels.time, job.folder, arrays)
+        return Statement(job, signals)
 
 
-def drive_record(record: Record, like: data.Record) -> data.Record:
-    """The drives of a record as the simulator takes them, its responses blank ones as another record has them.
+def drive_record(t: Any, u: Signals | None, like: data.Record) -> data.Record:
+    """Drives as the simulator takes them, the responses blank ones as another record has them. t and u are those of a
+    `Record`, u in the units of the other; or t is one.
 
-    Raises InputError where an axis is missing, or the time is not uniform.
+    Raises InputError where an axis is missing or in another kind of unit, or the time is not uniform.
     """
-    if record.axes != like.axes:
+    given = t if isinstance(t, Record) else Record(t, u, name="drive")
+    record = given.with_name(given.name or "drive")
+    units = dict(zip(like.axes, like.drive_units, strict=True))
+    if set(record.axes) != set(like.axes):
         problem = f"drives {', '.join(record.axes)}, the model has {', '.join(like.axes)}"
-        raise InputError(problem, where=record.name, remedy="give a drive of each axis")
-    stamps = record.t is not None
-    axes = {axis: data.Axis(data.Channel(name=header["drive"])) for axis, header in record.channels().items()}
-    settings: dict[str, Any] = {"name": record.name, "run_in": record.run_in, "steps": record.steps}
-    source = data.Source(record.name, sample_rate=record.rate, **settings)
-    time = data.Channel(name="time [s]") if stamps else None
-    (drives,) = read_records([source], axes, time, Path(), {record.name: record.table(stamps)})
+        raise InputError(problem, where="simulate: u", remedy="give a drive of each axis")
+    if given is not t:
+        record.drive = units
+    for axis, unit in units.items():
+        if not same_kind(record.drive[axis], unit):
+            problem = f"axis {axis} is in {record.drive[axis]}, the model takes {unit}"
+            raise InputError(problem, where="simulate: u", remedy=f"give it in a unit such as {unit}")
+    headers = record.channels()
+    axes = {axis: data.Axis(data.Channel(name=headers[axis]["drive"])) for axis in like.axes}
+    settings: dict[str, Any] = {"sample_rate": record.rate, "run_in": record.run_in, "steps": record.steps}
+    source = data.Source(file_of(record), name=record.name, **settings)
+    time = data.Channel(name="time [s]") if record.t is not None else None
+    with as_arguments():
+        (drives,) = read_records([source], axes, time, Path(), {source.file: record.table(time is not None)})
     return replace(drives, response=np.zeros_like(drives.drive), response_units=like.response_units)
 
 
@@ -94,26 +111,46 @@ def has_stamps(records: Mapping[str, Sequence[Record]]) -> bool:
 
 def file_of(record: Record) -> str:
     """Where a record lies beside the job."""
-    return f"data/{record.name}.csv"
+    return f"data/{quote(record.name, safe=' ')}.csv"
 
 
-def named_apart(records: Mapping[str, Sequence[Record]]) -> None:
-    """Raises InputError where two records have one name, or axes differ."""
-    names: list[str] = []
-    axes: tuple[str, ...] = ()
+def named_apart(records: Mapping[str, Sequence[Record]]) -> dict[str, tuple[Record, ...]]:
+    """The records by use; those without a name are called by their argument, several of them numbered.
+
+    Raises InputError where two were given one name, or axes differ.
+    """
+    taken: set[str] = set()
+    first = next(iter(records["identify"]))
     for use, each in records.items():
         for record in each:
-            if not isinstance(record, Record):
-                remedy = "give pzt_ident.Record(t, u, y), or a list of them"
-                raise InputError(f"{type(record).__name__} is no record", where=use, remedy=remedy)
-            if record.name in names:
+            _check_axes(record, first, ARGUMENT[use])
+            if record.name and record.name in taken:
                 remedy = "give each record a name: Record(..., name='slow')"
-                raise InputError(f"two records are named {record.name!r}", where=use, remedy=remedy)
-            axes = axes or record.axes
-            if record.axes != axes:
-                problem = f"record {record.name!r} has the axes {', '.join(record.axes)}, not {', '.join(axes)}"
-                raise InputError(problem, where=use, remedy="give all records the same axes")
-            names.append(record.name)
+                raise InputError(f"two records are named {record.name!r}", where=ARGUMENT[use], remedy=remedy)
+            taken.add(record.name)
+    return {use: tuple(_named(each, ARGUMENT[use], taken)) for use, each in records.items()}
+
+
+def _check_axes(record: Record, first: Record, where: str) -> None:
+    for driven, axes, usual in (("axes", record.u, first.u), ("responses", record.y, first.y)):
+        if set(axes) != set(usual):
+            problem = f"{_title(record)} has the {driven} {_listed(axes)}, not {_listed(usual)}"
+            raise InputError(problem, where=where, remedy=f"give all records the same {driven}")
+
+
+def _title(record: Record) -> str:
+    return f"record {record.name!r}" if record.name else "a record"
+
+
+def _listed(axes: Iterable[str]) -> str:
+    return ", ".join(axes) or "none"
+
+
+def _named(each: Sequence[Record], word: str, taken: set[str]) -> Iterator[Record]:
+    alone = sum(not record.name for record in each) == 1
+    names = chain([word] if alone else [], (f"{word}_{number}" for number in count(1)))
+    free = (name for name in names if name not in taken)
+    return (record if record.name else record.with_name(next(free)) for record in each)
 
 
 def _record(record: Record, use: str, stamps: bool) -> dict[str, Any]:
@@ -127,6 +164,23 @@ def _item(item: str | Choice) -> Any:
     return item if isinstance(item, str) else {"name": item.name, **item.settings}
 
 
+def _blank(value: Any) -> bool:
+    return value is None or (isinstance(value, dict | list) and not value)
+
+
+def _plain(value: Any, where: str) -> Any:
+    """What YAML has words for, NumPy's numbers and arrays as Python's. Raises InputError for anything else."""
+    if isinstance(value, np.generic | np.ndarray):
+        return _plain(value.tolist(), where)
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item, where) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item, where) for item in value]
+    if value is None or isinstance(value, str | bool | int | float):
+        return value
+    raise InputError(f"{type(value).__name__} is no plain value", where=where, remedy="give a number or text")
+
+
 def _yaml(content: dict[str, Any]) -> str:
     """Block style, the items of each section on a line of their own."""
     from ruamel.yaml import YAML
@@ -138,7 +192,7 @@ def _yaml(content: dict[str, Any]) -> str:
         elif isinstance(value, list | tuple):
             made = CommentedSeq([inline(item) for item in value])
         else:
-            return value.item() if hasattr(value, "item") else value
+            return value
         made.fa.set_flow_style()
         return made
 
