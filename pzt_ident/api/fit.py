@@ -85,23 +85,8 @@ class Fit:
     @property
     def parameters(self) -> Parameters:
         """Every parameter of the model by name, the identified ones first."""
-        identified = {
-            name: Parameter(
-                name,
-                item["value"],
-                item["standard_error"],
-                item["unit"],
-                (item["lower"], item["upper"]),
-                item["verdict"],
-                item["note"],
-            )
-            for name, item in self.best["parameters"].items()
-        }
-        fixed = self.best["fixed"].items()
-        return Parameters(
-            identified
-            | {name: Parameter(name, item["value"], None, item["unit"], None, "fixed") for name, item in fixed}
-        )
+        entries = self.best["parameters"] | self.best["fixed"]
+        return Parameters({name: _parameter(name, item) for name, item in entries.items()})
 
     @property
     def rmse(self) -> dict[str, float | None]:
@@ -231,6 +216,19 @@ class Fit:
             for item in self.parameters.values()
         ]
         return ["parameter", "value", "unit", "verdict"], rows
+
+
+def _parameter(name: str, item: Mapping[str, Any]) -> Parameter:
+    error = item.get("standard_error")
+    return Parameter(
+        name,
+        float(item["value"]),
+        None if error is None or not np.isfinite(error) else float(error),
+        item["unit"],
+        (float(item["lower"]), float(item["upper"])) if "lower" in item else None,
+        item.get("verdict", "fixed"),
+        item.get("note", ""),
+    )
 
 
 def _again(text: str, model: Model, records: Records, *more: Any) -> Fit:

@@ -17,8 +17,8 @@ from pzt_ident.api.wording import as_arguments
 from pzt_ident.data import record as data
 from pzt_ident.data.notation import short
 from pzt_ident.data.readers import read_records
-from pzt_ident.data.readers.table import Column, Table
 from pzt_ident.data.readers.read import SHORTEST
+from pzt_ident.data.readers.table import Column, Table
 from pzt_ident.data.units import factor, same_kind, split_header
 from pzt_ident.errors import InputError, nearest
 

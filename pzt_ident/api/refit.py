@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import numpy as np
@@ -42,13 +43,14 @@ def as_given(case: Case, fit: Fit) -> diagnosis.Fit:
 
 def from_refit(fit: Fit, case: Case, refit: diagnosis.Fit) -> Fit:
     """What the diagnosis fitted to the records of a fit, as a fit."""
+    begun = time.perf_counter()
     silent = case.unmeasured_nulls(refit.effects) if refit.measured_only else {}
     statement, records, sections = restated(fit, refit.effects, refit.steps, silent)
     point = statement.problem.unit_point(refit.values)
     known = what_is_known(statement, point)
-    checkpoint = Checkpoint()
+    checkpoint, seconds = Checkpoint(), time.perf_counter() - begun
     with checkpoint.appending() as append:
-        append(0.0, np.array([refit.identify]))
+        append(seconds, np.array([refit.identify]))
     run: dict[str, Any] = {
         "run": f"{fit.best['optimizer']}-0",
         "optimizer": fit.best["optimizer"],
@@ -57,7 +59,8 @@ def from_refit(fit: Fit, case: Case, refit: diagnosis.Fit) -> Fit:
         "rmse_before_polish": known["rmse"],
         "evaluations": 1,
         "polish_evaluations": 0,
-        **dict.fromkeys(("seconds", "cpu_seconds", "polish_seconds"), 0.0),
+        "seconds": seconds,
+        **dict.fromkeys(("cpu_seconds", "polish_seconds"), 0.0),
         "failed_simulations": 0,
         "stopped_by": "refit",
     }
