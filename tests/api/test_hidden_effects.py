@@ -1,0 +1,55 @@
+"""What is hidden in the measurement that ships is named, added, and seen no more."""
+
+import numpy as np
+import pytest
+
+import pzt_ident as pzt
+from pzt_ident.job.demo import hidden
+
+QUADRATIC, CREEP = "quadratic_gain", "creep"
+
+
+@pytest.fixture(scope="module")
+def diagnosis(fit):
+    return pzt.diagnose(fit)
+
+
+def test_the_diagnosis_names_a_hidden_effect(diagnosis, fit):
+    assert diagnosis.verdict == "missing"
+    assert diagnosis.missing == [QUADRATIC]
+    best = diagnosis.candidates[0]
+    assert best["rmse"]["identify"] == pytest.approx(0.02936, abs=1e-5)
+    assert best["rmse"]["validate"] == pytest.approx(0.03431, abs=1e-5)
+    assert fit.rmse == pytest.approx({"identify": 0.05656, "validate": 0.1111}, abs=5e-5)
+
+
+def test_effects_added_by_hand_make_the_staircase(fit, improvement):
+    for step, effect in zip(improvement.steps[1:], (QUADRATIC, CREEP), strict=True):
+        before, fit = fit.rmse, fit.add(effect)
+        assert step.added == effect
+        assert all(fit.rmse[use] < before[use] for use in before)
+        assert fit.rmse == pytest.approx(step.rmse, rel=0.01)
+    assert fit.model.effects == (QUADRATIC, CREEP)
+
+
+def test_improving_ends_at_the_noise_with_what_is_hidden(improvement):
+    assert {item["effect"] for item in hidden()} == set(improvement.effects)
+    assert improvement.verdict == "adequate"
+    assert improvement.fit.rmse == pytest.approx({"identify": 0.005033, "validate": 0.004929}, abs=2e-6)
+    assert improvement.fit.rmse["validate"] < 1.1 * improvement.fit.noise_floor["x"]
+    assert np.std(improvement.fit.residuals["validate"]) == pytest.approx(improvement.fit.rmse["validate"], rel=0.01)
+
+
+def test_what_has_nothing_hidden_stays_as_it_is(improvement):
+    assert pzt.diagnose(improvement.fit).missing == []
+    assert pzt.diagnose(improvement.fit).verdict == "adequate"
+
+
+@pytest.mark.parametrize("form", [str, lambda item: item._repr_html_()])
+def test_they_show_themselves(form, diagnosis, improvement):
+    stairs = form(improvement)
+    assert all(part in stairs for part in ("+ creep", "0.004929", "0.1111", "adequate", "identify [um]"))
+    assert all(
+        part in form(diagnosis)
+        for part in (QUADRATIC, "0.03431", "73\N{NO-BREAK SPACE}%", "not missing", "validate [um]")
+    )
