@@ -32,7 +32,7 @@ class Record:
     t: time stamps (samples,) in s, or the sample rate: a number in Hz, or text such as `"5 kHz"`.
     u: the drive of one axis (samples,), of several as (samples, axes) or as `{"x": ..., "y": ...}`.
     y: the response likewise; an axis without one is driven but not measured. Without any y the record is a drive.
-    drive, response: their units, for all axes or by axis. name: without one it is called by its use, train or validate.
+    drive, response: their units, for all axes or by axis. name: without one it is called train or test, by its use.
     settle: s, or text such as `"20 ms"`, at the start that are simulated but not scored. run_in: how often the drive is
     simulated before the first sample, for a periodic record in steady state. steps: of the simulation in a sample.
     Raises InputError where shapes or units do not fit; gaps, time stamps and constant responses are looked at when the

@@ -25,6 +25,7 @@ from pzt_ident.job.sections import Choice
 from pzt_ident.run.statement import Statement
 
 ARGUMENT = {"identify": "train", "validate": "validate"}
+NAME = {"identify": "train", "validate": "test"}
 
 
 def job_text(name: str, model: Model, records: Mapping[str, Sequence[Record]], sections: Mapping[str, Any]) -> str:
@@ -115,7 +116,7 @@ def file_of(record: Record) -> str:
 
 
 def named_apart(records: Mapping[str, Sequence[Record]]) -> dict[str, tuple[Record, ...]]:
-    """The records by use; those without a name are called by their argument, several of them numbered.
+    """The records by use; those without a name are train or test, several of them numbered.
 
     Raises InputError where two were given one name, or axes differ.
     """
@@ -128,7 +129,7 @@ def named_apart(records: Mapping[str, Sequence[Record]]) -> dict[str, tuple[Reco
                 remedy = "give each record a name: Record(..., name='slow')"
                 raise InputError(f"two records are named {record.name!r}", where=ARGUMENT[use], remedy=remedy)
             taken.add(record.name)
-    return {use: tuple(_named(each, ARGUMENT[use], taken)) for use, each in records.items()}
+    return {use: tuple(_named(each, NAME[use], taken)) for use, each in records.items()}
 
 
 def _check_axes(record: Record, first: Record, where: str) -> None:

@@ -35,7 +35,7 @@ def test_a_record_may_have_any_name(name, part, quick, tmp_path):
 def test_a_fit_goes_to_another_process(fit):
     other = pickle.loads(pickle.dumps(fit))
     assert str(other) == str(fit)
-    np.testing.assert_array_equal(other.residuals["validate"], fit.residuals["validate"])
+    np.testing.assert_array_equal(other.residuals["test"], fit.residuals["test"])
 
 
 def test_a_simulation_of_the_drive_leaves_the_residuals(fit, demo):
@@ -119,7 +119,7 @@ def test_figures_name_their_axes_with_units(fit, improvement):
 
 
 def figures(fit, improvement):
-    drawn = [fit.plot("validate"), fit.plot_loops(), improvement.plot()]
+    drawn = [fit.plot("test"), fit.plot_loops(), improvement.plot()]
     assert all(figure._repr_png_().startswith(b"\x89PNG") for figure in drawn)
     return drawn
 
@@ -129,7 +129,7 @@ def test_a_report_is_one_page_without_warnings(improvement, tmp_path):
         warnings.simplefilter("error")
         page = improvement.fit.report(tmp_path / "new" / "report.html")
     text = page.read_text(encoding="utf-8")
-    assert "quadratic_gain" in text and "validate" in text
+    assert "quadratic_gain" in text and "test" in text
     assert [path.name for path in tmp_path.rglob("*.*")] == ["report.html"]
 
 

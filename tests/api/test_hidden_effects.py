@@ -37,7 +37,7 @@ def test_improving_ends_at_the_noise_with_what_is_hidden(improvement):
     assert improvement.verdict == "adequate"
     assert improvement.fit.rmse == pytest.approx({"identify": 0.005033, "validate": 0.004929}, abs=2e-6)
     assert improvement.fit.rmse["validate"] < 1.1 * improvement.fit.noise_floor["x"]
-    assert np.std(improvement.fit.residuals["validate"]) == pytest.approx(improvement.fit.rmse["validate"], rel=0.01)
+    assert np.std(improvement.fit.residuals["test"]) == pytest.approx(improvement.fit.rmse["validate"], rel=0.01)
 
 
 def test_what_has_nothing_hidden_stays_as_it_is(improvement):

@@ -80,7 +80,7 @@ IDENTIFY = {
     "train: two records are named 'a'": lambda: identify(record(name="a"), record(name="a")),
     "validate: str is no Record": lambda: identify(validate="test.csv"),
     "validate: a record has the axes y, not x": lambda: identify(validate=record(u={"y": U}, y={"y": Y})),
-    "validate: axis x is in V": lambda: identify(validate=record(response="V")),
+    "test: axis x is in V": lambda: identify(validate=record(response="V")),
     "model: no block": lambda: pzt.Model(),
     "model: unknown block 'boucwen'": lambda: identify(model="boucwen"),
     "model: list is no Model": lambda: identify(model=["bouc_wen"]),

@@ -77,14 +77,14 @@ def test_records_in_different_units_are_fitted_together(part, quick):
     t, u, y = part
     other = pzt.Record(t, 1e3 * u, 1e3 * y, drive="mV", response="nm")
     fit = pzt.identify("bouc_wen", pzt.Record(t, u, y), validate=other, evaluations=300)
-    np.testing.assert_allclose(fit.residuals["train"], fit.residuals["validate"], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(fit.residuals["train"], fit.residuals["test"], rtol=0, atol=1e-9)
 
 
 def test_records_without_a_name_are_called_by_their_use(part, quick):
     record = pzt.Record(*part)
     named = pzt.Record(*part, name="train_1")
     fit = pzt.identify("bouc_wen", [record, named, record], validate=record, evaluations=100)
-    assert [*fit.residuals] == ["train_2", "train_1", "train_3", "validate"]
+    assert [*fit.residuals] == ["train_2", "train_1", "train_3", "test"]
     assert [*quick(record).residuals] == ["train"]
     assert record.name == ""
 
