@@ -15,11 +15,25 @@ def block(name: str) -> str:
     return found[1]
 
 
-def test_the_library_example_finds_the_minimum(tmp_path):
+def run(code: str, folder: Path) -> str:
+    command = [sys.executable, "-c", code]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, encoding="utf-8", check=True).stdout
+
+
+def test_the_library_example_finds_what_is_hidden(tmp_path):
     code = block("library")
+    assert len(code.strip().splitlines()) <= 30
+    shown = run(code, tmp_path)
+    assert shown.startswith("bouc_wen -> lumped")
+    for part in ("missing: Missing: quadratic_gain", "+ creep", "adequate: The model is adequate"):
+        assert part in shown
+    assert {path.name for path in tmp_path.iterdir()} == {"run", "report.html"}
+
+
+def test_the_optimizer_example_finds_the_minimum(tmp_path):
+    code = block("minimize")
     assert len(code.split("\n\n\n")[-1].strip().splitlines()) < 10
-    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
-    assert done.stdout.startswith("[1. 1.]")
+    assert run(code, tmp_path).startswith("[1. 1.]")
     assert not list(tmp_path.iterdir())
 
 
