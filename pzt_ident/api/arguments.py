@@ -55,20 +55,20 @@ def by_axis(signals: Signals, samples: int | None, where: str, axes: Sequence[st
     if signals is None:
         raise InputError("is missing", where=where, remedy="give an array, or a dict of them by axis")
     if isinstance(signals, Mapping) or hasattr(signals, "columns"):
-        found = {str(axis): _flat(numbers(values, where)) for axis, values in signals.items()}
+        signal_of = {str(axis): _flat(numbers(values, where)) for axis, values in signals.items()}
     else:
-        found = dict(zip(axes, _rows(numbers(signals, where), samples, axes, where), strict=False))
-    if not found:
+        signal_of = dict(zip(axes, _rows(numbers(signals, where), samples, axes, where), strict=False))
+    if not signal_of:
         raise InputError("holds no axis", where=where, remedy="give an array, or a dict such as {'x': array}")
-    for axis, values in found.items():
-        length = samples if samples is not None else next(iter(found.values())).size
+    for axis, values in signal_of.items():
+        length = samples if samples is not None else next(iter(signal_of.values())).size
         if values.ndim != 1 or values.size != length:
             problem = f"axis {axis} has the shape {values.shape}, not ({length},)"
             raise InputError(problem, where=where, remedy="give time, drive and response over the same samples")
         if axes is not AXES and axis not in axes:
             remedy = f"give its drive too, or call it one of {', '.join(axes)}"
             raise InputError(f"axis {axis!r} has no drive", where=where, remedy=remedy)
-    return found
+    return signal_of
 
 
 def numbers(values: Any, where: str) -> Array:

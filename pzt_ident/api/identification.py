@@ -53,11 +53,9 @@ def identify(
     chain = Model(model) if isinstance(model, str) else model
     of_kind(chain, Model, "model", "give pzt_ident.Model('bouc_wen', 'lumped')")
     records = named_apart({"identify": _listed(train, "train"), "validate": _listed(validate, "validate")})
-    chosen = {"name": optimizer} if isinstance(optimizer, str) else optimizer
-    of_kind(chosen, Mapping, "optimizer", "give a word, or {'name': 'pso', 'population': 40}")
     sections = {
         "parameters": _parameters(bounds or {}, fixed or {}),
-        "optimizers": [dict(chosen)],
+        "optimizers": [_optimizer(optimizer)],
         "repeats": repeats,
         "seed": seed,
         "polish": polish,
@@ -90,13 +88,13 @@ def _read(folder: Path, plugins: bool) -> Fit:
     results, begun = read_results(folder), read_environment(folder)
     home = folder if (folder / "data").is_dir() else Path(begun["job_folder"])
     job = Job.from_text(results.job, home, str(folder / "job.yaml"), plugins)
-    found = Statement(job)
-    check_unchanged(job, found.records, begun, folder)
+    statement = Statement(job)
+    check_unchanged(job, statement.records, begun, folder)
     records = {
-        use: tuple(Record.of(record) for record in found.records if record.use == use)
+        use: tuple(Record.of(record) for record in statement.records if record.use == use)
         for use in ("identify", "validate")
     }
-    tasks = {task.run: task for task in tasks_of(found, folder)}
+    tasks = {task.run: task for task in tasks_of(statement, folder)}
     finished = [json.loads(tasks[run["run"]].result.read_text(encoding="utf-8")) for run in results.result["runs"]]
     runs = [(run, Checkpoint(tasks[run["run"]].losses)) for run in finished]
     chain, sections = Model.of(job), sections_of(job)
@@ -111,6 +109,12 @@ def _listed(records: Record | Sequence[Record] | None, where: str) -> tuple[Reco
     for record in listed if isinstance(listed, list | tuple) else [] if listed is None else [listed]:
         of_kind(record, Record, where, remedy)
     return tuple(listed or ())
+
+
+def _optimizer(optimizer: str | Mapping[str, Any]) -> dict[str, Any]:
+    choice = {"name": optimizer} if isinstance(optimizer, str) else optimizer
+    of_kind(choice, Mapping, "optimizer", "give a word, or {'name': 'pso', 'population': 40}")
+    return dict(choice)
 
 
 def _parameters(bounds: Bounds, fixed: Mapping[str, float]) -> dict[str, Any]:

@@ -120,8 +120,8 @@ class Record:
         drives, responses = _channels(drive), _channels(response) if response is not None else {}
         axes = {axis: data.Axis(channel, responses.get(axis)) for axis, channel in drives.items()}
         with as_arguments():
-            (found,) = read_records([source], axes, None if time is None else _channel(time), path.parent)
-        return cls.of(found, **({"name": found.name} | more))
+            (record,) = read_records([source], axes, None if time is None else _channel(time), path.parent)
+        return cls.of(record, **({"name": record.name} | more))
 
     @classmethod
     def of(cls, record: data.Record, **more: Any) -> Record:

@@ -189,13 +189,13 @@ def _yaml(content: dict[str, Any]) -> str:
 
     def inline(value: Any) -> Any:
         if isinstance(value, dict):
-            made: Any = CommentedMap({str(key): inline(item) for key, item in value.items()})
+            node: Any = CommentedMap({str(key): inline(item) for key, item in value.items()})
         elif isinstance(value, list | tuple):
-            made = CommentedSeq([inline(item) for item in value])
+            node = CommentedSeq([inline(item) for item in value])
         else:
             return value
-        made.fa.set_flow_style()
-        return made
+        node.fa.set_flow_style()
+        return node
 
     def section(value: Any) -> Any:
         if isinstance(value, dict):
