@@ -4,7 +4,8 @@ In: arrays, frames or files, the words of a model. Out: fits, diagnoses and stai
 """
 
 from pzt_ident.api.diagnosis import Diagnosis, Improvement, NextExperiment, diagnose, improve
-from pzt_ident.api.fit import Fit, Parameter
+from pzt_ident.api.fit import Fit
+from pzt_ident.api.fitted import Parameter
 from pzt_ident.api.identification import identify, load
 from pzt_ident.api.model import Model
 from pzt_ident.api.record import Record

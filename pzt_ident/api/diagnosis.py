@@ -149,7 +149,8 @@ def improve(fit: Fit) -> Improvement:
         job = fit.statement.job
         content = results.improvement_of(job, case, steps, results.diagnosis_of(job, case, last, folder))
         stairs = [
-            Step(from_refit(fit, case, step.fit), step.added, step.removed, step.tied, step.explained) for step in steps
+            Step(Fit(*from_refit(fit, case, step.fit)), step.added, step.removed, step.tied, step.explained)
+            for step in steps
         ]
         return Improvement(stairs, content["verdict"], content["reason"], content["effects"], content)
 

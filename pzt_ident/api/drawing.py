@@ -6,6 +6,7 @@ from functools import partial
 from io import BytesIO
 from typing import TYPE_CHECKING, Any
 
+from pzt_ident.api.fitted import Fitted
 from pzt_ident.data.signals import Trace
 from pzt_ident.data.units import factor
 from pzt_ident.errors import InputError, nearest
@@ -14,8 +15,6 @@ from pzt_ident.report.figures import Plate, drawn
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from pzt_ident.api.fit import Fit
 
 BINS = 600
 DPI = 120
@@ -37,7 +36,7 @@ def shown(plate: Plate, width: float) -> Figure:
     return drawn(plate, width, Shown)
 
 
-def traces_of(fit: Fit) -> list[Trace]:
+def traces_of(fit: Fitted) -> list[Trace]:
     """Every measured axis of every record beside the model, in the user's units."""
     return [
         Trace(
@@ -58,7 +57,7 @@ def traces_of(fit: Fit) -> list[Trace]:
     ]
 
 
-def time_figure(fit: Fit, record: str | None, axis: str | None, width: float) -> Figure:
+def time_figure(fit: Fitted, record: str | None, axis: str | None, width: float) -> Figure:
     """Raises InputError for a record or axis that the fit has not."""
     traces = traces_of(fit)
     chosen = _named(traces, record or traces[0].record, axis or traces[0].axis)[0]
@@ -67,7 +66,7 @@ def time_figure(fit: Fit, record: str | None, axis: str | None, width: float) ->
     return shown(Plate("time", None, "", signal_figures.time_height, draw), width)
 
 
-def loop_figure(fit: Fit, axis: str | None, width: float) -> Figure:
+def loop_figure(fit: Fitted, axis: str | None, width: float) -> Figure:
     """Raises InputError for an axis that the fit has not."""
     traces = traces_of(fit)
     chosen = _named(traces, None, axis or traces[0].axis)

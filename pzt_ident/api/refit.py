@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from pzt_ident.api.fit import Fit
+from pzt_ident.api.fitted import Fitted, Parts
 from pzt_ident.api.record import Record
 from pzt_ident.api.statement import job_text, statement_of
 from pzt_ident.diagnosis import refit as diagnosis
@@ -21,8 +21,11 @@ from pzt_ident.run.statement import Statement
 from pzt_ident.run.task import what_is_known
 
 
-def with_effect(fit: Fit, effect: str) -> Fit:
-    """The fit with an effect more. Raises InputError where it is unknown, there already, or does not fit the model."""
+def with_effect(fit: Fitted, effect: str) -> Parts:
+    """The parts of the fit with an effect more.
+
+    Raises InputError where it is unknown, there already, or does not fit the model.
+    """
     if effect in fit.model.effects:
         raise InputError(f"{effect!r} is in the model already", where="add", remedy="add another effect")
     if effect not in blocks.effects():
@@ -36,13 +39,13 @@ def with_effect(fit: Fit, effect: str) -> Fit:
         return from_refit(fit, case, diagnosis.refit(case, before, effects, score.guess))
 
 
-def as_given(case: Case, fit: Fit) -> diagnosis.Fit:
+def as_given(case: Case, fit: Fitted) -> diagnosis.Fit:
     """A fit as the diagnosis goes on from it."""
     return diagnosis.fit_at(case.effects, case.problem(case.effects), fit.point)
 
 
-def from_refit(fit: Fit, case: Case, refit: diagnosis.Fit) -> Fit:
-    """What the diagnosis fitted to the records of a fit, as a fit."""
+def from_refit(fit: Fitted, case: Case, refit: diagnosis.Fit) -> Parts:
+    """What the diagnosis fitted to the records of a fit, as the parts of a fit."""
     begun = time.perf_counter()
     silent = case.unmeasured_nulls(refit.effects) if refit.measured_only else {}
     statement, records, sections = restated(fit, refit.effects, refit.steps, silent)
@@ -64,11 +67,11 @@ def from_refit(fit: Fit, case: Case, refit: diagnosis.Fit) -> Fit:
         "failed_simulations": 0,
         "stopped_by": "refit",
     }
-    return Fit(statement, fit.model.with_effects(refit.effects), records, sections, [(run, checkpoint)])
+    return Parts(statement, fit.model.with_effects(refit.effects), records, sections, [(run, checkpoint)])
 
 
 def restated(
-    fit: Fit, effects: tuple[str, ...], steps: tuple[int, ...] = (), values: dict[str, float] | None = None
+    fit: Fitted, effects: tuple[str, ...], steps: tuple[int, ...] = (), values: dict[str, float] | None = None
 ) -> tuple[Statement, dict[str, tuple[Record, ...]], dict[str, Any]]:
     """What a fit's job states with other effects, `steps` a sample of each record and some parameters fixed to values:
     with its records and sections."""

@@ -6,9 +6,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from itertools import product
 from types import SimpleNamespace
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pzt_ident.data.record import Record
 from pzt_ident.data.units import factor, same_kind
@@ -16,8 +17,23 @@ from pzt_ident.errors import InputError
 from pzt_ident.model.block import Place
 from pzt_ident.model.chain import Chain, Entry
 
-if TYPE_CHECKING:
-    from pzt_ident.search.problem import Problem
+Array = NDArray[np.float64]
+
+
+class Identification(Protocol):
+    """What is checked of a problem: its model, the number of free parameters and their bounds, in the user's units."""
+
+    model: Chain
+    linear: Any
+    lower: Array
+    upper: Array
+    all_units: list[str]
+
+    @property
+    def dimensions(self) -> int: ...
+    def parameters_at(self, values: Array) -> Array: ...
+    def range_of(self, column: int) -> tuple[float, float]: ...
+
 
 CHARGE = ("C", "C/m2")
 SMALL, LARGE = 1e-3, 5.0  # of the drive's span: fields between these can be identified from it
@@ -48,7 +64,7 @@ def check_units(model: Chain, record: Record, unit: Unit) -> None:
             raise InputError(message, where="model", remedy=remedy)
 
 
-def check_feasible(problem: Problem, identify: list[Record]) -> None:
+def check_feasible(problem: Identification, identify: list[Record]) -> None:
     """Raises InputError if the identification records are too short, their drive cannot identify a parameter, or a
     block refuses its bounds."""
     check_lengths(problem, identify)
@@ -56,7 +72,7 @@ def check_feasible(problem: Problem, identify: list[Record]) -> None:
     check_drive(problem, identify)
 
 
-def check_lengths(problem: Problem, identify: list[Record]) -> None:
+def check_lengths(problem: Identification, identify: list[Record]) -> None:
     """Raises InputError if an identification record has no more scored samples than there are free parameters."""
     free = problem.dimensions + problem.linear.columns.size
     for record in identify:
@@ -69,7 +85,7 @@ def check_lengths(problem: Problem, identify: list[Record]) -> None:
             )
 
 
-def check_bounds(problem: Problem) -> None:
+def check_bounds(problem: Identification) -> None:
     """Raises InputError if a block refuses the bounds of its parameters."""
     least, most = (problem.parameters_at(bounds) for bounds in (problem.lower, problem.upper))
     for block, axis in product(problem.model.blocks, problem.model.measured):
@@ -78,7 +94,7 @@ def check_bounds(problem: Problem) -> None:
             refuse(*(SimpleNamespace(**{word: end[c] for word, c in columns.items()}) for end in (least, most)))
 
 
-def check_drive(problem: Problem, identify: list[Record]) -> None:
+def check_drive(problem: Identification, identify: list[Record]) -> None:
     """Raises InputError if the span of the drive is far outside the bounds of a field: one of them has another unit,
     such as V for V/m, or the drive never leaves the linear range."""
     for column, entry in enumerate(problem.model.entries):
