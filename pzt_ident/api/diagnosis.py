@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.api.arguments import of_kind
+from pzt_ident.api.computing import computing
 from pzt_ident.api.fit import Fit
 from pzt_ident.api.printed import html, table_text
 from pzt_ident.api.refit import as_given, from_refit
@@ -159,7 +160,7 @@ def improve(fit: Fit) -> Improvement:
 def _case(fit: Fit) -> Iterator[tuple[fits.Case, fits.Fit, Path]]:
     """The case of a fit, the better of it and of a fit from other starts, and a folder for what is written."""
     of_kind(fit, Fit, "fit", "give what pzt_ident.identify or pzt_ident.load returned")
-    with np.errstate(all="ignore"), TemporaryDirectory() as folder:
+    with computing(), TemporaryDirectory() as folder:
         case = results.case_of(fit.statement)
         other = fits.first_fit(case, fit.statement.job.seed)
         given = as_given(case, fit)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from pzt_ident.api.arguments import of_kind, path_of
+from pzt_ident.api.computing import computing
 from pzt_ident.api.fit import Fit
 from pzt_ident.api.model import Model
 from pzt_ident.api.record import Record
@@ -63,7 +64,7 @@ def identify(
     }
     statement = statement_of(job_text(name, chain, records, sections), records)
     runs = []
-    with np.errstate(all="ignore"):
+    with computing():
         for task in tasks_of(statement, Path()):
             checkpoint = Checkpoint()
             runs.append((identification(task, statement, checkpoint, nobody), checkpoint))

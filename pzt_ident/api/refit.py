@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from pzt_ident.api.computing import computing
 from pzt_ident.api.fitted import Fitted, Parts
 from pzt_ident.api.record import Record
 from pzt_ident.api.statement import job_text, statement_of
@@ -32,7 +33,7 @@ def with_effect(fit: Fitted, effect: str) -> Parts:
         raise InputError(f"unknown effect {effect!r}", where="add", remedy=nearest(str(effect), blocks.effects()))
     effects = (*fit.model.effects, effect)
     restated(fit, effects)  # refused before anything is fitted
-    with np.errstate(all="ignore"):
+    with computing():
         case = case_of(fit.statement)
         before = as_given(case, fit)
         score = Scorer(case, before).score(effect)

@@ -15,12 +15,13 @@ import pytest
 
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.job.schema import Job, load_job
+from pzt_ident.model.chain import Chain
 from pzt_ident.run.checkpoint import read_losses
 from pzt_ident.run.identify import resume, run, tasks_of
 from pzt_ident.run.misfit import compare
 from pzt_ident.run.pool import run_all
 from pzt_ident.run.statement import Statement
-from pzt_ident.run.task import work
+from pzt_ident.run.task import search, work
 
 JOB = """\
 name: small
@@ -282,3 +283,16 @@ def test_a_worker_that_dies_is_named_and_the_others_finish():
     failed = run_all(unlucky, [(f"job-{i}", (i,)) for i in range(5)], 2, events.append)
     assert failed == {"job-1": "its process was killed by signal 9", "job-2": "its process ended with exit code 3"}
     assert {event["number"] for event in events if event["event"] == "fine"} == {0, 3, 4}
+
+
+def test_a_model_is_made_once_a_process(folder, tmp_path, monkeypatch):
+    """By the checks of the job; the run, its search and what is collected go on with it."""
+    made = []
+    init = Chain.__init__
+    monkeypatch.setattr(Chain, "__init__", lambda self, *parts: (made.append(parts), init(self, *parts))[1])
+    job = load_job(folder / "job.yaml")
+    run(job, tmp_path / "out", workers=1)
+    assert len(made) == 1
+    statement = Statement(Job.from_text(job.text, folder), Statement(job).records)
+    search(tasks_of(statement, tmp_path / "worker")[0], statement, lambda event: None)
+    assert len(made) == 2
