@@ -131,7 +131,7 @@ def word_of(item: str | Choice) -> str:
 class Blocks(Registry[Any]):
     def plug(self, path: Path, is_other: Callable[[ModuleType], bool] = lambda module: False) -> None:
         """Run a Python file of the user, which registers a block of the file's name. `is_other`: whether a module that
-        registers none is something else than a block, such as a reader of files.
+        registers none is something else than a block: an optimizer, or a reader of files.
 
         Raises InputError if there is no such file, it fails, it registers no block, or its name is taken.
         """
@@ -149,7 +149,8 @@ class Blocks(Registry[Any]):
         try:
             self._execute(module, path)
             if word not in self._items and not is_other(sys.modules[module]):
-                raise InputError("registers no block", where=where, remedy="decorate its class with `@blocks.register`")
+                remedy = "decorate its class with `@blocks.register` or `@optimizers.register`"
+                raise InputError("registers no block", where=where, remedy=remedy)
         except InputError:
             sys.modules.pop(module, None)
             self._items.pop(word, None)

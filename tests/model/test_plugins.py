@@ -255,3 +255,45 @@ def test_an_entry_point_that_fails_leaves_the_others(installed, folder):
         (folder / "job.yaml").write_text(JOB.replace("plugins: [cubic_gain.py]\n", "").replace("cubic_gain", "own"))
         said = call("check", folder / "job.yaml")
     assert said.exit_code == 2 and "job.yaml" in said.stderr and "of mylab 1.0: ModuleNotFoundError" in said.stderr
+
+
+WALK = '''
+from dataclasses import dataclass
+
+import numpy as np
+
+from pzt_ident.model.optimizer import Generational
+from pzt_ident.model.registry import optimizers
+
+
+@optimizers.register
+@dataclass(frozen=True)
+class RandomWalk(Generational):
+    """Steps about the best point so far, shorter and shorter."""
+
+    source = "For this test."
+    convergent = False
+
+    def search(self, dimensions, rng):
+        best, least, size = rng.random(dimensions), np.inf, 0.5
+        while True:
+            points = np.clip(best + size * rng.normal(size=(self.population, dimensions)), 0, 1)
+            losses = yield points
+            if losses.min() < least:
+                best, least = points[losses.argmin()], losses.min()
+            size *= 0.97
+'''
+
+
+def test_a_file_may_bring_an_optimizer(folder):
+    """One file, in the job's own words, in every worker."""
+    (folder / "random_walk.py").write_text(WALK)
+    job = JOB.replace("[cubic_gain.py]", "[cubic_gain.py, random_walk.py]")
+    (folder / "job.yaml").write_text(
+        job.replace("name: least_squares, budget: 60", "name: random_walk, population: 20")
+    )
+    arguments = ["run", folder / "job.yaml", "--out", folder / "out", "--plugins", "--no-report", "--quiet"]
+    shown = call(*arguments)
+    assert shown.exit_code == 0, shown.stderr
+    result = json.loads((folder / "out" / "result.json").read_text())
+    assert result["best"]["optimizer"] == "random_walk" and result["best"]["evaluations"] == 20 * 250
