@@ -139,7 +139,7 @@ def drive(rng, kind, samples, rate, low, high, rest=0, gentle=False):
     """
     t = np.arange(samples - 2 * rest) / rate
     if gentle and kind in BROAD:
-        middle, part = (low + high) * rng.uniform(0.35, 0.65), 0.15 * (high - low)
+        middle, part = (low + high) * rng.uniform(0.35, 0.65), (0.05 if kind == "chirp" else 0.15) * (high - low)
         out = DRIVES[kind](rng, t, middle - part, middle + part)
     else:
         out = DRIVES[kind](rng, t, low, high)

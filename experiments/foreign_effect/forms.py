@@ -58,12 +58,12 @@ def _tone(rng, c):
     locked = rng.random() < 0.4
     phases = np.full(c["records"], rng.uniform(0, 6.28)) if locked else rng.uniform(0, 6.28, c["records"])
     plan = {"frequency": float(rng.choice([50.0, 60.0, rng.uniform(12, 45)])), "phases": phases.tolist()}
-    return plan | {"third": float(rng.choice([0.0, 0.2]))}, 1e-4 * c["stroke"], 0.05 * c["stroke"], False
+    return plan | {"third": float(rng.choice([0.0, 0.2]))}, 1e-4 * c["stroke"], 0.02 * c["stroke"], False
 
 
 def _grating(rng, c):
     plan = {"pitch": float(c["stroke"] / rng.uniform(1.5, 12)), "phase": float(rng.uniform(0, 6.28))}
-    return plan | {"second": float(rng.choice([0.0, 0.25]))}, 1e-4 * c["stroke"], 0.03 * c["stroke"], False
+    return plan | {"second": float(rng.choice([0.0, 0.25]))}, 1e-4 * c["stroke"], min(0.01 * c["stroke"], 0.15), False
 
 
 def _second(rng, c):
