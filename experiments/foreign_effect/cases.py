@@ -200,7 +200,8 @@ def equip(rng, case, effects):
     for effect, rough in zip(effects, case["forms"], strict=True):
         form = pick_form(rng, effect, case["axes"]["x"].base) if effect == "thermal_relaxation" else rough
         plan, low, high, signs = FORMS[effect][form](rng, c)
-        target = float(np.exp(rng.uniform(math.log(1.3 * LEAST), math.log(0.85 * most))))
+        least = 6.0 if effect == "outside" else 1.3 * LEAST  # what is outside must not pass for adequate
+        target = float(np.exp(rng.uniform(math.log(least), math.log(max(0.85 * most, least)))))
         entry = plan | {"form": form, "sign": float(rng.choice([-1, 1])) if signs else 1.0}
         signatures[effect] = rig.scale(effect, entry, low, high, target)
         if signatures[effect] is None:
