@@ -105,7 +105,7 @@ class TestDiagnose:
         found = read(diagnosed[1] / "diagnosis.json")
         assert f'<p class="lead">{found["reason"]}</p>' in page
         assert all(item["physics"] in page for item in found["candidates"])
-        assert f"run the drive in {found['next_experiment']['file']}" in page
+        assert f"apply the drive in {found['next_experiment']['file']}" in page
 
     def test_says_what_to_do_on_the_rig(self, diagnosed):
         assert "on the rig: " in diagnosed[0].stdout
