@@ -24,7 +24,7 @@ class RunError(RuntimeError):
 
 def nearest(word: str, words: Iterable[str]) -> str:
     """A remedy for an unknown word: the nearest known ones, else all of them."""
-    known = sorted(words)
+    known = sorted(set(words))
     close = difflib.get_close_matches(word, known, n=3, cutoff=0.5)
     if close:
         return "did you mean " + " or ".join(repr(item) for item in close) + "?"
