@@ -15,10 +15,10 @@ Facts = dict[str, Any]
 
 
 def words(kind: str) -> dict[str, str]:
-    """The words of a kind (`blocks`, `effects` or `optimizers`) with the first line of their docstrings."""
+    """The words of a kind (`blocks`, `effects` or `optimizers`) with the headlines of their docstrings."""
     if kind == "optimizers":
-        return {item.name: _headline(item) for item in optimizers}
-    headlines = {item.name: _headline(item) for item in blocks if blocks.is_effect(item.name) == (kind == "effects")}
+        return {item.name: headline(item) for item in optimizers}
+    headlines = {item.name: headline(item) for item in blocks if blocks.is_effect(item.name) == (kind == "effects")}
     return (_terms() if kind == "effects" else {}) | headlines
 
 
@@ -32,8 +32,11 @@ def _terms() -> dict[str, str]:
     return {effect: "a term of " + ", ".join(names) for effect, names in sorted(owners.items())}
 
 
-def _headline(item: type) -> str:
-    return (inspect.getdoc(item) or "").partition("\n")[0]
+def headline(item: type) -> str:
+    """The beginning of a docstring in one line: down to the first line that ends with a full stop."""
+    paragraph = (inspect.getdoc(item) or "").partition("\n\n")[0].splitlines()
+    end = next((place for place, line in enumerate(paragraph, start=1) if line.endswith(".")), len(paragraph))
+    return " ".join(line.strip() for line in paragraph[:end])
 
 
 def description_of(name: str) -> Facts:

@@ -21,6 +21,7 @@ from pzt_ident.diagnosis.verdict import diagnose as judge
 from pzt_ident.files import write_json, write_text
 from pzt_ident.job.edit import edited
 from pzt_ident.job.schema import Job
+from pzt_ident.model.description import headline
 from pzt_ident.model.registry import blocks
 from pzt_ident.run.collect import errors_in
 from pzt_ident.run.events import Event, Listen, event_log, nobody, sentence
@@ -182,7 +183,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
                 "rmse": errors_of(case, item.fit) if item.fit else None,
                 "records": by_record(case, item.fit) if item.fit else None,
                 "decision": item.decision,
-                "physics": (blocks[item.score.effect].__doc__ or "").splitlines()[0],
+                "physics": headline(blocks[item.score.effect]),
                 "look_alikes": list(blocks[item.score.effect].look_alikes),
                 "separate_by": blocks[item.score.effect].separate_by,
                 "remedy": blocks[item.score.effect].remedy,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import json
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ from pzt_ident.data.notation import spelled, unit
 from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.data.readers.registry import readers
 from pzt_ident.data.signals import Trace
+from pzt_ident.model.description import headline
 from pzt_ident.model.registry import blocks, word_of
 from pzt_ident.report.sentences import printed_reason
 from pzt_ident.report.tables import expected
@@ -132,5 +132,9 @@ def effects() -> list[dict[str, Any]]:
 
 def description(word: str) -> dict[str, Any]:
     place = getattr(blocks[word], "place", None)
-    doc = (inspect.getdoc(blocks[word]) or "").partition("\n")[0]
-    return {"name": word, "doc": doc, "place": None if place is None else int(place), "kind": blocks.kind_of(word)}
+    return {
+        "name": word,
+        "doc": headline(blocks[word]),
+        "place": None if place is None else int(place),
+        "kind": blocks.kind_of(word),
+    }

@@ -300,6 +300,15 @@ class TestWords:
         assert result.exit_code == 2
         assert "unknown word 'bouc_wenn'\n  did you mean 'bouc_wen'" in result.stderr
 
+    def test_unknown_words_are_listed_once(self):
+        known = call("show", "zzzz").stderr.partition("known: ")[2].strip().split(", ")
+        assert "load_mass" in known and len(known) == len(set(known))
+
+    def test_a_headline_goes_on_to_its_full_stop(self):
+        for kind in ("blocks", "effects", "optimizers"):
+            for word, said in json.loads(call("list", kind, "--json").stdout).items():
+                assert said.endswith(".") and "\n" not in said, word
+
     def test_unknown_kind(self):
         result = call("list", "effect")
         assert result.exit_code == 2
