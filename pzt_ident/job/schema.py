@@ -21,6 +21,8 @@ from pzt_ident.job.document import Document, Fault, Loc, reject
 from pzt_ident.job.normalise import long_form
 from pzt_ident.job.plugins import plug
 from pzt_ident.job.sections import Channels, Choice, Item, Limits, Repeats, Setting, Stopping
+from pzt_ident.model.contract import check_loaded
+from pzt_ident.model.registry import blocks
 
 if TYPE_CHECKING:
     from pzt_ident.model.chain import Chain
@@ -135,6 +137,8 @@ def load_plugins(path: Path) -> None:
     """Load a Python file, or those that a job lists, whatever else is wrong with the job."""
     if path.suffix == ".py":
         plug(path)
+        if path.stem in blocks:
+            check_loaded(blocks[path.stem], blocks)
         return
     document = Document(_text_of(path), str(path), path.parent, plugins=True)
     Job._read(document)

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
+from traceback import extract_tb
 from types import ModuleType
 from typing import Any, Generic, NoReturn, Protocol, TypeVar
 
@@ -115,6 +116,13 @@ def load_entry_point(entry: EntryPoint) -> Any:
         raise InputError(message, where=described(entry), remedy="repair its package, or uninstall it") from error
 
 
+def _line(error: Exception, path: Path) -> str:
+    """Where in the file it was raised."""
+    frames = [frame for frame in extract_tb(error.__traceback__) if frame.filename == str(path.resolve())]
+    line = error.lineno if isinstance(error, SyntaxError) else frames[-1].lineno if frames else None
+    return f" in line {line}" if line else ""
+
+
 class Choice(Protocol):
     """A word with the settings beside it: `{name: rod, elements: 16}`."""
 
@@ -149,7 +157,7 @@ class Blocks(Registry[Any]):
         try:
             self._execute(module, path)
             if word not in self._items and not is_other(sys.modules[module]):
-                remedy = "decorate its class with `@blocks.register` or `@optimizers.register`"
+                remedy = "decorate its class with `@blocks.register` or `@optimizers.register`; a reader has `SUFFIXES`"
                 raise InputError("registers no block", where=where, remedy=remedy)
         except InputError:
             sys.modules.pop(module, None)
@@ -166,7 +174,8 @@ class Blocks(Registry[Any]):
         except InputError:
             raise
         except Exception as error:
-            raise InputError(f"{type(error).__name__}: {error}", where=str(path), remedy="repair the file") from error
+            message = f"{type(error).__name__}{_line(error, path)}: {error}"
+            raise InputError(message, where=str(path), remedy="repair the file") from error
 
     def chain(self, items: Iterable[str | Choice]) -> list[Any]:
         """The blocks of a job's items, with their settings; unknown words are left out.

@@ -151,7 +151,9 @@ def test_what_a_file_breaks_is_said_of_the_job(folder, old, new, expected):
     ("name", "text", "said"),
     [
         ("own.py", "x = 1", "registers no block"),
-        ("own.py", "1 / 0", "ZeroDivisionError"),
+        ("own.py", "x = 1", r"a reader has `SUFFIXES`"),
+        ("own.py", "x = 1\n1 / 0", "ZeroDivisionError in line 2: division"),
+        ("own.py", "x = 1\n\ny = (", "SyntaxError in line 3"),
         ("creep.py", "", "'creep' is taken by a built-in block or effect"),
         ("my-gain.py", "", "'my-gain' is no word for an effect"),
         ("none.py", None, "no such file"),
@@ -163,6 +165,17 @@ def test_a_bad_file_is_named_with_what_is_wrong(tmp_path, name, text, said):
     with pytest.raises(InputError, match=said) as raised:
         blocks.plug(tmp_path / name)
     assert raised.value.where == str(tmp_path / name)
+
+
+def test_an_unknown_look_alike_is_said_where_no_job_is_read(tmp_path):
+    (tmp_path / "own_lag.py").write_text(OWN.replace("one's own", "ours") + "    look_alikes = ('frictoin',)\n")
+    try:
+        said = call("show", "own_lag", "--plugins", tmp_path / "own_lag.py")
+        assert said.exit_code == 2 and "Own.look_alikes: unknown effect 'frictoin'" in said.stderr
+        assert "did you mean 'friction'" in said.stderr
+    finally:
+        blocks._items.pop("own_lag", None)
+        sys.modules.pop("pzt_ident_plugins.own_lag", None)
 
 
 def test_a_word_that_rules_out_nothing(folder):
