@@ -52,6 +52,9 @@ def ranking(results: dict[str, Results]) -> str:
         return "The results have different axes or units: their errors cannot be ranked."
     best = min(results, key=lambda name: results[name].rmse[use] or 0.0)
     size = f"{quantity(results[best].rmse[use], results[best].unit, 3)}{together(results[best].units)}"
+    equal = [name for name in results if number(results[name].rmse[use]) == number(results[best].rmse[use])]
+    if len(equal) > 1:
+        return f"{listed(equal)} have the same lowest RMSE on the {USE_NAMES[use]} records: {size}."
     return f"{best} has the lowest RMSE on the {USE_NAMES[use]} records: {size}."
 
 

@@ -68,7 +68,11 @@ def league(results: Results) -> Table:
         cells["worse than first"] = lambda row: f"{row['leader_ahead']} of {row['pairs']}" if row.get("pairs") else "–"
         cells["sign test p"] = lambda row: number(row["sign_test"], 2) if row.get("pairs") else "–"
     return table(
-        "league", results.result["league"], cells, {"optimizer"}, _headings(results, *rmse, s=("seconds_median",))
+        "league",
+        results.result["league"],
+        cells,
+        {"optimizer"},
+        _headings(results, *rmse, s=("seconds_median", "cpu_seconds_median")),
     )
 
 

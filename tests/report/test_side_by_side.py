@@ -9,7 +9,8 @@ import pytest
 from click.testing import CliRunner
 
 from pzt_ident.cli.commands import main
-from pzt_ident.report.side_by_side import labels, write_side_by_side
+from pzt_ident.report.side_by_side import labels, ranking, write_side_by_side
+from pzt_ident.run.results import read_folder
 from run_folders import make_run
 
 
@@ -33,7 +34,7 @@ def test_models_of_the_same_samples_are_in_one_figure(pair, tmp_path):
     page = write_side_by_side(pair, tmp_path / "both.html").read_text(encoding="utf-8")
     content = json.loads(re.search(r'id="content">(.*?)</script>', page, re.S)[1])
     assert [[model["name"] for model in record["models"]] for record in content["records"]] == [["plain", "other"]] * 2
-    assert "plain has the lowest RMSE on the validation records" in page
+    assert "plain and other have the same lowest RMSE on the validation records" in page
     assert {path.name for path in (tmp_path / "both").iterdir()} == {
         f"{table}.{form}" for table in ("results", "parameters") for form in ("csv", "tex")
     }
@@ -53,3 +54,10 @@ def test_the_command_writes_it(pair, tmp_path, monkeypatch):
         *(str(folder / "report.html") for folder in pair),
         str(tmp_path / "both.html"),
     ]
+
+
+def test_results_that_are_printed_alike_have_no_winner(tmp_path):
+    results = {name: read_folder(make_run(tmp_path / name, samples=80)) for name in ("a", "b")}
+    use = "validate" if results["a"].rmse["validate"] is not None else "identify"
+    results["b"].rmse[use] *= 1 + 1e-9
+    assert ranking(results).startswith("a and b have the same lowest RMSE on the validation records: ")
