@@ -17,12 +17,12 @@ from pzt_ident.api.computing import computing
 from pzt_ident.api.fit import Fit
 from pzt_ident.api.printed import html, table_text
 from pzt_ident.api.refit import as_given, from_refit
-from pzt_ident.data.notation import number, percent, quantity
+from pzt_ident.data.notation import number, percent, quantity, unit
 from pzt_ident.diagnosis import refit as fits
 from pzt_ident.diagnosis import staircase
 from pzt_ident.diagnosis import verdict as verdicts
 from pzt_ident.run import improve as results
-from pzt_ident.run.events import step_name
+from pzt_ident.run.events import step_name, verdict_line
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -59,20 +59,20 @@ class Diagnosis:
         return [item["effect"] for item in self.candidates if item["decision"] == "missing"]
 
     def __str__(self) -> str:
-        return f"{self.verdict}: {self.reason}\n\n{table_text(*self._table())}"
+        return f"{verdict_line(self.verdict, self.reason)}\n\n{table_text(*self._table())}"
 
     __repr__ = __str__
 
     def _repr_html_(self) -> str:
-        return html(f"{self.verdict}: {self.reason}", *self._table())
+        return html(verdict_line(self.verdict, self.reason), *self._table())
 
     def _table(self) -> tuple[list[str], list[list[str]]]:
-        unit = self.content["unit"]
+        printed = unit(self.content["unit"]) or "1"
         tried = [item for item in self.candidates if item["rmse"] or item["explained"] > 0.01]
         rows = [
             [item["effect"], percent(item["explained"]), *_errors(item["rmse"]), item["decision"]] for item in tried
         ]
-        return ["effect", "explains", f"identify [{unit}]", f"validate [{unit}]", "decision"], rows
+        return ["effect", "explains", f"identify [{printed}]", f"validate [{printed}]", "decision"], rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,15 +122,15 @@ class Improvement:
 
     def _foot(self) -> str:
         floor = quantity(self.content["floor"], self.content["unit"])
-        return f"noise floor: {floor}\n{self.verdict}: {self.reason}"
+        return f"noise floor: {floor}\n{verdict_line(self.verdict, self.reason)}"
 
     def _table(self) -> tuple[list[str], list[list[str]]]:
-        unit, floor = self.content["unit"], self.content["floor"]
+        printed, floor = unit(self.content["unit"]) or "1", self.content["floor"]
         rows = [
             [step_name(step), *_errors(step["rmse"]), number(step["rmse"]["identify"] / floor, 3) if floor else ""]
             for step in self.content["steps"]
         ]
-        return ["step", f"identify [{unit}]", f"validate [{unit}]", "in floors"], rows
+        return ["step", f"identify [{printed}]", f"validate [{printed}]", "in floors"], rows
 
 
 def diagnose(fit: Fit) -> Diagnosis:

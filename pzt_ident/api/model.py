@@ -43,7 +43,7 @@ class Model:
         return Model(*map(_settings, self.blocks), effects=effects, shared=self.shared)
 
     def __repr__(self) -> str:
-        return " -> ".join([*map(word_of, self.blocks), *(f"+ {effect}" for effect in self.effects)])
+        return " + ".join([" -> ".join(map(word_of, self.blocks)), *self.effects])
 
 
 def _choice(word: Word) -> str | Choice:

@@ -11,7 +11,7 @@ from pzt_ident.cli.result_tables import rmse_by_use, show_floors
 from pzt_ident.cli.table import number, table
 from pzt_ident.data.over_axes import together
 from pzt_ident.report.tables import expected
-from pzt_ident.run.events import step_name
+from pzt_ident.run.events import step_name, verdict_line
 
 Facts = dict[str, Any]
 
@@ -83,7 +83,7 @@ def show_improvement(improvement: Facts, folder: Path) -> None:
         rows,
     )
     show_floors(improvement)
-    click.echo(f"{improvement['verdict']}: {improvement['reason']}")
+    click.echo(verdict_line(improvement["verdict"], improvement["reason"]))
     if improvement["next_experiment"]:
         _propose(improvement["next_experiment"], folder)
     click.echo(f"improved job: {folder / 'improved.yaml'}")

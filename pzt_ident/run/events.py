@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -49,6 +50,12 @@ def sentence(event: Mapping[str, Any], units: Mapping[str, str]) -> str:
         chosen = f"with {listed(event['effects'])}" if event["effects"] else "without an effect"
         return f"refitted {chosen}: {error} {quantity(event['identify'], unit)}"
     return f"{step_name(event)}: {error} {quantity(event['rmse']['identify'], unit)}"
+
+
+def verdict_line(verdict: str, reason: str) -> str:
+    """The reason of a verdict, with the verdict ahead of it unless its first sentence says it."""
+    said = verdict in re.findall(r"\w+", reason.partition(".")[0].lower())
+    return reason if said else f"{verdict}: {reason}"
 
 
 def step_name(step: Mapping[str, Any]) -> str:

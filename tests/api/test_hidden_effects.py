@@ -5,6 +5,7 @@ import pytest
 
 import pzt_ident as pzt
 from pzt_ident.job.demo import hidden
+from pzt_ident.run.events import verdict_line
 
 QUADRATIC, CREEP = "quadratic_gain", "creep"
 
@@ -48,8 +49,25 @@ def test_what_has_nothing_hidden_stays_as_it_is(improvement):
 @pytest.mark.parametrize("form", [str, lambda item: item._repr_html_()])
 def test_they_show_themselves(form, diagnosis, improvement):
     stairs = form(improvement)
-    assert all(part in stairs for part in ("+ creep", "0.004929", "0.1111", "adequate", "identify [um]"))
+    assert all(part in stairs for part in ("+ creep", "0.004929", "0.1111", "adequate", "identify [µm]"))
     assert all(
         part in form(diagnosis)
-        for part in (QUADRATIC, "0.03431", "73\N{NO-BREAK SPACE}%", "not missing", "validate [um]")
+        for part in (QUADRATIC, "0.03431", "73\N{NO-BREAK SPACE}%", "not missing", "validate [µm]")
     )
+
+
+def test_a_model_prints_its_effects_after_its_blocks():
+    model = pzt.Model("bouc_wen", "lumped", effects=("creep", "drift"))
+    assert str(model) == "bouc_wen -> lumped + creep + drift"
+
+
+@pytest.mark.parametrize(
+    ("verdict", "reason", "line"),
+    [
+        ("missing", "Missing: creep. It explains much.", "Missing: creep. It explains much."),
+        ("adequate", "The model is adequate: it leaves little.", "The model is adequate: it leaves little."),
+        ("unexplained", "No effect explains it.", "unexplained: No effect explains it."),
+    ],
+)
+def test_a_verdict_is_said_once(verdict, reason, line):
+    assert verdict_line(verdict, reason) == line
