@@ -49,7 +49,8 @@ class Optimizer(ABC):
 
     @abstractmethod
     def search(self, dimensions: int, rng: np.random.Generator) -> Search:
-        """Yield candidates (M, P) in [0, 1] and be sent their losses (M,), inf for a failed one."""
+        """Yield candidates (M, P) in [0, 1] and be sent their losses (M,), inf for a failed one, until closed: the loop
+        ends a search, and `evaluations` is only its budget."""
 
     @abstractmethod
     def with_budget(self, evaluations: int) -> Self:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pzt_ident.errors import InputError
+from pzt_ident.errors import InputError, RunError
 from pzt_ident.model.optimizer import Array, Optimizer
 from pzt_ident.model.registry import optimizers
 
@@ -99,7 +99,8 @@ def optimize(
     root mean square of a row; used instead of evaluate by an optimizer that wants them. seed: anything that NumPy's
     default_rng takes; the outcome depends on nothing else. callback: called after each generation; True ends the
     search. earlier_losses: the losses of each generation of an earlier run, which is continued bit for bit without
-    evaluating them again (residuals are evaluated again). Raises InputError if they belong to another run.
+    evaluating them again (residuals are evaluated again). Raises InputError if they belong to another run, RunError if
+    the optimizer ends by itself.
     """
     by_residuals = residuals is not None and optimizer.wants == "residuals"
     search = optimizer.search(dimensions, np.random.default_rng(seed))
@@ -123,7 +124,11 @@ def optimize(
         if ended:
             search.close()
             return progress.outcome(ended)
-        points = search.send(answer)
+        try:
+            points = search.send(answer)
+        except StopIteration:
+            message = f"{optimizer.name} ended by itself after {progress.evaluations} of {stop.evaluations} evaluations"
+            raise RunError(f"{message}: its `search` must yield candidates until it is closed") from None
 
 
 def _check_shape(losses: Array, points: Array, where: str) -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from pzt_ident.errors import InputError
+from pzt_ident.errors import InputError, RunError
 from pzt_ident.model.optimizer import Generational
 from pzt_ident.model.registry import optimizers
 from pzt_ident.search.loop import Stop, finite, minimize, optimize, rms
@@ -42,6 +42,18 @@ def test_the_last_batch_is_cut_to_the_budget(budget):
     assert list(outcome.history.evaluations) == list(np.cumsum(seen))
     assert (np.diff(outcome.history.best) <= 0).all()
     assert (np.diff(outcome.history.seconds) >= 0).all()
+
+
+def test_a_search_that_ends_by_itself_is_named():
+    @dataclass(frozen=True)
+    class Short(Walk):
+        name = "short"
+
+        def search(self, dimensions, rng):
+            yield rng.random((4, dimensions))
+
+    with pytest.raises(RunError, match="short ended by itself after 4 of 100 evaluations: its `search` must yield"):
+        optimize(Short(), 2, bowl, 1, Stop(100))
 
 
 def test_ends_at_the_target():
