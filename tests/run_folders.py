@@ -111,6 +111,7 @@ def league_of(optimizers: tuple[str, ...], repeats: int) -> list[dict[str, Any]]
             "rmse_upper_quartile": 0.3409 + 0.02 * rank,
             "rmse_best": 0.3102,
             "seconds_median": 0.284,
+            "cpu_seconds_median": 0.284,
             "evaluations": 4200,
             "evaluations_to_1_percent_median": None if rank else 2310,
             "success": 1.0 - 0.2 * rank,
