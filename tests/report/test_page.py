@@ -73,7 +73,7 @@ def test_nothing_is_loaded(name, request):
     assert "@import" not in style and "url(" not in style
 
 
-def test_only_the_scripts_of_the_package_may_run(weird):
+def test_only_the_scripts_of_the_package_may_run(weird, weird_page):
     text = (weird / "report.html").read_text(encoding="utf-8")
     found = re.findall(r"<script(?: type=.module.)?>(.*?)</script>", text, re.S)
     hashes = [base64.b64encode(hashlib.sha256(script.encode()).digest()).decode() for script in found]
@@ -83,7 +83,7 @@ def test_only_the_scripts_of_the_package_may_run(weird):
     assert "import " not in found[1].partition("\n")[0] and not re.search(r"^(import|export) ", found[1], re.M)
 
 
-def test_a_script_cannot_be_ended_by_a_name(weird):
+def test_a_script_cannot_be_ended_by_a_name(weird, weird_page):
     text = (weird / "report.html").read_text(encoding="utf-8")
     content = re.search(r'<script type="application/json" id="content">(.*?)</script>', text, re.S)[1]
     assert {record["name"] for record in json.loads(content)["records"]} == {WEIRD}
