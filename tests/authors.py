@@ -11,7 +11,7 @@ from pzt_ident.model.optimizer import Budgeted, Generational, Optimizer, choice,
 """
 GAIN = '''
 class Gain(Block):
-    """y = u + bend u^2 + w."""
+    """y = u + bend (u^2 + w)."""
 
     place = Place.READOUT
     bend = Parameter("1/drive", (0, 1), "Growth of the gain.", null=0)
@@ -28,7 +28,7 @@ class Gain(Block):
 
     def step(w, before, u, bend, share):
         w = w + share * (u - before)
-        return w, u, u + bend * u * u + w
+        return w, u, u + bend * (u * u + w)
 '''
 OPERATOR = '''
 class Memory(Operator):
@@ -87,6 +87,9 @@ class Pass(Coupling):
 
     place = Place.COUPLING
     ratio = Parameter("1", (-1, 1), "Ratio.", null=0)
+    look_alikes = ("saturation",)
+    separate_by = "Drive to both polarities."
+    remedy = "Linearise the drive."
 
     def prepare(ratio):
         return (ratio,)
@@ -110,6 +113,9 @@ class Path(Beside):
 
     place = Place.MODE
     share = Parameter("1", (-1, 1), "Share.", null=0)
+    look_alikes = ("saturation",)
+    separate_by = "Drive to both polarities."
+    remedy = "Linearise the drive."
 
     def prepare(share):
         return (share,)

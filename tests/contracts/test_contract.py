@@ -43,12 +43,25 @@ FUNCTIONS = [
     (GAIN, "start(u, bend, share)", "start(u, bend, share, more)", "Gain.start: .*'more' too many"),
     (GAIN, "step(w, before, u, bend", "step(self, w, before, u, bend", r"Gain.step: .*'self' too many\n.* no self"),
     (GAIN, "step(w, before, u,", "step(w, u,", "Gain.step: takes .*'state 2' missing"),
-    (GAIN, "return w, u, u + bend * u * u + w", "return w, u", "Gain.step: gives 2 values, where 3 values should be"),
-    (GAIN, "return w, u, u + bend * u * u + w", "return u", "Gain.step: gives 0.5, where a tuple should be"),
+    (GAIN, "return w, u, u + bend * (u * u + w)", "return w, u", "Gain.step: gives 2 values, where 3 values should be"),
+    (GAIN, "return w, u, u + bend * (u * u + w)", "return u", "Gain.step: gives 0.5, where a tuple should be"),
     (GAIN, "return bend, dt / tau", "pass", "Gain.prepare: gives None, where a tuple should be"),
     (GAIN, "return bend, dt / tau", "return [bend, dt / tau]", r"Gain.prepare: gives \[.*, where a tuple should be"),
     (GAIN, "return bend, dt / tau", "return bend, 'a'", "Gain.prepare: gives 2 values, where numbers should be"),
     (GAIN, "return bend, dt / tau", "return bend, 1 / 0", "Gain.prepare: raises ZeroDivisionError in line"),
+    (
+        GAIN,
+        "u + bend * (u * u + w)",
+        "u + bend * (u * u + w) + 1e-9",
+        "Gain.step: gives 0.2500.* for 0.25 with bend = 0: an",
+    ),
+    (
+        COUPLING,
+        "return y + ratio * other",
+        "return 1.01 * y + ratio * other",
+        "Pass.step: gives 0.2525 for 0.25 with ratio",
+    ),
+    (BESIDE, "x + share * w", "x + 1 + share * w", "Path.step: gives 1.25 for 0.25"),
     (GAIN, "w + share", "w + shear", "Gain.step: raises NameError in line .*'shear'"),
     (GAIN, "def start(u, bend, share)", "def start(*given)", "Gain.start: takes arguments of any number"),
     (GAIN, "    def start(u, bend, share)", "    start = 3\n    def begin(u, bend, share)", "Gain.start: is int"),
@@ -78,7 +91,7 @@ FUNCTIONS = [
 DECLARED = [
     (GAIN, "place = Place.READOUT", "", "Gain.place: has no `place`"),
     (GAIN, "Place.READOUT", "'readout'", "Gain.place: has 'readout' for its `place`"),
-    (GAIN, '"""y = u + bend u^2 + w."""', "", "Gain: has no docstring"),
+    (GAIN, '"""y = u + bend (u^2 + w)."""', "", "Gain: has no docstring"),
     (GAIN, "(0, 1)", "(1, 0)", r"Gain.bend: bounds \(1, 0\) are no range"),
     (GAIN, "(0, 1)", "5", "Gain.bend: bounds 5 are no range"),
     (GAIN, "null=0", "null=-1", "Gain.bend: null -1 is out of its bounds"),
@@ -207,7 +220,7 @@ def _body(good, word):
 
 
 def test_a_function_further_down_in_the_file_is_waited_for(tmp_path):
-    text = GAIN.replace("class Gain", "@blocks.register\nclass Gain").replace("bend * u * u + w", "squared(u, bend)")
+    text = GAIN.replace("class Gain", "@blocks.register\nclass Gain").replace("bend * (u * u + w)", "squared(u, bend)")
     own = tmp_path / "own_gain.py"
     own.write_text(
         HEAD + "from pzt_ident.model.registry import blocks\n" + text + "\n\ndef squared(u):\n    return u * u\n"

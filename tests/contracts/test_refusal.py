@@ -10,7 +10,7 @@ from pzt_ident.engine.lanes import compile_block
 from pzt_ident.errors import InputError
 from pzt_ident.model.registry import blocks
 
-LAST = "return w, u, u + bend * u * u + w"
+LAST = "return w, u, u + bend * (u * u + w)"
 HELPER = "\n\ndef helper(u):\n    return len(sorted([u], key=str)) * u\n"
 
 
@@ -35,9 +35,9 @@ def plug(tmp_path):
     ("line", "more", "where"),
     [
         ('words = {"a": u, 2: w}', "", "Gain.step"),
-        ('u = u + len("%s" % u)', "", "Gain.step"),
-        ("u = sum(sorted([u, w], key=abs))", "", "Gain.step"),
-        ("u = float(np.interp(u, [0, 1], [w, 'a'][:1] * 2))", "", "Gain.step"),
+        ('v = u + len("%s" % u)', "", "Gain.step"),
+        ("v = sum(sorted([u, w], key=abs))", "", "Gain.step"),
+        ("v = float(np.interp(u, [0, 1], [w, 'a'][:1] * 2))", "", "Gain.step"),
         ("u = helper(u)", HELPER, "Gain: helper"),
     ],
 )

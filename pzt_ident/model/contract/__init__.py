@@ -25,6 +25,7 @@ from pzt_ident.model.contract.declared import (
     parameters,
 )
 from pzt_ident.model.contract.functions import NotYetDefined, call_function, check_asked, try_functions
+from pzt_ident.model.contract.identity import check_identity
 from pzt_ident.model.contract.kinds import ANY, BRANCHED, KINDS, kind_of, kinds
 from pzt_ident.model.contract.optimizer import check_optimizer
 
@@ -63,11 +64,13 @@ def check_block(block: Any) -> None:
     check_effect(block, kind == "term", bases)
     with suppress(NotYetDefined):
         try_functions(block)
+        check_identity(block)
 
 
 def check_loaded(block: Any, known: Any) -> None:
     """The checks of a block that need its whole file and the other effects. known: the registry of blocks."""
     try_functions(block)
+    check_identity(block)
     references = [("look_alikes", word) for word in block.look_alikes]
     references += [(word, item.effect) for word, item in parameters(block).items() if item.effect]
     for where, word in references:
