@@ -100,7 +100,7 @@ def optimize(
     default_rng takes; the outcome depends on nothing else. callback: called after each generation; True ends the
     search. earlier_losses: the losses of each generation of an earlier run, which is continued bit for bit without
     evaluating them again (residuals are evaluated again). Raises InputError if they belong to another run, RunError if
-    the optimizer ends by itself.
+    the optimizer ends by itself or leaves the cube.
     """
     by_residuals = residuals is not None and optimizer.wants == "residuals"
     search = optimizer.search(dimensions, np.random.default_rng(seed))
@@ -108,6 +108,7 @@ def optimize(
     replay = iter(earlier_losses)
     points = next(search)
     while True:
+        _check_candidates(points, dimensions, optimizer.name)
         points = points[: stop.evaluations - progress.evaluations]
         recorded = next(replay, None)
         if by_residuals and residuals is not None:
@@ -129,6 +130,16 @@ def optimize(
         except StopIteration:
             message = f"{optimizer.name} ended by itself after {progress.evaluations} of {stop.evaluations} evaluations"
             raise RunError(f"{message}: its `search` must yield candidates until it is closed") from None
+
+
+def _check_candidates(points: Any, dimensions: int, name: str) -> None:
+    """Raises RunError unless there are candidates (M, P) in the unit cube."""
+    shape = np.shape(points)
+    if len(shape) != 2 or not shape[0] or shape[1] != dimensions:
+        raise RunError(f"{name} gave candidates of shape {shape}: its `search` must yield an array (M, {dimensions})")
+    if not (np.min(points) >= 0 and np.max(points) <= 1):
+        low, high = np.min(points), np.max(points)
+        raise RunError(f"{name} gave a candidate from {low:g} to {high:g}: each coordinate must lie from 0 to 1")
 
 
 def _check_shape(losses: Array, points: Array, where: str) -> None:

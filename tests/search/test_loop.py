@@ -44,6 +44,33 @@ def test_the_last_batch_is_cut_to_the_budget(budget):
     assert (np.diff(outcome.history.seconds) >= 0).all()
 
 
+@pytest.mark.parametrize(
+    ("spoil", "message"),
+    [
+        (
+            lambda points: points[0],
+            r"spoilt gave candidates of shape \(2,\): its `search` must yield an array \(M, 2\)",
+        ),
+        (lambda points: points[:, :1], r"candidates of shape \(\d+, 1\)"),
+        (lambda points: points[:0], r"candidates of shape \(0, 2\)"),
+        (lambda points: 3 * points, "a candidate from 0.* to [12].*: each coordinate must lie from 0 to 1"),
+        (lambda points: points - 1, "a candidate from -.*: each coordinate"),
+        (lambda points: points * np.nan, "a candidate from nan to nan"),
+    ],
+)
+def test_a_candidate_outside_the_cube_is_refused(spoil, message):
+    @dataclass(frozen=True)
+    class Spoilt(Walk):
+        name = "spoilt"
+
+        def search(self, dimensions, rng):
+            yield rng.random((9, dimensions))
+            yield spoil(rng.random((9, dimensions)))
+
+    with pytest.raises(RunError, match=message):
+        optimize(Spoilt(), 2, bowl, 0, Stop(100))
+
+
 def test_a_search_that_ends_by_itself_is_named():
     @dataclass(frozen=True)
     class Short(Walk):
