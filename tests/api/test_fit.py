@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import pzt_ident as pzt
+from pzt_ident.data.notation import quantity
 
 
 def test_a_saved_fit_comes_back(improvement, tmp_path):
@@ -30,6 +31,14 @@ def test_a_record_may_have_any_name(name, part, quick, tmp_path):
     folder = fit.save(tmp_path / "run")
     assert [path.parent for path in tmp_path.rglob("*.csv")].count(folder / "data") == 1
     assert [*pzt.load(folder).residuals] == [name]
+
+
+def test_how_a_record_is_scored_and_simulated_is_kept(part, quick, tmp_path):
+    fit = quick(pzt.Record(*part, settle="50 ms", run_in=2, steps=3))
+    loaded = pzt.load(fit.save(tmp_path / "run"))
+    (record,) = loaded.records["identify"]
+    assert (record.settle, record.run_in, record.steps) == (pytest.approx(0.05), 2, 3)
+    np.testing.assert_array_equal(loaded.residuals["train"], fit.residuals["train"])
 
 
 def test_a_fit_goes_to_another_process(fit):
@@ -67,6 +76,28 @@ def test_the_axes_of_a_drive_have_no_order(part, quick):
     assert fit.parameters["cross_coupling.ratio"].verdict
 
 
+def test_a_drive_that_has_run_in_is_the_second_of_two_periods(fit, demo):
+    t, u, _ = demo[1]
+    rate = 1 / (t[1] - t[0])
+    steady = fit.simulate(pzt.Record(rate, u, run_in=1))
+    np.testing.assert_allclose(steady, fit.simulate(rate, np.tile(u, 2))[t.size :], rtol=0, atol=1e-9)
+    assert np.ptp(steady - fit.simulate(rate, u)) > 1e-3
+
+
+def test_each_axis_keeps_its_own_unit(part, quick):
+    """Over both axes the RMSE is the root mean square of theirs, in the unit of the first."""
+    t, u, y = part
+    drive, measured = np.array([u, u[::-1]]).T, np.array([y, 1e3 * y[::-1]]).T
+    fit = quick(t, drive, measured, response={"x": "um", "y": "nm"})
+    error, residual = fit.simulate(t, drive) - measured, fit.residuals["train"]
+    np.testing.assert_allclose(error - error.mean(axis=0), residual - residual.mean(axis=0), rtol=0, atol=1e-6)
+    assert fit.unit == "um"
+    assert fit.rmse["identify"] == pytest.approx(np.sqrt(np.mean((residual / [1, 1e3]) ** 2)), rel=1e-6)
+    x, y = (quantity(fit.noise_floor[axis], unit) for axis, unit in (("x", "um"), ("y", "nm")))
+    assert f"noise floor: {x} (x) and {y} (y)" in str(fit)
+    assert fit.noise_floor["y"] == pytest.approx(1e3 * fit.noise_floor["x"], rel=0.2)
+
+
 def test_errors_are_the_diagonal_of_the_covariance(improvement):
     fit = improvement.fit
     assert [*fit.covariance.columns] == [*fit.covariance.index]
@@ -101,7 +132,15 @@ def test_one_evaluation_is_a_budget(part):
 @pytest.mark.parametrize("show", [str, repr, lambda fit: fit._repr_html_()])
 def test_a_fit_shows_value_error_unit_and_verdict(show, improvement):
     text = show(improvement.fit)
-    for part in ("bouc_wen.gain", "0.082092 ± 0.000079", "µm/V", "determined", "0.005033", "noise floor: 0.004884"):
+    for part in (
+        "bouc_wen.gain",
+        "0.082092 ± 0.000079",
+        "µm/V",
+        "determined",
+        "0.005033",
+        "noise floor: 0.004884",
+        "1.03 noise floors",
+    ):
         assert part in text.replace("\N{NO-BREAK SPACE}", " ")
 
 

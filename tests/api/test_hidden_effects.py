@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import pzt_ident as pzt
+from pzt_ident.api.refit import restated
+from pzt_ident.diagnosis import refit
 from pzt_ident.job.demo import hidden
 from pzt_ident.run.events import verdict_line
 
@@ -44,6 +46,33 @@ def test_improving_ends_at_the_noise_with_what_is_hidden(improvement):
 def test_what_has_nothing_hidden_stays_as_it_is(improvement):
     assert pzt.diagnose(improvement.fit).missing == []
     assert pzt.diagnose(improvement.fit).verdict == "adequate"
+
+
+def test_a_fit_that_other_starts_do_not_reach_is_diagnosed_itself(improvement, monkeypatch):
+    """As given it leaves 1.03 noise floors, in the middle of all bounds far more."""
+    fit = improvement.fit
+    monkeypatch.setattr(
+        refit,
+        "first_fit",
+        lambda case, seed: refit.fit_at(case.effects, case.problem(case.effects), np.full(fit.point.size, 0.5)),
+    )
+    found = pzt.diagnose(fit)
+    assert found.content["rmse"] == pytest.approx(fit.rmse, rel=1e-9)
+    assert found.verdict == "adequate"
+
+
+def test_a_poor_fit_is_diagnosed_from_where_other_starts_end(fit, demo):
+    train, test = (pzt.Record(*record) for record in demo)
+    poor = pzt.identify("bouc_wen", train, validate=test, evaluations=20, polish=False)
+    assert poor.rmse["identify"] > 1.5 * fit.rmse["identify"]
+    assert pzt.diagnose(poor).content["rmse"]["identify"] == pytest.approx(fit.rmse["identify"], rel=0.01)
+
+
+def test_what_is_restated_keeps_the_value_of_what_is_held(fit):
+    statement, _, sections = restated(fit, (QUADRATIC,), values={"bouc_wen.alpha": 0.25})
+    assert statement.job.parameters["bouc_wen.alpha"].value == 0.25
+    assert sections["parameters"]["bouc_wen.alpha"] == {"value": 0.25}
+    assert restated(fit, ())[2]["parameters"] == fit.sections["parameters"]
 
 
 @pytest.mark.parametrize("form", [str, lambda item: item._repr_html_()])

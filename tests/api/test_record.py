@@ -80,6 +80,21 @@ def test_records_in_different_units_are_fitted_together(part, quick):
     np.testing.assert_allclose(fit.residuals["train"], fit.residuals["test"], rtol=0, atol=1e-9)
 
 
+def test_a_column_of_a_frame_is_in_the_unit_of_its_own_header(part):
+    t, u, y = part
+    frame = pd.DataFrame({"clock [ms]": 1e3 * t, "u [mV]": 1e3 * u, "x [nm]": 1e3 * y})
+    record = pzt.Record.from_frame(frame, time="clock [ms]", drive="u [mV]", response="x [nm]")
+    np.testing.assert_allclose(record.stamps, t, rtol=1e-12)
+    assert (record.drive, record.response) == ({"x": "mV"}, {"x": "nm"})
+
+
+def test_a_record_read_from_a_file_is_called_as_it_is_told_or_like_its_file(part, tmp_path):
+    path = tmp_path / "loops.csv"
+    frame_of(*part).to_csv(path, index=False)
+    names = [pzt.Record.read(path, time="t", drive="u", response="x", **name).name for name in ({}, {"name": "slow"})]
+    assert names == ["loops", "slow"]
+
+
 def test_records_without_a_name_are_called_by_their_use(part, quick):
     record = pzt.Record(*part)
     named = pzt.Record(*part, name="train_1")

@@ -102,6 +102,28 @@ def test_result_says_what_the_contract_promises(finished):
     assert result["best"]["rmse"]["identify"] == min(r["rmse"]["identify"] for r in result["runs"])
     assert result["noise_floor"]["x"] == pytest.approx(0.01, rel=0.2)
     assert [row["optimizer"] for row in result["league"]]
+    for record, settle in zip(result["records"], (0.0, 0.1), strict=True):
+        assert (record["samples"], record["axes"], record["notes"]) == (1000, ["x"], [])
+        assert (record["sample_rate"], record["settle"]) == (pytest.approx(1000), pytest.approx(settle))
+        assert record["rmse"] == {"x": pytest.approx(result["best"]["rmse"][record["use"]], rel=1e-6)}
+
+
+@pytest.mark.parametrize(
+    ("stop", "target", "evaluations"),
+    [
+        ("", None, 800),
+        ("stop: {target: 20 nm}", 20e-9, 800),
+        ("stop: {target: 0.03, evaluations: 70}", 30e-9, 70),
+    ],
+)
+def test_every_search_ends_at_the_same_error_and_with_the_budget_of_the_first(folder, stop, target, evaluations):
+    """A target without a unit is in that of the response, um."""
+    larger = JOB.replace("pso_vmax, population: 20", "pso_vmax, population: 30")
+    tasks = tasks_of(Statement(Job.from_text(larger + stop, folder)), folder)
+    assert [task.run for task in tasks] == ["pso-0", "pso-1", "pso_vmax-0", "pso_vmax-1"]
+    for task in tasks:
+        assert task.stop["evaluations"] == evaluations
+        assert task.stop["target"] == (None if target is None else pytest.approx(target))
 
 
 def test_signals_give_back_the_rmse(finished):

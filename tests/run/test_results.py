@@ -34,6 +34,14 @@ def test_the_settling_start_is_not_scored(plain):
     assert second.scored.all()
 
 
+def test_the_share_of_noise_is_that_of_the_widest_record_and_all_of_it_where_unknown(plain, weird):
+    results = read_results(plain)
+    spans = [np.ptp(trace.response) for trace in results.traces]
+    assert spans[0] != spans[1]
+    assert results.share_of_noise == pytest.approx(results.floors["x"] / max(spans))
+    assert read_results(weird).share_of_noise == 1
+
+
 @pytest.mark.parametrize("name", ["result.json", "history.csv", "signals.nc", "environment.json", "job.yaml"])
 def test_a_missing_file_is_named(copy, name):
     (copy / name).unlink()

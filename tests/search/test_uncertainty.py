@@ -1,5 +1,7 @@
 """Standard errors against closed forms, and against the scatter of estimates under repeated noise."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.signal import lfilter
@@ -7,7 +9,7 @@ from scipy.signal import lfilter
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks
 from pzt_ident.search.problem import FixedValue, Problem
-from pzt_ident.search.uncertainty import covariance_of, estimates
+from pzt_ident.search.uncertainty import caution, covariance_of, estimates
 from rig import record
 
 BLOCKS, LENGTH = 40, 10
@@ -85,3 +87,18 @@ def test_the_error_of_a_gain_is_that_of_the_slope_of_a_straight_line():
     expected = noise / np.linalg.norm(drive - drive.mean())
     assert gain.standard_error == pytest.approx(expected, rel=0.35)
     assert abs(gain.value - 1e-7) < 4 * expected
+    assert gain.note == ""
+
+
+@pytest.mark.parametrize(
+    ("value", "correlation", "note"),
+    [
+        (-2.1, 0.99, ""),
+        (1.9, 0.99, "zero lies within two standard errors"),
+        (2.1, -0.996, "known only together with b"),
+        (-1.9, 0.996, "zero lies within two standard errors; known only together with b"),
+    ],
+)
+def test_a_doubtful_sign_and_a_tie_are_told(value, correlation, note):
+    named = SimpleNamespace(names=("a", "b", "c"))
+    assert caution(named, 0, value, 1.0, np.array([1.0, correlation, 0.5])) == note
