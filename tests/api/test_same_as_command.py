@@ -74,6 +74,7 @@ def test_a_fit_is_that_of_the_command(stated, run_folder):
     best = json.loads((run_folder / "result.json").read_text(encoding="utf-8"))["best"]
     assert stated.rmse == pytest.approx(best["rmse"], rel=1e-9)
     assert_same(stated.parameters, best["parameters"] | best["fixed"])
+    assert stated.parameters["lumped.mass"] == pzt.Parameter("lumped.mass", 0.157, None, "kg", None, "fixed")
 
 
 def test_the_folder_of_a_run_is_a_fit(stated, run_folder):

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from pzt_ident.data.noise import error_scales, noise_floor, period_of, quantiser_step, rest_noise
+from pzt_ident.data.noise import error_scales, noise_floor, period_of, quantiser_step, rest_noise, units_and_floors
 from pzt_ident.data.record import Record
 
 SIGMA = 30e-9
@@ -100,6 +100,18 @@ def test_responses_of_different_kinds_are_weighed_by_their_noise(noise):
         mixed, response=mixed.response + np.array([[0], [1]]) * (1e-2 * drive - mixed.response)
     )
     assert error_scales([smooth])[1] == pytest.approx(5e-3 * 2e-2, rel=1e-3)
+
+
+def test_floors_are_in_the_unit_of_their_axis_and_over_all_axes_in_that_of_the_first(noise):
+    drive = np.sin(2 * np.pi * np.arange(noise.size) / 500)
+    units = {"axes": ("x", "y"), "drive_units": ("V", "V"), "response_units": ("um", "nm")}
+    lengths = [record([drive, drive], [1e-7 * drive + noise, 1e-7 * drive + 3 * noise], **units)]
+    found = units_and_floors(lengths)
+    x, y = (noise_floor(lengths, axis).value for axis in (0, 1))
+    assert (found["unit"], found["units"]) == ("um", {"x": "um", "y": "nm"})
+    assert found["noise_floor"] == pytest.approx({"x": x / 1e-6, "y": y / 1e-9})
+    assert found["noise_floor_source"] == dict.fromkeys("xy", "repeated periods")
+    assert found["floor"] == pytest.approx(np.hypot(x, y) / np.sqrt(2) / 1e-6)
 
 
 def rising(samples, rest=0):

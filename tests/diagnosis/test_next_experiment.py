@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import rig
 import stage
 from pzt_ident.diagnosis import next_experiment
-from pzt_ident.diagnosis.next_experiment import DriveLimits, propose, protocols, respond
+from pzt_ident.diagnosis.next_experiment import DriveLimits, chirp, propose, protocols, respond
 from pzt_ident.diagnosis.refit import Case, first_fit, fit_at, refit
 
 LINEAR = {"bouc_wen.alpha": 0.0, "bouc_wen.beta": 0.01, "bouc_wen.gamma": 0.0}
@@ -94,6 +94,15 @@ def test_holds_last_as_long_whatever_the_ramps_take():
         )
         level = np.isclose(drive, 60)
         assert level.sum() * dt == pytest.approx(20, abs=0.1)
+
+
+def test_a_chirp_sweeps_its_band_and_no_more():
+    """(f1 - f0) T / ln(f1 / f0) cycles in all, 3 % of the range high."""
+    drive = chirp(DriveLimits(0.0, 100.0, 1e9, 60.0), (20.0, 2000.0), 2.0, 5e-5)[-40_000:] - 50
+    crossings = np.flatnonzero(np.diff(np.sign(drive)))
+    assert crossings.size / 2 == pytest.approx(1980 * 2 / np.log(100), abs=1)
+    assert (crossings < 2000).sum() / 2 == pytest.approx(20 * (100**0.05 - 1) * 2 / np.log(100), abs=0.6)
+    assert np.abs(drive).max() == pytest.approx(3, rel=1e-3)
 
 
 def test_the_other_axis_moves_alone():

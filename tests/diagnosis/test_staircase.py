@@ -1,6 +1,7 @@
 """The staircase: pairs are found, a wrong first effect is removed again, and it ends where no effect explains more."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -116,6 +117,8 @@ def test_two_effects_that_hide_each_other_are_two_stairs_the_better_one_first():
     assert {one.added, two.added} == set(two.fit.effects) == {"creep", "quadratic_gain"}
     assert one.fit.effects == (one.added,)
     assert first.total > one.fit.total > two.fit.total
+    assert one.explained == pytest.approx(explained_share(case, first, one.fit))
+    assert two.explained == pytest.approx(explained_share(case, one.fit, two.fit))
     assert two.fit.validate == pytest.approx(stage.NOISE, rel=0.1)
 
 
@@ -147,3 +150,26 @@ def test_what_fits_as_well_in_the_place_of_an_effect_is_told_once_all_are_known(
         if step.added in steps[-1].fit.effects:
             assert step.tied[0] == step.added
             assert set(step.tied[1:]) <= set(blocks[step.added].look_alikes)
+
+
+@pytest.mark.parametrize(
+    ("ends", "taken"),
+    [
+        ([("unexplained", 1.0, 1.5), ("adequate", 1.0, 2.0)], 1),
+        ([("unexplained", 1.0, 2.0), ("unexplained", 1.0, 1.5)], 1),
+        ([("unexplained", 1.0, 1.5), ("unexplained", 1.0, 2.0)], 0),
+        ([("adequate", 1.0, 2.0), ("adequate", 1.0, 1.5)], 0),
+        ([("unexplained", 5.1, 9.0), ("adequate", 1.0, 1.5)], 0),
+    ],
+    ids=["adequate", "better", "worse", "adequate at once", "hopeless at once"],
+)
+def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, monkeypatch):
+    """Each path by its verdict, its last error in noise floors and its total; the second is tried where it may help."""
+    paths = [
+        ([Step(SimpleNamespace(identify=identify, total=total))], SimpleNamespace(verdict=verdict))
+        for verdict, identify, total in ends
+    ]
+    monkeypatch.setattr(improving, "diagnose", lambda case, first: SimpleNamespace(passing=[0, 1]))
+    monkeypatch.setattr(improving, "climb", lambda case, first, diagnosis, number, on_step: paths[number])
+    monkeypatch.setattr(improving, "find_rivals", lambda *arguments: None)
+    assert improve(SimpleNamespace(floor=1.0), None)[0] is paths[taken][0]

@@ -1,5 +1,6 @@
 import json
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -61,3 +62,15 @@ def test_a_folder_without_a_finished_run_is_refused(copy):
     path.write_text(json.dumps(json.loads(path.read_text()) | {"best": None}))
     with pytest.raises(InputError, match="no run finished"):
         read_results(copy)
+
+
+def test_an_improvement_speaks_of_its_last_model(plain):
+    steps = [{"rmse": {"identify": float(i)}, "records": [{"name": f"of {i}"}], "parameters": {"a": i}} for i in (1, 2)]
+    results = replace(
+        read_results(plain),
+        improvement={"steps": steps, "next_experiment": {"why": "last"}},
+        diagnosis={"next_experiment": {"why": "first"}},
+    )
+    assert (results.rmse, results.records, results.parameters) == ({"identify": 2.0}, [{"name": "of 2"}], {"a": 2})
+    assert results.next_experiment == {"why": "last"}
+    assert replace(results, improvement={}).next_experiment == {"why": "first"}
