@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import pzt_ident as pzt
+from pzt_ident.api.diagnosis import _proposed
 from pzt_ident.api.refit import restated
 from pzt_ident.diagnosis import refit
 from pzt_ident.job.demo import hidden
@@ -73,6 +74,16 @@ def test_what_is_restated_keeps_the_value_of_what_is_held(fit):
     assert statement.job.parameters["bouc_wen.alpha"].value == 0.25
     assert sections["parameters"]["bouc_wen.alpha"] == {"value": 0.25}
     assert restated(fit, ())[2]["parameters"] == fit.sections["parameters"]
+
+
+def test_the_next_drive_has_the_column_of_each_axis(tmp_path):
+    (tmp_path / "next.csv").write_text("time [s],u_x [V],u_y [mV]\n0,1,10\n0.5,2,20\n", encoding="utf-8")
+    proposal = {"file": "next.csv", "splits": ["creep", "drift"], "why": "creep follows the step"}
+    found = _proposed({"next_experiment": proposal}, tmp_path)
+    assert (found.splits, found.why) == (("creep", "drift"), "creep follows the step")
+    assert found.t.tolist() == [0, 0.5]
+    assert {axis: drive.tolist() for axis, drive in found.u.items()} == {"x": [1, 2], "y": [10, 20]}
+    assert _proposed({"next_experiment": None}, tmp_path) is None
 
 
 @pytest.mark.parametrize("form", [str, lambda item: item._repr_html_()])

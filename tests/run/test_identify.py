@@ -16,7 +16,7 @@ import pytest
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.job.schema import Job, load_job
 from pzt_ident.model.chain import Chain
-from pzt_ident.run.checkpoint import read_losses
+from pzt_ident.run.checkpoint import Checkpoint, Generation, read_losses
 from pzt_ident.run.identify import resume, run, tasks_of
 from pzt_ident.run.misfit import compare
 from pzt_ident.run.pool import run_all
@@ -193,6 +193,23 @@ def test_ctrl_c_ends_all_processes_and_says_how_to_go_on(folder, tmp_path, searc
     assert process.returncode == 130
     assert said.endswith(f"`pzt-ident resume {out}` goes on from here\nError: interrupted\n")
     assert "Traceback" not in said
+
+
+def test_a_search_that_goes_on_counts_the_seconds_that_it_had(folder, tmp_path):
+    """Half its generations are on the disk, the last of them after 1000 s."""
+    statement, told = Statement(load_job(folder / "job.yaml")), []
+    task = tasks_of(statement, tmp_path)[0]
+    search(task, statement, told.append)
+    whole = json.loads(task.result.read_text())
+    half = Checkpoint()
+    half.generations = [Generation(1000.0, losses) for _, losses in [*read_losses(task.losses)][:20]]
+    half.save(task.losses)
+    search(task, statement, told.append)
+    result = json.loads(task.result.read_text())
+    assert 1000 < result["seconds"] < 1100
+    assert len([*read_losses(task.losses)]) == 40
+    assert all(seconds >= 1000 for seconds, _ in read_losses(task.losses))
+    assert (result["evaluations"], result["rmse"]) == (whole["evaluations"], whole["rmse"])
 
 
 def test_bad_data_leave_nothing_behind(folder, tmp_path):
