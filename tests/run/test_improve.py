@@ -4,6 +4,7 @@ import json
 import re
 from html import unescape
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -333,3 +334,30 @@ class TestRefusals:
         assert "identify.csv" in answer.stderr and "Traceback" not in answer.output
         assert answer.stdout == ""
         assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize(
+    ("verdict", "told"),
+    [
+        ("adequate", "adequate"),
+        ("missing", "unexplained"),
+        ("inconclusive", "unexplained"),
+        ("unexplained", "unexplained"),
+        ("refused", "refused"),
+    ],
+)
+def test_a_staircase_that_cannot_go_on_says_so_and_what_it_added(verdict, told, monkeypatch):
+    for name, nothing in (("stair", {}), ("caveats", ""), ("units_and_floors", {})):
+        monkeypatch.setattr(improvement, name, lambda *arguments, nothing=nothing: nothing)
+    before, after = SimpleNamespace(effects=("drift",)), SimpleNamespace(effects=("drift", "creep"))
+    steps = [stairs.Step(before), stairs.Step(after, "creep", None, {"creep": after, "thermal_relaxation": after})]
+    job, case = SimpleNamespace(name="job", effects=("drift",)), SimpleNamespace(records=())
+    found = improvement.improvement_of(job, case, steps, {"verdict": verdict, "reason": "Said."})
+    assert (found["verdict"], found["effects"]) == (told, ["creep"])
+    assert ("tried and taken back" in found["reason"]) == (verdict != told)
+    assert ("not proven while that is open: creep." in found["reason"]) == (verdict != "adequate")
+    assert "These data cannot tell creep from thermal_relaxation." in found["reason"]
+    steps[1].rivals = {"creep": after}
+    assert (
+        "cannot tell" not in improvement.improvement_of(job, case, steps, {"verdict": verdict, "reason": ""})["reason"]
+    )
