@@ -7,7 +7,7 @@ from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 
-from . import cases, score, solve, table
+from . import cases, score, solve, tally
 
 
 def _seeds(text):
@@ -50,7 +50,7 @@ def main():
     if given.task == "table":
         rows = score.rows(given.out)
         (Path(given.out) / "rows.json").write_text(json.dumps(rows, indent=1))
-        print(table.markdown(rows))
+        print(tally.markdown(rows))
 
 
 if __name__ == "__main__":
