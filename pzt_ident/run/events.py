@@ -31,9 +31,11 @@ def event_log(folder: Path, listen: Listen) -> Iterator[Listen]:
 
         def tell(event: Event) -> None:
             with one_at_a_time:
-                log.write(json.dumps(plain(event)) + "\n")
-                log.flush()
-                listen(event)
+                try:
+                    listen(event)  # first, so that whoever sees the log finds the listener told
+                finally:
+                    log.write(json.dumps(plain(event)) + "\n")
+                    log.flush()
 
         yield tell
 

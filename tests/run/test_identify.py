@@ -185,7 +185,8 @@ def test_ctrl_c_ends_all_processes_and_says_how_to_go_on(folder, tmp_path, searc
     process = subprocess.Popen(
         command, stderr=subprocess.PIPE, text=True, start_new_session=True, preexec_fn=heed_ctrl_c
     )
-    while not (out / "runs" / "pso-0.losses" if searching else out / "events.jsonl").exists():
+    first = out / "runs" / "pso-0.losses" if searching else out / "events.jsonl"
+    while not (first.exists() and first.stat().st_size):
         assert process.poll() is None
         time.sleep(0.01)
     os.killpg(process.pid, signal.SIGINT)
