@@ -28,9 +28,9 @@ def context() -> Any:
     made.set_forkserver_preload(
         ["pzt_ident.run.task", "pzt_ident.job.schema", "pzt_ident.engine.kernel", "scipy.optimize"]
     )
-    with apart():
+    with without_working_folder():
         resource_tracker.ensure_running()  # it lets Ctrl-C through
-        with masked():  # neither does the server hear of it
+        with interrupts_blocked():  # neither does the server hear of it
             forkserver.ensure_running()
     return made
 
@@ -45,7 +45,7 @@ _starting = threading.Lock()
 
 
 @contextmanager
-def apart() -> Iterator[None]:
+def without_working_folder() -> Iterator[None]:
     """Started inside, a process has this one's search path, less the working folder."""
     with _starting:
         path, flag = sys.path, os.environ.get("PYTHONSAFEPATH")
@@ -60,7 +60,7 @@ def apart() -> Iterator[None]:
 
 
 @contextmanager
-def masked() -> Iterator[None]:
+def interrupts_blocked() -> Iterator[None]:
     """Started inside, a process is deaf to Ctrl-C, where there are signal masks."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
@@ -73,7 +73,7 @@ def masked() -> Iterator[None]:
 
 
 @contextmanager
-def held_back() -> Iterator[Callable[[], None]]:
+def interrupts_deferred() -> Iterator[Callable[[], None]]:
     """An interrupt waits for the next call of what this gives: raised in the middle of an import it can get lost."""
     asked: list[int] = []
 
@@ -107,7 +107,7 @@ def run_all(
     """
     waiting, failed = list(jobs), dict[str, str]()
     running: dict[Any, tuple[str, Any]] = {}
-    with held_back() as check:
+    with interrupts_deferred() as check:
         made = context()
         try:
             while waiting or running:
@@ -138,7 +138,7 @@ def started(made: Any, entry: Callable[..., None], name: str, arguments: tuple[A
     """Our end of its pipe, and the process."""
     ours, theirs = made.Pipe(duplex=False)
     process = made.Process(target=entry, args=(*arguments, theirs), name=name, daemon=True)
-    with apart():
+    with without_working_folder():
         process.start()
     theirs.close()
     return ours, process

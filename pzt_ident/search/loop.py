@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pzt_ident.errors import InputError, RunError
-from pzt_ident.model.optimizer import Array, Optimizer
+from pzt_ident.model.optimizer import Array, Optimizer, Search
 from pzt_ident.model.registry import optimizers
 
 Function = Callable[[Array], Array]
@@ -106,10 +106,9 @@ def optimize(
     search = optimizer.search(dimensions, np.random.default_rng(seed))
     progress = _Progress(stop, dimensions)
     replay = iter(earlier_losses)
-    points = next(search)
+    answer = None
     while True:
-        _check_candidates(points, dimensions, optimizer.name)
-        points = points[: stop.evaluations - progress.evaluations]
+        points = _candidates(search, answer, optimizer.name, progress)
         recorded = next(replay, None)
         if by_residuals and residuals is not None:
             answer = np.asarray(residuals(points), dtype=np.float64)
@@ -125,21 +124,27 @@ def optimize(
         if ended:
             search.close()
             return progress.outcome(ended)
-        try:
-            points = search.send(answer)
-        except StopIteration:
-            message = f"{optimizer.name} ended by itself after {progress.evaluations} of {stop.evaluations} evaluations"
-            raise RunError(f"{message}: its `search` must yield candidates until it is closed") from None
 
 
-def _check_candidates(points: Any, dimensions: int, name: str) -> None:
-    """Raises RunError unless there are candidates (M, P) in the unit cube."""
-    shape = np.shape(points)
-    if len(shape) != 2 or not shape[0] or shape[1] != dimensions:
-        raise RunError(f"{name} gave candidates of shape {shape}: its `search` must yield an array (M, {dimensions})")
-    if not (np.min(points) >= 0 and np.max(points) <= 1):
-        low, high = np.min(points), np.max(points)
+def _candidates(search: Search, answer: Any, name: str, progress: _Progress) -> Array:
+    """The next candidates (M, P) of a search, as many as the budget allows; answer: None for the first ones.
+
+    Raises RunError where the search ends by itself, or gives something else than candidates in the unit cube.
+    """
+    evaluations, budget, dimensions = progress.evaluations, progress.stop.evaluations, len(progress.point)
+    try:
+        points = np.asarray(search.send(answer), dtype=np.float64)
+    except StopIteration:
+        message = f"{name} ended by itself after {evaluations} of {budget} evaluations"
+        raise RunError(f"{message}: its `search` must yield candidates until it is closed") from None
+    if points.ndim != 2 or not len(points) or points.shape[1] != dimensions:
+        raise RunError(
+            f"{name} gave candidates of shape {points.shape}: its `search` must yield an array (M, {dimensions})"
+        )
+    low, high = points.min(), points.max()
+    if not (low >= 0 and high <= 1):
         raise RunError(f"{name} gave a candidate from {low:g} to {high:g}: each coordinate must lie from 0 to 1")
+    return points[: budget - evaluations]
 
 
 def _check_shape(losses: Array, points: Array, where: str) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import pzt_ident as pzt
+from pzt_ident import api
 from pzt_ident.data.notation import quantity
 
 
@@ -179,6 +180,7 @@ def test_the_package_imports_nothing_heavy():
 
 
 def test_every_name_of_the_package_is_explained():
+    assert pzt.__all__ == api.__all__
     for name in pzt.__all__:
         assert getattr(pzt, name).__doc__, name
     with pytest.raises(AttributeError, match="has no attribute 'identity'"):

@@ -1,5 +1,6 @@
 """Files beside the data that are named like modules: none of them is run."""
 
+import os
 import subprocess
 import sys
 import sysconfig
@@ -8,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from pzt_ident.run.pool import without_working_folder
 from pzt_ident.workbench.session import Session
 from workbench.conftest import alone
 
@@ -77,3 +79,17 @@ def test_nor_as_a_module_once_python_has_found_it(baited):
             path.unlink()
     subprocess.run([sys.executable, "-m", "pzt_ident", "check", "job.yaml", "--json"], cwd=baited, check=True)
     assert ran(baited) == []
+
+
+def test_each_of_the_two_guards_holds_and_is_taken_down(monkeypatch):
+    """One is for processes that are forked, the other for those that are started anew."""
+    for flag in (None, "1"):
+        monkeypatch.delenv("PYTHONSAFEPATH", raising=False)
+        if flag:
+            monkeypatch.setenv("PYTHONSAFEPATH", flag)
+        monkeypatch.setattr(sys, "path", before := ["", *sys.path])
+        with without_working_folder():
+            assert "" not in sys.path
+            assert os.environ["PYTHONSAFEPATH"] == "1"
+        assert sys.path is before
+        assert os.environ.get("PYTHONSAFEPATH") == flag

@@ -71,15 +71,18 @@ def test_a_candidate_outside_the_cube_is_refused(spoil, message):
         optimize(Spoilt(), 2, bowl, 0, Stop(100))
 
 
-def test_a_search_that_ends_by_itself_is_named():
+@pytest.mark.parametrize("batches", [0, 1])
+def test_a_search_that_ends_by_itself_is_named(batches):
     @dataclass(frozen=True)
     class Short(Walk):
         name = "short"
 
         def search(self, dimensions, rng):
-            yield rng.random((4, dimensions))
+            for _ in range(batches):
+                yield rng.random((4, dimensions))
 
-    with pytest.raises(RunError, match="short ended by itself after 4 of 100 evaluations: its `search` must yield"):
+    message = f"short ended by itself after {4 * batches} of 100 evaluations: its `search` must yield"
+    with pytest.raises(RunError, match=message):
         optimize(Short(), 2, bowl, 1, Stop(100))
 
 

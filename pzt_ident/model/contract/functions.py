@@ -25,11 +25,27 @@ class NotYetDefined(InputError):
 
 
 def check_asked(block: Any) -> None:
-    """Raises InputError for the first function that is missing or asks for an unknown name."""
+    """Raises InputError for the first function that is missing or asks for an unknown name, and for a parameter for
+    which none asks."""
     for word, item in signatures(block).items():
         names = arguments_of(block, word)
         if item.asked_by_name:
             _check_names(block, word, names[len(item.arguments) - 1 :], _allowed(block, item.asked_by_name))
+    _check_all_asked(block)
+
+
+def _check_all_asked(block: Any) -> None:
+    """A block without `solved` or `weights` gets no parameter but those for which its functions ask; one of an effect
+    belongs to a form of the block, which is not known yet."""
+    if getattr(block, "solved", ()):
+        return
+    asking = [word for word, item in signatures(block).items() if item.asked_by_name]
+    asked = {name for word in asking for name in arguments_of(block, word)}
+    asked |= {*getattr(block, "weights", ()), *(item.smooth for item in parameters(block).values() if item.smooth)}
+    for name, item in parameters(block).items():
+        if name not in asked and not item.per_record and not item.effect:
+            remedy = "name it among the arguments, or take it out of the declaration"
+            raise fault(block, asking[0], f"does not ask for the parameter {name!r}", remedy)
 
 
 def try_functions(block: Any) -> dict[str, tuple[Any, ...]]:
