@@ -15,6 +15,10 @@ Array = NDArray[np.float64]
 LINE_RATIO = 30.0  # power of a spectral line over that of the frequencies around it
 LEAST_SCALE = 5e-3  # of the span of a response
 ROUNDING = 1e-12  # of a signal: what is left below is no noise
+QUIETEST = 0.25  # of all that is measured: as much as no ringing and no transient need have reached
+LOUDER = 1.5  # times those: above that an estimate has more in it than noise
+DECAY = 2.0  # of the variance between the halves of a rest: more is a transient, and the later half is taken
+MISMATCH = 0.5  # of the noise: more may not come from periods that are no whole number of samples
 
 
 class Floor(NamedTuple):
@@ -28,8 +32,10 @@ def noise_floor(records: list[Record], axis: int) -> Floor:
     """Noise of an axis, from the best evidence there is: repeated records, rest segments, repeated periods, else the
     high frequencies.
 
-    Never less than the quantiser's q / sqrt(12) where the response takes few values. The high-frequency part is weak
-    evidence: it takes slow noise for signal and fast signal for noise.
+    The noise is the sensor's, the same in all records, and what a stage adds, such as ringing, only makes an estimate
+    larger: those well above the quietest quarter are left out. Never less than the quantiser's q / sqrt(12) where the
+    response takes few values. The high-frequency part is weak evidence: it takes slow noise for signal and fast signal
+    for noise.
     """
     signals = [(r.drive, r.response[axis], r.settle, r.dt) for r in records]
     pairs = [(r, other) for i, r in enumerate(records) for other in records[:i] if is_repeat(r, other, axis)]
@@ -46,9 +52,18 @@ def noise_floor(records: list[Record], axis: int) -> Floor:
     ):
         estimates = [(v, n * dt) for u, y, settle, dt in signals for v, n in estimate(u[:, settle:], y[settle:])]
         if estimates:
-            deviations, seconds = np.array(estimates).T
-            return at_least(np.sqrt(np.average(deviations**2, weights=seconds)), source, least)
+            return at_least(quiet_deviation(*np.array(estimates).T), source, least)
     return Floor(least, "quantiser")
+
+
+def quiet_deviation(deviations: Array, seconds: Array) -> float:
+    """Root mean square of the estimates up to LOUDER times the one that the QUIETEST share of the seconds stays below,
+    weighed by their seconds."""
+    order = np.argsort(deviations)
+    measured = np.cumsum(seconds[order])
+    quiet = deviations[order][np.searchsorted(measured, QUIETEST * measured[-1])]
+    kept = deviations <= LOUDER * quiet
+    return float(np.sqrt(np.average(deviations[kept] ** 2, weights=seconds[kept])))
 
 
 def at_least(deviation: float, source: str, least: float) -> Floor:
@@ -110,8 +125,8 @@ def quantiser_step(response: Array) -> float:
 
 
 def rest_noise(drive: Array, response: Array, least: int = 100) -> list[tuple[float, int]]:
-    """Standard deviation and number of samples of each rest: the last four fifths of an interval of constant drive,
-    less a quartic, which follows creep, and the lines of the mains and the floor."""
+    """Standard deviation and number of samples of each rest: the last four fifths of an interval of constant drive, or
+    less where these still settle, less a quartic, which follows creep, and the lines of the mains and the floor."""
     span = np.ptp(drive, axis=1, keepdims=True)
     still = (np.abs(np.diff(drive, axis=1)) <= 1e-6 * np.maximum(span, 1e-300)).all(axis=0)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(int), [0]])))
@@ -119,21 +134,37 @@ def rest_noise(drive: Array, response: Array, least: int = 100) -> list[tuple[fl
     for first, last in zip(edges[::2], edges[1::2], strict=True):
         first += (last - first) // 5
         if last - first >= least:
-            estimates.append((float(np.std(without_lines(response[first:last], 4))), last - first))
+            estimates.append(settled_deviation(response[first:last], least))
     return estimates
+
+
+def settled_deviation(signal: Array, least: int) -> tuple[float, int]:
+    """Standard deviation about a quartic and lines, and the number of samples that it is from: those of the later half,
+    and so on, while the earlier one has DECAY times its variance."""
+    noise = without_lines(signal, 4)
+    half = noise.size // 2
+    if half >= least and np.var(noise[:half]) > DECAY * np.var(noise[half:]):
+        return settled_deviation(signal[half:], least)
+    return float(np.std(noise)), noise.size
 
 
 def period_noise(drive: Array, response: Array, least: int = 3) -> list[tuple[float, int]]:
     """Standard deviation and number of samples of a periodic record: half the variance of the difference of successive
-    periods, less its straight line; the median over the periods."""
+    periods, less its straight line and lines of the mains, of the quiet ones. None where the drive repeats so roughly,
+    as with periods of no whole number of samples, that the response must too."""
     period = period_of(drive)
     if not period or response.size < least * period:
         return []
-    deviations = []
-    for first in range(0, response.size - 2 * period + 1, period):
-        change = response[first + period : first + 2 * period] - response[first : first + period]
-        deviations.append(detrended_deviation(change, 1) / np.sqrt(2))
-    return [(float(np.median(deviations)), response.size)]
+
+    def changes(signal: Array) -> list[Array]:
+        firsts = range(0, response.size - 2 * period + 1, period)
+        return [signal[i + period : i + 2 * period] - signal[i : i + period] for i in firsts]
+
+    deviations = np.array([np.std(without_lines(change, 1)) for change in changes(response)]) / np.sqrt(2)
+    deviation = quiet_deviation(deviations, np.ones(deviations.size))
+    scaled = drive / np.maximum(np.ptp(drive, axis=1, keepdims=True), 1e-300)
+    mismatch, span = max(float(np.median(np.std(changes(row), axis=1))) for row in scaled), np.ptp(response)
+    return [(deviation, response.size)] if mismatch * span <= max(MISMATCH * deviation, ROUNDING * span) else []
 
 
 def difference_noise(drive: Array, response: Array) -> list[tuple[float, int]]:

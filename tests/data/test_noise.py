@@ -140,10 +140,45 @@ def test_what_is_not_scored_is_no_evidence():
 
 
 def test_rests_count_by_how_long_they_last():
-    """2 s of 1 and 10 s of 3: the mean square is (2 + 90) / 12, whatever the samples are."""
-    short = record(rising(500, 2000), white(2500))
-    long = dataclasses.replace(record(rising(500, 1000), white(1500, 3, seed=1)), dt=1e-2)
-    assert noise_floor([short, long], 0).value == pytest.approx(np.sqrt(92 / 12), rel=0.05)
+    """10 s of 1 and 4 s of 1.4: the mean square is (10 + 4 * 1.96) / 14, whatever the samples are."""
+    long = dataclasses.replace(record(rising(500, 1000), white(1500)), dt=1e-2)
+    short = record(rising(500, 4000), white(4500, 1.4, seed=1))
+    assert noise_floor([short, long], 0).value == pytest.approx(np.sqrt(17.84 / 14), rel=0.05)
+
+
+RINGING = np.exp(-np.arange(4000) / 1500) * np.sin(np.arange(4000) / 3)  # a mode that rings through all of a rest
+
+
+@pytest.mark.parametrize("rings", [(), (1,), (1, 3), (0, 1, 2)])
+@pytest.mark.parametrize("size", [3, 1000])
+def test_rests_that_ring_are_no_evidence_while_a_quarter_is_quiet(rings, size):
+    records = [record((1 + n) * rising(500, 4000), white(4500, seed=n)) for n in range(4)]
+    for n in rings:
+        records[n].response[0, 500:] += size * RINGING
+    floor = noise_floor(records, 0)
+    assert (floor.source, floor.value) == ("rest segments", pytest.approx(1, rel=0.15))
+
+
+@pytest.mark.parametrize("decay", [30, 100, 400])
+def test_a_rest_counts_from_where_it_has_settled(decay):
+    response = white(4500)
+    response[500:] += 50 * np.exp(-np.arange(4000) / decay) * np.sin(np.arange(4000) / 3)
+    assert noise_floor([record(rising(500, 4000), response)], 0).value == pytest.approx(1, rel=0.1)
+
+
+@pytest.mark.parametrize(("period", "source"), [(600, "repeated"), (600.4, "weak"), (600.005, "repeated")])
+def test_periods_of_no_whole_number_of_samples_are_no_repeats(period, source):
+    """With 0.4 samples the response is off by 15 times the noise, root mean square; with 0.005 by a fifth of it."""
+    drive = 50 - 50 * np.cos(2 * np.pi * np.arange(4000) / period)
+    floor = noise_floor([record(drive, 1e3 * drive + white(4000, 10.0))], 0)
+    assert source in floor.source
+    assert floor.value == pytest.approx(10, rel=0.15)
+
+
+def test_a_record_of_wide_band_says_nothing_of_the_noise_of_smooth_ones():
+    drives = [50 - 50 * np.cos(2 * np.pi * (np.arange(4000) / 1000) ** power) for power in (1.2, 1.3)]
+    records = [record(drive, drive + white(4000, seed=n)) for n, drive in enumerate((*drives, white(4000, 50)))]
+    assert noise_floor(records, 0).value == pytest.approx(1, rel=0.1)
 
 
 def test_the_start_of_a_rest_is_left_to_settle():
