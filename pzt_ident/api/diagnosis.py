@@ -146,12 +146,12 @@ def diagnose(fit: Fit) -> Diagnosis:
 def improve(fit: Fit) -> Improvement:
     """Add what is missing and diagnose again, until nothing is missing or nothing more is known."""
     with _case(fit) as (case, first, folder):
-        steps, last = staircase.improve(case, first)
+        found = staircase.improve(case, first)
         job = fit.statement.job
-        content = results.improvement_of(job, case, steps, results.diagnosis_of(job, case, last, folder))
+        content = results.improvement_of(job, case, found, results.diagnosis_of(job, case, found.last, folder))
         stairs = [
             Step(Fit(*from_refit(fit, case, step.fit)), step.added, step.removed, step.tied, step.explained)
-            for step in steps
+            for step in found.steps
         ]
         return Improvement(stairs, content["verdict"], content["reason"], content["effects"], content)
 

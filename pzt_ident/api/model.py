@@ -27,9 +27,10 @@ class Model:
         self.effects, self.shared = _words(effects, "effects"), _words(shared, "shared")
         for item in self.blocks:
             _known(word_of(item), blocks.words(), "model", "block")
-        for effect in self.effects:
+        chosen = list(map(word_of, self.effects))
+        for effect in chosen:
             _known(effect, blocks.effects(), "effects", "effect")
-            if self.effects.count(effect) > 1:
+            if chosen.count(effect) > 1:
                 raise InputError(f"{effect!r} occurs twice", where="effects", remedy="give each effect once")
         blocks.chain((*self.blocks, *self.effects))
 

@@ -15,7 +15,7 @@ from pzt_ident.diagnosis import refit as diagnosis
 from pzt_ident.diagnosis.refit import Case
 from pzt_ident.diagnosis.score import Scorer
 from pzt_ident.errors import InputError, nearest
-from pzt_ident.model.registry import blocks
+from pzt_ident.model.registry import blocks, word_of
 from pzt_ident.run.checkpoint import Checkpoint
 from pzt_ident.run.improve import case_of
 from pzt_ident.run.statement import Statement
@@ -27,9 +27,10 @@ def with_effect(fit: Fitted, effect: str) -> Parts:
 
     Raises InputError where it is unknown, there already, or does not fit the model.
     """
-    if effect in fit.model.effects:
+    word = word_of(str(effect))
+    if word in map(word_of, fit.model.effects):
         raise InputError(f"{effect!r} is in the model already", where="add", remedy="add another effect")
-    if effect not in blocks.effects():
+    if word not in blocks.effects():
         raise InputError(f"unknown effect {effect!r}", where="add", remedy=nearest(str(effect), blocks.effects()))
     effects = (*fit.model.effects, effect)
     restated(fit, effects)  # refused before anything is fitted

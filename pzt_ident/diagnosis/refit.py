@@ -17,7 +17,7 @@ from pzt_ident.data.record import Record
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.model.block import Coupling
 from pzt_ident.model.chain import Chain
-from pzt_ident.model.registry import Choice, blocks
+from pzt_ident.model.registry import Choice, blocks, word_of
 from pzt_ident.search.problem import FixedValue, Problem
 
 Array = NDArray[np.float64]
@@ -79,12 +79,12 @@ class Case:
         if not any(issubclass(block, Coupling) for block in chain):
             return {}
         unmeasured = [axis for number, axis in enumerate(first.axes) if number not in first.measured]
-        added = {word for word in effects if word not in self.effects}
+        added = {word_of(item) for item in effects if item not in self.effects}
         return {
             f"{axis}.{block.name}.{word}": parameter.null
             for axis, block in product(unmeasured, chain)
             for word, parameter in block.parameters().items()
-            if {block.name, parameter.effect} & added
+            if {block.name, word_of(parameter.effect or "")} & added
             and parameter.null is not None
             and Chain.allowed_without_response(block, parameter)
             if f"{block.name}.{word}" not in (*self.shared, *self.specs)

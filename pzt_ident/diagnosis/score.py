@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import product
+from math import prod
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +18,15 @@ from pzt_ident.diagnosis import misfit
 from pzt_ident.diagnosis.projection import Projection
 from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.model.block import Addition, Coupling, Term
-from pzt_ident.model.registry import blocks
+from pzt_ident.model.registry import blocks, word_of
 from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
 
 BATCH = 48  # candidates that are simulated together
 LEAST_TRACE = 1e-9  # of the residual: less is rounding
+LEAST_SCORE = 0.02  # of the misfit: an effect that scores less is not refitted
+MANY_TRIALS = 50  # values of the shape parameters
 TRIALS = 5  # values over the range of a parameter that means nothing at the null
 
 
@@ -73,13 +76,13 @@ class Trial:
 def applicable(case: Case, effects: tuple[str, ...]) -> list[str]:
     """The effects that can be added to this model, which has `effects`."""
     chain = blocks.chain((*case.words, *effects))
-    terms = {parameter.effect for block in chain for parameter in block.parameters().values()}
+    terms, present = {word for block in chain for word in block.effects()}, set(map(word_of, effects))
     axes = len(case.records[0].axes)
     words = []
     for word in blocks.effects():
         block = blocks[word]
         fits = (not issubclass(block, Term) or word in terms) and (not issubclass(block, Coupling) or axes > 1)
-        if fits and word not in (*effects, *case.ruled_out):
+        if fits and word not in (*present, *case.ruled_out):
             words.append(word)
     return words
 
@@ -97,6 +100,15 @@ class Scorer:
     def explained(self, remaining: Array) -> float:
         """Share of the misfit that is gone where so much of the residual remains."""
         return float((self.residual @ self.residual - remaining @ remaining) / self.misfit)
+
+    def scores(self, effect: str) -> list[Score]:
+        """The scores of all forms of an effect, the first form first; of one with many trials the others only where
+        the first explains some."""
+        first = self.score(effect)
+        others = blocks.forms(effect)[1:]
+        if first.explained <= LEAST_SCORE and prod(blocks[effect].trials.values()) > MANY_TRIALS:
+            others = []
+        return [first, *map(self.score, others)]
 
     def score(self, effect: str) -> Score:
         """The score of an effect. On axes without a response it acts as the effects of the fit do; if it is the first
@@ -170,13 +182,15 @@ class Scorer:
         """A trial for each value of the shape parameters and each size."""
         new = [i for i, name in enumerate(problem.names) if name not in self.fit.problem.names]
         nulls = {i: problem.model.entries[problem.free[i]].parameter.null for i in new}
-        amplitudes = [i for i in new if nulls[i] is not None]
+        tried = blocks[effect].trials
+        words = {i: problem.model.entries[problem.free[i]].word for i in new}
+        amplitudes = [i for i in new if nulls[i] is not None and words[i] not in tried]
         shapes = [i for i in new if i not in amplitudes]
         known = self.fit.values
         start = np.array([known.get(name, nulls.get(i) or 0) for i, name in enumerate(problem.names)], float)
         bounds = np.where(problem.upper != start, problem.upper, problem.lower)[amplitudes]
         full_steps = bounds - start[amplitudes]
-        for values in parameter_grid(problem, shapes, blocks[effect].trials):
+        for values in parameter_grid(problem, shapes, tried):
             start[shapes] = values
             for size in blocks[effect].sizes:
                 yield Trial(size, start.copy(), amplitudes, shapes, size * full_steps)

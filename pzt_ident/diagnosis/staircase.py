@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 
+import numpy as np
+
+from pzt_ident.diagnosis.candidates import Candidate, is_tied
+from pzt_ident.diagnosis.criteria import adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.misfit import share_explained
+from pzt_ident.diagnosis.proof import DECISIVE, Suspect, unproven
 from pzt_ident.diagnosis.refit import Case, Fit, refit, restart
 from pzt_ident.diagnosis.score import Scorer, applicable
-from pzt_ident.diagnosis.verdict import (
-    Candidate,
-    Diagnosis,
-    adequate,
-    best_pair,
-    diagnose,
-    is_tied,
-    removed_rms,
-    removes_enough,
-    threshold,
-)
+from pzt_ident.diagnosis.verdict import Diagnosis, best_pair, diagnose, unexplained
 from pzt_ident.model.registry import blocks
 
 MOST_STEPS = 8
+PATIENCE = 3  # effects that take up less than half of the misfit, after which no other is tried
 FIRST_EFFECTS = 2  # effects that are tried as the first to be added
 LEAST_GAIN = 0.05  # noise floors by which one effect fits better than another: less may be simulation error
 HOPELESS = 5.0  # noise floors: where the first path ends above that, another order of the same effects does not help
@@ -45,26 +41,65 @@ class Step:
 
 
 StepListener = Callable[[Step], None]
-Staircase = tuple[list[Step], Diagnosis]
+
+
+@dataclass
+class Staircase:
+    """The steps, the model as given first; the diagnosis of the last model; the effects that were added and taken out
+    again, because they are not proven."""
+
+    steps: list[Step]
+    last: Diagnosis
+    suspects: list[Suspect] = field(default_factory=list)
 
 
 def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
-    """The staircase, the model as given first, and the diagnosis of its last model.
+    """The staircase from the model as given to the one with all effects that are proven.
 
     Where the best first effect leads to no adequate model, the next best one is tried: the first may have stood in for
     something else.
     """
     diagnosis = diagnose(case, first)
-    first_candidates: list[Candidate | None] = [*diagnosis.passing[:FIRST_EFFECTS]] or [None]
     paths: list[Staircase] = []
-    for candidate in first_candidates:
-        steps, last = climb(case, first, diagnosis, candidate, on_step)
-        paths.append((steps, last))
-        if last.verdict in ("adequate", "refused") or steps[-1].fit.identify / case.floor > HOPELESS:
+    candidates: list[Candidate | None] = [*first_candidates(case, first, diagnosis)]
+    for candidate in candidates or [None]:
+        path = climb(case, first, diagnosis, candidate, on_step)
+        paths.append(path)
+        if path.last.verdict in ("adequate", "refused") or path.steps[-1].fit.identify / case.floor > HOPELESS:
             break
-    best = min(paths, key=lambda path: (path[1].verdict != "adequate", path[0][-1].fit.total))
-    find_rivals(case, first, best[0])
+    best = min(paths, key=lambda path: (path.last.verdict != "adequate", path.steps[-1].fit.total))
+    take_back_unproven(case, first, best, on_step)
+    find_rivals(case, first, best.steps)
     return best
+
+
+def first_candidates(case: Case, first: Fit, diagnosis: Diagnosis) -> list[Candidate]:
+    """The best candidate, and the next best one, for which another form of any effect counts too."""
+    if not diagnosis.passing:
+        return []
+    best, *others = diagnosis.passing
+    every = [
+        replace(item, score=score, fit=item.refits[score.effect])
+        for item in diagnosis.candidates
+        for score in item.forms
+        if score.effect in item.refits and item.fit is not item.refits[score.effect]
+    ]
+    others += [item for item in every if item.fit and removes_enough(case, first, first, item.fit)]
+    return [best, *sorted(others, key=lambda item: item.fit.total if item.fit else np.inf)[: FIRST_EFFECTS - 1]]
+
+
+def take_back_unproven(case: Case, first: Fit, staircase: Staircase, on_step: StepListener) -> None:
+    """Steps that take the unproven effects out again. What is left then is unexplained, but for other forms."""
+    staircase.suspects = unproven(case, first, staircase.steps[-1].fit)
+    for suspect in staircase.suspects:
+        now = staircase.steps[-1].fit
+        step = Step(suspect.without, None, suspect.effect, {}, explained_share(case, now, suspect.without))
+        on_step(step)
+        staircase.steps.append(step)
+    if staircase.suspects:
+        staircase.last = diagnose(case, staircase.steps[-1].fit, first)
+    if staircase.last.verdict not in ("adequate", "refused"):
+        staircase.last = unexplained(case, first, staircase.last)
 
 
 def climb(
@@ -73,13 +108,13 @@ def climb(
     """One path: the candidate is added first, then always the best one."""
     steps = [Step(first)]
     on_step(steps[0])
-    while len(steps) <= MOST_STEPS:
+    while len(steps) <= MOST_STEPS and not stuck(steps):
         new = next_steps(case, first, steps, diagnosis, candidate)
         if not new:
             break
         restart_if_inadequate(case, first, (*steps, *new)[-2].fit, new[-1])
         new += remove_unneeded(case, first, new[-1].fit)
-        new += exchange_look_alikes(case, first, new[-1].fit)
+        new += exchange_accounts(case, first, new[-1].fit)
         if frozenset(new[-1].fit.effects) in {frozenset(step.fit.effects) for step in steps}:
             break
         for step in new:
@@ -87,7 +122,13 @@ def climb(
         steps += new
         diagnosis = diagnose(case, steps[-1].fit, first)
         candidate = diagnosis.best
-    return steps, diagnosis
+    return Staircase(steps, diagnosis)
+
+
+def stuck(steps: list[Step]) -> bool:
+    """Whether one effect after the other took up a part of the misfit, and none most of it."""
+    latest = [step.explained for step in steps if step.added][-PATIENCE:]
+    return len(latest) == PATIENCE and max(latest) < DECISIVE
 
 
 def restart_if_inadequate(case: Case, first: Fit, before: Fit, step: Step) -> None:
@@ -170,24 +211,43 @@ def remove_unneeded(case: Case, first: Fit, now: Fit) -> list[Step]:
     return steps
 
 
-def exchange_look_alikes(case: Case, first: Fit, now: Fit) -> list[Step]:
-    """Steps that put look-alikes in the place of effects added before the others were known, where that fits better."""
+def exchange_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
+    """Steps that put other forms in the place of the effects added, or look-alikes where these were added before the
+    others were known, where that fits better."""
     steps: list[Step] = []
     added = now.effects[len(first.effects) :]
-    for effect in added if len(added) > 1 else ():
-        best = min(look_alike_fits(case, now, effect), key=lambda fit: fit.total, default=now)
-        if fits_better(case, now, best):
+    for effect in added:
+        rivals = look_alikes(case, now, effect) if len(added) > 1 else []
+        items = rivals if adequate(case, first, now) else [*rivals, *other_forms(effect)]
+        best = min(fits_in_place(case, now, effect, items), key=lambda fit: fit.total, default=now)
+        if fits_better(case, now, best) and (best.effects[-1] in rivals or clears_up(case, now, best)):
             steps += [exchange_step(case, now, best, effect), *remove_unneeded(case, first, best)]
             now = steps[-1].fit
     return steps
 
 
-def look_alike_fits(case: Case, now: Fit, effect: str) -> list[Fit]:
-    """The model refitted with each look-alike in the place of an effect."""
+def clears_up(case: Case, now: Fit, other: Fit) -> bool:
+    """Whether another form removes most of the misfit that is left: less may be its greater freedom."""
+    return explained_share(case, now, other) >= DECISIVE
+
+
+def other_forms(effect: str) -> list[str]:
+    return [item for item in blocks.forms(effect) if blocks[item].item() != blocks[effect].item()]
+
+
+def look_alikes(case: Case, now: Fit, effect: str) -> list[str]:
+    """The look-alikes that could be in the place of an effect."""
+    possible = applicable(case, effects_without(now, effect))
+    return [word for word in blocks[effect].look_alikes if word in possible]
+
+
+def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str]) -> list[Fit]:
+    """The model refitted with each of the items in the place of an effect."""
+    if not items:
+        return []
     without = refit(case, now, effects_without(now, effect), {})
-    possible, scorer = applicable(case, without.effects), Scorer(case, without)
-    words = [word for word in blocks[effect].look_alikes if word in possible]
-    return [refit(case, without, (*without.effects, word), scorer.score(word).guess) for word in words]
+    scorer = Scorer(case, without)
+    return [refit(case, without, (*without.effects, item), scorer.score(item).guess) for item in items]
 
 
 def find_rivals(case: Case, first: Fit, steps: list[Step]) -> None:
@@ -196,7 +256,8 @@ def find_rivals(case: Case, first: Fit, steps: list[Step]) -> None:
     added = now.effects[len(first.effects) :]
     for effect in added if len(added) > 1 else ():
         step = next(step for step in reversed(steps) if step.added == effect)
-        tied = [fit for fit in look_alike_fits(case, now, effect) if is_tied(case, effect, now, fit)]
+        fits = fits_in_place(case, now, effect, look_alikes(case, now, effect))
+        tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
         step.rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
 
 

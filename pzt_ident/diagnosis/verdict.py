@@ -2,37 +2,42 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from itertools import combinations
 
 import numpy as np
 
-from pzt_ident.diagnosis.refit import Case, Fit, refit, restart, step_errors
-from pzt_ident.diagnosis.score import Score, Scorer, applicable, squared_misfit
+from pzt_ident.data.notation import listed
+from pzt_ident.diagnosis.candidates import (
+    TIE,
+    Candidate,
+    choose_forms,
+    decide_by_score,
+    generalises,
+    is_tied,
+    promises_enough,
+    refit_all,
+    restart_look_alikes,
+    score_all,
+)
+from pzt_ident.diagnosis.criteria import (
+    CLEAR,
+    LEAST_SHARE,
+    VALIDATION_FACTOR,
+    adequate,
+    not_in_validation,
+    reaches_noise,
+    removed_rms,
+    removes_enough,
+    threshold,
+)
+from pzt_ident.diagnosis.refit import Case, Fit, refit, step_errors
+from pzt_ident.diagnosis.score import LEAST_SCORE, Scorer, squared_misfit
 from pzt_ident.diagnosis.wording import percent
-from pzt_ident.model.registry import blocks
+from pzt_ident.model.registry import phrase_of
 
 SHORTLIST = 5  # effects that are refitted
-LEAST_SCORE = 0.02  # of the misfit: an effect that scores less is not refitted
-CLEAR = 0.6  # noise floors: an effect removes at least this much, root mean square
-LEAST_SHARE = 0.15  # and at least this much of the misfit
-TIE = 0.2  # noise floors between two refits: less does not distinguish them; of look-alikes twice that
-LOOK_ALIKE_TIE = 0.01  # of the total RMSE: less does not distinguish refits of look-alikes far above the noise
-VALIDATION_FACTOR = 3.0  # times the threshold that the validation records of an adequate model may be above the noise
-MODEL_FORM = 0.03  # of the initial misfit: less may as well be the form of the effects added as another effect
 STEP_FAULT = 0.6  # of the misfit: where halving the simulation step changes more, the step is to blame
-LOOK_ALIKE_STARTS = 8  # starts of a look-alike's own parameters
-VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
-
-
-@dataclass
-class Candidate:
-    """An effect that may be missing, with its refit where it was on the short list."""
-
-    score: Score
-    fit: Fit | None = None
-    decision: str = "not missing"
 
 
 @dataclass
@@ -52,58 +57,19 @@ class Diagnosis:
         return next((candidate for candidate in self.candidates if candidate.decision == "missing"), None)
 
 
-def removed_rms(before: float | None, after: float | None) -> float:
-    """What an effect removes of an RMSE, root mean square; negative where the RMSE grew, infinite without records."""
-    if before is None or after is None:
-        return np.inf
-    return float(np.sign(before - after) * np.sqrt(abs(before**2 - after**2)))
-
-
-def threshold(case: Case, first: Fit) -> float:
-    """The least that an effect must remove, root mean square, in units of the loss; a model no further above the noise
-    is adequate. `first` is the model before anything was added."""
-    return max(CLEAR * case.floor, MODEL_FORM * squared_misfit(case, first) ** 0.5)
-
-
-def removes_enough(case: Case, first: Fit, before: Fit, after: Fit) -> bool:
-    """Whether an effect removes enough on the identification records and on the validation records; where the latter
-    do not show it, it must bring both down to the noise."""
-    removed, least = removed_rms(before.identify, after.identify), threshold(case, first)
-    in_validation = removed_rms(before.validate, after.validate) > least / 2 or not_in_validation(
-        case, first, before, after
-    )
-    return removed > least and removed**2 > LEAST_SHARE * squared_misfit(case, before) and in_validation
-
-
-def not_in_validation(case: Case, first: Fit, before: Fit, after: Fit) -> bool:
-    """Whether an effect explains all of the misfit, and the validation records are at the noise with it and without."""
-    noise = np.hypot(case.floor, threshold(case, first))
-    return all(error is not None and error <= noise for error in (before.validate, after.validate, after.identify))
-
-
-def adequate(case: Case, first: Fit, fit: Fit) -> bool:
-    """Whether a fit is at the noise of the identification records and close to that of the validation records."""
-    most = np.hypot(case.floor, VALIDATION_FACTOR * threshold(case, first))
-    return reaches_noise(case, first, fit) and bool(fit.validate is None or fit.validate <= most)
-
-
-def reaches_noise(case: Case, first: Fit, fit: Fit) -> bool:
-    """Whether a fit is at the noise of the identification records."""
-    return bool(fit.identify <= np.hypot(case.floor, threshold(case, first)))
-
-
 def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     """Score every effect, refit the short list, judge; `first` as in `threshold`, by default the model itself."""
     first = first or before
     if reason := refusal(case, first, before):
         return Diagnosis("refused", reason, before, [], [])
     scorer = Scorer(case, before)
-    candidates = sorted(map(Candidate, score_all(case, before, scorer)), key=lambda item: -item.score.explained)
-    if adequate(case, first, before) and not any(_promises_enough(case, first, before, item) for item in candidates):
+    candidates = sorted(score_all(case, before, scorer), key=lambda item: -item.score.explained)
+    if adequate(case, first, before) and not any(promises_enough(case, first, before, item) for item in candidates):
         decide_by_score(case, first, before, candidates)
         return without_effect(case, first, before, candidates)
     shortlist = [item for item in candidates if item.score.explained > LEAST_SCORE][:SHORTLIST]
     refit_all(case, before, shortlist)
+    choose_forms(case, first, shortlist)
     restart_look_alikes(case, first, before, shortlist)
     candidates.sort(key=lambda item: (item.fit.total if item.fit else np.inf, -item.score.explained))
     decide_by_score(case, first, before, candidates)
@@ -122,7 +88,8 @@ def with_effects(
     close = [item for item in passing if removed_rms(fits[item.score.effect].total, total) < TIE * case.floor]
     best = min(close, key=lambda item: (fits[item.score.effect].problem.dimensions, fits[item.score.effect].total))
     word = best.score.effect
-    tied = [item for item in passing if item in close or is_tied(case, word, fits[word], fits[item.score.effect])]
+    alike = [item for item in passing if item in close or is_tied(case, word, fits[word], fits[item.score.effect])]
+    tied = [item for item in alike if item is best or not generalises(fits[item.score.effect], fits[word])]
     for item in tied:
         item.decision = "missing"
     candidates.sort(key=lambda item: (item is not best, item.fit.total if item.fit else np.inf))
@@ -149,72 +116,6 @@ def refusal(case: Case, first: Fit, fit: Fit) -> str:
     )
 
 
-def score_all(case: Case, before: Fit, scorer: Scorer) -> list[Score]:
-    """The scores of every effect that can be added to the model."""
-    words, scores = applicable(case, before.effects), list[Score]()
-    with ThreadPoolExecutor(2) as pool:
-        for score in pool.map(scorer.score, words):
-            scores.append(score)
-            facts = {"effect": score.effect, "explained": score.explained}
-            case.on_event({"event": "scored", **facts, "done": len(scores), "of": len(words)})
-    return scores
-
-
-def are_look_alikes(one: str, other: str) -> bool:
-    """Whether one of two effects counts the other among its look-alikes."""
-    return one in blocks[other].look_alikes or other in blocks[one].look_alikes
-
-
-def is_tied(case: Case, effect: str, fit: Fit, rival: Fit) -> bool:
-    """Whether a fit with a look-alike in the place of an effect is hardly worse."""
-    close = removed_rms(rival.total, fit.total) < 2 * TIE * case.floor
-    return (close or rival.total < (1 + LOOK_ALIKE_TIE) * fit.total) and are_look_alikes(effect, rival.effects[-1])
-
-
-def _promises_enough(case: Case, first: Fit, before: Fit, candidate: Candidate) -> bool:
-    """Whether an effect would remove enough by its score."""
-    return candidate.score.explained * squared_misfit(case, before) > threshold(case, first) ** 2
-
-
-def refit_all(case: Case, before: Fit, candidates: list[Candidate]) -> None:
-    """Put the model refitted with each effect into its candidate."""
-
-    def refitted(candidate: Candidate) -> Fit:
-        return refit(case, before, (*before.effects, candidate.score.effect), candidate.score.guess)
-
-    with ThreadPoolExecutor(2) as pool:
-        for candidate, fit in zip(candidates, pool.map(refitted, candidates), strict=True):
-            candidate.fit = fit
-
-
-def restart_look_alikes(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> None:
-    """Restart the fits of look-alikes of the best that are hardly worse on the identification records: with several
-    parameters they may rest in a side minimum that shows on the validation records only."""
-    passing = [item for item in candidates if item.fit and removes_enough(case, first, before, item.fit)]
-    best = min(passing, key=lambda item: item.fit.total, default=None)  # type: ignore[union-attr]
-    if best is None or best.fit is None:
-        return
-    for candidate in candidates:
-        word, fit = candidate.score.effect, candidate.fit
-        close = fit and removed_rms(fit.identify, best.fit.identify) < 2 * TIE * case.floor
-        if fit and close and are_look_alikes(word, best.score.effect) and len(candidate.score.guess) > 1:
-            candidate.fit = restart(fit, word, LOOK_ALIKE_STARTS)
-
-
-def decide_by_score(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> None:
-    """Mark the candidates that these data cannot show, and those whose score is too small for a refit."""
-    for candidate in candidates:
-        score = candidate.score
-        if score.power < VISIBLE:
-            candidate.decision = "cannot be seen"
-        elif (
-            candidate.fit is None
-            and score.explained > LEAST_SCORE
-            and not _promises_enough(case, first, before, candidate)
-        ):
-            candidate.decision = "too small"
-
-
 def without_effect(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> Diagnosis:
     """The diagnosis where no effect removes enough: the model is adequate, or its misfit is unexplained."""
     rmse = rmse_phrase(case, before)
@@ -227,9 +128,35 @@ def without_effect(case: Case, first: Fit, before: Fit, candidates: list[Candida
             " show or do not determine. Set `use: identify` for a record of that kind."
         )
     else:
-        reason = f"No effect of the catalogue explains the remaining error, {rmse}."
+        reason = nothing_explains(case, before)
     reason += identification_only_sentence(case, first, before, candidates)
     return Diagnosis("unexplained", reason, before, candidates, [])
+
+
+def nothing_explains(case: Case, fit: Fit) -> str:
+    return f"No effect of the catalogue explains the remaining error, {rmse_phrase(case, fit)}."
+
+
+def unexplained(case: Case, first: Fit, found: Diagnosis) -> Diagnosis:
+    """The diagnosis of a model that unproven effects were taken out of: what is left is not one of them."""
+    for candidate in found.candidates:
+        candidate.decision = "suspect" if candidate.decision == "missing" else candidate.decision
+    reason = found.reason if found.verdict == "unexplained" else nothing_explains(case, found.before)
+    reason += form_sentence(case, first, found.before)
+    return Diagnosis("unexplained", reason, found.before, found.candidates, [], found.passing)
+
+
+def form_sentence(case: Case, first: Fit, fit: Fit) -> str:
+    """What the proven effects explain, and that the rest may be another form of them; empty where there are none."""
+    proven = fit.effects[len(first.effects) :]
+    if not proven:
+        return ""
+    left = squared_misfit(case, fit) / squared_misfit(case, first)
+    names = listed(map(phrase_of, proven))
+    return (
+        f" {names} explain{'s' if len(proven) == 1 else ''} {percent(1 - left)} of the initial misfit. The other"
+        f" {percent(left)} may be a form of {'it' if len(proven) == 1 else 'them'} that the catalogue does not have."
+    )
 
 
 def rmse_phrase(case: Case, fit: Fit) -> str:
@@ -267,8 +194,8 @@ def identification_only_sentence(case: Case, first: Fit, before: Fit, candidates
     share = percent(removed**2 / misfit)
     floors = f"{before.validate / case.floor:.2f} to {fit.validate / case.floor:.2f} noise floors"
     return (
-        f" {word} would remove {share} of the misfit on the identification records, but the RMSE on the validation"
-        f" records would go from {floors}."
+        f" {phrase_of(word)} would remove {share} of the misfit on the identification records, but the RMSE on the"
+        f" validation records would go from {floors}."
     )
 
 
@@ -281,9 +208,10 @@ def missing_sentence(case: Case, first: Fit, before: Fit, fit: Fit, words: list[
         sentence += " The validation records show nothing of it, so only the identification records support it."
     if not adequate(case, first, fit):
         sentence += " More is missing, or it stands in for something else: `pzt-ident improve` follows it up."
+    phrases = list(map(phrase_of, words))
     if len(words) == 1:
-        return f"Missing: {words[0]}. {sentence[0].upper()}{sentence[1:]}"
-    return f"{' or '.join(words)}: these data cannot tell them apart. Take {words[0]}: {sentence}"
+        return f"Missing: {phrases[0]}. {sentence[0].upper()}{sentence[1:]}"
+    return f"{' or '.join(phrases)}: these data cannot tell them apart. Take {phrases[0]}: {sentence}"
 
 
 def best_pair(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> Fit | None:

@@ -1,7 +1,7 @@
 """First-order lag, T y' + y = u, stepped exactly for an input that is linear between samples."""
 
 from pzt_ident.model.block import Block
-from pzt_ident.model.first_order_hold import decay
+from pzt_ident.model.first_order_hold import decay, oscillate, oscillator
 
 
 class Lag(Block):
@@ -20,3 +20,22 @@ class Lag(Block):
     def step(w, before, u, keep, share):
         w = keep * w - share * (u - before)
         return w, u, u + w
+
+
+def second_order(tau, zeta, dt):
+    """Coefficients of y'' / omega^2 + 2 zeta y' / omega + y = u, 2 zeta / omega = tau, for `oscillate`; all zero at
+    tau = 0."""
+    return oscillator(2 * zeta / tau, zeta, dt) if tau != 0 else (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+class SecondOrder(Block):
+    """A low-pass of second order that lags by tau at low frequency, stepped exactly like `Lag`."""
+
+    sizes = Lag.sizes
+
+    def start(u, r11, r12, r21, r22, b1, b2):
+        return 0.0, 0.0, u
+
+    def step(w, v, before, u, r11, r12, r21, r22, b1, b2):
+        w, v = oscillate(w, v, u - before, r11, r12, r21, r22, b1, b2)
+        return w, v, u, u + w

@@ -1,12 +1,24 @@
 """A gain that grows with the amplitude of the drive."""
 
-from pzt_ident.model.block import Block, Place
-from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.block import Bank, Block, Place
+from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
+
+PLAYS = 20
+
+
+class Growing:
+    """What all forms of a gain that grows with the amplitude declare."""
+
+    form = Form("record", ("record", "running", "rayleigh"), "What the amplitude is taken from.")
+    growth = Parameter("1/drive", (-1, 1), "Relative growth of the gain per volt peak to peak.", null=0)
+    look_alikes = ("distributed_memory", "creep")
+    separate_by = "Run equal loops at several amplitudes and several biases, and nested loops with revisits."
+    remedy = "Calibrate at the amplitude that is used, or let the feedforward take the amplitude."
 
 
 @blocks.register
-class AmplitudeGain(Block):
+class AmplitudeGain(Growing, Block):
     """Rayleigh's law, more domain walls move under a larger drive: y = (1 + growth U_pp) f.
 
     U_pp is the peak-to-peak drive of the record. Damjanovic & Demartin (1996), J. Phys. D 29, 2057. In data of one
@@ -14,10 +26,6 @@ class AmplitudeGain(Block):
     """
 
     place = Place.STATIC
-    growth = Parameter("1/drive", (-1, 1), "Relative growth of the gain per volt peak to peak.", null=0)
-    look_alikes = ("distributed_memory", "creep")
-    separate_by = "Run equal loops at several amplitudes and several biases, and nested loops with revisits."
-    remedy = "Calibrate at the amplitude that is used, or let the feedforward take the amplitude."
 
     def prepare(growth, span):
         return (1 + growth * span,)
@@ -27,3 +35,49 @@ class AmplitudeGain(Block):
 
     def step(u, factor):
         return u * factor
+
+
+class Running(Growing, Block):
+    """The gain grows with the widest swing so far: y = d u (1 + growth (max u - min u)) - h.
+
+    Damjanovic & Demartin (1996), J. Phys. D 29, 2057.
+    """
+
+    place = Place.READOUT
+
+    def prepare(growth):
+        return (growth,)
+
+    def start(u, growth):
+        return u, u
+
+    def step(low, high, u, growth):
+        low, high = min(low, u), max(high, u)
+        return low, high, u + u * growth * (high - low)
+
+
+class Rayleigh(Growing, Bank):
+    """Rayleigh's loops, with the hysteresis that belongs to them: y = d (u + growth int_0^peak F_r[u] dr) - h.
+
+    F_r is a play of half-width r: the Preisach operator of a constant density. Damjanovic (1997), Phys. Rev. B 55,
+    R649. Peak is the largest drive of the record.
+    """
+
+    place = Place.READOUT
+    branches = PLAYS
+
+    def prepare(growth, peak, branch):
+        return growth * peak / PLAYS, peak * (branch + 0.5) / PLAYS
+
+    def start(u, weight, half):
+        return (max(u - half, min(u + half, 0.0)),)
+
+    def step(p, u, weight, half):
+        p = max(u - half, min(u + half, p))
+        return p, weight * p
+
+    def output(u, total, weight, half):
+        return u + total
+
+
+AmplitudeGain.forms = {"running": Running, "rayleigh": Rayleigh}

@@ -1,7 +1,7 @@
 """Force of one axis that moves another one through the stiffness of the guide."""
 
 from pzt_ident.model.block import Coupling, Place
-from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
 
@@ -14,6 +14,7 @@ class CrossCoupling(Coupling):
     """
 
     place = Place.COUPLING
+    form = Form("force", ("force", "voltage"), "What of the other axis acts.")
     ratio = Parameter("1", (-5, 5), "Stiffness coupling k12 / k11 from the other axis.", null=0)
     look_alikes = ("kinematic_coupling",)
     separate_by = (
@@ -27,3 +28,17 @@ class CrossCoupling(Coupling):
 
     def step(y, other, ratio):
         return y + ratio * other
+
+
+class OfVoltage(CrossCoupling):
+    """The other axis' voltage acts, without its hysteresis: f1 <- f1 + d1 ratio u2.
+
+    Stray field, leakage between the amplifiers' channels, or a transverse piezo coefficient: Yong, Moheimani, Kenton &
+    Leang (2012), Rev. Sci. Instrum. 83, 121101.
+    """
+
+    place = Place.READOUT
+    ratio = Parameter("1", (-5, 5), "Share of the other axis' voltage that acts on this axis.", null=0)
+
+
+CrossCoupling.forms = {"voltage": OfVoltage}

@@ -1,7 +1,7 @@
 """Memory of many past reversals."""
 
-from pzt_ident.model.block import Bank, Place
-from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.block import Bank, Place, expm1
+from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
 PLAYS = 10
@@ -16,6 +16,7 @@ class DistributedMemory(Bank):
     """
 
     place = Place.READOUT
+    form = Form("plays", ("plays", "bent_plays"), "What a play adds.")
     branches = PLAYS
     weight = Parameter("1", (-0.5, 0.5), "Weight of the i-th play over the gain.", null=0, count=PLAYS)
     reach = Parameter("drive", (0.05, 1), "Half-width of the widest play.", value=0.4)
@@ -35,3 +36,34 @@ class DistributedMemory(Bank):
 
     def output(u, total, weight, half):
         return u + total
+
+
+class BentPlays(DistributedMemory):
+    """Plays whose share levels off, so that equal loops differ with the bias as in a Preisach operator:
+    y = d (u + sum_i w_i tanh(knee F_i[u]) / knee) - h.
+
+    Generalised Prandtl-Ishlinskii operator with envelopes: Al Janaideh, Rakheja & Su (2011), IEEE/ASME Trans.
+    Mechatronics 16, 734. For relays with normally distributed interaction fields tanh stands for erf: Smith et al.,
+    Model Development for AFM Stage Mechanisms, eq. 7 to 14.
+    """
+
+    trials = {"knee": 5}
+    knee = Parameter("1/drive", (0, 10), "One over the voltage at which the share of a play levels off.", null=0)
+
+    def prepare(weight, reach, knee, branch):
+        return weight, reach * (branch + 1) / PLAYS, knee
+
+    def start(u, weight, half, knee):
+        return (max(u - half, min(u + half, 0.0)),)
+
+    def step(p, u, weight, half, knee):
+        p = max(u - half, min(u + half, p))
+        x = knee * p
+        grown = expm1(2 * min(max(x, -20.0), 20.0))
+        return p, weight * p * (grown / ((grown + 2) * x) if abs(x) > 1e-3 else 1 - x * x / 3)
+
+    def output(u, total, weight, half, knee):
+        return u + total
+
+
+DistributedMemory.forms = {"bent_plays": BentPlays}

@@ -3,20 +3,16 @@
 import numpy as np
 
 from pzt_ident.model.block import Addition, Place
-from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
 
-@blocks.register
-class Drift(Addition):
-    """Stage and frame warm up and expand, whatever the drive: y = x + size (1 - exp(-t / tau)), t from the start.
-
-    Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems. Nearly a ramp for a long tau.
-    """
+class Drifting:
+    """What all forms of drift declare."""
 
     place = Place.OUTPUT
+    form = Form("exponential", ("exponential", "ramp"), "The course of the drift within a record.")
     size = Parameter("response", (-1, 1), "Final drift of a record.", null=0, per_record=True)
-    tau = Parameter("s", (10, 3000), "Thermal time constant.", scale="log")
     look_alikes = ("creep", "thermal_relaxation")
     separate_by = (
         "Record at a constant voltage that has rested for as long before: drift shows there too, creep and relaxation "
@@ -24,5 +20,29 @@ class Drift(Addition):
     )
     remedy = "Let the rig warm up, shield it from draughts, and re-zero it before and after each record."
 
+
+@blocks.register
+class Drift(Drifting, Addition):
+    """Stage and frame warm up and expand, whatever the drive: y = x + size (1 - exp(-t / tau)), t from the start.
+
+    Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems. Nearly a ramp for a long tau.
+    """
+
+    tau = Parameter("s", (10, 3000), "Thermal time constant.", scale="log")
+
     def basis(t, tau):
         return (-np.expm1(-t / tau),)
+
+
+class Ramp(Drifting, Addition):
+    """A steady drift with a rate of its own in each record: y = x + size t / T, T the length of the record.
+
+    Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems. Records of one day see it go up and
+    down: together they are a random walk.
+    """
+
+    def basis(t):
+        return (t / t[-1],)
+
+
+Drift.forms = {"ramp": Ramp}

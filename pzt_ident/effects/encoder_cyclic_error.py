@@ -3,7 +3,7 @@
 from math import pi
 
 from pzt_ident.model.block import Block, Place, cos, sin
-from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
 
@@ -15,10 +15,11 @@ class EncoderCyclicError(Block):
     """
 
     place = Place.SENSOR
+    form = Form("first", ("first", "second"), "Up to which harmonic of the grating.")
     trials = {"pitch": 60}
     sine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, odd about x = 0.", null=0)
     cosine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, even about x = 0.", null=0)
-    pitch = Parameter("response", (0.01, 2), "Period of the grating's signal.", scale="log")
+    pitch = Parameter("response", (0.01, 1), "Period of the grating's signal.", scale="log")
     look_alikes = ("quadratic_gain", "cubic_stiffness", "saturation")
     separate_by = "Shift the encoder head by half a pitch and repeat: this error changes its sign, all others stay."
     remedy = "Correct offset, gain and phase of the encoder's signals, or subtract the error tabulated over a pitch."
@@ -31,3 +32,26 @@ class EncoderCyclicError(Block):
 
     def step(u, sine, cosine, wave):
         return u + sine * sin(wave * u) + cosine * (cos(wave * u) - 1)
+
+
+class SecondHarmonic(EncoderCyclicError):
+    """Unequal gains of the two signals: y = x + ... + c sin(4 pi x / p) + d (cos(4 pi x / p) - 1).
+
+    Heydemann (1981), Applied Optics 20, 3382.
+    """
+
+    second_sine = Parameter("response", (-0.05, 0.05), "Error of the second harmonic, odd about x = 0.", null=0)
+    second_cosine = Parameter("response", (-0.05, 0.05), "Error of the second harmonic, even about x = 0.", null=0)
+
+    def prepare(sine, cosine, second_sine, second_cosine, pitch):
+        return sine, cosine, second_sine, second_cosine, 2 * pi / pitch
+
+    def start(u, sine, cosine, second_sine, second_cosine, wave):
+        return ()
+
+    def step(u, sine, cosine, second_sine, second_cosine, wave):
+        a, b = sin(wave * u), cos(wave * u)
+        return u + sine * a + cosine * (b - 1) + 2 * second_sine * a * b - 2 * second_cosine * a * a
+
+
+EncoderCyclicError.forms = {"second": SecondHarmonic}

@@ -1,12 +1,24 @@
 """Dry friction in the guide."""
 
 from pzt_ident.model.block import Block, Place, expm1, log1p
-from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.first_order_hold import decay
+from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
 
+class Rubbing:
+    """What all forms of friction declare."""
+
+    place = Place.GUIDE
+    form = Form("lugre", ("lugre", "coulomb"), "The law of friction.")
+    force = Parameter("response", (0, 0.1), "Sliding friction over the stiffness.", null=0)
+    look_alikes = ("distributed_memory", "delay", "amplifier_lag")
+    separate_by = "Hold the voltage and push the stage by an external force or another axis: only friction has a loop."
+    remedy = "Free cables and guides, lubricate or change the preload, drive turning points slower or close the loop."
+
+
 @blocks.register
-class Friction(Block):
+class Friction(Rubbing, Block):
     """Bristles of the guide bend, then slide (LuGre): x + F = f,  dF/dx = (g - F sgn dx/dt) / (reach g / force),
     g = force (1 + stiction exp(-(v / stribeck)^2)).
 
@@ -17,10 +29,8 @@ class Friction(Block):
     d + (g - q) (1 - exp(-d / r)) = |df|, found by Halley's method.
     """
 
-    place = Place.GUIDE
     sizes = (0.02, 0.1, 0.5)
     trials = {"stribeck": 1}
-    force = Parameter("response", (0, 0.1), "Sliding friction over the stiffness.", null=0)
     reach = Parameter("response", (1e-3, 0.5), "Displacement over which friction builds up.", scale="log")
     stiction = Parameter(
         "1", (0, 0.5), "Excess of the break-away force over sliding friction, as a share of it.", null=0
@@ -28,9 +38,6 @@ class Friction(Block):
     stribeck = Parameter(
         "response/s", (1e-3, 100), "Stribeck velocity, at which stiction has fallen by a factor of e.", scale="log"
     )
-    look_alikes = ("distributed_memory", "delay", "amplifier_lag")
-    separate_by = "Hold the voltage and push the stage by an external force or another axis: only friction has a loop."
-    remedy = "Free cables and guides, lubricate or change the preload, drive turning points slower or close the loop."
 
     def prepare(force, reach, stiction, stribeck, dt):
         return force, reach, stiction, 1 / (stribeck * dt)
@@ -49,6 +56,32 @@ class Friction(Block):
         d = halley_step(halley_step(halley_step(d, slack, push), slack, push), slack, push)
         friction = sign * level * (force + reach * slack * -(1 + expm1(-d)))
         return friction, u, u - friction
+
+
+class Coulomb(Rubbing, Block):
+    """Dry and viscous friction: x + viscous dx/dt = f - force tanh(v / speed), v = df/dt.
+
+    Coulomb's law, smoothed over `speed`: Olsson, Astrom, Canudas de Wit, Gafvert & Lischinsky (1998), Eur. J. Control
+    4, 176. The viscous part against the stiffness is a lag, stepped exactly.
+    """
+
+    sizes = (0.02, 0.1, 0.5)
+    speed = Parameter("response/s", (1e-3, 100), "Velocity over which dry friction builds up.", scale="log")
+    viscous = Parameter("s", (0, 5e-3), "Viscous friction over the stiffness.", null=0)
+
+    def prepare(force, speed, viscous, dt):
+        return force, 2 / (speed * dt), *decay(viscous, dt)
+
+    def start(u, force, fast, keep, share):
+        return 0.0, u
+
+    def step(w, before, u, force, fast, keep, share):
+        w = keep * w - share * (u - before)
+        grown = expm1(max(min((u - before) * fast, 40.0), -40.0))
+        return w, u, u + w - force * (grown / (grown + 2))
+
+
+Friction.forms = {"coulomb": Coulomb}
 
 
 def halley_step(d, slack, push):

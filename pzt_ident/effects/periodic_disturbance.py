@@ -3,7 +3,7 @@
 import numpy as np
 
 from pzt_ident.model.block import Addition, Place
-from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
 GUESS_PERIODS = 8  # that a record must have for a guess of the frequency
@@ -20,6 +20,7 @@ class PeriodicDisturbance(Addition):
     """
 
     place = Place.OUTPUT
+    form = Form("sine", ("sine", "harmonics"), "The course of the disturbance.")
     sine = Parameter("response", (-1, 1), "Part in phase at the start of a record.", null=0, per_record=True)
     cosine = Parameter("response", (-1, 1), "Part a quarter period ahead of it.", null=0, per_record=True)
     frequency = Parameter("Hz", (1, 1000), "Frequency of the disturbance.", scale="log")
@@ -61,3 +62,21 @@ def independent_of_drive(grid, t, drive):
         order = np.round(grid / first)
         independent &= (order > HARMONICS) | (np.abs(grid - order * first) > 1 / seconds)
     return independent
+
+
+class Harmonics(PeriodicDisturbance):
+    """Mains with its third harmonic, as transformers and rectifiers make it: y = x + sum_n a_n sin(2 pi n f t) +
+    b_n cos(2 pi n f t), n = 1 and 3.
+
+    Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems.
+    """
+
+    third_sine = Parameter("response", (-1, 1), "Third harmonic, in phase at the start.", null=0, per_record=True)
+    third_cosine = Parameter("response", (-1, 1), "Third harmonic, a quarter period ahead.", null=0, per_record=True)
+
+    def basis(t, frequency):
+        phase, enough = 2 * np.pi * frequency * t, frequency * (t[-1] - t[0]) >= MIN_PERIODS
+        return tuple(enough * wave(n * phase) for n in (1, 3) for wave in (np.sin, np.cos))
+
+
+PeriodicDisturbance.forms = {"harmonics": Harmonics}

@@ -1,7 +1,7 @@
 """A gain that changes with the voltage."""
 
 from pzt_ident.model.block import Block, Place
-from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
 
@@ -13,6 +13,7 @@ class QuadraticGain(Block):
     """
 
     place = Place.READOUT
+    form = Form("voltage", ("voltage", "displacement"), "What the gain grows with.")
     curvature = Parameter("1/drive", (-0.5, 0.5), "Growth of the gain per volt, over twice the gain.", null=0)
     look_alikes = ("saturation", "cubic_stiffness", "encoder_cyclic_error")
     separate_by = (
@@ -29,3 +30,16 @@ class QuadraticGain(Block):
 
     def step(u, curvature):
         return u + curvature * u * u
+
+
+class OfDisplacement(QuadraticGain):
+    """The stroke itself curves: y = f + curvature f^2, f = d u - h.
+
+    Gu, Zhu & Su (2014), IEEE Trans. Ind. Electron. 61, 1583: a polynomial behind the hysteresis.
+    """
+
+    place = Place.STATIC
+    curvature = Parameter("1/response", (-0.5, 0.5), "Growth of the gain by displacement, over twice it.", null=0)
+
+
+QuadraticGain.forms = {"displacement": OfDisplacement}

@@ -1,6 +1,7 @@
 """Hysteresis that widens with the rate of the drive."""
 
 from pzt_ident.model.block import Term
+from pzt_ident.model.parameter import Form
 from pzt_ident.model.registry import blocks
 
 
@@ -8,10 +9,35 @@ from pzt_ident.model.registry import blocks
 class RateDependence(Term):
     """Domain walls follow the field late: alpha <- alpha (1 + rate log10(|du/dt| / (100 V/s))).
 
-    Logarithmic in the rate, as in Ang, Khosla & Riviere (2007), IEEE/ASME Trans. Mechatronics 12, 134. Unlike a lag,
-    which is linear in rate and amplitude, it vanishes for small amplitudes. In data of one rate alpha absorbs it.
+    Down to 0.01 V/s, below which alpha is constant. Logarithmic in the rate, as in Ang, Khosla & Riviere (2007),
+    IEEE/ASME Trans. Mechatronics 12, 134. Unlike a lag, which is linear in rate and amplitude, it vanishes for small
+    amplitudes. In data of one rate alpha absorbs it.
     """
 
+    form = Form("logarithm", ("logarithm", "onset", "power"), "How alpha grows with the rate.")
     look_alikes = ("amplifier_lag", "sensor_lag", "viscous_damping", "thermal_relaxation")
     separate_by = "Repeat one loop at rates two decades apart, and a small amplitude at the fastest."
     remedy = "Run at the rate that the model was identified at, or schedule the feedforward on the rate."
+
+
+class Onset(RateDependence):
+    """Below a rate v0 the hysteresis does not change: alpha <- alpha (1 + c log10(1 + |du/dt| / v0)).
+
+    Ang, Khosla & Riviere (2007), with a rate from which on it counts. Written relative to 100 V/s, so that alpha keeps
+    its meaning: 1 + rate log10((|du/dt| + v0) / (100 V/s + v0)), v0 being `onset`.
+    """
+
+    trials = {"onset": 5}
+
+
+class Power(RateDependence):
+    """A power of the rate: alpha <- alpha (1 + rate / (p log 10) ((|du/dt| / (100 V/s))^p - 1)), p being `exponent`.
+
+    With rate = p log 10 the pure power that aging and activated switching give; the logarithm for p = 0. Ang, Khosla &
+    Riviere (2007).
+    """
+
+    trials = {"exponent": 4}
+
+
+RateDependence.forms = {"onset": Onset, "power": Power}

@@ -2,20 +2,16 @@
 
 from math import pi
 
-from pzt_ident.model.block import Beside, Place
+from pzt_ident.model.block import Beside, Block, Place
 from pzt_ident.model.first_order_hold import oscillate, oscillator
-from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
 
-@blocks.register
-class Resonance(Beside):
-    """A second mode in parallel to the first: y = (1 - share) x + share G2 f, G2 = 1 / (s^2/w^2 + 2 zeta s/w + 1).
+class SecondMode:
+    """What all forms of a second mode declare."""
 
-    Solved exactly for f linear on each step. For a negative share the pole comes before the zero.
-    """
-
-    place = Place.MODE
+    form = Form("parallel", ("parallel", "series", "voltage"), "Where the second mode is, and what drives it.")
     trials = {"frequency": 160, "damping": 3}
     share = Parameter("1", (-0.4, 0.4), "Part of the static response that the second mode carries.", null=0)
     frequency = Parameter("Hz", (100, 2e4), "Natural frequency of the second mode.", scale="log")
@@ -27,9 +23,47 @@ class Resonance(Beside):
     def prepare(share, frequency, damping, dt):
         return share, *oscillator(2 * pi * frequency, damping, dt)
 
+
+@blocks.register
+class Resonance(SecondMode, Beside):
+    """A second mode in parallel to the first: y = (1 - share) x + share G2 f, G2 = 1 / (s^2/w^2 + 2 zeta s/w + 1).
+
+    Solved exactly for f linear on each step. For a negative share the pole comes before the zero.
+    """
+
+    place = Place.MODE
+
     def start(f, share, r11, r12, r21, r22, b1, b2):
         return 0.0, 0.0, f
 
     def step(w, v, before, x, f, share, r11, r12, r21, r22, b1, b2):
         w, v = oscillate(w, v, f - before, r11, r12, r21, r22, b1, b2)
         return w, v, f, x + share * (f + w - x)
+
+
+class Series(SecondMode, Block):
+    """The force reaches the first mode partly through the second: f <- f + share (G2 - 1) f.
+
+    Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems: modes in series.
+    """
+
+    place = Place.GUIDE
+
+    def start(u, share, r11, r12, r21, r22, b1, b2):
+        return 0.0, 0.0, u
+
+    def step(w, v, before, u, share, r11, r12, r21, r22, b1, b2):
+        w, v = oscillate(w, v, u - before, r11, r12, r21, r22, b1, b2)
+        return w, v, u, u + share * w
+
+
+class OfVoltage(Series):
+    """The voltage drives the second mode, without the hysteresis: y = d (u + share (G2 - 1) u) - h.
+
+    A mode of the stack, or of the amplifier with its load, ahead of the guide: Fleming & Leang (2014).
+    """
+
+    place = Place.READOUT
+
+
+Resonance.forms = {"series": Series, "voltage": OfVoltage}

@@ -1,19 +1,16 @@
 """Sensor that follows the stage through a low-pass filter."""
 
-from pzt_ident.effects._lag import Lag
+from pzt_ident.effects._lag import Lag, SecondOrder, second_order
 from pzt_ident.model.block import Place
-from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
 
-@blocks.register
-class SensorLag(Lag):
-    """The reading follows the displacement through the sensor's low-pass: tau y' + y = x.
-
-    Fleming (2013), Sensors and Actuators A 190, 106. Acts behind everything else.
-    """
+class Filtering:
+    """What all forms of the sensor's lag declare."""
 
     place = Place.SENSOR
+    form = Form("one_pole", ("one_pole", "second_order"), "Order of the filter.")
     tau = Parameter("s", (0, 5e-3), "Time constant of the sensor's filter.", null=0)
     look_alikes = ("amplifier_lag", "delay", "viscous_damping")
     separate_by = (
@@ -21,3 +18,25 @@ class SensorLag(Lag):
         "parallel with the stack, which does not."
     )
     remedy = "Widen the bandwidth of the sensor's filter, or take the identified lag out of the readings."
+
+
+@blocks.register
+class SensorLag(Filtering, Lag):
+    """The reading follows the displacement through the sensor's low-pass: tau y' + y = x.
+
+    Fleming (2013), Sensors and Actuators A 190, 106. Acts behind everything else.
+    """
+
+
+class ButterworthFilter(Filtering, SecondOrder):
+    """A filter of second order with damping 1 / sqrt(2): (tau^2 s^2 / 2 + tau s + 1) y = x, with the same lag at low
+    frequency.
+
+    Fleming (2013), Sensors and Actuators A 190, 106.
+    """
+
+    def prepare(tau, dt):
+        return second_order(tau, 0.5**0.5, dt)
+
+
+SensorLag.forms = {"second_order": ButterworthFilter}

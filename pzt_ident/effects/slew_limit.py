@@ -3,7 +3,8 @@
 from math import inf
 
 from pzt_ident.model.block import Block, Place
-from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.first_order_hold import decay
+from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
 
@@ -16,6 +17,7 @@ class SlewLimit(Block):
     """
 
     place = Place.SLEW
+    form = Form("clip", ("clip", "lag"), "How the voltage approaches the command below the limit.")
     sizes = tuple(1.25**-k for k in range(32))
     slowness = Parameter("s/drive", (0, 0.1), "Capacitance over the greatest current.", null=0)
     look_alikes = ("amplifier_lag", "sensor_lag")
@@ -35,3 +37,27 @@ class SlewLimit(Block):
         follows = u if abs(u - y) <= limit else y + (limit if u > y else -limit)
         y = y + sign * limit * (2 * met - 1) if back > limit else follows
         return y, u, y
+
+
+class SaturatingLag(SlewLimit):
+    """An amplifier with a lag whose current saturates: dU_a/dt = (U - U_a) / tau, at most 1 / slowness.
+
+    Fleming & Leang (2014), ch. 14. The voltage follows the lag wherever that is slow enough: exact there for a command
+    that is linear between samples, and on the limit.
+    """
+
+    tau = Parameter("s", (0, 5e-3), "Time constant below the limit.", null=0)
+
+    def prepare(slowness, tau, dt):
+        return dt / slowness if slowness != 0 else inf, *decay(tau, dt)
+
+    def start(u, limit, keep, share):
+        return u, u
+
+    def step(y, before, u, limit, keep, share):
+        lagging = u + keep * (y - before) - share * (u - before)
+        y = lagging if abs(lagging - y) <= limit else y + (limit if lagging > y else -limit)
+        return y, u, y
+
+
+SlewLimit.forms = {"lag": SaturatingLag}

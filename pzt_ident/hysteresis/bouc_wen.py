@@ -7,6 +7,7 @@ from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks
 
 RATE = 100.0  # V/s, drive rate at which alpha is not changed by `rate`
+SLOW = 0.01  # V/s, below which alpha no longer changes with the logarithm of the rate
 
 
 @blocks.register
@@ -18,7 +19,8 @@ class BoucWen(Operator):
     r = beta + gamma where q > 0.
 
     Effects, each without influence at zero:
-    dh/dt = alpha d (1 + rate log10(|du/dt| / RATE)) du/dt + asymmetry alpha d u |du/dt| - ... - relaxation h.
+    dh/dt = alpha d (1 + rate L) du/dt + (asymmetry u + lean) alpha d |du/dt| - ... - relaxation h,
+    L = log10((|du/dt| + onset) / (RATE + onset)), or (10^(exponent L) - 1) / (exponent log 10).
     Over a step the factors on du/dt keep their value in the middle, and h relaxes after it: second order in the step,
     first order in dt * relaxation.
     """
@@ -30,9 +32,14 @@ class BoucWen(Operator):
     gamma = Parameter("1/drive", (-30, 60), "Decay of h per volt, with the sign of h along the motion.")
 
     asymmetry = Parameter(
-        "1/drive", (-1, 1), "Part of the drive term that grows with the voltage.", 0, effect="asymmetry"
+        "1/drive", (-1, 1), "Part of the drive term that grows with the voltage.", 0, effect="asymmetry.voltage"
     )
+    lean = Parameter("1", (-0.9, 0.9), "Part of the drive term in one direction.", 0, effect="asymmetry.constant")
     rate = Parameter("1", (-0.3, 0.3), "Growth of alpha per decade of drive rate.", 0, effect="rate_dependence")
+    onset = Parameter(
+        "V/s", (SLOW, 1e5), "Drive rate at which alpha begins to grow.", SLOW, "log", effect="rate_dependence.onset"
+    )
+    exponent = Parameter("1", (-0.5, 0.5), "Power of the drive rate.", 0, effect="rate_dependence.power")
     relaxation = Parameter("1/s", (0, 1), "Decay rate of h, 1 / tau.", 0, effect="thermal_relaxation")
 
     def prepare(gain, alpha, beta, gamma):
@@ -64,14 +71,17 @@ class BoucWen(Operator):
     def output(h, u, gain, slope):
         return gain * u - slope * h
 
-    def terms(asymmetry, rate, relaxation, dt):
-        return asymmetry, rate / log(10), 1 / (dt * RATE), exp(-dt * relaxation)
+    def terms(asymmetry, lean, rate, onset, exponent, relaxation, dt):
+        fast = RATE + onset
+        root = 1 / exponent if exponent != 0 else 0.0
+        return asymmetry, lean, rate / log(10), 1 / (dt * fast), onset / fast, exponent, root, exp(-dt * relaxation)
 
-    def lift(distance, u, sign, asymmetry, rate, faster, keep):
-        speed = min(max(distance * faster, 1e-4), 1e6)
-        return max(1 + sign * asymmetry * u + rate * log1p(speed - 1), 0.01)
+    def lift(distance, u, sign, asymmetry, lean, rate, faster, slow, exponent, root, keep):
+        decades = log1p(distance * faster + slow - 1)
+        grown = root * expm1(exponent * decades) if exponent != 0 else decades
+        return max(1 + sign * (asymmetry * u + lean) + rate * grown, 0.01)
 
-    def fade(asymmetry, rate, faster, keep):
+    def fade(asymmetry, lean, rate, faster, slow, exponent, root, keep):
         return keep
 
 

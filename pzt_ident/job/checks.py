@@ -153,16 +153,17 @@ def _rule_out(document: Document, words: tuple[str, ...], earlier: Earlier) -> N
     for i, word in enumerate(words):
         if word not in blocks.effects():
             document.fault(("rule_out", i), f"unknown effect {word!r}", nearest(word, blocks.effects()))
-        elif word in earlier.get("effects", ()):
+        elif word in map(word_of, earlier.get("effects", ())):
             document.fault(("rule_out", i), f"{word!r} is among the `effects` too", "keep it in one of the two")
 
 
-def _effects(document: Document, words: tuple[str, ...], earlier: Earlier) -> None:
-    model_blocks = blocks.forms_of(earlier.get("model", ()))
-    terms = {declared.effect for block in model_blocks for declared in block.parameters().values() if declared.effect}
-    known = terms | set(blocks.effects())
+def _effects(document: Document, items: tuple[str, ...], earlier: Earlier) -> None:
+    terms = {word for block in blocks.forms_of(earlier.get("model", ())) for word in block.effects()}
+    known, words = terms | set(blocks.effects()), list(map(word_of, items))
     for i, word in enumerate(words):
         loc: Loc = ("effects", i)
+        with _as_fault(document, loc):
+            blocks.chain([items[i]])
         if word in words[:i]:
             document.fault(loc, f"duplicate effect {word!r}", "keep one of the two")
         elif word not in known and word in blocks:
@@ -170,7 +171,7 @@ def _effects(document: Document, words: tuple[str, ...], earlier: Earlier) -> No
         elif word not in known:
             document.fault(loc, f"unknown effect {word!r}", nearest(word, known))
         elif word in blocks and "model" in earlier and word not in terms and _is_kind(word, "Term"):
-            owners = [block.name for block in blocks if any(p.effect == word for p in block.parameters().values())]
+            owners = [block.name for block in blocks if word in block.effects()]
             message = f"no block of this model has a term for {word!r}"
             document.fault(loc, message, f"put one of these into `model`: {', '.join(owners)}")
         elif (

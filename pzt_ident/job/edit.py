@@ -10,7 +10,7 @@ from typing import Any
 
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.job.schema import Job, load_job
-from pzt_ident.model.registry import blocks
+from pzt_ident.model.registry import blocks, word_of
 
 
 def add(job: Path, effect: str, out: Path, plugins: bool = False) -> Job:
@@ -19,9 +19,9 @@ def add(job: Path, effect: str, out: Path, plugins: bool = False) -> Job:
     Raises InputError where the effect is unknown, in the job already or does not fit the model, and where `out` exists.
     """
     before = load_job(job, plugins)
-    if effect in before.effects:
-        raise InputError(f"{effect!r} is in its effects already", where=str(job), remedy="add another effect")
-    if effect not in blocks:
+    if word_of(effect) in map(word_of, before.effects):
+        raise InputError(f"{word_of(effect)!r} is in its effects already", where=str(job), remedy="add another effect")
+    if word_of(effect) not in blocks:
         raise InputError(f"unknown effect {effect!r}", remedy=nearest(effect, blocks.effects()))
     return _write(before, (*before.effects, effect), None, out, plugins)
 
@@ -32,9 +32,10 @@ def remove(job: Path, effect: str, out: Path, plugins: bool = False) -> Job:
     Raises InputError where it is not among them, and where `out` exists.
     """
     before = load_job(job, plugins)
-    if effect not in before.effects:
+    remaining = [item for item in before.effects if effect not in (item, word_of(item))]
+    if len(remaining) == len(before.effects):
         raise InputError(f"{effect!r} is not in its effects", where=str(job), remedy=_effects_there(before.effects))
-    return _write(before, [word for word in before.effects if word != effect], None, out, plugins)
+    return _write(before, remaining, None, out, plugins)
 
 
 def model(job: Path, words: Sequence[str], out: Path, plugins: bool = False) -> Job:

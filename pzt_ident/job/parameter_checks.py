@@ -73,7 +73,7 @@ def _unknown_name(document: Document, name: str, earlier: Earlier, entries: Mapp
     """Report a name that no parameter of this job has."""
     *axis, block, word = ["", *name.split(".")]
     axes, words = earlier["channels"].axes, list(map(word_of, earlier["model"]))
-    chosen = (*words, *earlier["effects"])
+    chosen = (*words, *map(word_of, earlier["effects"]))
     if len(axis) == 2 and axis[1] not in axes:
         fault = f"there is no axis {axis[1]!r}", nearest(axis[1], axes)
     elif len(axis) == 2 and axes[axis[1]].response is None:

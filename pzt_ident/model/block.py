@@ -112,6 +112,11 @@ class Block:
         return parameters
 
     @classmethod
+    def effects(cls) -> set[str]:
+        """The words of the effects that act inside the equation of the block."""
+        return {declared.effect.partition(".")[0] for declared in cls.parameters().values() if declared.effect}
+
+    @classmethod
     def settings(cls) -> dict[str, Setting | Form]:
         """The settings that a job may choose, by name."""
         attributes = [item for owner in reversed(cls.__mro__) for item in vars(owner).items()]
@@ -147,6 +152,11 @@ class Block:
         words = [settings.get(word) for word, item in cls.settings().items() if isinstance(item, Form)]
         form = next((cls.forms[str(word)] for word in words if str(word) in cls.forms), cls)
         return _configured(form, cls.name, ())  # type: ignore[arg-type]
+
+    @classmethod
+    def item(cls) -> str:
+        """The word with the form, as in a job: `friction.dahl`; the word alone where there is only one form."""
+        return f"{cls.name}.{cls.setting('form')}" if "form" in cls.settings() else cls.name
 
     @classmethod
     @cache

@@ -48,7 +48,7 @@ class Chain:
         chain = [block for block in blocks if not issubclass(block, Term | Addition)]
         self.blocks = tuple(sorted(chain, key=lambda block: block.place))
         self.additions = tuple(block for block in blocks if issubclass(block, Addition))
-        self._listed = {block.name for block in blocks if issubclass(block, Term)}
+        self._listed = {item for block in blocks if issubclass(block, Term) for item in (block.name, block.item())}
         self.axes, self.measured, self.shared = tuple(axes), tuple(measured), frozenset(shared)
         self.entries = tuple(
             entry for block in (*self.blocks, *self.additions) for entry in self._entries(block, given)

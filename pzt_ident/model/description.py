@@ -9,7 +9,7 @@ from typing import Any
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.model.block import Term
 from pzt_ident.model.parameter import Form, Setting
-from pzt_ident.model.registry import blocks, optimizers
+from pzt_ident.model.registry import blocks, optimizers, word_of
 
 Facts = dict[str, Any]
 
@@ -26,9 +26,8 @@ def _terms() -> dict[str, str]:
     """Effects that are terms in the equations of other blocks, with the names of those blocks."""
     owners: dict[str, list[str]] = {}
     for block in blocks:
-        for declared in block.parameters().values():
-            if declared.effect and block.name not in owners.setdefault(declared.effect, []):
-                owners[declared.effect].append(block.name)
+        for effect in block.effects():
+            owners.setdefault(effect, []).append(block.name)
     return {effect: "a term of " + ", ".join(names) for effect, names in sorted(owners.items())}
 
 
@@ -54,7 +53,7 @@ def description_of(name: str) -> Facts:
 def _parameters_of_effect(effect: str) -> list[Facts]:
     """The parameters of all blocks that belong to an effect."""
     rows = [row | {"name": f"{block.name}.{row['name']}"} for block in blocks for row in _parameters(block)]
-    return [row for row in rows if row["effect"] == effect]
+    return [row for row in rows if row["effect"] and word_of(row["effect"]) == effect]
 
 
 def _block(name: str) -> Facts:

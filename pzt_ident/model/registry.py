@@ -132,11 +132,37 @@ class Choice(Protocol):
     def settings(self) -> Mapping[str, Any]: ...
 
 
+def form_of(item: str) -> str | None:
+    """The form that the item of an effect names: `dahl` of `friction.dahl`; None for its first form."""
+    return item.partition(".")[2] or None
+
+
+def phrase_of(item: str) -> str:
+    """The item of an effect in a sentence: `friction (dahl)`; the word alone for its first form."""
+    form = form_of(item)
+    return f"{word_of(item)} ({form})" if form else item
+
+
 def word_of(item: str | Choice) -> str:
-    return item if isinstance(item, str) else item.name
+    """The word of an item of a job: `friction` of `friction.dahl`, and of `{name: friction, ...}`."""
+    return item.partition(".")[0] if isinstance(item, str) else item.name
 
 
 class Blocks(Registry[Any]):
+    """Blocks by their words; an effect that has several forms also by word and form, such as `friction.dahl`. The word
+    alone is its first form."""
+
+    def __getitem__(self, item: str) -> Any:
+        word, _, form = item.partition(".")
+        block = super().__getitem__(word)
+        return block.make(form=form) if form else block
+
+    def forms(self, effect: str) -> list[str]:
+        """The items of all forms of an effect, the first by the word alone."""
+        declared = self[word_of(effect)].settings().get("form")
+        others = declared.words[1:] if declared else ()
+        return [word_of(effect), *(f"{word_of(effect)}.{form}" for form in others)]
+
     def plug(self, path: Path, is_other: Callable[[ModuleType], bool] = lambda module: False) -> None:
         """Run a Python file of the user, which registers a block of the file's name. `is_other`: whether a module that
         registers none is something else than a block: an optimizer, or a reader of files.

@@ -62,5 +62,7 @@ def verdict_line(verdict: str, reason: str) -> str:
 
 def step_name(step: Mapping[str, Any]) -> str:
     """`as given`, `+ effect`, `- effect`, or both where one takes the place of another; what the step itself says."""
-    words = [f"{sign} {step[key]}" for sign, key in (("+", "added"), ("-", "removed")) if step[key]]
-    return step.get("change") or " ".join(words) or "as given"
+    form = f" ({step['form']})" if step.get("form") else ""
+    added = f"+ {step['added']}{form}" if step["added"] else ""
+    removed = f"- {step['removed']}" if step["removed"] else ""
+    return step.get("change") or " ".join(filter(None, (added, removed))) or "as given"

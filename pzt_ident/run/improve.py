@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -22,7 +22,7 @@ from pzt_ident.files import write_json, write_text
 from pzt_ident.job.edit import edited
 from pzt_ident.job.schema import Job
 from pzt_ident.model.description import headline
-from pzt_ident.model.registry import blocks
+from pzt_ident.model.registry import blocks, form_of, phrase_of, word_of
 from pzt_ident.run.collect import errors_in
 from pzt_ident.run.events import Event, Listen, event_log, nobody, sentence
 from pzt_ident.run.folder import begin, results_folder
@@ -85,13 +85,13 @@ def improve(job: Job, out: Path | None = None, listen: Listen = nobody) -> Path:
     of the model as given and of the last one.
     """
     with opened_case(job, out, listen) as (case, folder):
-        steps, last = stairs.improve(case, first_fit(case, job.seed), partial(told, case))
-        diagnosis = diagnosis_of(job, case, last, folder)
+        staircase = stairs.improve(case, first_fit(case, job.seed), partial(told, case))
+        steps, diagnosis = staircase.steps, diagnosis_of(job, case, staircase.last, folder)
         for name, step in (("signals_as_given.nc", steps[0]), ("signals.nc", steps[-1])):
             write_signals(folder / name, step.fit.problem.errors(step.fit.point))
         proposals = (separating(job, case, step.rivals, folder) for step in ties(steps))
         proposed = diagnosis["next_experiment"] or next(filter(None, proposals), None)
-        content = improvement_of(job, case, steps, diagnosis) | {"next_experiment": proposed}
+        content = improvement_of(job, case, staircase, diagnosis) | {"next_experiment": proposed}
         end = steps[-1].fit
         values = case.unmeasured_nulls(end.effects) if end.measured_only else None
         write_text(folder / "improved.yaml", edited(job, end.effects, folder, steps=end.steps, values=values))
@@ -101,26 +101,32 @@ def improve(job: Job, out: Path | None = None, listen: Listen = nobody) -> Path:
     return folder
 
 
-def improvement_of(job: Job, case: Case, steps: list[stairs.Step], last: dict[str, Any]) -> dict[str, Any]:
+def improvement_of(job: Job, case: Case, staircase: stairs.Staircase, last: dict[str, Any]) -> dict[str, Any]:
     """The content of `improvement.json`, less the next experiment."""
-    verdict, reason = last["verdict"], last["reason"]
-    if verdict in ("missing", "inconclusive"):
-        tried = "Another effect scores, but was tried and taken back, or the staircase has all its steps."
-        verdict, reason = "unexplained", f"{tried} {reason}"
-    added = [word for word in steps[-1].fit.effects if word not in job.effects]
-    if verdict != "adequate" and added:
-        reason += f" Added on the way, and not proven while that is open: {', '.join(added)}."
+    steps, suspects = staircase.steps, staircase.suspects
+    reason = last["reason"]
+    added = [item for item in steps[-1].fit.effects if item not in job.effects]
+    reason += "".join(f" {suspect.why_not}" for suspect in suspects)
     for step in ties(steps):
-        reason += f" These data cannot tell {' from '.join(step.tied)}."
+        reason += f" These data cannot tell {' from '.join(map(phrase_of, step.tied))}."
     reason += caveats(case, steps[-1].fit)
     return {
         "name": job.name,
         "steps": [stair(case, step) for step in steps],
-        "verdict": verdict,
+        "verdict": last["verdict"],
         "reason": reason,
-        "effects": added,
+        "effects": list(map(word_of, added)),
+        "forms": forms_of(added),
+        "suspects": [
+            {"effect": word_of(item.effect), "explained": item.share, "why not": item.why_not} for item in suspects
+        ],
         **units_and_floors(list(case.records)),
     }
+
+
+def forms_of(items: Iterable[str]) -> dict[str, str]:
+    """The forms of the effects that have several, by word."""
+    return {word_of(item): blocks[item].item().partition(".")[2] for item in items if len(blocks.forms(item)) > 1}
 
 
 def size_of(case: Case) -> float:
@@ -144,9 +150,10 @@ def by_record(case: Case, fit: Fit) -> list[dict[str, Any]]:
 def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
     values = zip(step.fit.values.items(), step.fit.problem.units, strict=True)
     return {
-        "added": step.added,
-        "removed": step.removed,
-        "class": list(step.tied),
+        "added": step.added and word_of(step.added),
+        "removed": step.removed and word_of(step.removed),
+        "form": step.added and form_of(step.added),
+        "class": list(map(word_of, step.tied)),
         "rmse": errors_of(case, step.fit),
         "records": by_record(case, step.fit),
         "explained": step.explained,
@@ -173,8 +180,9 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
         "records": by_record(case, found.before),
         "candidates": [
             {
-                "effect": item.score.effect,
-                "class": found.tied if item.score.effect in found.tied else [item.score.effect],
+                "effect": word_of(item.score.effect),
+                "form": form_of(item.score.effect),
+                "class": list(map(word_of, found.tied if item.score.effect in found.tied else [item.score.effect])),
                 "explained": min(item.score.explained_in_bounds, 1.0),
                 "expected": item.score.guess,
                 "units": item.score.units,

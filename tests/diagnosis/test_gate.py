@@ -6,18 +6,11 @@ import numpy as np
 import pytest
 
 from pzt_ident.diagnosis import verdict
+from pzt_ident.diagnosis.candidates import Candidate, choose_forms, generalises, is_tied
+from pzt_ident.diagnosis.criteria import adequate, not_in_validation, reaches_noise, removes_enough, threshold
 from pzt_ident.diagnosis.refit import Fit
 from pzt_ident.diagnosis.score import Score, squared_misfit
-from pzt_ident.diagnosis.verdict import (
-    adequate,
-    best_pair,
-    diagnose,
-    is_tied,
-    not_in_validation,
-    reaches_noise,
-    removes_enough,
-    threshold,
-)
+from pzt_ident.diagnosis.verdict import best_pair, diagnose
 
 CASE = SimpleNamespace(floor=1.0, on_event=lambda event: None)
 FAR = 10.0  # an error that nobody takes for noise
@@ -116,7 +109,7 @@ def judged(monkeypatch):
     """What is said of a model that leaves 30 of both uses, given the fits with each of some effects."""
 
     def of(fits):
-        scores = [Score(word, explained=0.9, power=3.0) for word in fits]
+        scores = [Candidate.of([Score(word, explained=0.9, power=3.0)]) for word in fits]
         monkeypatch.setattr(verdict, "Scorer", lambda case, before: None)
         monkeypatch.setattr(verdict, "score_all", lambda case, before, scorer: scores)
         monkeypatch.setattr(verdict, "refusal", lambda case, first, before: "")
@@ -124,7 +117,7 @@ def judged(monkeypatch):
         monkeypatch.setattr(verdict, "refit_all", lambda case, before, items: [given(item) for item in items])
 
         def given(item):
-            item.fit = fits[item.score.effect]
+            item.refits = {item.score.effect: fits[item.score.effect]}
 
         return diagnose(CASE, fit(30.0, 30.0))
 
@@ -180,7 +173,37 @@ def test_of_pairs_that_earn_the_best_on_both_uses_is_taken(monkeypatch):
         ("drift", "delay"): fit(5.0, 5.0),
     }
     monkeypatch.setattr(verdict, "refit", lambda case, before, effects, guess: fits[effects])
-    items = [verdict.Candidate(Score(word, explained=0.5)) for word in ("creep", "drift", "delay")]
+    items = [Candidate(Score(word, explained=0.5)) for word in ("creep", "drift", "delay")]
     before = fit(30.0, 30.0)
     assert best_pair(CASE, before, before, items) is fits["drift", "delay"]
     assert best_pair(CASE, before, before, items[:2]) is None
+
+
+@pytest.mark.parametrize(
+    ("usual", "other", "rival", "taken"),
+    [
+        (5.0, 3.0, 4.0, "friction"),
+        (5.0, 1.1, 4.0, "friction.coulomb"),
+        (1.1, 1.0, 4.0, "friction.coulomb"),
+        (1.1, 1.09, 4.0, "friction"),
+        (5.0, 3.0, 1.1, "friction.coulomb"),
+    ],
+    ids=["not enough", "enough", "better", "as good", "beside one that is enough"],
+)
+def test_another_form_is_meant_only_where_one_effect_is_enough(usual, other, rival, taken):
+    """RMSE in noise floors, of a model that is adequate up to 1.17; forms are as good to a fifth of the noise."""
+    friction = Candidate.of([Score("friction", explained=0.5), Score("friction.coulomb", explained=0.9)])
+    friction.refits = {"friction": fit(usual, usual), "friction.coulomb": fit(other, other)}
+    creep = Candidate.of([Score("creep", explained=0.5)])
+    creep.refits = {"creep": fit(rival, rival)}
+    choose_forms(CASE, fit(10.0, 10.0), [friction, creep])
+    assert friction.score.effect == taken
+    assert friction.fit is friction.refits[taken]
+    assert creep.fit is creep.refits["creep"]
+
+
+def test_a_form_of_more_parameters_than_the_best_effect_may_contain_it():
+    lag = fit(1.0, effects=["amplifier_lag"], dimensions=5)
+    assert generalises(fit(1.0, effects=["slew_limit.lag"], dimensions=6), lag)
+    assert not generalises(fit(1.0, effects=["slew_limit"], dimensions=6), lag)
+    assert not generalises(fit(1.0, effects=["sensor_lag.second_order"], dimensions=5), lag)

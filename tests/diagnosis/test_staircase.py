@@ -11,6 +11,7 @@ from pzt_ident.diagnosis import staircase as improving
 from pzt_ident.diagnosis.refit import first_fit, fit_at, refit
 from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.staircase import (
+    Staircase,
     Step,
     add_pair,
     add_restarted,
@@ -27,10 +28,10 @@ PAIR = stage.EFFECTS["creep"] | stage.EFFECTS["quadratic_gain"]
 
 def climbed(case):
     reported = []
-    steps, last = improve(case, first_fit(case, 0), reported.append)
+    found = improve(case, first_fit(case, 0), reported.append)
     assert reported[0].added is None and reported[0].removed is None
-    assert steps[-1].fit is last.before
-    return steps, last
+    assert found.steps[-1].fit is found.last.before
+    return found.steps, found.last
 
 
 def test_at_the_noise_the_first_step_is_the_last():
@@ -166,10 +167,12 @@ def test_what_fits_as_well_in_the_place_of_an_effect_is_told_once_all_are_known(
 def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, monkeypatch):
     """Each path by its verdict, its last error in noise floors and its total; the second is tried where it may help."""
     paths = [
-        ([Step(SimpleNamespace(identify=identify, total=total))], SimpleNamespace(verdict=verdict))
+        Staircase([Step(SimpleNamespace(identify=identify, total=total))], SimpleNamespace(verdict=verdict))
         for verdict, identify, total in ends
     ]
-    monkeypatch.setattr(improving, "diagnose", lambda case, first: SimpleNamespace(passing=[0, 1]))
+    monkeypatch.setattr(improving, "diagnose", lambda case, first: None)
+    monkeypatch.setattr(improving, "first_candidates", lambda case, first, diagnosis: [0, 1])
     monkeypatch.setattr(improving, "climb", lambda case, first, diagnosis, number, on_step: paths[number])
+    monkeypatch.setattr(improving, "take_back_unproven", lambda *arguments: None)
     monkeypatch.setattr(improving, "find_rivals", lambda *arguments: None)
-    assert improve(SimpleNamespace(floor=1.0), None)[0] is paths[taken][0]
+    assert improve(SimpleNamespace(floor=1.0), None) is paths[taken]

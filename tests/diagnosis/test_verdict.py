@@ -9,17 +9,11 @@ import pytest
 import rig
 import stage
 from pzt_ident.diagnosis import refit
+from pzt_ident.diagnosis.candidates import Candidate, decide_by_score, restart_look_alikes
+from pzt_ident.diagnosis.criteria import removed_rms, removes_enough
 from pzt_ident.diagnosis.refit import first_fit
 from pzt_ident.diagnosis.score import Score
-from pzt_ident.diagnosis.verdict import (
-    Candidate,
-    decide_by_score,
-    diagnose,
-    missing_sentence,
-    removed_rms,
-    removes_enough,
-    restart_look_alikes,
-)
+from pzt_ident.diagnosis.verdict import diagnose, missing_sentence
 from pzt_ident.model.registry import blocks
 
 

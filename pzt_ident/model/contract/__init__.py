@@ -74,6 +74,7 @@ def check_loaded(block: Any, known: Any) -> None:
     references = [("look_alikes", word) for word in block.look_alikes]
     references += [(word, item.effect) for word, item in parameters(block).items() if item.effect]
     for where, word in references:
+        word = word.partition(".")[0]
         if word not in known:
             raise fault(block, where, f"unknown effect {word!r}", nearest(word, known.effects()))
         if not known[word].remedy:

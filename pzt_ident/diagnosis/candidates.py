@@ -1,0 +1,129 @@
+"""The effects that may be missing: scored in all their forms, and refitted where they score."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+
+from pzt_ident.diagnosis.criteria import adequate, removed_rms, removes_enough, threshold
+from pzt_ident.diagnosis.refit import Case, Fit, refit, restart
+from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, applicable, squared_misfit
+from pzt_ident.model.registry import blocks, form_of, word_of
+
+TIE = 0.2  # noise floors between two refits: less does not distinguish them; of look-alikes twice that
+LOOK_ALIKE_TIE = 0.01  # of the total RMSE: less does not distinguish refits of look-alikes far above the noise
+FORM_GAIN = 0.02  # of the misfit, by which another form of an effect explains more than the first one
+LOOK_ALIKE_STARTS = 8  # starts of a look-alike's own parameters
+VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
+
+
+@dataclass
+class Candidate:
+    """An effect that may be missing, in one of its forms.
+
+    score, fit: of that form; the fit is None off the short list. forms: the scores of all forms, the first form first;
+    refits: by item, of the first form and of the one that scores best.
+    """
+
+    score: Score
+    fit: Fit | None = None
+    decision: str = "not missing"
+    forms: Sequence[Score] = ()
+    refits: dict[str, Fit] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, scores: Sequence[Score]) -> Candidate:
+        """The candidate in the form that explains most, or in the first if that explains nearly as much."""
+        best = max(scores, key=lambda score: score.explained)
+        return cls(best if best.explained > scores[0].explained + FORM_GAIN else scores[0], forms=scores)
+
+    def take(self, item: str) -> None:
+        """Mean this form, which was refitted."""
+        self.score, self.fit = next(score for score in self.forms if score.effect == item), self.refits[item]
+
+
+def score_all(case: Case, before: Fit, scorer: Scorer) -> list[Candidate]:
+    """Every effect that can be added to the model, with the scores of its forms."""
+    words, candidates = applicable(case, before.effects), list[Candidate]()
+    with ThreadPoolExecutor(2) as pool:
+        for scores in pool.map(scorer.scores, words):
+            candidates.append(Candidate.of(scores))
+            facts = {"effect": scores[0].effect, "explained": candidates[-1].score.explained}
+            case.on_event({"event": "scored", **facts, "done": len(candidates), "of": len(words)})
+    return candidates
+
+
+def refit_all(case: Case, before: Fit, candidates: Sequence[Candidate]) -> None:
+    """Refit the model with each effect, in its first form and in the one that scores best."""
+    scores = [{score.effect: score for score in (item.forms[0], item.score)} for item in candidates]
+
+    def refitted(score: Score) -> Fit:
+        return refit(case, before, (*before.effects, score.effect), score.guess)
+
+    with ThreadPoolExecutor(2) as pool:
+        fits = pool.map(refitted, [score for forms in scores for score in forms.values()])
+        for candidate, forms in zip(candidates, scores, strict=True):
+            candidate.refits = {item: next(fits) for item in forms}
+
+
+def choose_forms(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:
+    """Mean the first form of each effect, or, where one effect alone makes the model adequate, the form that fits best.
+
+    Beside other effects that are missing too, a form that fits better may only be the more flexible one.
+    """
+    enough = any(adequate(case, first, fit) for item in candidates for fit in item.refits.values())
+    for candidate in candidates:
+        usual = next(iter(candidate.refits))
+        best = min(candidate.refits, key=lambda item: candidate.refits[item].total)
+        gain = removed_rms(candidate.refits[usual].total, candidate.refits[best].total)
+        candidate.take(best if enough and gain > TIE * case.floor else usual)
+
+
+def restart_look_alikes(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> None:
+    """Restart the fits of look-alikes of the best that are hardly worse on the identification records: with several
+    parameters they may rest in a side minimum that shows on the validation records only."""
+    passing = [item for item in candidates if item.fit and removes_enough(case, first, before, item.fit)]
+    best = min(passing, key=lambda item: item.fit.total, default=None)  # type: ignore[union-attr]
+    if best is None or best.fit is None:
+        return
+    for candidate in candidates:
+        word, fit = candidate.score.effect, candidate.fit
+        close = fit and removed_rms(fit.identify, best.fit.identify) < 2 * TIE * case.floor
+        if fit and close and are_look_alikes(word, best.score.effect) and len(candidate.score.guess) > 1:
+            candidate.fit = restart(fit, word, LOOK_ALIKE_STARTS)
+
+
+def are_look_alikes(one: str, other: str) -> bool:
+    """Whether one of two effects counts the other among its look-alikes."""
+    return word_of(one) in blocks[other].look_alikes or word_of(other) in blocks[one].look_alikes
+
+
+def is_tied(case: Case, effect: str, fit: Fit, rival: Fit) -> bool:
+    """Whether a fit with a look-alike in the place of an effect is hardly worse."""
+    close = removed_rms(rival.total, fit.total) < 2 * TIE * case.floor
+    return (close or rival.total < (1 + LOOK_ALIKE_TIE) * fit.total) and are_look_alikes(effect, rival.effects[-1])
+
+
+def generalises(rival: Fit, fit: Fit) -> bool:
+    """Whether a rival fits in a form of more parameters than its first, which may contain the other effect."""
+    return form_of(rival.effects[-1]) is not None and rival.problem.dimensions > fit.problem.dimensions
+
+
+def promises_enough(case: Case, first: Fit, before: Fit, candidate: Candidate) -> bool:
+    """Whether an effect would remove enough by its score."""
+    return candidate.score.explained * squared_misfit(case, before) > threshold(case, first) ** 2
+
+
+def decide_by_score(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> None:
+    """Mark the candidates that these data cannot show, and those whose score is too small for a refit."""
+    for candidate in candidates:
+        score = candidate.score
+        if score.power < VISIBLE:
+            candidate.decision = "cannot be seen"
+        elif (
+            candidate.fit is None
+            and score.explained > LEAST_SCORE
+            and not promises_enough(case, first, before, candidate)
+        ):
+            candidate.decision = "too small"

@@ -1,0 +1,53 @@
+"""When an effect removes enough of the misfit, and when a model is adequate."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pzt_ident.diagnosis.refit import Case, Fit
+from pzt_ident.diagnosis.score import squared_misfit
+
+CLEAR = 0.6  # noise floors: an effect removes at least this much, root mean square
+LEAST_SHARE = 0.15  # and at least this much of the misfit
+VALIDATION_FACTOR = 3.0  # times the threshold that the validation records of an adequate model may be above the noise
+MODEL_FORM = 0.03  # of the initial misfit: less may as well be the form of the effects added as another effect
+
+
+def removed_rms(before: float | None, after: float | None) -> float:
+    """What an effect removes of an RMSE, root mean square; negative where the RMSE grew, infinite without records."""
+    if before is None or after is None:
+        return np.inf
+    return float(np.sign(before - after) * np.sqrt(abs(before**2 - after**2)))
+
+
+def threshold(case: Case, first: Fit) -> float:
+    """The least that an effect must remove, root mean square, in units of the loss; a model no further above the noise
+    is adequate. `first` is the model before anything was added."""
+    return max(CLEAR * case.floor, MODEL_FORM * squared_misfit(case, first) ** 0.5)
+
+
+def removes_enough(case: Case, first: Fit, before: Fit, after: Fit) -> bool:
+    """Whether an effect removes enough on the identification records and on the validation records; where the latter
+    do not show it, it must bring both down to the noise."""
+    removed, least = removed_rms(before.identify, after.identify), threshold(case, first)
+    in_validation = removed_rms(before.validate, after.validate) > least / 2 or not_in_validation(
+        case, first, before, after
+    )
+    return removed > least and removed**2 > LEAST_SHARE * squared_misfit(case, before) and in_validation
+
+
+def not_in_validation(case: Case, first: Fit, before: Fit, after: Fit) -> bool:
+    """Whether an effect explains all of the misfit, and the validation records are at the noise with it and without."""
+    noise = np.hypot(case.floor, threshold(case, first))
+    return all(error is not None and error <= noise for error in (before.validate, after.validate, after.identify))
+
+
+def adequate(case: Case, first: Fit, fit: Fit) -> bool:
+    """Whether a fit is at the noise of the identification records and close to that of the validation records."""
+    most = np.hypot(case.floor, VALIDATION_FACTOR * threshold(case, first))
+    return reaches_noise(case, first, fit) and bool(fit.validate is None or fit.validate <= most)
+
+
+def reaches_noise(case: Case, first: Fit, fit: Fit) -> bool:
+    """Whether a fit is at the noise of the identification records."""
+    return bool(fit.identify <= np.hypot(case.floor, threshold(case, first)))

@@ -1,0 +1,140 @@
+"""The forms of effects against closed forms of their own, and against the first form where they contain it."""
+
+import numpy as np
+import pytest
+from scipy.signal import lsim, lti
+
+from rig import path, response
+
+DRIVE = path(0, 80, 10, 60, 0, points=70)
+T = np.arange(DRIVE.size) * 1e-3
+BOUC_WEN = {"bouc_wen.gain": 0.08, "bouc_wen.alpha": 0.4, "bouc_wen.beta": 0.04, "bouc_wen.gamma": -0.01}
+
+
+def alone(item, **parameters):
+    """Response of one effect to the drive."""
+    word = item.partition(".")[0]
+    return response([item], {f"{word}.{name}": value for name, value in parameters.items()}, DRIVE)
+
+
+def behind(item, **parameters):
+    """Response of Bouc-Wen with an effect, less that without it."""
+    word = item.partition(".")[0]
+    named = {f"{word}.{name}": value for name, value in parameters.items()}
+    return response(["bouc_wen", item], BOUC_WEN | named, DRIVE) - response(["bouc_wen"], BOUC_WEN, DRIVE)
+
+
+def filtered(numerator, denominator, signal=DRIVE):
+    return lsim(lti(numerator, denominator), signal - signal[0], T)[1] + signal[0]
+
+
+def test_the_displacement_curves_and_saturates_with_its_hysteresis():
+    f = response(["bouc_wen"], BOUC_WEN, DRIVE)
+    np.testing.assert_allclose(behind("quadratic_gain.displacement", curvature=0.03), 0.03 * f**2, atol=1e-12)
+    np.testing.assert_allclose(behind("saturation.displacement", knee=0.2) + f, 5 * np.tanh(f / 5), atol=1e-12)
+
+
+def test_the_cubic_is_what_saturation_begins_with():
+    found = behind("saturation.cubic", knee=2e-3)
+    np.testing.assert_allclose(found, -0.08 * 2e-3**2 * DRIVE**3, atol=1e-12)
+    small = 1e-4
+    ratio = behind("saturation", knee=small)[70] / behind("saturation.cubic", knee=small)[70]
+    assert ratio == pytest.approx(1 / 3, rel=1e-4)
+
+
+def test_the_running_amplitude_is_the_widest_swing_so_far():
+    span = np.maximum.accumulate(DRIVE) - np.minimum.accumulate(DRIVE)
+    np.testing.assert_allclose(alone("amplitude_gain.running", growth=1e-3), DRIVE * (1 + 1e-3 * span), atol=1e-12)
+
+
+def test_rayleigh_loops_have_the_gain_and_the_loss_of_the_law():
+    """Plays of all widths up to the peak: the virgin curve is u^2 / 2, a branch from u1 adds (u - u1)^2 / 4."""
+    found = alone("amplitude_gain.rayleigh", growth=1.0) - DRIVE
+    up, turn = slice(0, 71), 70
+    np.testing.assert_allclose(found[up], DRIVE[up] ** 2 / 2, atol=80**2 / 20**2)
+    down = slice(70, 141)
+    expected = found[turn] - (DRIVE[turn] - DRIVE[down]) ** 2 / 4
+    np.testing.assert_allclose(found[down], expected, atol=80**2 / 20**2)
+
+
+def test_creep_of_the_voltage_leaves_the_hysteresis_alone():
+    found = behind("creep.voltage", ratio=0.1, tau=0.05, decades=0.0)
+    np.testing.assert_allclose(found, 0.08 * 0.1 * filtered([1], [0.05, 1]), atol=1e-9)
+
+
+def test_three_elements_creep_each_at_its_own_time():
+    ratios, taus = (0.05, 0.02, -0.01), (0.01, 0.03, 0.09)
+    named = {f"ratio_{i + 1}": ratio for i, ratio in enumerate(ratios)} | {"fastest": 0.01, "spacing": 3.0}
+    expected = sum(ratio * filtered([1], [tau, 1]) for ratio, tau in zip(ratios, taus, strict=True))
+    np.testing.assert_allclose(alone("creep.elements", **named), DRIVE + expected, atol=1e-9)
+    np.testing.assert_allclose(behind("creep.voltage_elements", **named), 0.08 * expected, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("item", "denominator"),
+    [("amplifier_lag.two_poles", [2e-3**2 / 4, 2e-3, 1]), ("sensor_lag.second_order", [2e-3**2 / 2, 2e-3, 1])],
+)
+def test_lags_of_second_order_lag_by_tau(item, denominator):
+    np.testing.assert_allclose(alone(item, tau=2e-3), filtered([1], denominator), atol=1e-8)
+
+
+def test_a_second_mode_in_series_or_of_the_voltage():
+    known = {"share": 0.2, "frequency": 40.0, "damping": 0.05}
+    w = 2 * np.pi * 40
+    expected = 0.2 * (filtered([1], [1 / w**2, 0.1 / w, 1]) - DRIVE)
+    np.testing.assert_allclose(alone("resonance.series", **known) - DRIVE, expected, atol=1e-8)
+    np.testing.assert_allclose(behind("resonance.voltage", **known), 0.08 * expected, atol=1e-8)
+
+
+def test_coupling_by_the_voltage_is_without_hysteresis():
+    other = DRIVE[::-1].copy()
+    named = {f"{axis}.{name}": value for axis in "xy" for name, value in BOUC_WEN.items()}
+    coupled = {f"{axis}.cross_coupling.ratio": 0.1 for axis in "xy"}
+    found = response(["bouc_wen", "cross_coupling.voltage"], named | coupled, DRIVE, other)
+    without = response(["bouc_wen"], named, DRIVE, other)
+    np.testing.assert_allclose(found - without, 0.08 * 0.1 * np.array([other, DRIVE]), atol=1e-12)
+
+
+def test_a_saturating_lag_is_the_lag_below_the_limit_and_the_limit_above_it():
+    lag = alone("amplifier_lag", tau=2e-3)
+    np.testing.assert_allclose(alone("slew_limit.lag", slowness=0.0, tau=2e-3), lag, atol=1e-12)
+    np.testing.assert_allclose(alone("slew_limit.lag", slowness=1e-5, tau=2e-3), lag, atol=1e-12)
+    step = np.append(0.0, np.full(300, 50.0))
+    held = {"slew_limit.slowness": 1 / 500, "slew_limit.tau": 2e-3}
+    found = response(["slew_limit.lag"], held, step)
+    assert np.diff(found).max() == pytest.approx(500 * 1e-3)
+    assert found[100] == pytest.approx(50, abs=0.5 + 500 * 2e-3) and found[-1] == pytest.approx(50, abs=1e-9)
+
+
+@pytest.mark.parametrize("speed", [1e-3, 50.0])
+def test_coulomb_friction_depends_on_the_velocity_alone(speed):
+    rate = np.append(0, np.diff(DRIVE)) / 1e-3
+    found = alone("friction.coulomb", force=0.5, speed=speed, viscous=0.0)
+    np.testing.assert_allclose(found, DRIVE - 0.5 * np.tanh(rate / speed), atol=1e-9)
+    lagging = alone("friction.coulomb", force=0.0, speed=speed, viscous=3e-3)
+    np.testing.assert_allclose(lagging, alone("amplifier_lag", tau=3e-3), atol=1e-12)
+
+
+def test_the_second_harmonic_of_the_grating():
+    wave = 2 * np.pi / 7
+    known = {"sine": 0.1, "cosine": -0.2, "second_sine": 0.03, "second_cosine": 0.04, "pitch": 7.0}
+    expected = 0.1 * np.sin(wave * DRIVE) - 0.2 * (np.cos(wave * DRIVE) - 1)
+    expected += 0.03 * np.sin(2 * wave * DRIVE) + 0.04 * (np.cos(2 * wave * DRIVE) - 1)
+    np.testing.assert_allclose(alone("encoder_cyclic_error.second", **known), DRIVE + expected, atol=1e-11)
+
+
+def test_plays_are_bent_by_their_knee_and_straight_without():
+    weights = {f"weight_{i + 1}": 0.0 for i in range(10)} | {"weight_5": 0.3, "reach": 40.0}
+    straight = alone("distributed_memory", **weights) - DRIVE
+    np.testing.assert_array_equal(alone("distributed_memory.bent_plays", knee=0.0, **weights) - DRIVE, straight)
+    found = alone("distributed_memory.bent_plays", knee=0.05, **weights) - DRIVE
+    np.testing.assert_allclose(found, 0.3 * np.tanh(0.05 * straight / 0.3) / 0.05, atol=1e-10)
+
+
+def test_a_loop_that_leans_one_way():
+    """Without forgetting dh/du = 1 + lean on the way up and 1 - lean on the way down."""
+    known = BOUC_WEN | {"bouc_wen.beta": 0.0, "bouc_wen.gamma": 0.0, "bouc_wen.lean": 0.2}
+    drive = path(0, 80, 0, points=7)
+    memory = (0.08 * drive - response(["bouc_wen"], known, drive)) / (0.4 * 0.08)
+    expected = np.append(1.2 * drive[:8], 1.2 * 80 - 0.8 * (80 - drive[8:]))
+    np.testing.assert_allclose(memory, expected, rtol=1e-12, atol=1e-12)
