@@ -21,6 +21,7 @@ from pzt_ident.data.notation import number, percent, quantity, unit
 from pzt_ident.diagnosis import refit as fits
 from pzt_ident.diagnosis import staircase
 from pzt_ident.diagnosis import verdict as verdicts
+from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.run import improve as results
 from pzt_ident.run.events import step_name, verdict_line
 
@@ -149,8 +150,9 @@ def improve(fit: Fit) -> Improvement:
         found = staircase.improve(case, first)
         job = fit.statement.job
         content = results.improvement_of(job, case, found, results.diagnosis_of(job, case, found.last, folder))
+        end = found.case or case
         stairs = [
-            Step(Fit(*from_refit(fit, case, step.fit)), step.added, step.removed, step.tied, step.explained)
+            Step(Fit(*from_refit(fit, end, step.fit)), step.added, step.removed, step.tied, step.explained)
             for step in found.steps
         ]
         return Improvement(stairs, content["verdict"], content["reason"], content["effects"], content)
@@ -162,7 +164,7 @@ def _case(fit: Fit) -> Iterator[tuple[fits.Case, fits.Fit, Path]]:
     of_kind(fit, Fit, "fit", "give what pzt_ident.identify or pzt_ident.load returned")
     with computing(), TemporaryDirectory() as folder:
         case = results.case_of(fit.statement)
-        other = fits.first_fit(case, fit.statement.job.seed)
+        other = first_fit(case, fit.statement.job.seed)
         given = as_given(case, fit)
         yield case, other if other.identify <= given.identify else given, Path(folder)
 

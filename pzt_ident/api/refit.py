@@ -17,7 +17,7 @@ from pzt_ident.diagnosis.score import Scorer
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.model.registry import blocks, word_of
 from pzt_ident.run.checkpoint import Checkpoint
-from pzt_ident.run.improve import case_of
+from pzt_ident.run.improve import case_of, wider_bounds
 from pzt_ident.run.statement import Statement
 from pzt_ident.run.task import what_is_known
 
@@ -50,7 +50,9 @@ def from_refit(fit: Fitted, case: Case, refit: diagnosis.Fit) -> Parts:
     """What the diagnosis fitted to the records of a fit, as the parts of a fit."""
     begun = time.perf_counter()
     silent = case.unmeasured_nulls(refit.effects) if refit.measured_only else {}
-    statement, records, sections = restated(fit, refit.effects, refit.steps, silent)
+    settings: dict[str, Any] = {name: {"value": value} for name, value in silent.items()}
+    settings |= {name: {"bounds": list(bounds)} for name, bounds in wider_bounds(fit.statement.job, case).items()}
+    statement, records, sections = restated(fit, refit.effects, refit.steps, settings)
     point = statement.problem.unit_point(refit.values)
     known = what_is_known(statement, point)
     checkpoint, seconds = Checkpoint(), time.perf_counter() - begun
@@ -73,17 +75,17 @@ def from_refit(fit: Fitted, case: Case, refit: diagnosis.Fit) -> Parts:
 
 
 def restated(
-    fit: Fitted, effects: tuple[str, ...], steps: tuple[int, ...] = (), values: dict[str, float] | None = None
+    fit: Fitted, effects: tuple[str, ...], steps: tuple[int, ...] = (), settings: dict[str, Any] | None = None
 ) -> tuple[Statement, dict[str, tuple[Record, ...]], dict[str, Any]]:
-    """What a fit's job states with other effects, `steps` a sample of each record and some parameters fixed to values:
-    with its records and sections."""
+    """What a fit's job states with other effects, `steps` a sample of each record and other settings of some
+    parameters: with its records and sections."""
     names = [record.name for record in fit.statement.records]
     counts = dict(zip(names, steps or [record.steps for record in fit.statement.records], strict=True))
     records = {
         use: tuple(record.with_steps(counts[record.name]) for record in group) for use, group in fit.records.items()
     }
     chosen = next(item for item in fit.sections["optimizers"] if item["name"] == fit.best["optimizer"])
-    fixed = {name: {"value": value} for name, value in (values or {}).items()}
-    sections = fit.sections | {"optimizers": [chosen], "repeats": 1, "parameters": fit.sections["parameters"] | fixed}
+    parameters = fit.sections["parameters"] | (settings or {})
+    sections = fit.sections | {"optimizers": [chosen], "repeats": 1, "parameters": parameters}
     text = job_text(fit.statement.job.name, fit.model.with_effects(effects), records, sections)
     return statement_of(text, records), records, sections

@@ -7,8 +7,9 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
 from pzt_ident.diagnosis.criteria import adequate, removed_rms, removes_enough, threshold
-from pzt_ident.diagnosis.refit import Case, Fit, refit, restart
+from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, applicable, squared_misfit
+from pzt_ident.diagnosis.starts import restart
 from pzt_ident.model.registry import blocks, form_of, word_of
 
 TIE = 0.2  # noise floors between two refits: less does not distinguish them; of look-alikes twice that

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 NEGLIGIBLE = 1e-7  # of the largest singular value: directions below are rounding
+ROUNDING = 1e-12  # of a signal
 OVERSHOOT = 1e-9  # of its range, by which a parameter may pass its bound
 
 
@@ -64,10 +65,31 @@ def _amounts(signal: Array, traces: Array, one_sided: NDArray[np.bool_]) -> Arra
 
 
 def bounded(matrix: Array, target: Array, least: Array, most: Array) -> Array:
-    """Steps x within bounds that leave least of target + matrix x (Stark & Parker 1995)."""
-    from scipy.optimize import lsq_linear
+    """Steps x, least <= 0 <= most, that leave least of target + matrix x.
 
+    Active sets from x = 0 (Nocedal & Wright 2006, algorithm 16.3), so that never more is left than without a step,
+    however ill-conditioned the matrix.
+    """
     norms = np.linalg.norm(matrix, axis=0)
     scales = np.where(norms > 0, norms, 1)
-    wide = np.where(most > least, most, least + 1e-300)
-    return np.asarray(lsq_linear(matrix / scales, -target, (least * scales, wide * scales), method="bvls").x / scales)
+    scaled, low, high = matrix / scales, least * scales, most * scales
+    x, free = np.zeros(scales.size), high > low
+    for _ in range(10 * scales.size):
+        left = target + scaled @ x
+        step = np.zeros(scales.size)
+        step[free] = np.linalg.lstsq(scaled[:, free], -left, rcond=ROUNDING)[0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            room = np.where(step > 0, (high - x) / step, np.where(step < 0, (low - x) / step, np.inf))
+        nearest = int(np.argmin(room))
+        if room[nearest] < 1:
+            x = np.clip(x + room[nearest] * step, low, high)
+            x[nearest] = high[nearest] if step[nearest] > 0 else low[nearest]
+            free[nearest] = False
+            continue
+        x = np.clip(x + step, low, high)
+        gradient = scaled.T @ (target + scaled @ x)
+        pull = np.where(free | (high <= low), 0, np.where(x >= high, gradient, np.where(x <= low, -gradient, 0)))
+        if not pull.max(initial=0) > ROUNDING * np.linalg.norm(target):
+            break
+        free[np.argmax(pull)] = True
+    return x / scales

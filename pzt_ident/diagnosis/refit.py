@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
@@ -18,15 +17,11 @@ from pzt_ident.engine.simulator import Simulator
 from pzt_ident.model.block import Coupling
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import Choice, blocks, word_of
-from pzt_ident.search.problem import FixedValue, Problem
+from pzt_ident.search.problem import FixedValue, ParameterSpec, Problem
 
 Array = NDArray[np.float64]
 Listener = Callable[[dict[str, Any]], None]
 
-STARTS = 240  # random points; the best are refined, a batch at a time, until two minima agree
-REFINED, MOST_REFINED = 4, 24  # points in a batch, and in all batches
-AGREEMENT = 0.01  # of the loss, between the two best minima
-RESTARTS = 2  # random points of one block that are refined
 EDGE = 1e-4  # of a parameter's range: as near to its end it is on the bound
 STEP_TOLERANCE = 0.05  # noise floors: where halving the step changes more of a record, the step is halved
 FINEST = 8  # steps per sample
@@ -57,6 +52,13 @@ class Case:
         self._resampled: dict[tuple[int, int], Record] = {}
         self.refits: dict[Any, Fit] = {}  # by effects, steps and start
         self.records, self.specs, self.error_scales = tuple(records), specs, error_scales(list(records))
+
+    def with_specs(self, specs: Mapping[str, ParameterSpec]) -> Case:
+        """The same case with other specifications of some parameters, by their names in the job."""
+        more = self.words, self.effects, self.records, {**self.specs, **specs}, self.ruled_out, self.shared
+        other = Case(*more, self.on_event)
+        other._resampled = self._resampled
+        return other
 
     def problem(self, effects: Sequence[str], steps: Sequence[int] = (), measured_only: bool = False) -> Problem:
         """steps: simulation steps per sample of each record, by default those of the job; `measured_only` as in
@@ -149,25 +151,6 @@ def fit_at(
     return Fit(effects, problem, point, float(problem.loss(point)[0]), validate, converged, measured_only)
 
 
-def first_fit(case: Case, seed: int) -> Fit:
-    """The job's own model, fitted from random points; not converged where the two best minima differ."""
-    problem = case.problem(case.effects)
-    rng = np.random.default_rng(seed)
-    starts = rng.uniform(size=(STARTS, problem.dimensions))
-    order = np.argsort(problem.loss(starts), kind="stable")[:MOST_REFINED]
-    minima, agreed = np.empty((0, problem.dimensions)), False
-    while len(minima) < MOST_REFINED and not agreed:
-        batch = starts[order[len(minima) : len(minima) + REFINED]]
-        with ThreadPoolExecutor(2) as pool:
-            for minimum in pool.map(lambda start: descend(problem, start), batch):
-                minima = np.vstack([minima, minimum])
-                case.on_event({"event": "fitted", "done": len(minima), "of": len(order)})
-        losses = problem.loss(minima)
-        best, second = np.sort(losses)[:2]
-        agreed = bool(second <= (1 + AGREEMENT) * best + 0.1 * case.floor and np.isfinite(best))
-    return refine_steps(case, fit_at(case.effects, problem, minima[np.argmin(losses)], agreed))
-
-
 def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, float]) -> Fit:
     """The model with other effects, started from the parameters of the fit `before` and from a guess (user's units) of
     the new ones. The new effects act on all axes or on the measured ones only, whichever fits better."""
@@ -228,31 +211,6 @@ def step_errors(case: Case, fit: Fit) -> Array:
         change = (fine - coarse)[:, record.settle :] / problem.sizes[:, None]
         errors.append(np.sqrt(np.mean(np.var(change, axis=1))))
     return np.array(errors)
-
-
-def restart(fit: Fit, block: str = "", starts_per_block: int = RESTARTS) -> Fit:
-    """The best of the fit and of fits restarted from other values of one block on one axis, the rest kept: of each
-    block in turn, or of `block` only. A block may rest in a side minimum, such as a distant resonance, when it was
-    fitted beside a misfit that has since been explained, or from a poor guess."""
-    problem = fit.problem
-    entries = [problem.model.entries[column] for column in problem.free]
-    owners = [(entry.axis, entry.block.name) for entry in entries]
-    rng = np.random.default_rng(0)
-    fits = [fit]
-    for owner in dict.fromkeys(owner for owner in owners if block in ("", owner[1])):
-        restarted = np.array([column_owner == owner for column_owner in owners])
-        starts = np.where(restarted, random_points(problem, rng), fit.point)
-        for start in starts[np.argsort(problem.loss(starts))[:starts_per_block]]:
-            point = descend(problem, start)
-            fits.append(fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
-    return min(fits, key=lambda candidate: candidate.total)
-
-
-def random_points(problem: Problem, rng: np.random.Generator) -> Array:
-    """(STARTS, dimensions) random points; half of them keep parameters whose lower bound is 0 near it."""
-    points = rng.uniform(size=(STARTS, problem.dimensions))
-    near = (problem.lower == 0) & (rng.random((STARTS, 1)) < 0.5)
-    return np.where(near, points**4, points)
 
 
 def descend(problem: Problem, point: Array, most: int = 30) -> Array:

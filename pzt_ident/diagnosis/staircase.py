@@ -2,42 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from pzt_ident.diagnosis.candidates import Candidate, is_tied
-from pzt_ident.diagnosis.criteria import adequate, removed_rms, removes_enough, threshold
-from pzt_ident.diagnosis.misfit import share_explained
+from pzt_ident.diagnosis.bounds import beyond_bounds, brought_back
+from pzt_ident.diagnosis.candidates import Candidate
+from pzt_ident.diagnosis.criteria import adequate, removes_enough
+from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, find_rivals, remove_unneeded
 from pzt_ident.diagnosis.proof import DECISIVE, Suspect, unproven
-from pzt_ident.diagnosis.refit import Case, Fit, refit, restart
-from pzt_ident.diagnosis.score import Scorer, applicable
+from pzt_ident.diagnosis.refit import Case, Fit, refit
+from pzt_ident.diagnosis.starts import restart
+from pzt_ident.diagnosis.step import Step, explained_share
 from pzt_ident.diagnosis.verdict import Diagnosis, best_pair, diagnose, unexplained
-from pzt_ident.model.registry import blocks
 
 MOST_STEPS = 8
 PATIENCE = 3  # effects that take up less than half of the misfit, after which no other is tried
 FIRST_EFFECTS = 2  # effects that are tried as the first to be added
-LEAST_GAIN = 0.05  # noise floors by which one effect fits better than another: less may be simulation error
 HOPELESS = 5.0  # noise floors: where the first path ends above that, another order of the same effects does not help
-
-
-@dataclass
-class Step:
-    """A step of the staircase: the fit after it, the effect it added or removed, the look-alikes that these data cannot
-    distinguish from it with their fits (itself first), and the shares of the misfit it removed and was expected to."""
-
-    fit: Fit
-    added: str | None = None
-    removed: str | None = None
-    rivals: dict[str, Fit] = field(default_factory=dict)
-    explained: float = 0.0
-    expected: float | None = None
-
-    @property
-    def tied(self) -> tuple[str, ...]:
-        return tuple(self.rivals)
 
 
 StepListener = Callable[[Step], None]
@@ -46,24 +29,53 @@ StepListener = Callable[[Step], None]
 @dataclass
 class Staircase:
     """The steps, the model as given first; the diagnosis of the last model; the effects that were added and taken out
-    again, because they are not proven."""
+    again, because they are not proven; the case of the last model, which may have wider bounds."""
 
     steps: list[Step]
     last: Diagnosis
     suspects: list[Suspect] = field(default_factory=list)
+    case: Case | None = None
 
 
 def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
-    """The staircase from the model as given to the one with all effects that are proven.
+    """The staircase from the model as given to the one with all effects that are proven, and with wider bounds where
+    those of the job are too narrow: wider ones are tried first where they remove most of the misfit."""
+    beyond = None if adequate(case, first, first) else beyond_bounds(case, first)
+    if beyond and explained_share(case, first, beyond[1]) >= DECISIVE:
+        wide = improve_beyond(case, first, *beyond, on_step)
+        if wide.last.verdict == "adequate":
+            return wide
+    given = improve_within(case, first, first, on_step)
+    if given.last.verdict == "adequate" or not beyond:
+        return given
+    wide = improve_beyond(case, first, *beyond, on_step)
+    return wide if wide.last.verdict == "adequate" else given
+
+
+def improve_beyond(case: Case, first: Fit, wide: Case, start: Fit, on_step: StepListener) -> Staircase:
+    """The staircase with wider bounds; where its last model comes back to those of the job, in these."""
+    found = improve_within(wide, first, start, on_step)
+    back = [brought_back(case, step.fit) for step in found.steps[1:]]
+    if back and back[-1] is not None:
+        steps = [replace(step, fit=fit) for step, fit in zip(found.steps[1:], back, strict=True) if fit]
+        return Staircase([Step(first), *steps], found.last, found.suspects, case)
+    found.steps[0] = Step(start, explained=explained_share(case, first, start), change="wider bounds")
+    found.steps.insert(0, Step(first))
+    found.case = wide
+    return found
+
+
+def improve_within(case: Case, first: Fit, start: Fit, on_step: StepListener = lambda step: None) -> Staircase:
+    """The staircase within the bounds of a case, from the fit `start`; `first` is that of the model as given.
 
     Where the best first effect leads to no adequate model, the next best one is tried: the first may have stood in for
     something else.
     """
-    diagnosis = diagnose(case, first)
+    diagnosis = diagnose(case, start, first)
     paths: list[Staircase] = []
-    candidates: list[Candidate | None] = [*first_candidates(case, first, diagnosis)]
+    candidates: list[Candidate | None] = [*first_candidates(case, first, start, diagnosis)]
     for candidate in candidates or [None]:
-        path = climb(case, first, diagnosis, candidate, on_step)
+        path = climb(case, first, start, diagnosis, candidate, on_step)
         paths.append(path)
         if path.last.verdict in ("adequate", "refused") or path.steps[-1].fit.identify / case.floor > HOPELESS:
             break
@@ -73,7 +85,7 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
     return best
 
 
-def first_candidates(case: Case, first: Fit, diagnosis: Diagnosis) -> list[Candidate]:
+def first_candidates(case: Case, first: Fit, start: Fit, diagnosis: Diagnosis) -> list[Candidate]:
     """The best candidate, and the next best one, for which another form of any effect counts too."""
     if not diagnosis.passing:
         return []
@@ -84,7 +96,7 @@ def first_candidates(case: Case, first: Fit, diagnosis: Diagnosis) -> list[Candi
         for score in item.forms
         if score.effect in item.refits and item.fit is not item.refits[score.effect]
     ]
-    others += [item for item in every if item.fit and removes_enough(case, first, first, item.fit)]
+    others += [item for item in every if item.fit and removes_enough(case, first, start, item.fit)]
     return [best, *sorted(others, key=lambda item: item.fit.total if item.fit else np.inf)[: FIRST_EFFECTS - 1]]
 
 
@@ -103,10 +115,10 @@ def take_back_unproven(case: Case, first: Fit, staircase: Staircase, on_step: St
 
 
 def climb(
-    case: Case, first: Fit, diagnosis: Diagnosis, candidate: Candidate | None, on_step: StepListener
+    case: Case, first: Fit, start: Fit, diagnosis: Diagnosis, candidate: Candidate | None, on_step: StepListener
 ) -> Staircase:
     """One path: the candidate is added first, then always the best one."""
-    steps = [Step(first)]
+    steps = [Step(start)]
     on_step(steps[0])
     while len(steps) <= MOST_STEPS and not stuck(steps):
         new = next_steps(case, first, steps, diagnosis, candidate)
@@ -191,99 +203,3 @@ def add_restarted(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> lis
     score, fit = min(passing, key=lambda score_and_fit: score_and_fit[1].total)
     word = score.effect
     return [Step(fit, word, None, {word: fit}, explained_share(case, now, fit), score.explained)]
-
-
-def explained_share(case: Case, before: Fit, after: Fit) -> float:
-    """Share of the misfit on the identification records that a step removes."""
-    return share_explained(before.identify, after.identify, case.floor)
-
-
-def remove_unneeded(case: Case, first: Fit, now: Fit) -> list[Step]:
-    """Steps that remove effects, other than the newest and those of the job itself, which no longer remove enough and
-    are of no use to the validation records."""
-    steps: list[Step] = []
-    for effect in now.effects[len(first.effects) : -1]:
-        without = refit(case, now, effects_without(now, effect), {})
-        missed = now.validate is not None and removed_rms(without.validate, now.validate) > threshold(case, first)
-        if not missed and not removes_enough(case, first, without, now):
-            steps.append(Step(without, None, effect, {}, explained_share(case, now, without)))
-            now = without
-    return steps
-
-
-def exchange_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
-    """Steps that put other forms in the place of the effects added, or look-alikes where these were added before the
-    others were known, where that fits better."""
-    steps: list[Step] = []
-    added = now.effects[len(first.effects) :]
-    for effect in added:
-        rivals = look_alikes(case, now, effect) if len(added) > 1 else []
-        items = rivals if adequate(case, first, now) else [*rivals, *other_forms(effect)]
-        best = min(fits_in_place(case, now, effect, items), key=lambda fit: fit.total, default=now)
-        if fits_better(case, now, best) and (best.effects[-1] in rivals or clears_up(case, now, best)):
-            steps += [exchange_step(case, now, best, effect), *remove_unneeded(case, first, best)]
-            now = steps[-1].fit
-    return steps
-
-
-def clears_up(case: Case, now: Fit, other: Fit) -> bool:
-    """Whether another form removes most of the misfit that is left: less may be its greater freedom."""
-    return explained_share(case, now, other) >= DECISIVE
-
-
-def other_forms(effect: str) -> list[str]:
-    return [item for item in blocks.forms(effect) if blocks[item].item() != blocks[effect].item()]
-
-
-def look_alikes(case: Case, now: Fit, effect: str) -> list[str]:
-    """The look-alikes that could be in the place of an effect."""
-    possible = applicable(case, effects_without(now, effect))
-    return [word for word in blocks[effect].look_alikes if word in possible]
-
-
-def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str]) -> list[Fit]:
-    """The model refitted with each of the items in the place of an effect."""
-    if not items:
-        return []
-    without = refit(case, now, effects_without(now, effect), {})
-    scorer = Scorer(case, without)
-    return [refit(case, without, (*without.effects, item), scorer.score(item).guess) for item in items]
-
-
-def find_rivals(case: Case, first: Fit, steps: list[Step]) -> None:
-    """Set the rivals of the effects in the last model by refits beside all the other effects."""
-    now = steps[-1].fit
-    added = now.effects[len(first.effects) :]
-    for effect in added if len(added) > 1 else ():
-        step = next(step for step in reversed(steps) if step.added == effect)
-        fits = fits_in_place(case, now, effect, look_alikes(case, now, effect))
-        tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
-        step.rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
-
-
-def exchange_any(case: Case, first: Fit, now: Fit) -> list[Step]:
-    """The best exchange of an added effect for any other one, where that fits better."""
-    best, removed = now, ""
-    for effect in now.effects[len(first.effects) :]:
-        without = refit(case, now, effects_without(now, effect), {})
-        rival = diagnose(case, without, first).best
-        if rival and rival.fit and rival.fit.total < best.total:
-            best, removed = rival.fit, effect
-    return [exchange_step(case, now, best, removed)] if fits_better(case, now, best) else []
-
-
-def effects_without(fit: Fit, effect: str) -> tuple[str, ...]:
-    return tuple(word for word in fit.effects if word != effect)
-
-
-def fits_better(case: Case, now: Fit, other: Fit) -> bool:
-    """Whether another fit is clearly better in total and not worse on the validation records."""
-    return (
-        removed_rms(now.total, other.total) > LEAST_GAIN * case.floor and removed_rms(now.validate, other.validate) > 0
-    )
-
-
-def exchange_step(case: Case, now: Fit, after: Fit, effect: str) -> Step:
-    """The step that puts the last effect of the fit `after` in the place of another."""
-    word = after.effects[-1]
-    return Step(after, word, effect, {word: after}, explained_share(case, now, after))

@@ -64,6 +64,7 @@ class Rayleigh(Growing, Bank):
     """
 
     place = Place.READOUT
+    growth = Parameter("1/drive", (-5, 5), "Growth of the gain per volt of amplitude.", null=0)
     branches = PLAYS
 
     def prepare(growth, peak, branch):

@@ -70,11 +70,12 @@ def edited(
     words: Sequence[str] | None = None,
     steps: Sequence[int] = (),
     values: Mapping[str, float] | None = None,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
 ) -> str:
     """The job's text with these effects, and with paths relative to another folder.
 
     words: the blocks of the model, where it changes. steps: of the simulation in a sample, for every record.
-    values: of parameters that are fixed from now on.
+    values: of parameters that are fixed from now on. bounds: of parameters that the job has, where they change.
     """
     from ruamel.yaml import YAML
 
@@ -88,6 +89,8 @@ def edited(
     for record, source, count in zip(document["records"], job.records, steps, strict=False):
         if count != source.steps:
             record["steps"] = count
+    for name, (low, high) in (bounds or {}).items():
+        document["parameters"][name]["bounds"][:] = [float(f"{low:.6g}"), float(f"{high:.6g}")]
     if values:
         _fix_parameters(document, values)
     if job.folder.resolve() != folder.resolve():

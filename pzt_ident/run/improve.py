@@ -14,8 +14,10 @@ from pzt_ident.data.noise import units_and_floors
 from pzt_ident.data.signals import write_signals
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis import staircase as stairs
+from pzt_ident.diagnosis.bounds import narrow_bounds_sentence
 from pzt_ident.diagnosis.caveats import broken_conditions, caveats, misfit_sentences
-from pzt_ident.diagnosis.refit import Case, Fit, first_fit
+from pzt_ident.diagnosis.refit import Case, Fit
+from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.diagnosis.verdict import diagnose as judge
 from pzt_ident.files import write_json, write_text
@@ -92,13 +94,25 @@ def improve(job: Job, out: Path | None = None, listen: Listen = nobody) -> Path:
         proposals = (separating(job, case, step.rivals, folder) for step in ties(steps))
         proposed = diagnosis["next_experiment"] or next(filter(None, proposals), None)
         content = improvement_of(job, case, staircase, diagnosis) | {"next_experiment": proposed}
-        end = steps[-1].fit
-        values = case.unmeasured_nulls(end.effects) if end.measured_only else None
-        write_text(folder / "improved.yaml", edited(job, end.effects, folder, steps=end.steps, values=values))
+        write_text(folder / "improved.yaml", improved(job, case, staircase, folder))
         write_json(folder / "diagnosis.json", diagnosis)
         write_json(folder / "improvement.json", content)
         compare(folder, folder)
     return folder
+
+
+def improved(job: Job, case: Case, staircase: stairs.Staircase, folder: Path) -> str:
+    """The text of the job with the last model: its effects, its simulation steps, parameters that are fixed at their
+    nulls, bounds that are wider."""
+    end = staircase.steps[-1].fit
+    values = case.unmeasured_nulls(end.effects) if end.measured_only else {}
+    bounds = wider_bounds(job, staircase.case or case)
+    return edited(job, end.effects, folder, steps=end.steps, values=values, bounds=bounds)
+
+
+def wider_bounds(job: Job, case: Case) -> dict[str, tuple[float, float]]:
+    """The bounds of a case that are not those of its job, by name."""
+    return {name: spec.bounds for name, spec in case.specs.items() if spec.bounds and spec != job.parameters[name]}
 
 
 def improvement_of(job: Job, case: Case, staircase: stairs.Staircase, last: dict[str, Any]) -> dict[str, Any]:
@@ -109,7 +123,7 @@ def improvement_of(job: Job, case: Case, staircase: stairs.Staircase, last: dict
     reason += "".join(f" {suspect.why_not}" for suspect in suspects)
     for step in ties(steps):
         reason += f" These data cannot tell {' from '.join(map(phrase_of, step.tied))}."
-    reason += caveats(case, steps[-1].fit)
+    reason += narrow_bounds_sentence(case, steps[-1].fit) + caveats(case, steps[-1].fit)
     return {
         "name": job.name,
         "steps": [stair(case, step) for step in steps],
@@ -153,6 +167,7 @@ def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
         "added": step.added and word_of(step.added),
         "removed": step.removed and word_of(step.removed),
         "form": step.added and form_of(step.added),
+        "change": step.change or None,
         "class": list(map(word_of, step.tied)),
         "rmse": errors_of(case, step.fit),
         "records": by_record(case, step.fit),

@@ -156,6 +156,12 @@ class Problem:
         theta[self.free] = values * self._factor[self.free]
         return theta
 
+    def declared_bounds(self, column: int) -> tuple[float, float]:
+        """Bounds of a parameter where the job gives none, in the user's units."""
+        identify = [record for record in self.records if record.use == "identify"]
+        low, high = self._bounds(self.model.entries[column], identify) / self._factor[column]
+        return float(low), float(high)
+
     def range_of(self, column: int) -> tuple[float, float]:
         """Bounds of a parameter in the user's units; (value, value) if it is fixed."""
         place = np.flatnonzero(self.free == column)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import pzt_ident as pzt
+from pzt_ident.api import diagnosis as diagnosing
 from pzt_ident.api.diagnosis import _proposed
 from pzt_ident.api.refit import restated
 from pzt_ident.diagnosis import refit
@@ -53,7 +54,7 @@ def test_a_fit_that_other_starts_do_not_reach_is_diagnosed_itself(improvement, m
     """As given it leaves 1.03 noise floors, in the middle of all bounds far more."""
     fit = improvement.fit
     monkeypatch.setattr(
-        refit,
+        diagnosing,
         "first_fit",
         lambda case, seed: refit.fit_at(case.effects, case.problem(case.effects), np.full(fit.point.size, 0.5)),
     )
@@ -70,7 +71,7 @@ def test_a_poor_fit_is_diagnosed_from_where_other_starts_end(fit, demo):
 
 
 def test_what_is_restated_keeps_the_value_of_what_is_held(fit):
-    statement, _, sections = restated(fit, (QUADRATIC,), values={"bouc_wen.alpha": 0.25})
+    statement, _, sections = restated(fit, (QUADRATIC,), settings={"bouc_wen.alpha": {"value": 0.25}})
     assert statement.job.parameters["bouc_wen.alpha"].value == 0.25
     assert sections["parameters"]["bouc_wen.alpha"] == {"value": 0.25}
     assert restated(fit, ())[2]["parameters"] == fit.sections["parameters"]

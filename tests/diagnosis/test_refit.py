@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 
 import rig
 import stage
-from pzt_ident.diagnosis import refit
+from pzt_ident.diagnosis import refit, starts
 from pzt_ident.diagnosis.caveats import bounds_sentence, measured_only_sentence
-from pzt_ident.diagnosis.refit import damped_step, descend, first_fit, fit_at, restart
+from pzt_ident.diagnosis.refit import damped_step, descend, fit_at
+from pzt_ident.diagnosis.starts import first_fit, restart
 from pzt_ident.engine.simulator import simulate
 from pzt_ident.model.block import Addition, Block, Coupling, Place
 from pzt_ident.model.chain import Chain
@@ -47,21 +48,21 @@ def test_the_first_fit_is_a_function_of_its_seed(creeping):
 
 
 def test_a_fit_whose_starts_end_apart_has_not_converged(plain, monkeypatch):
-    monkeypatch.setattr(refit, "descend", lambda problem, point: point)
+    monkeypatch.setattr(starts, "descend", lambda problem, point: point)
     assert not first_fit(plain, 0).converged
 
 
 def test_more_starts_are_refined_until_two_agree(plain, monkeypatch):
     """Of each four of the first twenty all but the first get nowhere."""
-    starts, descent = [], refit.descend
+    points, descent = [], refit.descend
 
     def lame(problem, point):
-        starts.append(point)
-        return descent(problem, point) if len(starts) in (1, 21) else point
+        points.append(point)
+        return descent(problem, point) if len(points) in (1, 21) else point
 
-    monkeypatch.setattr(refit, "descend", lame)
+    monkeypatch.setattr(starts, "descend", lame)
     assert first_fit(plain, 0).converged
-    assert len(starts) == 24
+    assert len(points) == 24
 
 
 def test_a_block_is_found_elsewhere_and_a_fit_at_the_noise_stays(plain):

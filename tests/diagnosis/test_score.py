@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import stage
-from pzt_ident.diagnosis.refit import Case, first_fit
+from pzt_ident.diagnosis.refit import Case
 from pzt_ident.diagnosis.score import Scorer, applicable, squared_misfit
+from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.job.sections import Setting
 
 

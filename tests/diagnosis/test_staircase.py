@@ -8,18 +8,19 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis import staircase as improving
-from pzt_ident.diagnosis.refit import first_fit, fit_at, refit
+from pzt_ident.diagnosis.exchange import exchange_any, remove_unneeded
+from pzt_ident.diagnosis.refit import fit_at, refit
 from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.staircase import (
     Staircase,
     Step,
     add_pair,
     add_restarted,
-    exchange_any,
     explained_share,
     improve,
-    remove_unneeded,
+    improve_within,
 )
+from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.verdict import Candidate, Diagnosis, diagnose
 from pzt_ident.model.registry import blocks
 
@@ -170,9 +171,9 @@ def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, mon
         Staircase([Step(SimpleNamespace(identify=identify, total=total))], SimpleNamespace(verdict=verdict))
         for verdict, identify, total in ends
     ]
-    monkeypatch.setattr(improving, "diagnose", lambda case, first: None)
-    monkeypatch.setattr(improving, "first_candidates", lambda case, first, diagnosis: [0, 1])
-    monkeypatch.setattr(improving, "climb", lambda case, first, diagnosis, number, on_step: paths[number])
+    monkeypatch.setattr(improving, "diagnose", lambda case, start, first: None)
+    monkeypatch.setattr(improving, "first_candidates", lambda case, first, start, diagnosis: [0, 1])
+    monkeypatch.setattr(improving, "climb", lambda case, first, start, diagnosis, number, on_step: paths[number])
     monkeypatch.setattr(improving, "take_back_unproven", lambda *arguments: None)
     monkeypatch.setattr(improving, "find_rivals", lambda *arguments: None)
-    assert improve(SimpleNamespace(floor=1.0), None) is paths[taken]
+    assert improve_within(SimpleNamespace(floor=1.0), None, None) is paths[taken]

@@ -8,11 +8,11 @@ import pytest
 
 import rig
 import stage
-from pzt_ident.diagnosis import refit
+from pzt_ident.diagnosis import refit, starts
 from pzt_ident.diagnosis.candidates import Candidate, decide_by_score, restart_look_alikes
 from pzt_ident.diagnosis.criteria import removed_rms, removes_enough
-from pzt_ident.diagnosis.refit import first_fit
 from pzt_ident.diagnosis.score import Score
+from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.verdict import diagnose, missing_sentence
 from pzt_ident.model.registry import blocks
 
@@ -126,7 +126,7 @@ def test_what_a_shorter_step_would_change_is_blamed_on_no_effect(monkeypatch, fi
 
 def test_a_fit_that_has_not_converged_is_blamed_on_no_effect(monkeypatch):
     case = stage.case(stage.EFFECTS["creep"])
-    monkeypatch.setattr(refit, "descend", lambda problem, point: point)
+    monkeypatch.setattr(starts, "descend", lambda problem, point: point)
     diagnosis = judged(case)
     assert diagnosis.verdict == "refused"
     assert "do not agree" in diagnosis.reason and "bounds" in diagnosis.reason

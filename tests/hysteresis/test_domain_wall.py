@@ -8,7 +8,8 @@ import pytest
 
 import smith
 from pzt_ident.diagnosis.caveats import broken_conditions
-from pzt_ident.diagnosis.refit import Case, first_fit
+from pzt_ident.diagnosis.refit import Case
+from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import Job

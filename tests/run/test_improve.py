@@ -340,7 +340,7 @@ class TestRefusals:
 
 @pytest.mark.parametrize("verdict", ["adequate", "unexplained", "refused"])
 def test_an_improvement_says_what_it_added_and_what_it_suspects(verdict, monkeypatch):
-    for name, nothing in (("stair", {}), ("caveats", ""), ("units_and_floors", {})):
+    for name, nothing in (("stair", {}), ("caveats", ""), ("narrow_bounds_sentence", ""), ("units_and_floors", {})):
         monkeypatch.setattr(improvement, name, lambda *arguments, nothing=nothing: nothing)
     before, after = SimpleNamespace(effects=("drift",)), SimpleNamespace(effects=("drift", "creep"))
     steps = [stairs.Step(before), stairs.Step(after, "creep", None, {"creep": after, "thermal_relaxation": after})]

@@ -1,0 +1,77 @@
+"""Bounds of the job that may be too narrow: a cheaper account of a misfit than an effect."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pzt_ident.diagnosis.criteria import removes_enough
+from pzt_ident.diagnosis.refit import Case, Fit, descend, fit_at, refine_steps
+
+ROUNDS = 3  # of widening, each by the width of the range
+LEAST_STEP = 0.1  # of the bound: a narrow range is widened by as much
+
+
+@dataclass(frozen=True)
+class Widened:
+    """A parameter specification with wider bounds, in the user's units."""
+
+    bounds: tuple[float, float]
+    value: None = None
+
+
+def beyond_bounds(case: Case, first: Fit) -> tuple[Case, Fit] | None:
+    """The case with wider bounds where the fit `first` rests on bounds of the job, and the fit in it, if that removes
+    enough; None where it does not."""
+    wide, fit = case, first
+    for _ in range(ROUNDS):
+        specs = widened(wide, fit)
+        if not specs:
+            break
+        wide = wide.with_specs(specs)
+        problem = wide.problem(fit.effects, fit.steps, fit.measured_only)
+        point = descend(problem, problem.unit_point(fit.values))
+        fit = refine_steps(wide, fit_at(fit.effects, problem, point, first.converged, first.measured_only))
+    return (wide, fit) if wide is not case and removes_enough(case, first, first, fit) else None
+
+
+def widened(case: Case, fit: Fit) -> dict[str, Widened]:
+    """Wider bounds, by the names in the job, of the parameters that rest on one; not beyond those declared."""
+    problem, specs = fit.problem, {}
+    for name in fit.on_bounds:
+        i = problem.names.index(name)
+        entry = problem.model.entries[problem.free[i]]
+        key = next((word for word in problem.model.spellings(entry) if word in case.specs), None)
+        if key is None:
+            continue
+        low, high = problem.lower[i], problem.upper[i]
+        least, most = problem.declared_bounds(int(problem.free[i]))
+        if fit.point[i] < 0.5:
+            low = min(low, max(least, low - max(high - low, LEAST_STEP * abs(low))))
+        else:
+            high = max(high, min(most, high + max(high - low, LEAST_STEP * abs(high))))
+        if (low, high) != (problem.lower[i], problem.upper[i]):
+            specs[key] = Widened((float(low), float(high)))
+    return specs
+
+
+def brought_back(case: Case, fit: Fit) -> Fit | None:
+    """The fit of a case with wider bounds in the case as given; None where it lies beyond the bounds there."""
+    problem = case.problem(fit.effects, fit.steps, fit.measured_only)
+    values = fit.values
+    inside = zip(problem.names, problem.lower, problem.upper, strict=True)
+    if not all(low <= values[name] <= high for name, low, high in inside):
+        return None
+    return fit_at(fit.effects, problem, problem.unit_point(values), fit.converged, fit.measured_only)
+
+
+def narrow_bounds_sentence(case: Case, fit: Fit) -> str:
+    """A sentence about each parameter that lies beyond the bounds of the job; empty where none does."""
+    given, text = case.problem(fit.effects, fit.steps, fit.measured_only), ""
+    for name, value in fit.values.items():
+        i = given.names.index(name)
+        if given.lower[i] <= value <= given.upper[i]:
+            continue
+        bound = given.lower[i] if value < given.lower[i] else given.upper[i]
+        unit = f" {given.units[i]}".removesuffix(" 1")
+        text += f" {name} is {value:.4g}{unit}, beyond its bound of {bound:.4g}{unit} in the job, which is too narrow."
+    return text

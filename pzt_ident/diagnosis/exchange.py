@@ -1,0 +1,103 @@
+"""Steps that take effects back, or put other forms or effects in their place."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from pzt_ident.diagnosis.candidates import is_tied
+from pzt_ident.diagnosis.criteria import adequate, removed_rms, removes_enough, threshold
+from pzt_ident.diagnosis.proof import DECISIVE
+from pzt_ident.diagnosis.refit import Case, Fit, refit
+from pzt_ident.diagnosis.score import Scorer, applicable
+from pzt_ident.diagnosis.step import Step, effects_without, explained_share
+from pzt_ident.diagnosis.verdict import diagnose
+from pzt_ident.model.registry import blocks
+
+LEAST_GAIN = 0.05  # noise floors by which one effect fits better than another: less may be simulation error
+
+
+def remove_unneeded(case: Case, first: Fit, now: Fit) -> list[Step]:
+    """Steps that remove effects, other than the newest and those of the job itself, which no longer remove enough and
+    are of no use to the validation records."""
+    steps: list[Step] = []
+    for effect in now.effects[len(first.effects) : -1]:
+        without = refit(case, now, effects_without(now, effect), {})
+        missed = now.validate is not None and removed_rms(without.validate, now.validate) > threshold(case, first)
+        if not missed and not removes_enough(case, first, without, now):
+            steps.append(Step(without, None, effect, {}, explained_share(case, now, without)))
+            now = without
+    return steps
+
+
+def exchange_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
+    """Steps that put other forms in the place of the effects added, or look-alikes where these were added before the
+    others were known, where that fits better."""
+    steps: list[Step] = []
+    added = now.effects[len(first.effects) :]
+    for effect in added:
+        rivals = look_alikes(case, now, effect) if len(added) > 1 else []
+        items = rivals if adequate(case, first, now) else [*rivals, *other_forms(effect)]
+        best = min(fits_in_place(case, now, effect, items), key=lambda fit: fit.total, default=now)
+        if fits_better(case, now, best) and (best.effects[-1] in rivals or clears_up(case, now, best)):
+            steps += [exchange_step(case, now, best, effect), *remove_unneeded(case, first, best)]
+            now = steps[-1].fit
+    return steps
+
+
+def clears_up(case: Case, now: Fit, other: Fit) -> bool:
+    """Whether another form removes most of the misfit that is left: less may be its greater freedom."""
+    return explained_share(case, now, other) >= DECISIVE
+
+
+def other_forms(effect: str) -> list[str]:
+    return [item for item in blocks.forms(effect) if blocks[item].item() != blocks[effect].item()]
+
+
+def look_alikes(case: Case, now: Fit, effect: str) -> list[str]:
+    """The look-alikes that could be in the place of an effect."""
+    possible = applicable(case, effects_without(now, effect))
+    return [word for word in blocks[effect].look_alikes if word in possible]
+
+
+def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str]) -> list[Fit]:
+    """The model refitted with each of the items in the place of an effect."""
+    if not items:
+        return []
+    without = refit(case, now, effects_without(now, effect), {})
+    scorer = Scorer(case, without)
+    return [refit(case, without, (*without.effects, item), scorer.score(item).guess) for item in items]
+
+
+def find_rivals(case: Case, first: Fit, steps: list[Step]) -> None:
+    """Set the rivals of the effects in the last model by refits beside all the other effects."""
+    now = steps[-1].fit
+    added = now.effects[len(first.effects) :]
+    for effect in added if len(added) > 1 else ():
+        step = next(step for step in reversed(steps) if step.added == effect)
+        fits = fits_in_place(case, now, effect, look_alikes(case, now, effect))
+        tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
+        step.rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
+
+
+def exchange_any(case: Case, first: Fit, now: Fit) -> list[Step]:
+    """The best exchange of an added effect for any other one, where that fits better."""
+    best, removed = now, ""
+    for effect in now.effects[len(first.effects) :]:
+        without = refit(case, now, effects_without(now, effect), {})
+        rival = diagnose(case, without, first).best
+        if rival and rival.fit and rival.fit.total < best.total:
+            best, removed = rival.fit, effect
+    return [exchange_step(case, now, best, removed)] if fits_better(case, now, best) else []
+
+
+def fits_better(case: Case, now: Fit, other: Fit) -> bool:
+    """Whether another fit is clearly better in total and not worse on the validation records."""
+    return (
+        removed_rms(now.total, other.total) > LEAST_GAIN * case.floor and removed_rms(now.validate, other.validate) > 0
+    )
+
+
+def exchange_step(case: Case, now: Fit, after: Fit, effect: str) -> Step:
+    """The step that puts the last effect of the fit `after` in the place of another."""
+    word = after.effects[-1]
+    return Step(after, word, effect, {word: after}, explained_share(case, now, after))

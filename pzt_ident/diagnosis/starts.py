@@ -1,0 +1,73 @@
+"""Fits from random points: of the job's own model, and of one block of a fit anew."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pzt_ident.diagnosis.refit import Case, Fit, descend, fit_at, refine_steps
+from pzt_ident.search.problem import Problem
+
+Array = NDArray[np.float64]
+
+STARTS = 240  # random points; the best are refined, a batch at a time, until two minima agree
+REFINED, MOST_REFINED = 4, 24  # points in a batch, and in all batches
+AGREEMENT = 0.01  # of the loss, between the two best minima
+RESTARTS = 2  # random points of one block that are refined
+
+
+def first_fit(case: Case, seed: int) -> Fit:
+    """The job's own model, fitted from random points; not converged where the two best minima differ."""
+    problem = case.problem(case.effects)
+    rng = np.random.default_rng(seed)
+    starts = rng.uniform(size=(STARTS, problem.dimensions))
+    order = np.argsort(problem.loss(starts), kind="stable")[:MOST_REFINED]
+    minima, agreed = np.empty((0, problem.dimensions)), False
+    while len(minima) < MOST_REFINED and not agreed:
+        batch = starts[order[len(minima) : len(minima) + REFINED]]
+        with ThreadPoolExecutor(2) as pool:
+            for minimum in pool.map(lambda start: descend(problem, start), batch):
+                minima = np.vstack([minima, minimum])
+                case.on_event({"event": "fitted", "done": len(minima), "of": len(order)})
+        losses = problem.loss(minima)
+        best, second = np.sort(losses)[:2]
+        agreed = bool(second <= (1 + AGREEMENT) * best + 0.1 * case.floor and np.isfinite(best))
+    point = min((minima[np.argmin(losses)], best_of_each_axis(problem, minima)), key=lambda p: problem.loss(p)[0])
+    return refine_steps(case, fit_at(case.effects, problem, point, agreed))
+
+
+def best_of_each_axis(problem: Problem, minima: Array) -> Array:
+    """The minimum from the parameters that each axis has in the minimum which is best for its own response: axes that
+    are nearly independent of each other need not be lucky together."""
+    errors = np.nan_to_num(problem.by_axis(minima), nan=np.inf)
+    best = dict(zip(problem.model.measured, np.argmin(errors, axis=0), strict=True))
+    axes = [problem.model.entries[column].axis for column in problem.free]
+    point = np.array([minima[best.get(axis, np.argmin(errors.sum(axis=1)))][i] for i, axis in enumerate(axes)])
+    return descend(problem, point) if len(set(best.values())) > 1 else point
+
+
+def restart(fit: Fit, block: str = "", starts_per_block: int = RESTARTS) -> Fit:
+    """The best of the fit and of fits restarted from other values of one block on one axis, the rest kept: of each
+    block in turn, or of `block` only. A block may rest in a side minimum, such as a distant resonance, when it was
+    fitted beside a misfit that has since been explained, or from a poor guess."""
+    problem = fit.problem
+    entries = [problem.model.entries[column] for column in problem.free]
+    owners = [(entry.axis, entry.block.name) for entry in entries]
+    rng = np.random.default_rng(0)
+    fits = [fit]
+    for owner in dict.fromkeys(owner for owner in owners if block in ("", owner[1])):
+        restarted = np.array([column_owner == owner for column_owner in owners])
+        starts = np.where(restarted, random_points(problem, rng), fit.point)
+        for start in starts[np.argsort(problem.loss(starts))[:starts_per_block]]:
+            point = descend(problem, start)
+            fits.append(fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
+    return min(fits, key=lambda candidate: candidate.total)
+
+
+def random_points(problem: Problem, rng: np.random.Generator) -> Array:
+    """(STARTS, dimensions) random points; half of them keep parameters whose lower bound is 0 near it."""
+    points = rng.uniform(size=(STARTS, problem.dimensions))
+    near = (problem.lower == 0) & (rng.random((STARTS, 1)) < 0.5)
+    return np.where(near, points**4, points)

@@ -1,0 +1,36 @@
+"""A step of the staircase."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from pzt_ident.diagnosis.misfit import share_explained
+from pzt_ident.diagnosis.refit import Case, Fit
+
+
+@dataclass
+class Step:
+    """A step of the staircase: the fit after it, the effect it added or removed, the look-alikes that these data cannot
+    distinguish from it with their fits (itself first), the shares of the misfit it removed and was expected to, and
+    what else it changed."""
+
+    fit: Fit
+    added: str | None = None
+    removed: str | None = None
+    rivals: dict[str, Fit] = field(default_factory=dict)
+    explained: float = 0.0
+    expected: float | None = None
+    change: str = ""
+
+    @property
+    def tied(self) -> tuple[str, ...]:
+        return tuple(self.rivals)
+
+
+def explained_share(case: Case, before: Fit, after: Fit) -> float:
+    """Share of the misfit on the identification records that a step removes."""
+    return share_explained(before.identify, after.identify, case.floor)
+
+
+def effects_without(fit: Fit, effect: str) -> tuple[str, ...]:
+    return tuple(word for word in fit.effects if word != effect)

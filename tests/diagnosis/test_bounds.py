@@ -1,0 +1,68 @@
+"""A bound that is too narrow is a cheaper account than an effect, and is told from one."""
+
+import pytest
+
+import stage
+from pzt_ident.diagnosis.bounds import Widened, beyond_bounds, brought_back, narrow_bounds_sentence, widened
+from pzt_ident.diagnosis.refit import fit_at
+from pzt_ident.diagnosis.staircase import improve
+from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.model.registry import word_of
+
+GAIN = 1e6 * stage.STAGE["bouc_wen.gain"]  # um/V
+
+
+def bounded(low, high, effects=()):
+    """The case with bounds for the gain, as shares of the true one, and effects hidden."""
+    hidden = {name: value for effect in effects for name, value in stage.EFFECTS[effect].items()}
+    return stage.case(hidden).with_specs({"bouc_wen.gain": Widened((low * GAIN, high * GAIN))})
+
+
+def test_a_gain_five_percent_beside_its_bounds_is_the_bound_and_no_effect():
+    case = bounded(1.05, 1.3)
+    first = first_fit(case, 0)
+    assert first.identify > 5 * stage.NOISE
+    found = improve(case, first)
+    assert found.last.verdict == "adequate"
+    assert [(step.added, step.change) for step in found.steps] == [(None, ""), (None, "wider bounds")]
+    end = found.steps[-1].fit
+    assert end.values["bouc_wen.gain"] == pytest.approx(GAIN, rel=1e-2)
+    assert found.case.specs["bouc_wen.gain"].bounds[0] < GAIN < found.case.specs["bouc_wen.gain"].bounds[1]
+    assert "bouc_wen.gain is" in narrow_bounds_sentence(case, end)
+    assert brought_back(case, end) is None
+
+
+@pytest.mark.parametrize("effect", ["creep", "quadratic_gain"])
+def test_beside_a_narrow_bound_the_effect_is_found_and_alone(effect):
+    case = bounded(1.05, 1.3, [effect])
+    found = improve(case, first_fit(case, 0))
+    assert found.last.verdict == "adequate"
+    assert list(map(word_of, found.steps[-1].fit.effects)) == [effect]
+
+
+def test_bounds_that_hold_the_truth_are_kept():
+    case = bounded(0.9, 1.001, ["quadratic_gain"])
+    found = improve(case, first_fit(case, 0))
+    assert found.case is None or found.case is case
+    assert found.steps[-1].fit.effects == ("quadratic_gain",)
+    assert narrow_bounds_sentence(case, found.steps[-1].fit) == ""
+
+
+def test_only_bounds_of_the_job_that_are_reached_are_widened_and_not_beyond_those_declared():
+    case = bounded(0.9, 1.2)
+    problem = case.problem(())
+    values = stage.STAGE | {"bouc_wen.gain": 1.2 * GAIN, "bouc_wen.alpha": 1.0}
+    fit = fit_at((), problem, problem.unit_point(values))
+    (name,) = widened(case, fit)
+    low, high = widened(case, fit)[name].bounds
+    assert (name, low) == ("bouc_wen.gain", pytest.approx(0.9 * GAIN))
+    assert high == pytest.approx(1.5 * GAIN)
+    _, most = problem.declared_bounds(0)
+    widest = case.with_specs({"bouc_wen.gain": Widened((0.9 * GAIN, most))})
+    at_most = fit_at((), widest.problem(()), widest.problem(()).unit_point(values | {"bouc_wen.gain": most}))
+    assert widened(widest, at_most) == {}
+
+
+def test_wider_bounds_that_help_too_little_are_no_account():
+    case = bounded(0.9, 1.2)
+    assert beyond_bounds(case, first_fit(case, 0)) is None

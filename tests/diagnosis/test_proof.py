@@ -1,0 +1,60 @@
+"""What is proven is decisive beside the rest, on all records, where the model stays above the noise."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from pzt_ident.diagnosis import proof
+from pzt_ident.diagnosis.proof import unproven
+from pzt_ident.diagnosis.refit import Fit
+
+CASE = SimpleNamespace(floor=1.0)
+
+
+def fit(identify, validate, effects=()):
+    return Fit(tuple(effects), SimpleNamespace(dimensions=4), np.zeros(0), identify, validate)
+
+
+@pytest.fixture
+def taken_out(monkeypatch):
+    """The suspects among some effects, given the error of a model without each set of them."""
+
+    def of(errors, validation=None):
+        validation = validation or errors
+
+        def refitted(case, before, effects, guess):
+            return fit(errors[frozenset(effects)], validation[frozenset(effects)], effects)
+
+        monkeypatch.setattr(proof, "refit", refitted)
+        every = max(errors, key=len)
+        now = fit(errors[every], validation[every], sorted(every))
+        return [item.effect for item in unproven(CASE, fit(30.0, 30.0), now)]
+
+    return of
+
+
+def of(**errors):
+    """`a=`, `ab=`: by the letters of the effects; `none` has none."""
+    return {frozenset("" if word == "none" else word): error for word, error in errors.items()}
+
+
+def test_what_takes_up_less_than_half_of_a_rest_is_a_suspect(taken_out):
+    assert taken_out(of(ab=5.0, a=6.0, b=25.0, none=30.0)) == ["b"]
+
+
+def test_both_are_proven_where_each_is_decisive(taken_out):
+    assert taken_out(of(ab=5.0, a=20.0, b=25.0, none=30.0)) == []
+
+
+def test_all_that_a_model_at_the_noise_has_is_needed(taken_out):
+    assert taken_out(of(ab=1.0, a=1.3, b=1.4, none=30.0)) == []
+
+
+def test_one_after_the_other_is_taken_out_the_least_first(taken_out):
+    assert taken_out(of(ab=20.0, a=21.0, b=22.0, none=23.0)) == ["b", "a"]
+
+
+def test_records_that_were_kept_back_must_show_it_too(taken_out):
+    seen, unseen = of(ab=5.0, a=20.0, b=25.0, none=30.0), of(ab=5.0, a=5.5, b=25.0, none=30.0)
+    assert taken_out(seen, unseen) == ["b"]
