@@ -21,6 +21,7 @@ from pzt_ident.data.notation import number, percent, quantity, unit
 from pzt_ident.diagnosis import refit as fits
 from pzt_ident.diagnosis import staircase
 from pzt_ident.diagnosis import verdict as verdicts
+from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.run import improve as results
 from pzt_ident.run.events import step_name, verdict_line
@@ -144,9 +145,11 @@ def diagnose(fit: Fit) -> Diagnosis:
         )
 
 
-def improve(fit: Fit) -> Improvement:
-    """Add what is missing and diagnose again, until nothing is missing or nothing more is known."""
+def improve(fit: Fit, budget: float | None = None) -> Improvement:
+    """Add what is missing and diagnose again, until nothing is missing or nothing more is known; budget: CPU seconds,
+    after which the verdict is on what was found by then. Without end if None."""
     with _case(fit) as (case, first, folder):
+        case.budget = Budget(budget)
         found = staircase.improve(case, first)
         job = fit.statement.job
         content = results.improvement_of(job, case, found, results.diagnosis_of(job, case, found.last, folder))

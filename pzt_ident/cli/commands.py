@@ -196,6 +196,7 @@ def _diagnose(
     out: Path | None,
     no_report: bool,
     plugins: bool,
+    budget: float | None,
     as_json: bool,
     quiet: bool,
 ) -> None:
@@ -203,7 +204,7 @@ def _diagnose(
     from pzt_ident.job.schema import load_job
 
     with listening(silent=as_json or quiet) as listen:
-        folder = function(load_job(job, plugins), out, listen)
+        folder = function(load_job(job, plugins), out, listen, budget)
         _report(folder, no_report)
     verdict = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
     answer({"folder": str(folder), name: verdict}, lambda: show(verdict, folder), as_json, quiet)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+import re
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -100,7 +101,28 @@ def diagnosis_options(command: Command) -> Command:
     """JOB, --out and the options of a command that looks for what a model misses."""
     text = "Folder for the results; results/<name>/<time>-<hash> if not given."
     command = no_report_flag(plugins_flag(output_options(command)))
+    more = "CPU time to spend, such as 60s or 5 min; 60 s or 1 ms a sample if not given."
+    command = click.option("--budget", type=Seconds(), help=more)(command)
     return click.argument("job", type=EXISTING)(click.option("--out", type=EXISTING, help=text)(command))
+
+
+class Seconds(click.ParamType):
+    """A time with a unit, in seconds: `60s`, `5 min`; s where none is given."""
+
+    name = "time"
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> float:
+        from pzt_ident.data.units import factor, same_kind
+
+        found = re.fullmatch(r"\s*(\d+\.?\d*|\.\d+)\s*([a-zA-Zµ]*)\s*", str(value))
+        unit = (found and found[2]) or "s"
+        try:
+            seconds = float(found[1]) * factor(unit) if found and same_kind(unit, "s") else 0.0
+        except InputError:
+            seconds = 0.0
+        if not seconds > 0:
+            self.fail(f"{value!r} is no time above zero: write it as 60s or 5min", param, ctx)
+        return seconds
 
 
 def edit_options(metavar: str, **attributes: Any) -> Callable[[Command], Command]:

@@ -37,6 +37,8 @@ def exchange_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
     for effect in added:
         rivals = look_alikes(case, now, effect) if len(added) > 1 else []
         items = rivals if adequate(case, first, now) else [*rivals, *other_forms(effect)]
+        if items and not case.budget.allows("other forms and look-alikes"):
+            break
         best = min(fits_in_place(case, now, effect, items), key=lambda fit: fit.total, default=now)
         if fits_better(case, now, best) and (best.effects[-1] in rivals or clears_up(case, now, best)):
             steps += [exchange_step(case, now, best, effect), *remove_unneeded(case, first, best)]
@@ -72,7 +74,7 @@ def find_rivals(case: Case, first: Fit, steps: list[Step]) -> None:
     """Set the rivals of the effects in the last model by refits beside all the other effects."""
     now = steps[-1].fit
     added = now.effects[len(first.effects) :]
-    for effect in added if len(added) > 1 else ():
+    for effect in added if len(added) > 1 and case.budget.allows("ties", 1.0) else ():
         step = next(step for step in reversed(steps) if step.added == effect)
         fits = fits_in_place(case, now, effect, look_alikes(case, now, effect))
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.noise import error_scales, pooled_floor
 from pzt_ident.data.record import Record
+from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.model.block import Coupling
 from pzt_ident.model.chain import Chain
@@ -33,6 +34,7 @@ class Case:
 
     `on_event` is called, from any thread, with every fitted start, scored effect and refitted model; errors are in
     units of the loss. `base_problem` is the problem of the model without further effects, if it exists already.
+    `budget` has no end unless it is set.
     """
 
     def __init__(
@@ -46,7 +48,7 @@ class Case:
         on_event: Listener = lambda event: None,
         base_problem: Problem | None = None,
     ) -> None:
-        self.on_event, self._base_problem = on_event, base_problem
+        self.on_event, self._base_problem, self.budget = on_event, base_problem, Budget()
         self.words, self.effects = tuple(words), tuple(effects)
         self.ruled_out, self.shared = tuple(ruled_out), tuple(shared)
         self._resampled: dict[tuple[int, int], Record] = {}
@@ -57,7 +59,7 @@ class Case:
         """The same case with other specifications of some parameters, by their names in the job."""
         more = self.words, self.effects, self.records, {**self.specs, **specs}, self.ruled_out, self.shared
         other = Case(*more, self.on_event)
-        other._resampled = self._resampled
+        other._resampled, other.budget = self._resampled, self.budget
         return other
 
     def problem(self, effects: Sequence[str], steps: Sequence[int] = (), measured_only: bool = False) -> Problem:

@@ -46,7 +46,7 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
         if wide.last.verdict == "adequate":
             return wide
     given = improve_within(case, first, first, on_step)
-    if given.last.verdict == "adequate" or not beyond:
+    if given.last.verdict == "adequate" or not beyond or not case.budget.allows("wider bounds"):
         return given
     wide = improve_beyond(case, first, *beyond, on_step)
     return wide if wide.last.verdict == "adequate" else given
@@ -78,6 +78,8 @@ def improve_within(case: Case, first: Fit, start: Fit, on_step: StepListener = l
         path = climb(case, first, start, diagnosis, candidate, on_step)
         paths.append(path)
         if path.last.verdict in ("adequate", "refused") or path.steps[-1].fit.identify / case.floor > HOPELESS:
+            break
+        if not case.budget.allows("another effect first"):
             break
     best = min(paths, key=lambda path: (path.last.verdict != "adequate", path.steps[-1].fit.total))
     take_back_unproven(case, first, best, on_step)
@@ -120,7 +122,7 @@ def climb(
     """One path: the candidate is added first, then always the best one."""
     steps = [Step(start)]
     on_step(steps[0])
-    while len(steps) <= MOST_STEPS and not stuck(steps):
+    while len(steps) <= MOST_STEPS and not stuck(steps) and case.budget.allows("more effects"):
         new = next_steps(case, first, steps, diagnosis, candidate)
         if not new:
             break
@@ -145,7 +147,7 @@ def stuck(steps: list[Step]) -> bool:
 
 def restart_if_inadequate(case: Case, first: Fit, before: Fit, step: Step) -> None:
     """Where a step does not reach the noise, restart its fit before anything else is blamed."""
-    if not adequate(case, first, step.fit):
+    if not adequate(case, first, step.fit) and case.budget.allows("other starts"):
         step.fit = restart(step.fit)
         step.explained = explained_share(case, before, step.fit)
 
@@ -161,6 +163,8 @@ def next_steps(
         rivals = rivals_of(diagnosis) if candidate is diagnosis.best else {word: fit}
         return [Step(fit, word, None, rivals, explained_share(case, now, fit), candidate.score.explained)]
     if diagnosis.verdict in ("adequate", "refused"):
+        return []
+    if not case.budget.allows("pairs and exchanges of effects"):
         return []
     exchanged = any(step.added and step.removed for step in steps)
     return (

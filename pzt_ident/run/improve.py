@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +14,7 @@ from pzt_ident.data.signals import write_signals
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis import staircase as stairs
 from pzt_ident.diagnosis.bounds import narrow_bounds_sentence
+from pzt_ident.diagnosis.budget import Budget, sensible
 from pzt_ident.diagnosis.caveats import broken_conditions, caveats, misfit_sentences
 from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.diagnosis.starts import first_fit
@@ -34,7 +34,9 @@ from pzt_ident.run.statement import Statement, loss_unit
 
 
 @contextmanager
-def opened_case(job: Job, out: Path | None, listen: Listen = nobody) -> Iterator[tuple[Case, Path]]:
+def opened_case(
+    job: Job, out: Path | None, listen: Listen = nobody, budget: float | None = None
+) -> Iterator[tuple[Case, Path]]:
     """The case, and a folder that holds the job, what it runs on and, in `events.jsonl`, what happens as it does.
 
     Raises InputError where job or data are wrong.
@@ -44,6 +46,7 @@ def opened_case(job: Job, out: Path | None, listen: Listen = nobody) -> Iterator
     case = case_of(statement)
     with event_log(folder, listen) as tell, np.errstate(all="ignore"):
         case.on_event = lambda event: tell(worded(case, event))
+        case.budget = Budget(sensible(sum(record.samples for record in case.records)) if budget is None else budget)
         yield case, folder
         tell({"event": "done", "folder": str(folder)})
 
@@ -66,10 +69,10 @@ def told(case: Case, step: stairs.Step) -> None:
     case.on_event({"event": "stair", "units": case.records[0].units, **stair(case, step)})
 
 
-def diagnose(job: Job, out: Path | None = None, listen: Listen = nobody) -> Path:
+def diagnose(job: Job, out: Path | None = None, listen: Listen = nobody, budget: float | None = None) -> Path:
     """Fit the job's model, say where it fails and what it misses; writes `diagnosis.json`, `residuals.json` and
-    `signals.nc` into the folder returned."""
-    with opened_case(job, out, listen) as (case, folder):
+    `signals.nc` into the folder returned. budget: as of `improve`."""
+    with opened_case(job, out, listen, budget) as (case, folder):
         first = first_fit(case, job.seed)
         told(case, stairs.Step(first))
         found = judge(case, first)
@@ -80,25 +83,55 @@ def diagnose(job: Job, out: Path | None = None, listen: Listen = nobody) -> Path
     return folder
 
 
-def improve(job: Job, out: Path | None = None, listen: Listen = nobody) -> Path:
+def improve(job: Job, out: Path | None = None, listen: Listen = nobody, budget: float | None = None) -> Path:
     """Diagnose, add what is missing and diagnose again, until nothing is missing or nothing more is known.
+
+    budget: CPU seconds, by default 60 or 1 ms a sample. After them the verdict is on what was found by then, and says
+    what was not tried.
 
     Writes `improved.yaml`, `diagnosis.json` and `residuals.json` of the last model, `improvement.json`, and the signals
     of the model as given and of the last one.
     """
-    with opened_case(job, out, listen) as (case, folder):
-        staircase = stairs.improve(case, first_fit(case, job.seed), partial(told, case))
+    with opened_case(job, out, listen, budget) as (case, folder):
+        staircase = stairs.improve(case, first_fit(case, job.seed), SoFar(job, case, folder))
         steps, diagnosis = staircase.steps, diagnosis_of(job, case, staircase.last, folder)
         for name, step in (("signals_as_given.nc", steps[0]), ("signals.nc", steps[-1])):
             write_signals(folder / name, step.fit.problem.errors(step.fit.point))
         proposals = (separating(job, case, step.rivals, folder) for step in ties(steps))
         proposed = diagnosis["next_experiment"] or next(filter(None, proposals), None)
         content = improvement_of(job, case, staircase, diagnosis) | {"next_experiment": proposed}
-        write_text(folder / "improved.yaml", improved(job, case, staircase, folder))
         write_json(folder / "diagnosis.json", diagnosis)
-        write_json(folder / "improvement.json", content)
+        write_improvement(folder, content, improved(job, case, staircase, folder))
         compare(folder, folder)
     return folder
+
+
+class SoFar:
+    """A listener to the steps of a staircase that keeps the best account so far on the disk."""
+
+    def __init__(self, job: Job, case: Case, folder: Path) -> None:
+        self.job, self.case, self.folder = job, case, folder
+        self.steps: list[stairs.Step] = []
+        self.least = np.inf
+
+    def __call__(self, step: stairs.Step) -> None:
+        told(self.case, step)
+        self.steps = [*self.steps, step] if step.added or step.removed else [step]
+        if step.fit.total < self.least:
+            self.least = step.fit.total
+            staircase = stairs.Staircase(self.steps, Diagnosis("unfinished", "", step.fit, [], []))
+            last = {
+                "verdict": "unfinished",
+                "reason": "The best account so far: the diagnosis did not come to its end.",
+            }
+            content = improvement_of(self.job, self.case, staircase, last) | {"next_experiment": None}
+            write_improvement(self.folder, content, improved(self.job, self.case, staircase, self.folder))
+
+
+def write_improvement(folder: Path, content: dict[str, Any], job_text: str) -> None:
+    """Write `improvement.json` and the job that goes with it."""
+    write_text(folder / "improved.yaml", job_text)
+    write_json(folder / "improvement.json", content)
 
 
 def improved(job: Job, case: Case, staircase: stairs.Staircase, folder: Path) -> str:
@@ -123,7 +156,7 @@ def improvement_of(job: Job, case: Case, staircase: stairs.Staircase, last: dict
     reason += "".join(f" {suspect.why_not}" for suspect in suspects)
     for step in ties(steps):
         reason += f" These data cannot tell {' from '.join(map(phrase_of, step.tied))}."
-    reason += narrow_bounds_sentence(case, steps[-1].fit) + caveats(case, steps[-1].fit)
+    reason += case.budget.sentence + narrow_bounds_sentence(case, steps[-1].fit) + caveats(case, steps[-1].fit)
     return {
         "name": job.name,
         "steps": [stair(case, step) for step in steps],

@@ -14,6 +14,7 @@ import stage
 from pzt_ident.cli.commands import main
 from pzt_ident.diagnosis import refit
 from pzt_ident.diagnosis import staircase as stairs
+from pzt_ident.diagnosis.budget import Budget, sensible
 from pzt_ident.diagnosis.proof import Suspect
 from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.job.schema import load_job
@@ -344,7 +345,7 @@ def test_an_improvement_says_what_it_added_and_what_it_suspects(verdict, monkeyp
         monkeypatch.setattr(improvement, name, lambda *arguments, nothing=nothing: nothing)
     before, after = SimpleNamespace(effects=("drift",)), SimpleNamespace(effects=("drift", "creep"))
     steps = [stairs.Step(before), stairs.Step(after, "creep", None, {"creep": after, "thermal_relaxation": after})]
-    job, case = SimpleNamespace(name="job", effects=("drift",)), SimpleNamespace(records=())
+    job, case = SimpleNamespace(name="job", effects=("drift",)), SimpleNamespace(records=(), budget=Budget())
     doubted = Suspect("asymmetry.constant", 0.4, -0.02, before)
     staircase = stairs.Staircase(steps, after, [doubted])
     found = improvement.improvement_of(job, case, staircase, {"verdict": verdict, "reason": "Said."})
@@ -360,3 +361,35 @@ def test_an_improvement_says_what_it_added_and_what_it_suspects(verdict, monkeyp
     steps[1].rivals = {"creep": after}
     found = improvement.improvement_of(job, case, staircase, {"verdict": verdict, "reason": ""})
     assert "cannot tell" not in found["reason"]
+
+
+def test_a_diagnosis_that_is_killed_leaves_the_best_account_so_far(bent, tmp_path, monkeypatch):
+    def killed(*arguments):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(improvement, "diagnosis_of", killed)
+    assert call("improve", bent, "--out", tmp_path / "out").exit_code == 130
+    found = read(tmp_path / "out" / "improvement.json")
+    assert (found["verdict"], found["effects"]) == ("unfinished", ["quadratic_gain"])
+    assert "best account so far" in found["reason"]
+    assert load_job(tmp_path / "out" / "improved.yaml").effects == ("quadratic_gain",)
+
+
+def test_a_budget_that_is_too_small_says_what_was_not_tried(bent, tmp_path):
+    answer = call("improve", bent, "--out", tmp_path / "out", "--budget", "1us", "--no-report")
+    assert answer.exit_code == 0
+    found = read(tmp_path / "out" / "improvement.json")
+    assert found["effects"] == []
+    assert "The budget of 1e-06 s did not suffice for " in found["reason"] and "more effects" in found["reason"]
+
+
+@pytest.mark.parametrize("budget", ["0s", "soon", "5 V", "-3s", "3 xyz"])
+def test_a_budget_is_a_time(bent, budget):
+    answer = call("improve", bent, "--budget", budget)
+    assert answer.exit_code == 2
+    assert f"{budget!r} is no time above zero: write it as 60s or 5min" in answer.stderr
+
+
+@pytest.mark.parametrize(("samples", "seconds"), [(10, 60), (60_000, 60), (1_000_000, 1000)])
+def test_without_one_there_is_a_millisecond_a_sample(samples, seconds):
+    assert sensible(samples) == seconds
