@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from pzt_ident.diagnosis.criteria import removes_enough
 from pzt_ident.diagnosis.refit import Case, Fit, descend, fit_at, refine_steps
 
-ROUNDS = 3  # of widening, each by the width of the range
-LEAST_STEP = 0.1  # of the bound: a narrow range is widened by as much
+SLIP = 0.15  # of a bound, by which a data sheet may be beside the truth
 
 
 @dataclass(frozen=True)
@@ -22,16 +21,21 @@ class Widened:
 def beyond_bounds(case: Case, first: Fit) -> tuple[Case, Fit] | None:
     """The case with wider bounds where the fit `first` rests on bounds of the job, and the fit in it, if that removes
     enough; None where it does not."""
-    wide, fit = case, first
-    for _ in range(ROUNDS):
-        specs = widened(wide, fit)
-        if not specs:
-            break
-        wide = wide.with_specs(specs)
-        problem = wide.problem(fit.effects, fit.steps, fit.measured_only)
-        point = descend(problem, problem.unit_point(fit.values))
-        fit = refine_steps(wide, fit_at(fit.effects, problem, point, first.converged, first.measured_only))
-    return (wide, fit) if wide is not case and removes_enough(case, first, first, fit) else None
+    specs = widened(case, first)
+    if not specs:
+        return None
+    wide = case.with_specs(specs)
+    problem = wide.problem(first.effects, first.steps, first.measured_only)
+    point = descend(problem, problem.unit_point(first.values))
+    fit = refine_steps(wide, fit_at(first.effects, problem, point, first.converged, first.measured_only))
+    return (wide, fit) if removes_enough(case, first, first, fit) else None
+
+
+def stands_in(wide: Case, case: Case, fit: Fit) -> bool:
+    """Whether a parameter rests on its wider bound too: then it makes up for something else."""
+    entries = {name: fit.problem.model.entries[i] for name, i in zip(fit.problem.names, fit.problem.free, strict=True)}
+    moved = {name for name, spec in wide.specs.items() if spec is not case.specs[name]}
+    return any(moved & set(fit.problem.model.spellings(entries[name])) for name in fit.on_bounds)
 
 
 def widened(case: Case, fit: Fit) -> dict[str, Widened]:
@@ -46,9 +50,9 @@ def widened(case: Case, fit: Fit) -> dict[str, Widened]:
         low, high = problem.lower[i], problem.upper[i]
         least, most = problem.declared_bounds(int(problem.free[i]))
         if fit.point[i] < 0.5:
-            low = min(low, max(least, low - max(high - low, LEAST_STEP * abs(low))))
+            low = min(low, max(least, low - SLIP * abs(low)))
         else:
-            high = max(high, min(most, high + max(high - low, LEAST_STEP * abs(high))))
+            high = max(high, min(most, high + SLIP * abs(high)))
         if (low, high) != (problem.lower[i], problem.upper[i]):
             specs[key] = Widened((float(low), float(high)))
     return specs

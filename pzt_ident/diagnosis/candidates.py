@@ -6,7 +6,10 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
-from pzt_ident.diagnosis.criteria import adequate, removed_rms, removes_enough, threshold
+import numpy as np
+
+from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
+from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, applicable, squared_misfit
 from pzt_ident.diagnosis.starts import restart
@@ -69,16 +72,20 @@ def refit_all(case: Case, before: Fit, candidates: Sequence[Candidate]) -> None:
 
 
 def choose_forms(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:
-    """Mean the first form of each effect, or, where one effect alone makes the model adequate, the form that fits best.
+    """Mean the form of each effect that fits best where one effect alone makes the model adequate, or where it leaves
+    half as much as any effect in its first form; else the first form.
 
     Beside other effects that are missing too, a form that fits better may only be the more flexible one.
     """
     enough = any(adequate(case, first, fit) for item in candidates for fit in item.refits.values())
+    least = min((item.refits[item.forms[0].effect].total for item in candidates), default=np.inf)
     for candidate in candidates:
-        usual = next(iter(candidate.refits))
+        usual = candidate.forms[0].effect
         best = min(candidate.refits, key=lambda item: candidate.refits[item].total)
-        gain = removed_rms(candidate.refits[usual].total, candidate.refits[best].total)
-        candidate.take(best if enough and gain > TIE * case.floor else usual)
+        total = candidate.refits[best].total
+        better = removed_rms(candidate.refits[usual].total, total) > TIE * case.floor
+        decisive = share_explained(least, total, case.floor) >= DECISIVE
+        candidate.take(best if better and (enough or decisive) else usual)
 
 
 def restart_look_alikes(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> None:

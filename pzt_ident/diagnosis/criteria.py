@@ -9,6 +9,7 @@ from pzt_ident.diagnosis.score import squared_misfit
 
 CLEAR = 0.6  # noise floors: an effect removes at least this much, root mean square
 LEAST_SHARE = 0.15  # and at least this much of the misfit
+DECISIVE = 0.5  # of the misfit: removing less is not yet the account of a model that stays above the noise
 VALIDATION_FACTOR = 3.0  # times the threshold that the validation records of an adequate model may be above the noise
 MODEL_FORM = 0.03  # of the initial misfit: less may as well be the form of the effects added as another effect
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from pzt_ident.diagnosis.candidates import is_tied
-from pzt_ident.diagnosis.criteria import adequate, removed_rms, removes_enough, threshold
-from pzt_ident.diagnosis.proof import DECISIVE
+from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.score import Scorer, applicable
 from pzt_ident.diagnosis.step import Step, effects_without, explained_share
@@ -16,11 +15,11 @@ from pzt_ident.model.registry import blocks
 LEAST_GAIN = 0.05  # noise floors by which one effect fits better than another: less may be simulation error
 
 
-def remove_unneeded(case: Case, first: Fit, now: Fit) -> list[Step]:
+def remove_unneeded(case: Case, first: Fit, now: Fit, newest: int = 1) -> list[Step]:
     """Steps that remove effects, other than the newest and those of the job itself, which no longer remove enough and
     are of no use to the validation records."""
     steps: list[Step] = []
-    for effect in now.effects[len(first.effects) : -1]:
+    for effect in now.effects[len(first.effects) : len(now.effects) - newest]:
         without = refit(case, now, effects_without(now, effect), {})
         missed = now.validate is not None and removed_rms(without.validate, now.validate) > threshold(case, first)
         if not missed and not removes_enough(case, first, without, now):

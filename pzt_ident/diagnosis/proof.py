@@ -9,7 +9,7 @@ from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.model.registry import phrase_of
 
-DECISIVE = 0.5  # of the misfit of the model without it: what a proven effect removes beside the others
+PROVEN = 2 / 3  # of the misfit of the model without it: what an effect removes that is no stand-in
 
 
 @dataclass(frozen=True)
@@ -40,13 +40,13 @@ def unproven(case: Case, first: Fit, now: Fit) -> list[Suspect]:
     """The effects to be taken out again, the least first, so that all that remain are decisive beside each other.
 
     Where a model reaches the noise, what it has is needed. Where it does not, an effect may stand in for what is not
-    in the catalogue, and must remove the share DECISIVE of the misfit on all records.
+    in the catalogue, and must remove the share PROVEN of the misfit on all records.
     """
     suspects: list[Suspect] = []
     while not adequate(case, first, now):
         added = now.effects[len(first.effects) :]
         least = min((suspect(case, now, effect) for effect in added), key=lambda item: item.share, default=None)
-        if least is None or least.share >= DECISIVE:
+        if least is None or least.share >= PROVEN:
             break
         suspects.append(least)
         now = least.without

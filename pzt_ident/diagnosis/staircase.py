@@ -7,11 +7,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from pzt_ident.diagnosis.bounds import beyond_bounds, brought_back
+from pzt_ident.diagnosis.bounds import beyond_bounds, brought_back, stands_in
 from pzt_ident.diagnosis.candidates import Candidate
-from pzt_ident.diagnosis.criteria import adequate, removes_enough
+from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removes_enough
 from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, find_rivals, remove_unneeded
-from pzt_ident.diagnosis.proof import DECISIVE, Suspect, unproven
+from pzt_ident.diagnosis.proof import Suspect, unproven
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.step import Step, explained_share
@@ -43,13 +43,19 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
     beyond = None if adequate(case, first, first) else beyond_bounds(case, first)
     if beyond and explained_share(case, first, beyond[1]) >= DECISIVE:
         wide = improve_beyond(case, first, *beyond, on_step)
-        if wide.last.verdict == "adequate":
+        if accounts(wide, case):
             return wide
     given = improve_within(case, first, first, on_step)
     if given.last.verdict == "adequate" or not beyond or not case.budget.allows("wider bounds"):
         return given
     wide = improve_beyond(case, first, *beyond, on_step)
-    return wide if wide.last.verdict == "adequate" else given
+    return wide if accounts(wide, case) else given
+
+
+def accounts(wide: Staircase, case: Case) -> bool:
+    """Whether wider bounds lead to an adequate model, in which none of them is reached."""
+    within = wide.case is None or not stands_in(wide.case, case, wide.steps[-1].fit)
+    return wide.last.verdict == "adequate" and within
 
 
 def improve_beyond(case: Case, first: Fit, wide: Case, start: Fit, on_step: StepListener) -> Staircase:
@@ -82,7 +88,7 @@ def improve_within(case: Case, first: Fit, start: Fit, on_step: StepListener = l
         if not case.budget.allows("another effect first"):
             break
     best = min(paths, key=lambda path: (path.last.verdict != "adequate", path.steps[-1].fit.total))
-    take_back_unproven(case, first, best, on_step)
+    take_back(case, first, best, on_step)
     find_rivals(case, first, best.steps)
     return best
 
@@ -102,15 +108,21 @@ def first_candidates(case: Case, first: Fit, start: Fit, diagnosis: Diagnosis) -
     return [best, *sorted(others, key=lambda item: item.fit.total if item.fit else np.inf)[: FIRST_EFFECTS - 1]]
 
 
-def take_back_unproven(case: Case, first: Fit, staircase: Staircase, on_step: StepListener) -> None:
-    """Steps that take the unproven effects out again. What is left then is unexplained, but for other forms."""
-    staircase.suspects = unproven(case, first, staircase.steps[-1].fit)
+def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListener) -> None:
+    """Steps that take effects out again: those that the last model can do without, which may only have led the fit out
+    of a side minimum, and the unproven ones. What is left then is unexplained, but for other forms."""
+    now = staircase.steps[-1].fit
+    steps = remove_unneeded(case, first, now, newest=0) if adequate(case, first, now) else []
+    now = steps[-1].fit if steps else now
+    staircase.suspects = unproven(case, first, now)
     for suspect in staircase.suspects:
-        now = staircase.steps[-1].fit
-        step = Step(suspect.without, None, suspect.effect, {}, explained_share(case, now, suspect.without))
+        share = explained_share(case, now, suspect.without)
+        steps.append(Step(suspect.without, None, suspect.effect, {}, share))
+        now = suspect.without
+    for step in steps:
         on_step(step)
-        staircase.steps.append(step)
-    if staircase.suspects:
+    staircase.steps += steps
+    if steps:
         staircase.last = diagnose(case, staircase.steps[-1].fit, first)
     if staircase.last.verdict not in ("adequate", "refused"):
         staircase.last = unexplained(case, first, staircase.last)

@@ -16,7 +16,7 @@ class EncoderCyclicError(Block):
 
     place = Place.SENSOR
     form = Form("first", ("first", "second"), "Up to which harmonic of the grating.")
-    trials = {"pitch": 60}
+    trials = {"pitch": 120}
     sine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, odd about x = 0.", null=0)
     cosine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, even about x = 0.", null=0)
     pitch = Parameter("response", (0.01, 1), "Period of the grating's signal.", scale="log")

@@ -183,12 +183,13 @@ def test_of_pairs_that_earn_the_best_on_both_uses_is_taken(monkeypatch):
     ("usual", "other", "rival", "taken"),
     [
         (5.0, 3.0, 4.0, "friction"),
+        (5.0, 2.5, 4.0, "friction.coulomb"),
         (5.0, 1.1, 4.0, "friction.coulomb"),
         (1.1, 1.0, 4.0, "friction.coulomb"),
         (1.1, 1.09, 4.0, "friction"),
         (5.0, 3.0, 1.1, "friction.coulomb"),
     ],
-    ids=["not enough", "enough", "better", "as good", "beside one that is enough"],
+    ids=["not enough", "decisive", "enough", "better", "as good", "beside one that is enough"],
 )
 def test_another_form_is_meant_only_where_one_effect_is_enough(usual, other, rival, taken):
     """RMSE in noise floors, of a model that is adequate up to 1.17; forms are as good to a fifth of the noise."""

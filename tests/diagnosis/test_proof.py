@@ -39,8 +39,9 @@ def of(**errors):
     return {frozenset("" if word == "none" else word): error for word, error in errors.items()}
 
 
-def test_what_takes_up_less_than_half_of_a_rest_is_a_suspect(taken_out):
-    assert taken_out(of(ab=5.0, a=6.0, b=25.0, none=30.0)) == ["b"]
+def test_what_takes_up_less_than_two_thirds_of_a_rest_is_a_suspect(taken_out):
+    assert taken_out(of(ab=5.0, a=8.4, b=25.0, none=30.0)) == ["b"]
+    assert taken_out(of(ab=5.0, a=8.7, b=25.0, none=30.0)) == []
 
 
 def test_both_are_proven_where_each_is_decisive(taken_out):
@@ -56,5 +57,5 @@ def test_one_after_the_other_is_taken_out_the_least_first(taken_out):
 
 
 def test_records_that_were_kept_back_must_show_it_too(taken_out):
-    seen, unseen = of(ab=5.0, a=20.0, b=25.0, none=30.0), of(ab=5.0, a=5.5, b=25.0, none=30.0)
-    assert taken_out(seen, unseen) == ["b"]
+    seen, unseen = of(ab=5.0, a=20.0, b=25.0, none=300.0), of(ab=5.0, a=20.0, b=6.0, none=300.0)
+    assert taken_out(seen, unseen) == ["a"]

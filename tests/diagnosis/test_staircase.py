@@ -8,6 +8,7 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis import staircase as improving
+from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.exchange import exchange_any, remove_unneeded
 from pzt_ident.diagnosis.refit import fit_at, refit
 from pzt_ident.diagnosis.score import Score
@@ -174,6 +175,18 @@ def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, mon
     monkeypatch.setattr(improving, "diagnose", lambda case, start, first: None)
     monkeypatch.setattr(improving, "first_candidates", lambda case, first, start, diagnosis: [0, 1])
     monkeypatch.setattr(improving, "climb", lambda case, first, start, diagnosis, number, on_step: paths[number])
-    monkeypatch.setattr(improving, "take_back_unproven", lambda *arguments: None)
+    monkeypatch.setattr(improving, "take_back", lambda *arguments: None)
     monkeypatch.setattr(improving, "find_rivals", lambda *arguments: None)
-    assert improve_within(SimpleNamespace(floor=1.0), None, None) is paths[taken]
+    assert improve_within(SimpleNamespace(floor=1.0, budget=Budget()), None, None) is paths[taken]
+
+
+def test_an_effect_that_only_led_out_of_a_side_minimum_is_taken_out_again():
+    """The first fit rests far from the stage; with drift it gets there, and then drift is of no use."""
+    case = stage.case()
+    problem, model = case.problem(()), case.problem(("drift",))
+    resting = fit_at((), problem, problem.unit_point(first_fit(case, 0).values | {"bouc_wen.alpha": 0.9}))
+    there = fit_at(("drift",), model, model.unit_point(first_fit(case, 0).values | {"drift.tau": 100.0}))
+    found = Staircase([Step(resting), Step(there, "drift")], Diagnosis("adequate", "", there, [], []))
+    improving.take_back(case, resting, found, lambda step: None)
+    assert [(step.added, step.removed) for step in found.steps] == [(None, None), ("drift", None), (None, "drift")]
+    assert (found.steps[-1].fit.effects, found.last.verdict, found.suspects) == ((), "adequate", [])
