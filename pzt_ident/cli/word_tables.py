@@ -17,6 +17,8 @@ def show_word(facts: Facts) -> None:
         click.echo(f"{source}\n")
     if not facts.get("convergent", True):
         click.echo("It approaches an optimum, but does not converge to it.\n")
+    if len(facts.get("forms", ())) > 1:
+        table(("form, in a job", "what it is"), [(row["item"], row["doc"]) for row in facts["forms"]])
     if "settings" in facts:
         table(
             ("setting", "default", "from - to", "unit", "what it is"),

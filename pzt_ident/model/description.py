@@ -40,7 +40,7 @@ def headline(item: type) -> str:
 
 def description_of(name: str) -> Facts:
     """What a block, effect or optimizer declares. Raises InputError with the nearest words for an unknown one."""
-    if name in blocks:
+    if word_of(name) in blocks:
         return _block(name)
     if name in optimizers:
         return _optimizer(name)
@@ -57,14 +57,15 @@ def _parameters_of_effect(effect: str) -> list[Facts]:
 
 
 def _block(name: str) -> Facts:
-    block, kind = blocks[name], blocks.kind_of(name)
-    facts = {"name": name, "kind": kind, "doc": inspect.getdoc(block)}
+    block, kind = blocks[name], blocks.kind_of(word_of(name))
+    facts: Facts = {"name": name, "kind": kind, "doc": inspect.getdoc(block)}
     if kind == "effects":
         facts |= {key: getattr(block, key) for key in ("look_alikes", "separate_by", "remedy")}
+        facts["forms"] = [{"item": item, "doc": headline(blocks[item])} for item in blocks.forms(name)]
     if issubclass(block, Term):
-        return facts | {"parameters": _parameters_of_effect(name)}
+        return facts | {"parameters": _parameters_of_effect(word_of(name))}
     forms = [block, *(block.make(**{word: value}) for word, value in _forms(block))]
-    settings = {word: item for form in forms for word, item in form.settings().items()}
+    settings = {word: item for form in forms for word, item in form.settings().items() if word != "form"}
     rows = [{"name": word, "default": item.value, "unit": "1"} | _choices(item) for word, item in settings.items()]
     chosen = {"settings": rows} if rows else {}
     return facts | {"place": block.place.name.lower(), "parameters": _parameters(block)} | chosen
@@ -80,18 +81,31 @@ def _choices(item: Setting | Form) -> Facts:
     return {key: value for key, value in asdict(item).items() if key != "value"}
 
 
+def _choice(block: type[Any], word: str, value: str) -> str:
+    """A setting and its value, or the item of an effect in that form, as a job has it."""
+    usual = word == "form" and value == block.settings()["form"].value
+    return block.name if usual else f"{block.name}.{value}" if word == "form" else f"{word}: {value}"
+
+
 def _parameters(block: type[Any]) -> list[Facts]:
-    """The parameters of a block, and those that only one of its forms has."""
+    """The parameters of a block in all its forms, or in the form that was chosen."""
     keys = ("unit", "bounds", "null", "value", "scale", "effect", "per_record", "doc")
-    rows = {name: (declared, "") for name, declared in block.parameters().items()}
-    for word, value in _forms(block):
-        others = block.make(**{word: value}).parameters()
-        usual = f"{word}: {block.setting(word)}"
-        rows = {name: (item, form if name in others else usual) for name, (item, form) in rows.items()}
-        rows |= {name: (item, f"{word}: {value}") for name, item in others.items() if name not in rows}
-    return [
-        {"name": name, "form": form} | {key: getattr(item, key) for key in keys} for name, (item, form) in rows.items()
-    ]
+    variants = _variants(block)
+    rows: list[Facts] = []
+    for name, item in {name: item for found in reversed(variants.values()) for name, item in found.items()}.items():
+        owners = [label for label, found in variants.items() if name in found]
+        form = "" if len(owners) == len(variants) else "` or `".join(owners)
+        rows.append({"name": name, "form": form} | {key: getattr(item, key) for key in keys})
+    order = list(dict.fromkeys(name for found in variants.values() for name in found))
+    return sorted(rows, key=lambda row: order.index(row["name"]))
+
+
+def _variants(block: type[Any]) -> dict[str, dict[str, Any]]:
+    """The parameters of each form that a block may have, by what a job writes for it."""
+    choices = [] if "form" in block.chosen_settings else _forms(block)
+    first = {_choice(block, word, block.setting(word)): block.parameters() for word, _ in choices[:1]}
+    others = {_choice(block, word, value): block.make(**{word: value}).parameters() for word, value in choices}
+    return (first | others) or {"": block.parameters()}
 
 
 def _optimizer(name: str) -> Facts:

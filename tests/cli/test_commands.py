@@ -249,7 +249,7 @@ class TestWords:
     def test_another_form_is_shown_with_what_it_has_beside(self):
         shown = call("show", "homogenized_energy").stdout
         assert "\ndensity " in shown and "lognormal or free" in shown and "\nnodes " in shown
-        assert "Fixed at 0.001 unless the job gives bounds. With `density: free` only." in shown
+        assert "Fixed at 0.001 unless the job gives bounds. With `density: free` or `density: shared` only." in shown
         assert "Median of the coercive fields. With `density: lognormal` only." in shown
         assert "\nweight_1 to weight_22 " in shown and "\nweight_2 " not in shown
 
