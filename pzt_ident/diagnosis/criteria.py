@@ -10,6 +10,7 @@ from pzt_ident.diagnosis.score import squared_misfit
 CLEAR = 0.6  # noise floors: an effect removes at least this much, root mean square
 LEAST_SHARE = 0.15  # and at least this much of the misfit
 DECISIVE = 0.5  # of the misfit: removing less is not yet the account of a model that stays above the noise
+NEAR = 1.5  # noise floors, up to which an error may be that of the floor itself
 VALIDATION_FACTOR = 3.0  # times the threshold that the validation records of an adequate model may be above the noise
 MODEL_FORM = 0.03  # of the initial misfit: less may as well be the form of the effects added as another effect
 
@@ -47,6 +48,11 @@ def adequate(case: Case, first: Fit, fit: Fit) -> bool:
     """Whether a fit is at the noise of the identification records and close to that of the validation records."""
     most = np.hypot(case.floor, VALIDATION_FACTOR * threshold(case, first))
     return reaches_noise(case, first, fit) and bool(fit.validate is None or fit.validate <= most)
+
+
+def near_noise(case: Case, first: Fit, fit: Fit) -> bool:
+    """Whether a fit is adequate, or would be if the noise floor were half as much again."""
+    return adequate(case, first, fit) or max(fit.identify, fit.validate or 0.0) <= NEAR * case.floor
 
 
 def reaches_noise(case: Case, first: Fit, fit: Fit) -> bool:

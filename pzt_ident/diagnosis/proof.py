@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pzt_ident.diagnosis.criteria import adequate
+from pzt_ident.diagnosis.criteria import near_noise
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.model.registry import phrase_of
@@ -43,7 +43,7 @@ def unproven(case: Case, first: Fit, now: Fit) -> list[Suspect]:
     in the catalogue, and must remove the share PROVEN of the misfit on all records.
     """
     suspects: list[Suspect] = []
-    while not adequate(case, first, now):
+    while not near_noise(case, first, now):
         added = now.effects[len(first.effects) :]
         least = min((suspect(case, now, effect) for effect in added), key=lambda item: item.share, default=None)
         if least is None or least.share >= PROVEN:

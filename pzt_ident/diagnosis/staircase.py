@@ -9,7 +9,7 @@ import numpy as np
 
 from pzt_ident.diagnosis.bounds import beyond_bounds, brought_back, stands_in
 from pzt_ident.diagnosis.candidates import Candidate
-from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removes_enough
+from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removes_enough
 from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, find_rivals, remove_unneeded
 from pzt_ident.diagnosis.proof import Suspect, unproven
 from pzt_ident.diagnosis.refit import Case, Fit, refit
@@ -112,7 +112,7 @@ def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListene
     """Steps that take effects out again: those that the last model can do without, which may only have led the fit out
     of a side minimum, and the unproven ones. What is left then is unexplained, but for other forms."""
     now = staircase.steps[-1].fit
-    steps = remove_unneeded(case, first, now, newest=0) if adequate(case, first, now) else []
+    steps = remove_unneeded(case, first, now, newest=0) if near_noise(case, first, now) else []
     now = steps[-1].fit if steps else now
     staircase.suspects = unproven(case, first, now)
     for suspect in staircase.suspects:

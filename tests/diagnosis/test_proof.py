@@ -59,3 +59,8 @@ def test_one_after_the_other_is_taken_out_the_least_first(taken_out):
 def test_records_that_were_kept_back_must_show_it_too(taken_out):
     seen, unseen = of(ab=5.0, a=20.0, b=25.0, none=300.0), of(ab=5.0, a=20.0, b=6.0, none=300.0)
     assert taken_out(seen, unseen) == ["a"]
+
+
+def test_what_is_near_the_noise_is_not_held_against_a_floor_that_may_be_too_low(taken_out):
+    assert taken_out(of(ab=1.45, a=1.6, b=1.7, none=30.0)) == []
+    assert taken_out(of(ab=1.55, a=1.6, b=1.7, none=30.0)) != []
