@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pzt_ident.diagnosis.criteria import near_noise
+from pzt_ident.diagnosis.criteria import DECISIVE, near_noise
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.model.registry import phrase_of
 
-PROVEN = 2 / 3  # of the misfit of the model without it: what an effect removes that is no stand-in
+PROVEN = 2 / 3  # of the misfit of the model without it, on one kind of records, and DECISIVE on the other
 
 
 @dataclass(frozen=True)
@@ -28,6 +28,12 @@ class Suspect:
         return self.identify if self.validate is None else min(self.identify, self.validate)
 
     @property
+    def proven(self) -> bool:
+        """Whether it removes most of the misfit that there is without it, on all records."""
+        most = max(self.identify, self.identify if self.validate is None else self.validate)
+        return self.share >= DECISIVE and most >= PROVEN
+
+    @property
     def why_not(self) -> str:
         """A sentence on why it is not proven."""
         seen = f"{self.identify:.0%} of the misfit on the identification records"
@@ -40,16 +46,16 @@ def unproven(case: Case, first: Fit, now: Fit) -> list[Suspect]:
     """The effects to be taken out again, the least first, so that all that remain are decisive beside each other.
 
     Where a model reaches the noise, what it has is needed. Where it does not, an effect may stand in for what is not
-    in the catalogue, and must remove the share PROVEN of the misfit on all records.
+    in the catalogue, and must remove most of the misfit.
     """
     suspects: list[Suspect] = []
     while not near_noise(case, first, now):
-        added = now.effects[len(first.effects) :]
-        least = min((suspect(case, now, effect) for effect in added), key=lambda item: item.share, default=None)
-        if least is None or least.share >= PROVEN:
+        found = [suspect(case, now, effect) for effect in now.effects[len(first.effects) :]]
+        doubted = [item for item in found if not item.proven]
+        if not doubted:
             break
-        suspects.append(least)
-        now = least.without
+        suspects.append(min(doubted, key=lambda item: item.share))
+        now = suspects[-1].without
     return suspects
 
 

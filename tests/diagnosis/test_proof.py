@@ -64,3 +64,9 @@ def test_records_that_were_kept_back_must_show_it_too(taken_out):
 def test_what_is_near_the_noise_is_not_held_against_a_floor_that_may_be_too_low(taken_out):
     assert taken_out(of(ab=1.45, a=1.6, b=1.7, none=30.0)) == []
     assert taken_out(of(ab=1.55, a=1.6, b=1.7, none=30.0)) != []
+
+
+def test_two_thirds_on_one_kind_of_records_will_do_where_the_other_has_half(taken_out):
+    seen = of(ab=5.0, a=7.5, b=25.0, none=300.0)  # of b: 56 %
+    assert taken_out(seen, of(ab=5.0, a=20.0, b=25.0, none=300.0)) == []
+    assert taken_out(seen, of(ab=5.0, a=7.5, b=25.0, none=300.0)) == ["b"]
