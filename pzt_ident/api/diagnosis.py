@@ -71,9 +71,7 @@ class Diagnosis:
     def _table(self) -> tuple[list[str], list[list[str]]]:
         printed = unit(self.content["unit"]) or "1"
         tried = [item for item in self.candidates if item["rmse"] or item["explained"] > 0.01]
-        rows = [
-            [item["effect"], percent(item["explained"]), *_errors(item["rmse"]), item["decision"]] for item in tried
-        ]
+        rows = [[item["item"], percent(item["explained"]), *_errors(item["rmse"]), item["decision"]] for item in tried]
         return ["effect", "explains", f"identify [{printed}]", f"validate [{printed}]", "decision"], rows
 
 

@@ -21,7 +21,7 @@ def show_diagnosis(diagnosis: Facts, folder: Path) -> None:
     unit, error = diagnosis["unit"], f"RMSE{together(diagnosis['units'])}"
     rows = [
         (
-            item["effect"],
+            item.get("item", item["effect"]),
             f"{round(100 * item['explained'])} %",
             expected(item["expected"], item["units"]),
             f"{item['visibility']:.2f}",
@@ -44,7 +44,7 @@ def show_diagnosis(diagnosis: Facts, folder: Path) -> None:
 def _advise(diagnosis: Facts, folder: Path) -> None:
     best = next((item for item in diagnosis["candidates"] if item["decision"] == "missing"), None)
     if best:
-        click.echo(f"{best['effect']}: {best['physics']}\non the rig: {best['remedy']}")
+        click.echo(f"{best.get('item', best['effect'])}: {best['physics']}\non the rig: {best['remedy']}")
     if diagnosis["next_experiment"]:
         _propose(diagnosis["next_experiment"], folder)
     elif best and diagnosis["verdict"] == "inconclusive":

@@ -86,7 +86,7 @@ def _advice(results: Results) -> Iterator[str]:
     yield remaining_error(results)
     best = next((item for item in results.diagnosis["candidates"] if item["decision"] == "missing"), None)
     if best:
-        yield f"{best['effect']}: {best['physics']} On the test rig: {best['remedy']}"
+        yield f"{best.get('item', best['effect'])}: {best['physics']} On the test rig: {best['remedy']}"
     if proposal := results.next_experiment:
         yield f"To distinguish {listed(proposal['splits'])}, apply the drive in {proposal['file']}: {proposal['why']}."
     elif best and results.diagnosis["verdict"] == "inconclusive":

@@ -160,7 +160,8 @@ def candidates(results: Results) -> Table:
     """One row per effect that was considered, best first."""
     rows = [
         {
-            **{key: item[key] for key in ("effect", "decision", "explained", "visibility", "physics", "remedy")},
+            "effect": item.get("item", item["effect"]),
+            **{key: item[key] for key in ("decision", "explained", "visibility", "physics", "remedy")},
             "expected": expected(item["expected"], item.get("units", {})),
             "alike": ", ".join(word for word in item["class"] if word != item["effect"]),
             **(item["rmse"] or dict.fromkeys(("identify", "validate"))),

@@ -230,6 +230,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
             {
                 "effect": word_of(item.score.effect),
                 "form": form_of(item.score.effect),
+                "item": item.score.effect,
                 "class": list(map(word_of, found.tied if item.score.effect in found.tied else [item.score.effect])),
                 "explained": min(item.score.explained_in_bounds, 1.0),
                 "expected": item.score.guess,

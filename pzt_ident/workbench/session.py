@@ -24,6 +24,7 @@ from pzt_ident.errors import InputError, RunError
 from pzt_ident.files import write_json, write_text
 from pzt_ident.job.edit import edited
 from pzt_ident.job.schema import Job, load_job
+from pzt_ident.model.registry import word_of
 from pzt_ident.run.pool import search_path
 from pzt_ident.workbench.job_form import file_sources, job_text
 
@@ -95,7 +96,7 @@ class Session:
 
     def add(self, effect: str) -> None:
         job = self.job()
-        if effect in job.effects:
+        if word_of(effect) in map(word_of, job.effects):
             raise InputError(f"{effect!r} is in the model already")
         self._change((*job.effects, effect), f"+ {effect}")
 

@@ -110,7 +110,7 @@ function showVerdict(begun) {
   byId("advice").append(state.weighed);
   if (!diagnosis) return;
   const missing = diagnosis.candidates.filter((item) => item.decision === "missing");
-  for (const item of missing) appendAddButton(byId("advice"), item.effect, "strong");
+  for (const item of missing) appendAddButton(byId("advice"), item.item ?? item.effect, "strong");
   if (missing.length) byId("advice").append(` ${missing[0].physics} On the test rig: ${missing[0].remedy}`);
   if (diagnosis.next_experiment) byId("advice").append(` To distinguish ${diagnosis.next_experiment.splits.join(" and ")}, apply the next drive (to be saved above): ${diagnosis.next_experiment.why}.`);
   else if (diagnosis.verdict === "inconclusive") byId("advice").append(` No drive within the limits distinguishes the candidates. On the test rig: ${missing[0].separate_by}`);
@@ -224,11 +224,11 @@ function showCandidates() {
   for (const item of diagnosis.candidates) {
     const rmse = ["identify", "validate"].map((use) => (item.rmse ? number(item.rmse[use]) : ""));
     const equivalents = item.class.filter((word) => word !== item.effect).join(", ");
-    const cells = row(byId("effects"), "td", [item.effect, "", item.decision, percent(item.explained), item.would_be, number(item.visibility, 2), ...rmse, equivalents, item.physics]);
+    const cells = row(byId("effects"), "td", [item.item ?? item.effect, "", item.decision, percent(item.explained), item.would_be, number(item.visibility, 2), ...rmse, equivalents, item.physics]);
     cells[4].classList.add("expected");
     cells[9].classList.add("note");
     if (item.decision === "missing") cells[0].parentElement.classList.add("missing");
-    appendAddButton(cells[1], item.effect, "", "Add");
+    appendAddButton(cells[1], item.item ?? item.effect, "", "Add");
   }
 }
 
