@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pzt_ident.diagnosis.criteria import DECISIVE, near_noise
+from pzt_ident.diagnosis.criteria import near_noise
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.model.registry import phrase_of
 
-PROVEN = 2 / 3  # of the misfit of the model without it, on one kind of records, and DECISIVE on the other
+JOINT = 2 / 3  # of the misfit of the model as given: what all that is added must remove together
+ALONE = 1 / 3  # of the misfit without it: what each must remove beside the others
 
 
 @dataclass(frozen=True)
@@ -28,12 +29,6 @@ class Suspect:
         return self.identify if self.validate is None else min(self.identify, self.validate)
 
     @property
-    def proven(self) -> bool:
-        """Whether it removes most of the misfit that there is without it, on all records."""
-        most = max(self.identify, self.identify if self.validate is None else self.validate)
-        return self.share >= DECISIVE and most >= PROVEN
-
-    @property
     def why_not(self) -> str:
         """A sentence on why it is not proven."""
         seen = f"{self.identify:.0%} of the misfit on the identification records"
@@ -43,20 +38,26 @@ class Suspect:
 
 
 def unproven(case: Case, first: Fit, now: Fit) -> list[Suspect]:
-    """The effects to be taken out again, the least first, so that all that remain are decisive beside each other.
+    """The effects to be taken out again, the least first.
 
-    Where a model reaches the noise, what it has is needed. Where it does not, an effect may stand in for what is not
-    in the catalogue, and must remove most of the misfit.
+    Where a model reaches the noise, what it has is needed. Where it does not, effects may stand in for what is not in
+    the catalogue: together they must remove the share JOINT of the misfit as given, and each beside the others the
+    share ALONE, on the identification and on the validation records.
     """
     suspects: list[Suspect] = []
-    while not near_noise(case, first, now):
-        found = [suspect(case, now, effect) for effect in now.effects[len(first.effects) :]]
-        doubted = [item for item in found if not item.proven]
-        if not doubted:
+    while (added := now.effects[len(first.effects) :]) and not near_noise(case, first, now):
+        least = min((suspect(case, now, effect) for effect in added), key=lambda item: item.share)
+        if least.share >= ALONE and removed_by_all(case, first, now) >= JOINT:
             break
-        suspects.append(min(doubted, key=lambda item: item.share))
-        now = suspects[-1].without
+        suspects.append(least)
+        now = least.without
     return suspects
+
+
+def removed_by_all(case: Case, first: Fit, now: Fit) -> float:
+    """Share of the misfit as given that a fit removes, the smaller one of both kinds of records."""
+    both = [(first.identify, now.identify), (first.validate, now.validate)]
+    return min(share_explained(before, after, case.floor) for before, after in both if before and after)
 
 
 def suspect(case: Case, now: Fit, effect: str) -> Suspect:
