@@ -154,8 +154,8 @@ def improvement_of(job: Job, case: Case, staircase: stairs.Staircase, last: dict
     reason = last["reason"]
     added = [item for item in steps[-1].fit.effects if item not in job.effects]
     reason += "".join(f" {suspect.why_not}" for suspect in suspects)
-    for step in ties(steps):
-        reason += f" These data cannot tell {' from '.join(map(phrase_of, step.tied))}."
+    undecided = dict.fromkeys(step.tied for step in ties(steps))
+    reason += "".join(f" These data cannot tell {' from '.join(map(phrase_of, tied))}." for tied in undecided)
     reason += case.budget.sentence + narrow_bounds_sentence(case, steps[-1].fit) + caveats(case, steps[-1].fit)
     return {
         "name": job.name,
