@@ -99,7 +99,7 @@ def restart_look_alikes(case: Case, first: Fit, before: Fit, candidates: list[Ca
         word, fit = candidate.score.effect, candidate.fit
         close = fit and removed_rms(fit.identify, best.fit.identify) < 2 * TIE * case.floor
         if fit and close and are_look_alikes(word, best.score.effect) and len(candidate.score.guess) > 1:
-            candidate.fit = restart(fit, word, LOOK_ALIKE_STARTS)
+            candidate.fit = candidate.refits[word] = restart(fit, word_of(word), LOOK_ALIKE_STARTS)
 
 
 def are_look_alikes(one: str, other: str) -> bool:

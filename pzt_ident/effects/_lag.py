@@ -1,7 +1,8 @@
-"""First-order lag, T y' + y = u, stepped exactly for an input that is linear between samples."""
+"""Lags of first and second order, stepped exactly for an input that is linear between samples."""
 
 from pzt_ident.model.block import Block
-from pzt_ident.model.first_order_hold import decay, oscillate, oscillator
+from pzt_ident.model.first_order_hold import decay, oscillator
+from pzt_ident.model.second_order import SecondOrder
 
 
 class Lag(Block):
@@ -28,14 +29,7 @@ def second_order(tau, zeta, dt):
     return oscillator(2 * zeta / tau, zeta, dt) if tau != 0 else (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-class SecondOrder(Block):
-    """A low-pass of second order that lags by tau at low frequency, stepped exactly like `Lag`."""
+class SecondOrderLag(SecondOrder):
+    """A low-pass of second order that lags by tau at low frequency."""
 
     sizes = Lag.sizes
-
-    def start(u, r11, r12, r21, r22, b1, b2):
-        return 0.0, 0.0, u
-
-    def step(w, v, before, u, r11, r12, r21, r22, b1, b2):
-        w, v = oscillate(w, v, u - before, r11, r12, r21, r22, b1, b2)
-        return w, v, u, u + w

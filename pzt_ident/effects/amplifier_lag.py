@@ -1,6 +1,6 @@
 """Amplifier that charges the stack through its output resistance."""
 
-from pzt_ident.effects._lag import Lag, SecondOrder, second_order
+from pzt_ident.effects._lag import Lag, SecondOrderLag, second_order
 from pzt_ident.model.block import Place
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
@@ -28,7 +28,7 @@ class AmplifierLag(Charging, Lag):
     """
 
 
-class TwoPoles(Charging, SecondOrder):
+class TwoPoles(Charging, SecondOrderLag):
     """Two equal stages behind each other: (tau / 2 s + 1)^2 U_a = U, with the same lag at low frequency.
 
     Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems.

@@ -1,6 +1,7 @@
 """A gain that grows with the amplitude of the drive."""
 
-from pzt_ident.model.block import Bank, Block, Place
+from pzt_ident.effects._plays import Plays
+from pzt_ident.model.block import Block, Place
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
@@ -56,7 +57,7 @@ class Running(Growing, Block):
         return low, high, u + u * growth * (high - low)
 
 
-class Rayleigh(Growing, Bank):
+class Rayleigh(Growing, Plays):
     """Rayleigh's loops, with the hysteresis that belongs to them: y = d (u + growth int_0^peak F_r[u] dr) - h.
 
     F_r is a play of half-width r: the Preisach operator of a constant density. Damjanovic (1997), Phys. Rev. B 55,
@@ -69,16 +70,6 @@ class Rayleigh(Growing, Bank):
 
     def prepare(growth, peak, branch):
         return growth * peak / PLAYS, peak * (branch + 0.5) / PLAYS
-
-    def start(u, weight, half):
-        return (max(u - half, min(u + half, 0.0)),)
-
-    def step(p, u, weight, half):
-        p = max(u - half, min(u + half, p))
-        return p, weight * p
-
-    def output(u, total, weight, half):
-        return u + total
 
 
 AmplitudeGain.forms = {"running": Running, "rayleigh": Rayleigh}

@@ -1,6 +1,7 @@
 """Memory of many past reversals."""
 
-from pzt_ident.model.block import Bank, Place, expm1
+from pzt_ident.effects._plays import Plays
+from pzt_ident.model.block import Place, expm1
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
@@ -8,7 +9,7 @@ PLAYS = 10
 
 
 @blocks.register
-class DistributedMemory(Bank):
+class DistributedMemory(Plays):
     """Domains of many coercive voltages: y = d (u + sum_i w_i F_i[u]) - h, plays of half-width r_i = reach i / 10.
 
     Prandtl-Ishlinskii plays, p <- max(u - r, min(u + r, p)); Kuhnen (2003), Eur. J. Control 9, 407. Plays
@@ -26,16 +27,6 @@ class DistributedMemory(Bank):
 
     def prepare(weight, reach, branch):
         return weight, reach * (branch + 1) / PLAYS
-
-    def start(u, weight, half):
-        return (max(u - half, min(u + half, 0.0)),)
-
-    def step(p, u, weight, half):
-        p = max(u - half, min(u + half, p))
-        return p, weight * p
-
-    def output(u, total, weight, half):
-        return u + total
 
 
 class BentPlays(DistributedMemory):

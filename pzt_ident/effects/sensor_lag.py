@@ -1,6 +1,6 @@
 """Sensor that follows the stage through a low-pass filter."""
 
-from pzt_ident.effects._lag import Lag, SecondOrder, second_order
+from pzt_ident.effects._lag import Lag, SecondOrderLag, second_order
 from pzt_ident.model.block import Place
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
@@ -28,7 +28,7 @@ class SensorLag(Filtering, Lag):
     """
 
 
-class ButterworthFilter(Filtering, SecondOrder):
+class ButterworthFilter(Filtering, SecondOrderLag):
     """A filter of second order with damping 1 / sqrt(2): (tau^2 s^2 / 2 + tau s + 1) y = x, with the same lag at low
     frequency.
 

@@ -2,22 +2,15 @@
 
 from math import sqrt
 
-from pzt_ident.model.block import Block, Place
-from pzt_ident.model.first_order_hold import oscillate, oscillator
+from pzt_ident.model.block import Place
+from pzt_ident.model.first_order_hold import oscillator
+from pzt_ident.model.second_order import SecondOrder
 
 
-class Oscillator(Block):
-    """Solved exactly for f linear on each step (first-order hold), at rest at the start; prepare returns the
-    coefficients of first_order_hold.oscillate."""
+class Oscillator(SecondOrder):
+    """Of second order, in the place of the mechanics."""
 
     place = Place.MECHANICS
-
-    def start(u, r11, r12, r21, r22, b1, b2):
-        return 0.0, 0.0, u
-
-    def step(w, v, f, u, r11, r12, r21, r22, b1, b2):
-        w, v = oscillate(w, v, u - f, r11, r12, r21, r22, b1, b2)
-        return w, v, u, u + w
 
 
 def mode(mass, damping, stiffness, dt):

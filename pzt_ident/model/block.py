@@ -8,7 +8,6 @@ branches. The functions are declared without self. The engine compiles them and 
 from __future__ import annotations
 
 import inspect
-import math
 from collections.abc import Callable, Mapping
 from enum import IntEnum
 from functools import cache
@@ -16,6 +15,11 @@ from typing import Any, ClassVar
 
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.model.contract import call_function
+from pzt_ident.model.elementary import cos as cos
+from pzt_ident.model.elementary import erf as erf
+from pzt_ident.model.elementary import expm1 as expm1
+from pzt_ident.model.elementary import log1p as log1p
+from pzt_ident.model.elementary import sin as sin
 from pzt_ident.model.parameter import Form, Parameter, Setting
 
 TILES = 3  # signals of an axis: its own, the input of its operator's prompt response, the force on its mechanics
@@ -37,31 +41,6 @@ class Place(IntEnum):
     MODE = 10
     OUTPUT = 11
     SENSOR = 12
-
-
-def expm1(x: float) -> float:
-    """exp(x) - 1 for blocks; compiled blocks use a version that runs in SIMD lanes."""
-    return math.expm1(x)
-
-
-def log1p(x: float) -> float:
-    """log(1 + x) for blocks, likewise; undefined for x <= -1, but raises no error there."""
-    return math.log1p(x) if x > -1 else math.nan
-
-
-def sin(x: float) -> float:
-    """sin(x) for blocks, likewise; accurate to 1e-15 for |x| < 1e4."""
-    return math.sin(x) if math.isfinite(x) else math.nan
-
-
-def cos(x: float) -> float:
-    """cos(x) for blocks, likewise; accurate to 1e-15 for |x| < 1e4."""
-    return math.cos(x) if math.isfinite(x) else math.nan
-
-
-def erf(x: float) -> float:
-    """erf(x) for blocks, likewise; accurate to 1e-14."""
-    return math.erf(x)
 
 
 class Block:

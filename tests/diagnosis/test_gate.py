@@ -1,11 +1,12 @@
 """What an effect must remove, of which records, and which of several is taken: by hand, the noise floor being 1."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from pzt_ident.diagnosis import verdict
+from pzt_ident.diagnosis import candidates, verdict
 from pzt_ident.diagnosis.candidates import Candidate, choose_forms, generalises, is_tied
 from pzt_ident.diagnosis.criteria import adequate, not_in_validation, reaches_noise, removes_enough, threshold
 from pzt_ident.diagnosis.refit import Fit
@@ -208,3 +209,19 @@ def test_a_form_of_more_parameters_than_the_best_effect_may_contain_it():
     assert generalises(fit(1.0, effects=["slew_limit.lag"], dimensions=6), lag)
     assert not generalises(fit(1.0, effects=["slew_limit"], dimensions=6), lag)
     assert not generalises(fit(1.0, effects=["sensor_lag.second_order"], dimensions=5), lag)
+
+
+def test_a_look_alike_in_another_form_is_started_anew_by_the_name_of_its_block(monkeypatch):
+    def started(fit, block, starts):
+        assert block == "sensor_lag"
+        return replace(fit, identify=1.5)
+
+    monkeypatch.setattr(candidates, "restart", started)
+    best = Candidate.of([Score("amplifier_lag", guess={"tau": 1.0})])
+    best.refits, item = {"amplifier_lag": fit(1.5, 1.5)}, "sensor_lag.second_order"
+    rival = Candidate(Score(item, guess={"one": 1.0, "two": 2.0}), forms=[Score(item)])
+    rival.refits = {item: fit(1.52, 9.0)}
+    best.take("amplifier_lag")
+    rival.fit = rival.refits[item]
+    candidates.restart_look_alikes(CASE, fit(9.0, 9.0), fit(9.0, 9.0), [best, rival])
+    assert rival.fit.identify == rival.refits[item].identify == 1.5

@@ -18,7 +18,19 @@ from typing import Any, NamedTuple
 
 from pzt_ident.engine.lanes.compile_error import compile_error
 from pzt_ident.files import cache_folder
-from pzt_ident.model.block import Bank, Beside, Block, Coupling, Modes, Operator, Place, Relays, Shift, argument_names
+from pzt_ident.model.block import (
+    Bank,
+    Beside,
+    Block,
+    Coupling,
+    Modes,
+    Operator,
+    Place,
+    Relays,
+    Shift,
+    argument_names,
+    expm1,
+)
 from pzt_ident.model.contract import try_functions
 
 TEMPLATES = Path(__file__).parent
@@ -204,11 +216,11 @@ def jitted(function: FunctionType) -> Any:
 
 
 def helpers(function: FunctionType) -> set[FunctionType]:
-    """The plain functions that a function calls, directly or through others."""
+    """The plain functions that a function calls, directly or through others, but for the elementary ones."""
     called: set[FunctionType] = set()
     for word in function.__code__.co_names:
         helper = function.__globals__.get(word)
-        if isinstance(helper, FunctionType) and helper.__module__ != Block.__module__:
+        if isinstance(helper, FunctionType) and helper.__module__ != expm1.__module__:
             called |= {helper} | helpers(helper)
     return called
 
