@@ -20,7 +20,9 @@ def verdict(results: Results) -> str:
     """The verdict of an improvement or a diagnosis, else the RMSE of the model beside the noise floor."""
     if improvement := results.improvement:
         proven = improvement["effects"] and improvement["verdict"] == "adequate"  # the reason names unproven effects
-        added = f"Added: {listed(improvement['effects'])}. " if proven else ""
+        forms = {step["added"]: step["form"] for step in improvement["steps"] if step.get("form")}
+        names = [f"{word} ({forms[word]})" if word in forms else word for word in improvement["effects"]]
+        added = f"Added: {listed(names)}. " if proven else ""
         return printed_reason(f"{added}{improvement['reason']}", results)
     if results.diagnosis:
         return printed_reason(results.diagnosis["reason"], results)

@@ -5,6 +5,7 @@ import re
 import shutil
 from dataclasses import replace
 from html.parser import HTMLParser
+from types import SimpleNamespace
 
 import pytest
 
@@ -213,3 +214,10 @@ def test_what_is_over_axes_says_so_and_what_it_counts():
     assert weighed({"p": "uC/cm2", "d": "nm"}) == [
         "An RMSE of p and d together weights each by its noise floor, or by 0.5\u00a0% of its span where that is more."
     ]
+
+
+def test_the_headline_names_the_form_of_what_was_added():
+    steps = [{"added": None}, {"added": "creep", "form": "voltage"}, {"added": "delay", "form": None}]
+    improvement = {"effects": ["creep", "delay"], "verdict": "adequate", "steps": steps, "reason": "All said."}
+    said = verdict(SimpleNamespace(improvement=improvement, share_of_noise=1.0, result=None, diagnosis=None))
+    assert said.startswith("Added: creep (voltage) and delay. All said.")
