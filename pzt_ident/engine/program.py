@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property
 from itertools import product
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,20 +17,33 @@ from pzt_ident.model.chain import Chain
 Array = NDArray[np.float64]
 
 
+class Operation(NamedTuple):
+    """One step of a program: a `block` acts on a tile, with its numbers from a row of the scratch on; or the drive of
+    an axis fills its tile; or the signal is kept as the operator's prompt input, or as the force on the mechanics."""
+
+    action: Literal["block", "fill", "keep_prompt", "keep_force"]
+    axis: int
+    tile: int
+    place: Place
+    block: type[Block] | None = None
+    variant: Any = None
+    row: int = 0
+
+
 class Program:
-    """`steps` are rows of (address, row of the scratch, row of signals, tile, first sample), in signal order; `rows`
-    is the number of rows of the scratch, WIDTH numbers each.
+    """`operations` in signal order; `rows` is the number of rows of the scratch, a number for each lane in a row.
+    single: for one candidate and one sample a call, as in real time (see `realtime`).
 
     Sources of the arguments of a block's `prepare`: `given` pairs a row of the scratch with a column of theta, `known`
     with a number that is the same for every candidate, and `precomputed` holds those that a bank computes with NumPy,
     with their rows (branches, words).
     """
 
-    def __init__(self, model: Chain, record: Record) -> None:
+    def __init__(self, model: Chain, record: Record, single: bool = False) -> None:
         from pzt_ident.engine.lanes import Variant
 
-        self.model, self.record = model, record
-        self.steps: list[tuple[int, ...]] = []
+        self.model, self.record, self.single = model, record, single
+        self.operations: list[Operation] = []
         self.given: list[tuple[int, int]] = []
         self.known: list[tuple[int, float]] = []
         self.precomputed: list[tuple[Precomputation, NDArray[np.int64]]] = []
@@ -41,14 +54,28 @@ class Program:
             if issubclass(block, Coupling | Modes):
                 for axis in range(len(model.axes)):
                     self._keep(number, axis)
-                self._fill(set(self._fresh))
-                self._add(block, 0, Variant(axes=len(model.axes)))
+                self._fill(set(self._fresh), block.place)
+                self._add(block, 0, Variant(axes=len(model.axes), single=single))
                 continue
             for axis in range(len(model.axes)):
                 if axis in model.measured or number < last:
                     self._keep(number, axis)
                     self._append(block, axis)
-        self._fill(self._fresh & set(model.measured))
+        self._fill(self._fresh & set(model.measured), Place.SENSOR)
+
+    @cached_property
+    def steps(self) -> list[tuple[int, ...]]:
+        """Rows of (address, row of the scratch, row of signals, tile, first sample), for the kernel."""
+        return [(self.address(item), item.row, 2 * item.axis, item.tile, 0) for item in self.operations]
+
+    def address(self, item: Operation) -> int:
+        """Of the compiled function of an operation."""
+        from pzt_ident.engine import kernel, realtime
+        from pzt_ident.engine.lanes import compile_block
+
+        if item.block is None:
+            return kernel.address(getattr(realtime if self.single else kernel, item.action))
+        return compile_block(self.model.form_of(item.block), item.variant).address  # type: ignore[arg-type]
 
     @property
     def substeps(self) -> int:
@@ -62,44 +89,44 @@ class Program:
         operator = block.place == Place.OPERATOR
         readout = operator and self.model.has_readout
         terms = issubclass(block, Operator) and bool(self.model.terms(block))
-        driven = axis in self._fresh and issubclass(block, Operator) and not (readout or terms)
+        driven = axis in self._fresh and issubclass(block, Operator) and not (readout or terms or self.single)
         if not (driven or issubclass(block, Shift)):
-            self._fill(self._fresh & {axis})
+            self._fill(self._fresh & {axis}, block.place)
         self._fresh.discard(axis)
-        self._add(block, axis, Variant(driven, readout, terms))
+        self._add(block, axis, Variant(driven, readout, terms, single=self.single))
 
     def _keep(self, number: int, axis: int) -> None:
         """Ahead of the first readout block or guide, keep the signal that the operator or a path beside needs later."""
-        from pzt_ident.engine.kernel import address, keep_force, keep_prompt
-
         blocks = self.model.blocks
         beside = any(issubclass(block, Beside) for block in blocks)
-        kept = [(keep_prompt, Place.READOUT, self.model.has_readout), (keep_force, Place.GUIDE, beside)]
+        kept: tuple[tuple[Literal["keep_prompt", "keep_force"], Place, bool], ...] = (
+            ("keep_prompt", Place.READOUT, self.model.has_readout),
+            ("keep_force", Place.GUIDE, beside),
+        )
         for keep, first, needed in kept:
             enters = blocks[number].place >= first and (number == 0 or blocks[number - 1].place < first)
             if enters and needed:
-                self._fill(self._fresh & {axis})
-                self.steps.append((address(keep), 0, 2 * axis, TILES * axis, 0))
+                self._fill(self._fresh & {axis}, blocks[number].place)
+                self.operations.append(Operation(keep, axis, TILES * axis, blocks[number].place))
 
-    def _fill(self, axes: set[int]) -> None:
-        from pzt_ident.engine.kernel import address, fill
-
-        self.steps += [(address(fill), 0, 2 * axis, TILES * axis, 0) for axis in sorted(axes)]
+    def _fill(self, axes: set[int], place: Place) -> None:
+        """Ahead of a block at a place, have the drives fill the tiles of axes."""
+        self.operations += [Operation("fill", axis, TILES * axis, place) for axis in sorted(axes)]
         self._fresh -= axes
 
     def _add(self, block: type[Block], axis: int, variant: Any) -> None:
         """Add the step of a block, and the sources of the parameters of its copies (branches, or pairs of axes)."""
-        from pzt_ident.engine.lanes import compile_block
+        from pzt_ident.engine.lanes import layout_of
 
         form = self.model.form_of(block)
-        compiled = compile_block(form, variant)  # type: ignore[arg-type]
+        layout = layout_of(form, variant)  # type: ignore[arg-type]
         tile = TILES * axis + (1 if block.place == Place.READOUT and self.model.has_readout else 0)
-        self.steps.append((compiled.address, self.rows, 2 * axis, tile, 0))
+        self.operations.append(Operation("block", axis, tile, block.place, block, variant, self.rows))
         words = (*form.arguments(), *(argument_names(block.terms) if variant.terms else ()))  # type: ignore[attr-defined]
-        row = self.rows + compiled.layout.first_given
+        row = self.rows + layout.first_given
         for target, source in self._places(block, axis):
             row = self._place(block, target, source, words, row)
-        self.rows += compiled.layout.rows
+        self.rows += layout.rows
 
     def _places(self, block: type[Block], axis: int) -> list[tuple[int, int]]:
         """The pairs (axis, axis), or ordered pairs of different axes, that have their own parameters."""
@@ -149,12 +176,13 @@ class Program:
         return row
 
     def scratch(self, theta: Array, rows: int) -> Array:
-        """The scratch with the arguments of every block's `prepare`, in lanes: (groups, rows * WIDTH)."""
+        """The scratch with the arguments of every block's `prepare`, in lanes: (groups, rows * lanes)."""
         from pzt_ident.engine.kernel import WIDTH, aligned_zeros
 
-        groups = -(-theta.shape[0] // WIDTH)
-        lanes = np.minimum(np.arange(groups * WIDTH), theta.shape[0] - 1).reshape(groups, 1, WIDTH)
-        scratch = aligned_zeros(groups, rows, WIDTH)
+        width = 1 if self.single else WIDTH
+        groups = -(-theta.shape[0] // width)
+        lanes = np.minimum(np.arange(groups * width), theta.shape[0] - 1).reshape(groups, 1, width)
+        scratch = aligned_zeros(groups, rows, width)
         given, columns, known, values = self._sources
         scratch[:, given] = theta[lanes, columns]
         scratch[:, known] = values

@@ -13,7 +13,7 @@ import sys
 import tempfile
 from functools import cache
 from pathlib import Path
-from types import FunctionType, ModuleType
+from types import FunctionType
 from typing import Any, NamedTuple
 
 from pzt_ident.engine.lanes.compile_error import compile_error
@@ -74,12 +74,13 @@ class Compiled(NamedTuple):
 class Variant(NamedTuple):
     """`driven`: the block is the first of its axis and reads the drive, which is the same in every lane. `readout`: the
     input of an operator's prompt response has a tile of its own. `terms`: effects act in the block's equation. `axes`:
-    number of axes of a coupling or of modes."""
+    number of axes of a coupling or of modes. `single`: one candidate and one sample a call."""
 
     driven: bool = False
     readout: bool = False
     terms: bool = False
     axes: int = 1
+    single: bool = False
 
 
 @cache
@@ -88,7 +89,7 @@ def compile_block(block: type[Block], variant: Variant = Variant()) -> Compiled:
     from pzt_ident.engine import elementary, kernel
 
     template = template_of(block, variant)
-    layout = layout_of(block, variant)
+    layout = layout_of(block, variant)  # type: ignore[arg-type]
     text = (TEMPLATES / f"{template}.jinja").read_text()
     modules = [inspect.getsource(module) for module in (kernel, elementary)]
     sources = [text, kernel.VERSION, str(layout), str(variant), *modules, *author_sources(block)]
@@ -96,7 +97,7 @@ def compile_block(block: type[Block], variant: Variant = Variant()) -> Compiled:
     key = hashlib.sha256("\0".join(sources).encode()).hexdigest()[:16]
     path = cache_folder() / f"{block.__name__.lower()}_{template}_{key}.py"
     if not path.exists():
-        write(path, render(text, block, layout, variant, kernel))
+        write(path, render(text, block, layout, variant))
     return Compiled(compiled(path, block).tile.address, layout)
 
 
@@ -119,6 +120,7 @@ def relays_work(block: type[Relays]) -> int:
     return (block.coercives + 3) * block.interactions + 3 * block.coercives + 3 + tables
 
 
+@cache
 def layout_of(block: type[Block], variant: Variant) -> Layout:
     """Counted by calling the block's functions once, with parameters in the middle of their bounds."""
     groups = try_functions(block)
@@ -138,9 +140,11 @@ def layout_of(block: type[Block], variant: Variant) -> Layout:
     return Layout(states, sum(parts), given, copies, work, parts[0], parts[1], terms, len(given_terms))
 
 
-def render(text: str, block: type[Block], layout: Layout, variant: Variant, kernel: ModuleType) -> str:
+def render(text: str, block: type[Block], layout: Layout, variant: Variant) -> str:
     """The kernel's source; the header of each template names the symbols."""
     from jinja2 import Environment, StrictUndefined
+
+    from pzt_ident.engine import kernel
 
     template = Environment(trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined).from_string(text)
     return template.render(
@@ -163,9 +167,9 @@ def render(text: str, block: type[Block], layout: Layout, variant: Variant, kern
         place=block.place,
         Place=Place,
         TILES=kernel.TILES,
-        W=kernel.WIDTH,
-        TILE=kernel.TILE,
-        UNROLL=kernel.UNROLL,
+        W=1 if variant.single else kernel.WIDTH,
+        TILE=1 if variant.single else kernel.TILE,
+        UNROLL=1 if variant.single else kernel.UNROLL,
     )
 
 
