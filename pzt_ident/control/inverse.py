@@ -81,7 +81,7 @@ class Inverse:
         across = tuple(block for block in blocks if issubclass(block, Coupling) and not decoupled)
         self.without = (*across, *(block for block in blocks if not block.solvable))
         self.bounds = Limits(np.tile([-RANGE * size, RANGE * size], (axes, 1)), np.full(axes, np.inf))
-        self.limits = limits or self.bounds
+        self.limits = self.bounds if limits is None else limits.within(self.bounds)
 
     def __call__(self, reference: Array) -> Feedforward:
         """The drive for a reference (axes, samples), SI units, at the stage's sample time, from rest at its first

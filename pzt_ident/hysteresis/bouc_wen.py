@@ -26,6 +26,7 @@ class BoucWen(Operator):
     """
 
     place = Place.OPERATOR
+    wrong_way = "Bouc-Wen does so after a reversal where alpha max(1, 2 beta / (beta + gamma)) > 1"
     gain = Parameter("response/drive", (0, 3), "Displacement per volt without hysteresis, d.")
     alpha = Parameter("1", (0, 1), "Share of the prompt response that hysteresis takes back just after a rest.")
     beta = Parameter("1/drive", (0, 60), "Decay of h per volt on both branches.")

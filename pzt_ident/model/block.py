@@ -71,6 +71,7 @@ class Block:
     trials: ClassVar[Mapping[str, int]] = {}  # values tried of each parameter that has no influence at the null
     chosen_settings: ClassVar[dict[str, Any]] = {}
     forms: ClassVar[Mapping[str, type[Block]]] = {}  # variants, by the word of a `Form` or of an effect in their step
+    wrong_way: ClassVar[str] = ""  # the condition under which the output first moves against its input
     solvable: ClassVar[bool] = True  # whether `step` has a stable inverse, sample by sample (see control.inverse)
     margin: ClassVar[type[Block] | None] = None  # variant whose output must stay above zero for the equation to hold
     violation: ClassVar[str] = ""  # the sentence for a margin of zero or less
