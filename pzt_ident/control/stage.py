@@ -120,12 +120,13 @@ class Part:
         self._fresh = False
         return outputs
 
-    def solve(self, outputs: Array, limits: Array, move: Array, slopes: Array) -> Solution:
+    def solve(self, outputs: Array, held: Array, limits: Array, move: Array, slopes: Array) -> Solution:
         """Inputs of the measured axes under which the outputs (axes, samples) are as given, within limits (axes, 2) and
-        at most `move` (axes,) a sample; the others stay at zero. slopes: (axes, axes), rough ones of the outputs."""
+        at most `move` (axes,) a sample; the others have those of `held`. slopes: (axes, axes), rough ones of the
+        outputs."""
         from pzt_ident.engine.realtime import solve
 
-        inputs, wrong, missed = np.zeros(outputs.shape), np.zeros(outputs.shape), np.zeros(outputs.shape)
+        inputs, wrong, missed = np.array(held), np.zeros(outputs.shape), np.zeros(outputs.shape)
         free = np.isin(np.arange(len(outputs)), self._measured)
         own = np.diag(slopes).copy()
         mixing = own[:, None] * np.linalg.inv(slopes)
