@@ -128,8 +128,9 @@ class Part:
 
         inputs, wrong, missed = np.array(held), np.zeros(outputs.shape), np.zeros(outputs.shape)
         free = np.isin(np.arange(len(outputs)), self._measured)
-        own = np.diag(slopes).copy()
-        mixing = own[:, None] * np.linalg.inv(slopes)
+        own, mixing = np.diag(slopes).copy(), np.zeros(slopes.shape)
+        among = np.ix_(self._measured, self._measured)
+        mixing[among] = own[self._measured, None] * np.linalg.inv(slopes[among])
         asked = np.ascontiguousarray(outputs)
         found = inputs, wrong, missed
         solve(self._program, *self._state, asked, free, limits, move, own, mixing, self._fresh, *found)
