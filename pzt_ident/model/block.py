@@ -96,6 +96,11 @@ class Block:
         return {declared.effect.partition(".")[0] for declared in cls.parameters().values() if declared.effect}
 
     @classmethod
+    def holds(cls, effect: type[Block]) -> bool:
+        """Whether an effect, in its form, acts inside the equation of the block."""
+        return any(declared.effect in (effect.name, effect.item()) for declared in cls.parameters().values())
+
+    @classmethod
     def settings(cls) -> dict[str, Setting | Form]:
         """The settings that a job may choose, by name."""
         attributes = [item for owner in reversed(cls.__mro__) for item in vars(owner).items()]
