@@ -173,6 +173,8 @@ class Operator(Block):
     to 3e-13 for |rate further| <= 0.1, the rate being the first coefficient of a regime.
     exact(q, distance, along, against) -> q, for any q, also through a sign change of q.
     output(h, u, *shared) -> y.
+    quadrant(way, rate, distance, u, sign, *shared) -> the regime that takes the place of one with that rate on a step
+    of du = sign distance about u; way: 1 along, -1 against. Optional, for regimes that differ by branch.
 
     Effects inside the operator's equation are parameters with an `effect`. Only where a job lists one of these, three
     more functions are called: terms(*parameters[, dt][, span]) -> coefficients,
