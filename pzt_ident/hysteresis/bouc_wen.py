@@ -47,6 +47,9 @@ class BoucWen(Operator):
     beta_6 = Parameter("1/drive", (-10, 10), "Decay of h by sgn(x).", 0, effect="asymmetry.branches")
     centre = Parameter("drive", (-1, 1), "Voltage from which x counts.", effect="asymmetry.branches")
     relaxation = Parameter("1/s", (0, 1), "Decay rate of h, 1 / tau.", 0, effect="thermal_relaxation")
+    activation = Parameter(
+        "1/drive", (0, 50), "One over the h at which relaxation is faster.", 0, effect="thermal_relaxation.activated"
+    )
 
     def prepare(gain, alpha, beta, gamma):
         return (gain, alpha * gain), regime(beta + gamma), regime(beta - gamma)
@@ -77,17 +80,18 @@ class BoucWen(Operator):
     def output(h, u, gain, slope):
         return gain * u - slope * h
 
-    def terms(asymmetry, lean, rate, onset, exponent, relaxation, dt):
+    def terms(asymmetry, lean, rate, onset, exponent, relaxation, activation, dt):
         fast = RATE + onset
         root = 1 / exponent if exponent != 0 else 0.0
-        return asymmetry, lean, rate / log(10), 1 / (dt * fast), onset / fast, exponent, root, exp(-dt * relaxation)
+        rates = rate / log(10), 1 / (dt * fast), onset / fast, exponent, root
+        return asymmetry, lean, *rates, exp(-dt * relaxation), activation
 
-    def lift(distance, u, sign, asymmetry, lean, rate, faster, slow, exponent, root, keep):
+    def lift(distance, u, sign, asymmetry, lean, rate, faster, slow, exponent, root, keep, activation):
         decades = log1p(distance * faster + slow - 1)
         grown = root * expm1(exponent * decades) if exponent != 0 else decades
         return max(1 + sign * (asymmetry * u + lean) + rate * grown, 0.01)
 
-    def fade(asymmetry, lean, rate, faster, slow, exponent, root, keep):
+    def fade(h, asymmetry, lean, rate, faster, slow, exponent, root, keep, activation):
         return keep
 
 
@@ -111,7 +115,21 @@ class ByBranch(BoucWen):
         return regime(rate + way * of_x_and_v + of_h * sign)
 
 
-BoucWen.forms = {"asymmetry.branches": ByBranch}
+class Activated(BoucWen):
+    """dh/dt = ... - relaxation sinh(activation h) / activation: the barrier to a jump falls with h, so that h relaxes
+    with the logarithm of time while it is large; over a sample tanh(activation h / 2) fades by exp(-dt relaxation).
+
+    Eyring (1936), J. Chem. Phys. 4, 283. `activation` is one over the h, in volts, at which the rate has grown by 1.2.
+    """
+
+    def fade(h, asymmetry, lean, rate, faster, slow, exponent, root, keep, activation):
+        x = min(activation * abs(h), 40.0)
+        grown = expm1(x)
+        left = keep * grown / (grown + 2)
+        return log1p(2 * left / (1 - left)) / x if x > 1e-100 else keep
+
+
+BoucWen.forms = {"asymmetry.branches": ByBranch, "thermal_relaxation.activated": Activated}
 
 
 def regime(rate):

@@ -179,7 +179,7 @@ class Operator(Block):
     Effects inside the operator's equation are parameters with an `effect`. Only where a job lists one of these, three
     more functions are called: terms(*parameters[, dt][, span]) -> coefficients,
     lift(distance, u, sign, *coefficients) -> factor on the drive of q, with u in the middle of the step and the sign of
-    du, and fade(*coefficients) -> the share of h that is left after a sample.
+    du, and fade(h, *coefficients) -> the share of h that is left after a sample.
     """
 
     kind = "operator"

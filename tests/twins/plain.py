@@ -170,7 +170,7 @@ def operator(block, coefficients, terms, signal, prompt):
             h, before = sign * up * block.exact(sign * h / up, distance, *on), u
         except OverflowError:
             h = math.nan
-        h *= block.fade(*terms) if terms else 1.0
+        h *= block.fade(h, *terms) if terms else 1.0
         result.append(block.output(h, v, *shared))
     return np.array(result)
 

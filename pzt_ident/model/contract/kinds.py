@@ -21,7 +21,7 @@ KINDS = {
         "quadrant?": "way, rate, distance, u, sign, *shared -> *along",
         "terms?": "given -> *terms",
         "lift?": "distance, u, sign, *terms -> factor",
-        "fade?": "*terms -> share",
+        "fade?": "h, *terms -> share",
     },
     "bank": STEPPED
     | {
