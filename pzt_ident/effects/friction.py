@@ -10,7 +10,7 @@ from pzt_ident.model.registry import blocks
 class Rubbing:
     """What all forms of friction declare."""
 
-    form = Form("lugre", ("lugre", "coulomb", "motion"), "The law of friction, and where it acts.")
+    form = Form("lugre", ("lugre", "coulomb", "motion", "coulomb_motion"), "The law of friction, and where it acts.")
     sizes = (0.02, 0.1, 0.5)
     look_alikes = ("distributed_memory", "delay", "amplifier_lag")
     separate_by = "Hold the voltage and push the stage by an external force or another axis: only friction has a loop."
@@ -86,4 +86,12 @@ class Motion(Rubbing, Term):
     trials = {"stribeck": 1}
 
 
-Friction.forms = {"coulomb": Coulomb, "motion": Motion}
+class CoulombMotion(Rubbing, Term):
+    """Dry friction of the moving mass: m x'' + b x' + k (x + dry tanh(x' / speed)) = k f; b is the viscous part.
+
+    Coulomb's law, smoothed over `speed`: Olsson, Astrom, Canudas de Wit, Gafvert & Lischinsky (1998), Eur. J. Control
+    4, 176.
+    """
+
+
+Friction.forms = {"coulomb": Coulomb, "motion": Motion, "coulomb_motion": CoulombMotion}

@@ -1,4 +1,4 @@
-"""Bristles that bend, then slide, under a spring: the LuGre law of friction, stepped implicitly."""
+"""Laws of friction under a spring, stepped implicitly: bristles that bend, then slide (LuGre), and Coulomb's."""
 
 from pzt_ident.model.elementary import expm1, log1p
 
@@ -28,3 +28,24 @@ def halley_step(d, slack, push):
     stiff = slack * (1 + bent)
     value, slope = d - slack * bent - push, 1 + stiff
     return d - value * slope / (slope * slope + value * stiff / 2)
+
+
+def slide(load, pull):
+    """tanh(y) at the root of y + load tanh(y) = pull: Coulomb's law over the speed y, in units of its smoothing."""
+    push = abs(pull)
+    y = max(push - load, log1p(2 * min(push, load) / (1 + max(load - push, 0.0))) / 2)
+    y = coulomb_step(coulomb_step(coulomb_step(coulomb_step(y, load, push), load, push), load, push), load, push)
+    return tanh(y) if pull >= 0 else -tanh(y)
+
+
+def coulomb_step(y, load, push):
+    """Halley's step for y + load tanh(y) = push: after four the error is rounding for load <= 1000."""
+    grown = tanh(y)
+    stiff = load * (1 - grown) * (1 + grown)
+    value, slope = y + load * grown - push, 1 + stiff
+    return y - value * slope / (slope * slope + value * stiff * grown)
+
+
+def tanh(y):
+    grown = expm1(2 * min(y, 20.0))
+    return grown / (grown + 2)

@@ -112,6 +112,35 @@ def test_ringing_wears_off_within_the_reach():
     assert np.ptp(rubbing[1000:]) < 0.02 * np.ptp(free[1000:])
 
 
+@pytest.mark.parametrize(("dry", "speed", "cubic"), [(0.3, 2e3, 0.0), (0.3, 2e3, 2e-3), (1.0, 5e3, 0.0)])
+def test_a_chirp_moves_it_under_coulomb_friction_as_the_equation_of_motion_says(dry, speed, cubic):
+    """Error of second order in the sample time."""
+    errors, law = [], {"dry": dry, "speed": speed, "cubic": cubic}
+    for dt in (1e-5, 5e-6):
+        time = np.arange(0, 0.02, dt)
+        force = 2 * np.sin(2 * np.pi * (200 + 3e4 * time) * time)
+
+        def change(t, state, time=time, force=force):
+            x, v = state
+            pull = STIFFNESS * (np.interp(t, time, force) - x - cubic * x**3 - dry * np.tanh(v / speed))
+            return v, (pull - DAMPING * v) / MASS
+
+        truth = solve_ivp(change, (0, time[-1]), (0, 0), t_eval=time, rtol=1e-9, atol=1e-9, max_step=dt).y[0]
+        named = {f"lumped.{word}": value for word, value in law.items()}
+        errors.append(np.abs(response(["lumped"], STAGE | named, force, dt=dt) - truth).max() / np.ptp(truth))
+    assert errors[1] < 1e-3
+    assert errors[1] < 0.35 * errors[0]
+
+
+@pytest.mark.parametrize("speed", [1e-2, 1.0])
+def test_slowly_driven_coulomb_friction_follows_the_speed(speed):
+    force = path(0, 8, 3, 5, points=400)
+    rate = np.append(0, np.diff(force)) / 1e-2
+    found = response(["lumped"], STAGE | {"lumped.dry": 0.3, "lumped.speed": speed}, force, dt=1e-2)
+    expected = force - 0.3 * np.tanh(rate / speed)
+    assert np.median(np.abs(found - expected)) < 1e-5
+
+
 def test_friction_and_a_bent_spring_are_in_one_equation():
     """Slowly x + c x^3 + F = f, to first order where the friction turns, and without friction the spring alone."""
     force, cubic = path(0, 8, -4, 6, points=400), 2e-3
