@@ -22,9 +22,8 @@ Array = NDArray[np.float64]
 
 GAIN = 10.0  # noise gain of a preview
 RANGE = 10.0  # over the largest drive of the identification, within which the material is solved
-PASSES = 12
+PASSES = 16
 MEMORY = 4  # passes that the next one learns from
-WORSE = 3.0  # over the least error so far, at which passes lead nowhere
 CLOSE = 1e-12  # of the largest value, below which a difference is rounding
 SMALL = 1e-4  # of the largest drive, the size of a pulse
 
@@ -89,26 +88,33 @@ class Inverse:
     def __call__(self, reference: Array) -> Feedforward:
         """The drive for a reference (axes, samples), SI units, at the stage's sample time, from rest at its first
         sample. In the place of the reference of an axis that is not measured is its drive."""
-        best = self.once(reference, reference)
-        targets, steps = [reference], [self.step(best)]
+        best = found = self.once(reference, reference)
+        targets, steps, width = [reference], [self.step(best, 0.0)], 0.0
         for _ in range(PASSES if self.decoupled and not best.limited.any() else 0):
             if self.left(best) <= CLOSE * np.abs(reference).max():
                 break
             targets.append(accelerated(targets[-MEMORY:], steps[-MEMORY:]))
             found = self.once(targets[-1], reference)
-            steps.append(self.step(found))
-            if self.left(found) > WORSE * self.left(best):
-                break
-            best = found if self.left(found) < self.left(best) else best
+            if self.left(found) > self.left(best):
+                width = 2 * width or 1.0
+                targets, steps = [targets[-2]], [self.step(best, width)]
+                continue
+            best = found
+            steps.append(self.step(best, width))
         return best
 
     def left(self, found: Feedforward) -> float:
         """The largest error of a measured axis."""
         return float(np.abs(found.error[self._measured]).max())
 
-    def step(self, found: Feedforward) -> Array:
-        """What the target is to be moved by, were the stage linear: its error, as far as the mechanics can follow."""
-        return -self.stage.solvable.respond(self.mechanics(found.error), MECHANICS)
+    def step(self, found: Feedforward, width: float) -> Array:
+        """What the target is to be moved by, were the stage linear: its error, as far as the mechanics can follow.
+        width: samples over which it is smoothed; near a resonance that friction or a bent spring shift, a step does
+        harm."""
+        from scipy.ndimage import gaussian_filter1d
+
+        step = -self.stage.solvable.respond(self.mechanics(found.error), MECHANICS)
+        return gaussian_filter1d(step, width, mode="nearest") if width else step
 
     def once(self, target: Array, reference: Array) -> Feedforward:
         """The inverse of every part for a target, and what the model does under the drive that it gives."""
