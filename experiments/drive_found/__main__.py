@@ -52,8 +52,11 @@ def compared(folder: Path, record: str) -> list[list[str]]:
 
 
 def signals(folder: Path, record: str, as_given: bool) -> tuple[Array, Array, Array, float]:
-    """Time, measured drive, and the displacement behind a low-pass, without the offset that the model leaves to the
-    record; the time, s, at the start that the fit does not score."""
+    """Time, measured drive, the displacement to follow, and the time, s, at the start that the fit does not score.
+
+    The displacement is the measured one behind a low-pass, without the offset that the model leaves to the record;
+    where the fit does not score, it is that of the model, since the stage was not at rest at its first sample.
+    """
     with h5netcdf.File(folder / ("signals_as_given.nc" if as_given else "signals.nc")) as file:
         columns = [np.asarray(file[record][name][:]) for name in ("time", "drive_x", "response_x", "model_x")]
         settle = float(file[record].attrs["settle"])
@@ -62,7 +65,9 @@ def signals(folder: Path, record: str, as_given: bool) -> tuple[Array, Array, Ar
     simulated = 1e6 * stage.respond(drive[None])[0]
     rate = (time.size - 1) / (time[-1] - time[0])
     smooth = sosfiltfilt(butter(4, BAND, fs=rate, output="sos"), response) if rate > 4 * BAND else response
-    return time - time[0], drive, smooth - np.mean(model - simulated), settle
+    time = time - time[0]
+    displacement = np.where(time < settle, simulated, smooth - np.mean(model - simulated))
+    return time, drive, displacement, settle
 
 
 def inverted(folder: Path, time: Array, displacement: Array, as_given: bool) -> Array:
