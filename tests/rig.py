@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from pzt_ident.control.stage import Stage
 from pzt_ident.data.record import Record
 from pzt_ident.engine.simulator import simulate
 from pzt_ident.model.block import Coupling, Modes
@@ -80,6 +81,12 @@ def size(unit, drive, response):
     top, _, bottom = unit.partition("/")
     below, _, power = bottom.partition("^")
     return spans.get(top, 1) / spans.get(below, 1) ** int(power or 1)
+
+
+def stage_of(chain, measured, theta):
+    """A candidate as a stage that is driven within the range of a record."""
+    spans, peaks = np.ptp(measured.drive, axis=1), np.abs(measured.drive).max(axis=1)
+    return Stage(chain, theta, measured.dt, spans, peaks)
 
 
 def path(*levels, points=100):

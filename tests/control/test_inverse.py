@@ -5,13 +5,12 @@ import pytest
 from scipy.optimize import brentq
 
 from contracts.test_blocks import CHAINS, made
-from control.test_stage import stage_of
 from lin_lin import COUPLED_Y
 from pzt_ident.control.inverse import Inverse
 from pzt_ident.control.limits import Limits
 from pzt_ident.control.stage import ACTUATION, MECHANICS
 from pzt_ident.errors import InputError
-from rig import block_of, model, record
+from rig import block_of, model, record, stage_of
 
 INVERTED = [words for words in CHAINS if "bouc_wen_oscillator" not in words and "cubic_stiffness" not in words]
 
