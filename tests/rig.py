@@ -63,6 +63,12 @@ def response(chain, parameters, *drives, dt=1e-3, **more):
     return found if len(drives) > 1 else found[0]
 
 
+def stage_of(chain, measured, theta):
+    """One candidate on the drives of a record, a sample at a time."""
+    spans, peaks = np.ptp(measured.drive, axis=1), np.abs(measured.drive).max(axis=1)
+    return Stage(chain, theta, measured.dt, spans, peaks)
+
+
 def candidates(made, drive, count, seed, response=10.0):
     """Random theta within the declared bounds, for drives of that span and responses of the given one."""
     rng = np.random.default_rng(seed)

@@ -100,8 +100,9 @@ def drive(
 ) -> Drive:
     """The drive under which a stage follows a reference, and what the model says will be left.
 
-    t, reference: as a `Record` has time and drive, the displacement of each measured axis in the unit of its data; or t
-    is a `Record` of the reference. The stage is at rest at its first sample. limits, slew: lowest and highest drive,
+    t, reference: as a `Record` has time and drive, the displacement of each measured axis in the unit of its data, and
+    the drive of one that is not measured, zero unless given; or t is a `Record` of these. The stage is at rest at the
+    first sample. limits, slew: lowest and highest drive,
     and its largest change in a second, in the units of the drive; those of the job unless given. decoupled: make up for
     what acts from axis to axis. noise_gain: the most by which dynamics are made up for, see `control.inverse`.
 
@@ -148,25 +149,21 @@ def in_units(identified: Identified, stamps: Array, found: Feedforward, notes: t
 
 
 def reference_of(identified: Identified, t: Any, reference: Signals | None) -> tuple[Array, float, Array]:
-    """The reference of every axis (axes, samples) in SI units, its sample time and its time stamps. An axis that is
-    not measured has zeros."""
-    model, units = identified.statement.problem.model, identified.records[0].units
-    for axis in reference if isinstance(reference, Mapping) else ():
+    """The reference of every axis (axes, samples) in SI units, of one that is not measured its drive, zero unless
+    given; its sample time and its time stamps."""
+    model, units = identified.statement.problem.model, identified.inputs
+    known = ", ".join(f"{axis} in {unit}" for axis, unit in units.items())
+    for axis in t.axes if isinstance(t, Record) else reference if isinstance(reference, Mapping) else ():
         if axis not in units:
-            raise InputError(
-                f"axis {axis!r} is not in the result", where="reference", remedy=f"give {', '.join(units)}"
-            )
+            raise InputError(f"axis {axis!r} is not in the result", where="reference", remedy=f"give {known}")
     given = t if isinstance(t, Record) else Record(t, reference, drive=dict(units), name="reference")
     for axis in given.axes:
-        if axis not in units:
-            known = ", ".join(units)
-            raise InputError(f"axis {axis!r} is not in the result", where="reference", remedy=f"give {known}")
-    for axis, unit in units.items():
+        if not same_kind(given.drive[axis], units[axis]):
+            message = f"axis {axis} is in {given.drive[axis]}, not in {units[axis]}"
+            raise InputError(message, where="reference", remedy=f"give it in a unit such as {units[axis]}")
+    for axis in identified.axes:
         if axis not in given.axes:
-            raise InputError(f"axis {axis!r} is missing", where="reference", remedy=f"give it too, in {unit}")
-        if not same_kind(given.drive[axis], unit):
-            message = f"axis {axis} is in {given.drive[axis]}, the model puts out {unit}"
-            raise InputError(message, where="reference", remedy=f"give it in a unit such as {unit}")
+            raise InputError(f"axis {axis!r} is missing", where="reference", remedy=f"give {known}")
     record = uniform(given.with_name(given.name or "reference"), given.axes)
     wanted = np.zeros((len(model.axes), record.samples))
     for place, axis in enumerate(record.axes):

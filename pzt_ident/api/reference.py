@@ -11,13 +11,14 @@ from pzt_ident.data.readers.open import open_table
 from pzt_ident.data.readers.table import Column
 from pzt_ident.data.record import Source
 from pzt_ident.errors import InputError
+from pzt_ident.run.identified import Identified
 
 TIME = re.compile(r"t|time|zeit|seconds?", re.IGNORECASE)
 
 
-def read_reference(path: Path, units: Mapping[str, str], rate: str | None = None) -> Record:
+def read_reference(path: Path, identified: Identified, rate: str | None = None) -> Record:
     """The displacement that each axis is to follow: a column named like the axis, with a unit in its header, and a
-    column of time unless there is a rate. units: those of the measured axes, by name.
+    column of time unless there is a rate. Of an axis that is not measured there may be a column of its drive.
 
     Raises InputError where a column or a unit is missing.
     """
@@ -27,14 +28,16 @@ def read_reference(path: Path, units: Mapping[str, str], rate: str | None = None
         remedy = "add a column `time [s]`, or give --rate"
         raise InputError("has no column of time", where=str(path), remedy=remedy)
     others = [column for column in columns if column is not time]
-    chosen = {axis: _column_of(axis, others, units, path) for axis in units}
+    needed = {axis: unit for axis, unit in identified.inputs.items() if axis in identified.axes}
+    chosen = {axis: _column_of(axis, others, needed, path) for axis in needed}
+    driven = {axis: _named(axis, others) for axis in identified.inputs if axis not in needed}
+    chosen |= {axis: found[0].header for axis, found in driven.items() if found}
     stamps = None if rate else time.header if time else None
     return Record.read(path, drive=chosen, time=stamps, sample_rate=rate, name=path.stem)
 
 
 def _column_of(axis: str, columns: Sequence[Column], units: Mapping[str, str], path: Path) -> str:
-    named = [c for c in columns if re.fullmatch(rf"{axis}|{axis}[_ ].*|.*[_ ]{axis}", c.name, re.IGNORECASE)]
-    found = named or (list(columns) if len(columns) == len(units) == 1 else [])
+    found = _named(axis, columns) or (list(columns) if len(columns) == len(units) == 1 else [])
     header = f"`{axis} [{units[axis]}]`"
     if not found:
         known = ", ".join(repr(column.header) for column in columns) or "nothing else"
@@ -43,3 +46,7 @@ def _column_of(axis: str, columns: Sequence[Column], units: Mapping[str, str], p
         remedy = f"write {header} into its header"
         raise InputError(f"column {found[0].header!r} has no unit", where=str(path), remedy=remedy)
     return found[0].header
+
+
+def _named(axis: str, columns: Sequence[Column]) -> list[Column]:
+    return [c for c in columns if re.fullmatch(rf"{axis}|{axis}[_ ].*|.*[_ ]{axis}", c.name, re.IGNORECASE)]

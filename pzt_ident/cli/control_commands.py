@@ -53,6 +53,7 @@ def reference_options(command: Command) -> Command:
         click.option("--current", type=Quantity("A"), help="Of the amplifier, such as 50mA; needs --capacitance."),
         click.option("--capacitance", type=Quantity("F"), help="Of the actuator, such as 1.8uF."),
         click.option("--noise-gain", type=click.FloatRange(min=1), default=10.0, show_default=True, help=GAIN),
+        click.option("--as-given", is_flag=True, help="Of an improvement take the model that it started from."),
         click.option("--coupled", is_flag=True, help="Do not make up for what acts from axis to axis."),
     ]
     for option in reversed([click.argument("result", type=EXISTING), *options]):
@@ -73,13 +74,15 @@ def drive(result: Path, out: Path, as_json: bool, quiet: bool, **options: Any) -
     answer(facts_of(found) | {"file": str(out)}, lambda: click.echo(f"{found}\nwrote {out}"), as_json, quiet)
 
 
-def made(result: Path, plugins: bool, reference: Path, rate: str | None, **options: Any) -> Drive:
+def made(
+    result: Path, plugins: bool, reference: Path, rate: str | None, as_given: bool = False, **options: Any
+) -> Drive:
     from pzt_ident.api.drive import drive
     from pzt_ident.api.reference import read_reference
     from pzt_ident.run.identified import read_identified
 
-    identified = read_identified(result, plugins)
-    record = read_reference(reference, identified.records[0].units, rate)
+    identified = read_identified(result, plugins, as_given)
+    record = read_reference(reference, identified, rate)
     return drive(identified, record, **amplifier(**options))
 
 

@@ -85,7 +85,7 @@ class Inverse:
 
     def __call__(self, reference: Array) -> Feedforward:
         """The drive for a reference (axes, samples), SI units, at the stage's sample time, from rest at its first
-        sample. An axis that is not measured is kept at zero drive."""
+        sample. In the place of the reference of an axis that is not measured is its drive."""
         measured = list(self.stage.model.measured)
         best = self.once(reference, reference)
         target, left = reference, np.abs(best.error[measured]).max()
@@ -103,17 +103,35 @@ class Inverse:
     def once(self, target: Array, reference: Array) -> Feedforward:
         """The inverse of every part for a target, and what the model does under the drive that it gives."""
         force = self.mechanics(target) + bending(self.stage, target)
-        found = self.material(force, self.bounds)
-        asked = self.actuation(found.inputs)
+        found = self.material(force, reference, self.bounds)
+        asked = self.command(found.inputs, reference)
         drive = self.limits.clip(asked, self.stage.dt)
         if not np.array_equal(drive, asked):
-            drive = self.limits.clip(self.actuation(self.material(force, self.limits).inputs), self.stage.dt)
+            least = self.material(force, reference, self.limits)
+            drive = self.limits.clip(self.command(least.inputs, reference), self.stage.dt)
         return Feedforward(reference, drive, asked, self.stage.respond(drive), found.wrong, found.missed)
 
-    def material(self, force: Array, limits: Limits) -> Solution:
-        """Inputs of the material under which it puts out a force."""
+    def material(self, force: Array, reference: Array, limits: Limits) -> Solution:
+        """Inputs of the material under which it puts out a force; those of an axis that is not measured follow from
+        its drive."""
         part = self.stage.part(MATERIAL, self.without)
-        return part.solve(force, limits.drive, limits.slew * self.stage.dt, self.slopes)
+        held = self.stage.respond(self._given(reference), ACTUATION)
+        return part.solve(force, held, limits.drive, limits.slew * self.stage.dt, self.slopes)
+
+    def command(self, inputs: Array, reference: Array) -> Array:
+        """The drive that gives the material its inputs."""
+        drive = self.actuation(inputs)
+        given = self._given(reference)
+        return np.where(self._measured[:, None], drive, given)
+
+    def _given(self, reference: Array) -> Array:
+        """The drive of the axes that are not measured, zero for the others."""
+        return np.where(self._measured[:, None], 0.0, reference)
+
+    @property
+    def _measured(self) -> NDArray[np.bool_]:
+        axes = range(len(self.stage.model.axes))
+        return np.array([axis in self.stage.model.measured for axis in axes])
 
     @cached_property
     def mechanics(self) -> Preview:

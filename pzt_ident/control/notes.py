@@ -42,8 +42,8 @@ class Notes:
             yield f"{listed(disturbances)} of another record cannot be foreseen and is not fed forward"
         if any(block.place == Place.SLEW for block in blocks):
             yield "slew_limit is a limit: give it as one, with --slew"
-        if unmeasured := [axis for a, axis in enumerate(self.model.axes) if a not in self.model.measured]:
-            yield f"axis {listed(unmeasured)} is not measured and kept at zero"
+        if still := [self.model.axes[a] for a in np.flatnonzero(~self.found.drive.any(axis=1))]:
+            yield f"the drive of {listed(still)} is zero throughout"
 
     def static(self) -> Iterator[str]:
         if self.inverse.mechanics.rings:

@@ -128,15 +128,17 @@ class Part:
         self._fresh = False
         return outputs
 
-    def solve(self, outputs: Array, limits: Array, move: Array, slopes: Array) -> Solution:
+    def solve(self, outputs: Array, held: Array, limits: Array, move: Array, slopes: Array) -> Solution:
         """Inputs of the measured axes under which the outputs (axes, samples) are as given, within limits (axes, 2) and
-        at most `move` (axes,) a sample; the others stay at zero. slopes: (axes, axes), rough ones of the outputs."""
+        at most `move` (axes,) a sample; the others have those of `held`. slopes: (axes, axes), rough ones of the
+        outputs."""
         from pzt_ident.engine.realtime import solve
 
-        inputs, wrong, missed = np.zeros(outputs.shape), np.zeros(outputs.shape), np.zeros(outputs.shape)
+        inputs, wrong, missed = np.array(held), np.zeros(outputs.shape), np.zeros(outputs.shape)
         free = np.isin(np.arange(len(outputs)), self._measured)
-        own = np.diag(slopes).copy()
-        mixing = own[:, None] * np.linalg.inv(slopes)
+        own, mixing = np.diag(slopes).copy(), np.zeros(slopes.shape)
+        among = np.ix_(self._measured, self._measured)
+        mixing[among] = own[self._measured, None] * np.linalg.inv(slopes[among])
         asked = np.ascontiguousarray(outputs)
         found = inputs, wrong, missed
         solve(self._program, *self._state, asked, free, limits, move, own, mixing, self._fresh, *found)

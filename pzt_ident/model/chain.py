@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,13 @@ from pzt_ident.model.block import Addition, Block, Coupling, Modes, Place, Term,
 from pzt_ident.model.parameter import Parameter
 
 Array = NDArray[np.float64]
+
+
+@cache
+def in_one(forms: tuple[type[Block], ...]) -> type[Block]:
+    """A block in several forms at once; of a function that two of them define, that of the first is taken."""
+    name = "".join(form.__name__ for form in forms)
+    return type(name, forms, {"__module__": forms[0].__module__}) if len(forms) > 1 else forms[0]
 
 
 @dataclass(frozen=True)
@@ -60,7 +68,8 @@ class Chain:
 
     def form_of(self, block: type[Block]) -> type[Block]:
         """The block, with the listed effects in its equation."""
-        return next((form for effect, form in block.forms.items() if effect in self._listed), block)
+        forms = tuple(form for effect, form in block.forms.items() if effect in self._listed)
+        return in_one(forms or (block,))
 
     @property
     def has_readout(self) -> bool:

@@ -42,6 +42,15 @@ class Identified:
         return tuple(model.axes[axis] for axis in model.measured)
 
     @property
+    def inputs(self) -> dict[str, str]:
+        """What control takes of each axis, by its unit: the displacement, or the drive where none is measured."""
+        like = self.records[0]
+        return {
+            axis: response or drive
+            for axis, response, drive in zip(like.axes, like.response_units, like.drive_units, strict=True)
+        }
+
+    @property
     def peaks(self) -> Array:
         """The largest magnitude of the drive of each axis in the identification records, SI units."""
         return np.max([np.abs(record.drive).max(axis=1) for record in self.records], axis=0)
@@ -57,14 +66,15 @@ class Identified:
         return Stage(self.statement.problem.model, self.theta, dt, spans.tolist(), peaks.tolist())
 
 
-def read_identified(folder: Path, plugins: bool = False) -> Identified:
-    """The last model of a folder that `run`, `improve` or a saved fit wrote.
+def read_identified(folder: Path, plugins: bool = False, as_given: bool = False) -> Identified:
+    """The last model of a folder that `run`, `improve` or a saved fit wrote; of an improvement the first one if
+    `as_given`.
 
     Raises InputError where it holds none, or its data have changed.
     """
     begun = read_environment(folder)
     improved = (folder / "improvement.json").exists()
-    best, name = _improved(folder) if improved else _best(folder)
+    best, name = _improved(folder, as_given) if improved else _best(folder)
     home = folder if (folder / "data").is_dir() else Path(begun["job_folder"])
     job = Job.from_text((folder / name).read_text(encoding="utf-8"), home, str(folder / name), plugins)
     statement = Statement(job)
@@ -82,9 +92,9 @@ def _best(folder: Path) -> tuple[dict[str, Any], str]:
     return best["parameters"] | best["fixed"], "job.yaml"
 
 
-def _improved(folder: Path) -> tuple[dict[str, Any], str]:
+def _improved(folder: Path, as_given: bool) -> tuple[dict[str, Any], str]:
     steps = json.loads((folder / "improvement.json").read_text(encoding="utf-8"))["steps"]
-    return steps[-1]["parameters"], "improved.yaml"
+    return (steps[0]["parameters"], "job.yaml") if as_given else (steps[-1]["parameters"], "improved.yaml")
 
 
 def _theta(statement: Statement, values: Mapping[str, Any]) -> Array:

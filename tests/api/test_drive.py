@@ -49,7 +49,7 @@ def test_a_drive_is_kept_as_csv(fit, tmp_path):
     ("arguments", "options", "message"),
     [
         ((T, {"y": REFERENCE}), {}, "axis 'y' is not in the result"),
-        ((pzt.Record(T, REFERENCE, drive="V"),), {}, "axis x is in V, the model puts out um"),
+        ((pzt.Record(T, REFERENCE, drive="V"),), {}, "axis x is in V, not in um"),
         ((T, REFERENCE), {"limits": (5, 1)}, "5 to 1 are no limits"),
         ((T, REFERENCE), {"noise_gain": 0.5}, "0.5 is no noise gain"),
         ((T, REFERENCE), {"slew": -1.0}, "-1 is no slew rate"),

@@ -99,6 +99,17 @@ def test_axes_are_decoupled_or_each_is_inverted_by_itself():
     assert np.allclose(alone.error, left, atol=1e-12 * np.ptp(reference))
 
 
+def test_an_axis_that_is_not_measured_has_its_drive_given():
+    values = BOUC_WEN | {"cross_coupling.ratio": 0.4, "amplifier_lag.tau": 1e-3}
+    drives = np.array([swept(600), swept(600)[::-1]])
+    words = ["amplifier_lag", "bouc_wen", "cross_coupling"]
+    coupled = stage(values, words, drives, axes=2, measured=[0])
+    reference = np.array([coupled.respond(drives)[0], drives[1]])
+    found = Inverse(coupled, 100.0, gain=1e4)(reference)
+    assert np.array_equal(found.drive[1], drives[1])
+    assert np.abs(found.error[0]).max() < 1e-6 * np.ptp(reference[0])
+
+
 def test_limits_are_kept_and_what_is_asked_beyond_them_is_told():
     made_up = stage(BOUC_WEN, ["bouc_wen"], [swept(600)])
     reference = made_up.respond(2 * swept(600)[None])
