@@ -89,12 +89,6 @@ def size(unit, drive, response):
     return spans.get(top, 1) / spans.get(below, 1) ** int(power or 1)
 
 
-def stage_of(chain, measured, theta):
-    """A candidate as a stage that is driven within the range of a record."""
-    spans, peaks = np.ptp(measured.drive, axis=1), np.abs(measured.drive).max(axis=1)
-    return Stage(chain, theta, measured.dt, spans, peaks)
-
-
 def path(*levels, points=100):
     """Straight legs from level to level, `points` samples each; every level is a sample."""
     legs = [np.linspace(a, b, points, endpoint=False) for a, b in pairwise(levels)]

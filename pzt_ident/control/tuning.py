@@ -21,6 +21,7 @@ Complex = NDArray[np.complex128]
 KP = np.linspace(0.0, 2.0, 21)  # times the gain of the plant
 KI = np.geomspace(4.0, 1e-5, 40)  # times the gain of the plant and the sample time
 ZOOMS = 4
+UNDAMPED = 1 - 1e-6  # magnitude of a pole
 
 
 class Margins(NamedTuple):
@@ -106,9 +107,11 @@ def tune(plant: Plant, delay: int, gain_margin: float, phase_margin: float) -> L
         kp, ki = float(grid[best]), found[best]
         grid = np.linspace(grid[max(best - 1, 0)], grid[min(best + 1, grid.size - 1)], 9)
     if not ki > 0:
+        free = np.abs(plant.dynamics.poles()).max() > UNDAMPED
+        remedy = "give the resonance its damping, which slow data do not determine" if free else "ask for less margin"
         raise InputError(
             f"no PI gains keep a gain margin of {gain_margin:g} and a phase margin of {phase_margin:g} degrees",
-            remedy="ask for less, sample faster or damp the resonance; fix a damping that the data do not determine",
+            remedy=f"{remedy}, or sample faster",
         )
     return Loop(plant, delay, kp / plant.gain, ki / (plant.gain * plant.dt))
 

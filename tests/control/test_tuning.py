@@ -145,3 +145,5 @@ def test_gain_of_a_plant_only_scales_the_gains():
 def test_undamped_resonance_leaves_no_margin():
     with pytest.raises(InputError, match="no PI gains keep a gain margin of 2 and a phase margin of 60 degrees"):
         tune(plant(axis_with(X, 0.0)), 0, 2.0, 60.0)
+    with pytest.raises(InputError, match="give the resonance its damping"):
+        tune(plant(axis_with(X, 0.0)), 1, 2.0, 60.0)
