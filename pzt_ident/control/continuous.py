@@ -24,8 +24,8 @@ def lyapunov_rate(a: Array) -> float:
 
     V = z'Pz then falls while |z| > 2 |xi| / mu, so the error stays within that bound. It says little: P is as badly
     conditioned as the time constants are apart, so that mu is some 1e-9 /s where the loop settles in 27 ms, and the
-    bound is metres for a stage of micrometres. Where A is not Hurwitz, as with the identified damping of zero, there is
-    no such P, and mu is NaN.
+    bound for 0.01 um of hysteresis that the feedforward misses is 8e9 m. Where A is not Hurwitz, as with the identified
+    damping of zero, there is no such P, and mu is NaN.
     """
     from scipy.linalg import solve_continuous_lyapunov
 
