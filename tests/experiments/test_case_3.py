@@ -35,7 +35,7 @@ def test_published_gains_on_the_published_stage():
     assert facts("y")[:4] == ["3.09", "20.4", "13.6", "0.950"]
 
 
-@pytest.mark.parametrize("name", ["case_3"])
+@pytest.mark.parametrize("name", ["case_3", "case_4"])
 def test_the_readme_shows_the_tables(name):
     printed = (ROOT / "results" / "reference" / name / "tracking.md").read_text(encoding="utf-8").strip()
     assert printed in (ROOT / "experiments" / name / "README.md").read_text(encoding="utf-8")
