@@ -3,8 +3,10 @@ to the drive."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +23,8 @@ Array = NDArray[np.float64]
 GAIN = 10.0  # noise gain of a preview
 RANGE = 10.0  # over the largest drive of the identification, within which the material is solved
 PASSES = 12
-SLOW = 0.7  # share of the error that a pass may at most leave for another one
+MEMORY = 4  # passes that the next one learns from
+WORSE = 3.0  # over the least error so far, at which passes lead nowhere
 CLOSE = 1e-12  # of the largest value, below which a difference is rounding
 SMALL = 1e-4  # of the largest drive, the size of a pulse
 
@@ -86,23 +89,30 @@ class Inverse:
     def __call__(self, reference: Array) -> Feedforward:
         """The drive for a reference (axes, samples), SI units, at the stage's sample time, from rest at its first
         sample. In the place of the reference of an axis that is not measured is its drive."""
-        measured = list(self.stage.model.measured)
         best = self.once(reference, reference)
-        target, left = reference, np.abs(best.error[measured]).max()
+        targets, steps = [reference], [self.step(best)]
         for _ in range(PASSES if self.decoupled and not best.limited.any() else 0):
-            target = target - self.stage.respond(self.mechanics(best.error), MECHANICS)
-            found = self.once(target, reference)
-            before, left = left, np.abs(found.error[measured]).max()
-            if not left < before:
+            if self.left(best) <= CLOSE * np.abs(reference).max():
                 break
-            best = found
-            if left > SLOW * before or left <= CLOSE * np.abs(reference).max():
+            targets.append(accelerated(targets[-MEMORY:], steps[-MEMORY:]))
+            found = self.once(targets[-1], reference)
+            steps.append(self.step(found))
+            if self.left(found) > WORSE * self.left(best):
                 break
+            best = found if self.left(found) < self.left(best) else best
         return best
+
+    def left(self, found: Feedforward) -> float:
+        """The largest error of a measured axis."""
+        return float(np.abs(found.error[self._measured]).max())
+
+    def step(self, found: Feedforward) -> Array:
+        """What the target is to be moved by, were the stage linear: its error, as far as the mechanics can follow."""
+        return -self.stage.solvable.respond(self.mechanics(found.error), MECHANICS)
 
     def once(self, target: Array, reference: Array) -> Feedforward:
         """The inverse of every part for a target, and what the model does under the drive that it gives."""
-        force = self.mechanics(target) + bending(self.stage, target)
+        force = self.mechanics(target) + bending(self.stage.solvable, target)
         found = self.material(force, reference, self.bounds)
         asked = self.command(found.inputs, reference)
         drive = self.limits.clip(asked, self.stage.dt)
@@ -114,7 +124,7 @@ class Inverse:
     def material(self, force: Array, reference: Array, limits: Limits) -> Solution:
         """Inputs of the material under which it puts out a force; those of an axis that is not measured follow from
         its drive."""
-        part = self.stage.part(MATERIAL, self.without)
+        part = self.stage.solvable.part(MATERIAL, self.without)
         held = self.stage.respond(self._given(reference), ACTUATION)
         return part.solve(force, held, limits.drive, limits.slew * self.stage.dt, self.slopes)
 
@@ -137,7 +147,7 @@ class Inverse:
     def mechanics(self) -> Preview:
         """The inverse of mechanics and modes."""
         small = SMALL * self.size * np.abs(np.diag(self.slopes))
-        return preview(self.stage, MECHANICS, self.gain, small, self.without)
+        return preview(self.stage.solvable, MECHANICS, self.gain, small, self.without)
 
     @cached_property
     def actuation(self) -> Preview:
@@ -152,7 +162,20 @@ class Inverse:
         for axis in range(axes):
             move = np.zeros((axes, 2))
             move[axis, 1] = self.size
-            outputs = self.stage.part(MATERIAL, self.without).respond(move)
+            outputs = self.stage.solvable.part(MATERIAL, self.without).respond(move)
             columns.append((outputs[:, 1] - outputs[:, 0]) / self.size)
         slopes = np.array(columns).T
         return np.where(np.eye(axes, dtype=bool) & (slopes == 0), 1.0, slopes)
+
+
+def accelerated(targets: Sequence[Array], steps: Sequence[Array]) -> Array:
+    """The next target of a fixed-point iteration from the last ones and their steps.
+
+    Anderson (1965), J. ACM 12, 547.
+    """
+    if len(targets) == 1:
+        return targets[0] + steps[0]
+    moves = np.array([(b - a).ravel() for a, b in pairwise(targets)]).T
+    changes = np.array([(b - a).ravel() for a, b in pairwise(steps)]).T
+    shares = np.linalg.lstsq(changes, steps[-1].ravel(), rcond=1e-10)[0]
+    return targets[-1] + steps[-1] - ((moves + changes) @ shares).reshape(targets[-1].shape)

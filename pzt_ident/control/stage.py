@@ -36,6 +36,7 @@ class Stage:
 
     def __init__(self, model: Chain, theta: ArrayLike, dt: float, span: Sequence[float], peak: Sequence[float]) -> None:
         self.model, self.theta, self.dt = model, np.atleast_2d(np.asarray(theta, dtype=np.float64)), dt
+        self.span, self.peak = tuple(span), tuple(peak)
         drive = np.array([(peak - span, peak) for span, peak in zip(span, peak, strict=True)])
         unmeasured = np.full(drive.shape, np.nan)
         record = Record("stage", "validate", dt, drive, unmeasured, axes=model.axes)
@@ -47,6 +48,12 @@ class Stage:
         """Blocks and additions that are no motion of the stage: disturbances and errors of the reading, and the slew
         limit, which is a limit."""
         return *(block for block in self.model.blocks if block.place not in MOTION), *self.model.additions
+
+    @cached_property
+    def solvable(self) -> Stage:
+        """The stage without the terms of its equations that are not solvable for their input."""
+        chain, kept = self.model.without_terms(lambda term: not term.solvable)
+        return Stage(chain, self.theta[0, kept], self.dt, self.span, self.peak)
 
     def part(self, places: Collection[Place] = MOTION, without: Blocks = ()) -> Part:
         """The blocks at some places, at rest, but for those that it is to be `without`."""

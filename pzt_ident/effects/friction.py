@@ -84,6 +84,7 @@ class Motion(Rubbing, Term):
     """
 
     trials = {"stribeck": 1}
+    solvable = False
 
 
 class CoulombMotion(Rubbing, Term):
@@ -92,6 +93,8 @@ class CoulombMotion(Rubbing, Term):
     Coulomb's law, smoothed over `speed`: Olsson, Astrom, Canudas de Wit, Gafvert & Lischinsky (1998), Eur. J. Control
     4, 176.
     """
+
+    solvable = False
 
 
 Friction.forms = {"coulomb": Coulomb, "motion": Motion, "coulomb_motion": CoulombMotion}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cache
@@ -56,7 +56,8 @@ class Chain:
         chain = [block for block in blocks if not issubclass(block, Term | Addition)]
         self.blocks = tuple(sorted(chain, key=lambda block: block.place))
         self.additions = tuple(block for block in blocks if issubclass(block, Addition))
-        self._listed = {item for block in blocks if issubclass(block, Term) for item in (block.name, block.item())}
+        self.listed_terms = tuple(block for block in blocks if issubclass(block, Term))
+        self._listed = {item for block in self.listed_terms for item in (block.name, block.item())}
         self.axes, self.measured, self.shared = tuple(axes), tuple(measured), frozenset(shared)
         self.entries = tuple(
             entry for block in (*self.blocks, *self.additions) for entry in self._entries(block, given)
@@ -110,6 +111,15 @@ class Chain:
             return (plain,)
         paired = (f"{plain}_from_{self.axes[entry.other]}",) if entry.other != entry.axis else ()
         return *(f"{self.axes[entry.axis]}.{name}" for name in (*paired, plain)), *paired, plain
+
+    def without_terms(self, refused: Callable[[type[Block]], bool]) -> tuple[Chain, list[int]]:
+        """The chain without some of the terms in its blocks' equations, and which columns of theta it keeps."""
+        chain, left = copy(self), [term for term in self.listed_terms if refused(term)]
+        gone = {name for term in left for name in (term.name, term.item())}
+        chain.listed_terms = tuple(term for term in self.listed_terms if term not in left)
+        kept = [column for column, entry in enumerate(self.entries) if entry.parameter.effect not in gone]
+        chain._listed, chain.entries = self._listed - gone, tuple(self.entries[column] for column in kept)
+        return chain, kept
 
     def margin_chain(self, block: type[Block]) -> Chain:
         """The chain up to and including a block, whose output is replaced by its margin."""
