@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -123,6 +123,7 @@ def tune(
     """The PI gains of greatest integral gain that keep both margins, of an axis or of every measured one.
 
     rate: of the controller, Hz, or text such as '1 kHz'. delay: samples from a reading to the drive that answers it.
+    Friction is left out: it takes from the gain of the loop, until the stage slides.
 
     Raises InputError for an axis that is not in the result, and where no gains keep the margins.
     """
@@ -150,7 +151,7 @@ def _of(identified: Identified, axis: str, rate: float, delay: int, gain: float,
     place = model.axes.index(axis)
     drives = [record.drive[place] for record in identified.records]
     span = min(float(u.min()) for u in drives), max(float(u.max()) for u in drives)
-    plant = plant_of(identified.stage(1 / (rate * FINE)), place, span, FINE)
+    plant = plant_of(sliding(identified).stage(1 / (rate * FINE)), place, span, FINE)
     try:
         loop = tuned(plant, delay, gain, phase)
     except InputError as error:
@@ -169,6 +170,15 @@ def _of(identified: Identified, axis: str, rate: float, delay: int, gain: float,
         f"{response}/{drive}",
         *_damping(identified, axis, loop),
     )
+
+
+def sliding(identified: Identified) -> Identified:
+    """Without friction in its equation of motion, which for small motions is a spring."""
+    theta = identified.theta.copy()
+    for column, entry in enumerate(identified.statement.problem.model.entries):
+        if (entry.parameter.effect or "").startswith("friction") and entry.parameter.null is not None:
+            theta[column] = entry.parameter.null
+    return replace(identified, theta=theta)
 
 
 def _damping(identified: Identified, axis: str, loop: Loop) -> tuple[float | None, float | None]:

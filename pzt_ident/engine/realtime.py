@@ -89,7 +89,9 @@ def regulate(program, scratch, tiles, window, substeps, target, ahead, gains, li
     steps = drive.shape[1] // samples
     level, integral, output = np.zeros((axes, delay + 1)), np.zeros(axes), np.empty((axes, steps))
     for axis in range(axes):
-        level[axis, :] = min(max(ahead[axis, 0], limits[axis, 0]), limits[axis, 1])
+        for i in range(delay + 1):
+            early = ahead[axis, min(max(i - 1, 0), samples - 1)]
+            level[axis, i] = min(max(early, limits[axis, 0]), limits[axis, 1])
     respond(program, scratch, tiles, window, level[:, :1].copy(), substeps, True, output)
     for i in range(samples):
         for axis in range(axes):

@@ -1,12 +1,14 @@
 """PI gains for a fit: what they are, what they say, and what is refused."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
 import pzt_ident as pzt
+from pzt_ident.api.tuning import sliding, tune
 from pzt_ident.cli.commands import main
 from pzt_ident.control.loop import PI, closed_loop
 
@@ -48,6 +50,15 @@ def test_tuning_prints_itself(damped):
     for part in ("V/µm", "V/(µm·s)", "largest slope", "in continuous time these gains would need a damping"):
         assert part in shown
     assert "<table>" in damped.tune(**KEPT)._repr_html_()
+
+
+def test_friction_does_not_hide_the_gain_of_a_stage_that_slides(damped):
+    rubbing = damped.add("friction.motion")
+    values = rubbing.identified.theta.copy()
+    values[rubbing.statement.problem.model.names.index("lumped.friction")] = 0.1e-6
+    stuck = replace(rubbing.identified, theta=values)
+    free = tune(sliding(stuck), **KEPT)["x"]
+    assert tune(stuck, **KEPT)["x"] == free and free.damping is None
 
 
 def test_less_margin_is_faster(damped):

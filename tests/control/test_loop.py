@@ -31,7 +31,7 @@ def triangle(samples=400, top=1e-6):
 def test_loop_is_its_recursion_sample_by_sample(delay):
     made, reference, ahead = stage(damped(X)), triangle(60), 12e6 * triangle(60)
     found = closed_loop(made, reference, GAINS, ahead, substeps=STEPS, delay=delay, quantum=1e-8)
-    part, integral, output = made.part(EVERYTHING), 0.0, [ahead[0, 0]] * delay
+    part, integral, output = made.part(EVERYTHING), 0.0, ahead[0, :delay].tolist()
     reading = part.respond(ahead[:, :1])[0, 0]
     for i in range(60):
         counted = 1e-8 * round(reading / 1e-8)
