@@ -20,7 +20,8 @@ from pzt_ident.data.units import factor
 from pzt_ident.errors import InputError
 from pzt_ident.run.identified import Identified
 
-FINE = 256  # steps of the stage in a sample of the controller
+STEPS = 256, 2**15  # of the stage in a sample of the controller, least and most
+FINE = 4e-6  # s, of a step, by which resonances of a stage are followed
 MOST = 1000  # samples of computing delay
 
 
@@ -151,7 +152,8 @@ def _of(identified: Identified, axis: str, rate: float, delay: int, gain: float,
     place = model.axes.index(axis)
     drives = [record.drive[place] for record in identified.records]
     span = min(float(u.min()) for u in drives), max(float(u.max()) for u in drives)
-    plant = plant_of(sliding(identified).stage(1 / (rate * FINE)), place, span, FINE)
+    steps = int(np.clip(round(1 / (rate * FINE)), *STEPS))
+    plant = plant_of(sliding(identified).stage(1 / (rate * steps)), place, span, steps)
     try:
         loop = tuned(plant, delay, gain, phase)
     except InputError as error:

@@ -58,7 +58,7 @@ def plant_of(stage: Stage, axis: int, span: tuple[float, float], substeps: int) 
 
     Actuation, mechanics and sensor are realised exactly, from their response to a drive that is held for a sample
     (eigensystem realization, Juang & Pappa 1985, J. Guidance 8, 620). The material between them counts by its largest
-    slope on loops within a span of the drive, since there the loop gain is largest.
+    slope on loops within a span of the drive, since there the loop gain is largest; so does a resonance of the readout.
     """
     import control
 

@@ -111,6 +111,8 @@ def test_margins_of_an_integrator_with_dead_time(delay):
     crossed = 2 * np.arcsin(k / 2)
     assert loop.margins.gain == pytest.approx(2 * np.sin(turned / 2) / k, rel=1e-4)
     assert loop.margins.phase == pytest.approx(90 - np.degrees((delay + 0.5) * crossed), abs=1e-3)
+    if delay == 0:  # 1 / (1 + L) = (z - 1) / (z - 1 + k), largest at z = -1
+        assert loop.margins.sensitivity == pytest.approx(2 / (2 - k), rel=1e-6)
     assert len(loop.poles) == 2 + delay
 
 
