@@ -22,7 +22,7 @@ from pzt_ident.run.identified import Identified
 
 STEPS = 256, 2**15  # of the stage in a sample of the controller, least and most
 FINE = 4e-6  # s, of a step, by which resonances of a stage are followed
-MOST = 1000  # samples of computing delay
+MOST = 50  # samples of computing delay
 
 
 @dataclass(frozen=True)
