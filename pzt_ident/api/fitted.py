@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from pzt_ident.api.drive import Drive
+    from pzt_ident.api.tuning import Tuning
 
 Array = NDArray[np.float64]
 Records = Mapping[str, Sequence[Record]]
@@ -133,6 +134,12 @@ class Fitted:
         from pzt_ident.api.drive import drive
 
         return drive(self.identified, t, reference, **options)
+
+    def tune(self, rate: float | str = 1000.0, delay: int = 1, **options: Any) -> Tuning:
+        """PI gains for a controller of a sample rate and computing delay; see `pzt_ident.api.tuning.tune`."""
+        from pzt_ident.api.tuning import tune
+
+        return tune(self.identified, rate, delay, **options)
 
     def simulate(self, t: ArrayLike | str | Record, u: Signals | None = None) -> Array:
         """The model's response to a drive, in the units of the responses: (samples,), of several axes (samples, axes).

@@ -61,6 +61,7 @@ def reference_options(command: Command) -> Command:
     return plugins_flag(output_options(command))
 
 
+LATE = "Computing delay: samples from a reading to the drive that answers it."
 GAIN = "The most by which dynamics are made up for, over their static gain."
 
 
@@ -72,6 +73,24 @@ def drive(result: Path, out: Path, as_json: bool, quiet: bool, **options: Any) -
     found = made(result, **options)
     found.save(out)
     answer(facts_of(found) | {"file": str(out)}, lambda: click.echo(f"{found}\nwrote {out}"), as_json, quiet)
+
+
+@click.command()
+@click.argument("result", type=EXISTING)
+@click.option("--rate", required=True, help="Sample rate of the controller, such as 1kHz.")
+@click.option("--delay", type=click.IntRange(min=0), default=1, show_default=True, help=LATE)
+@click.option("--gain-margin", type=click.FloatRange(min=1), default=2.0, show_default=True, help="A factor.")
+@click.option("--phase-margin", type=click.FloatRange(0, 90), default=60.0, show_default=True, help="Degrees.")
+@click.option("--axis", help="One axis; every measured one if not given.")
+@plugins_flag
+@output_options
+def tune(result: Path, rate: str, plugins: bool, as_json: bool, quiet: bool, **options: Any) -> None:
+    """Find the PI gains for the stage of a folder RESULT that keep stated margins."""
+    from pzt_ident.api.tuning import tune
+    from pzt_ident.run.identified import read_identified
+
+    found = tune(read_identified(result, plugins), rate, **options)
+    answer(found.facts, lambda: click.echo(str(found)), as_json, quiet)
 
 
 def made(

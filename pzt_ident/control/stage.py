@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -94,11 +94,19 @@ class Stage:
         return self.model.form_of(operation.block)
 
     @cached_property
+    def late(self) -> Array:
+        """Dead time of each axis, samples."""
+        found = np.zeros(len(self.model.axes))
+        for operation in self.program.operations:
+            if operation.block and issubclass(operation.block, Shift):
+                form: Any = self.form(operation)
+                found[operation.tile // TILES] += float(form.prepare(*self.given(operation))[0])
+        return found
+
+    @property
     def history(self) -> int:
         """Number of inputs that are kept: two, or more for a delay."""
-        delays = [o for o in self.program.operations if o.block and issubclass(o.block, Shift)]
-        late = [float(self.form(o).prepare(*self.given(o))[0]) for o in delays]  # type: ignore[attr-defined]
-        return int(max(late, default=0)) + 3
+        return int(self.late.max()) + 3
 
 
 class Part:
@@ -143,6 +151,20 @@ class Part:
         solve(self._program, *self._state, asked, free, limits, move, own, mixing, self._fresh, *found)
         self._fresh = False
         return Solution(inputs, wrong > 0, missed)
+
+    def regulate(
+        self, target: Array, ahead: Array, gains: Array, limits: Array, quantum: Array, delay: int, steps: int
+    ) -> tuple[Array, Array]:
+        """Drive (axes, steps * samples) and reading (axes, samples) under PI control with `steps` of the stage in a
+        sample; arguments as of `pzt_ident.engine.realtime.regulate`."""
+        from pzt_ident.engine import realtime
+
+        drive, reading = np.zeros((len(target), steps * target.shape[1])), np.zeros(target.shape)
+        asked = np.ascontiguousarray(target), np.ascontiguousarray(ahead)
+        settings = gains, limits, quantum, delay
+        realtime.regulate(self._program, *self._state, self._substeps, *asked, *settings, drive, reading)
+        self._fresh = False
+        return drive, reading
 
 
 class Solution(NamedTuple):

@@ -70,6 +70,45 @@ def respond(program, scratch, tiles, window, drive, substeps, fresh, output):
 
 
 @njit(nogil=True, cache=True)
+def limited(asked, before, limits):
+    """What an amplifier puts out: limits are the least and the largest drive and its largest change in a sample."""
+    level = min(max(asked, limits[0]), limits[1])
+    return min(max(level, before - limits[2]), before + limits[2])
+
+
+@njit(nogil=True, cache=True)
+def regulate(program, scratch, tiles, window, substeps, target, ahead, gains, limits, quantum, delay, drive, reading):
+    """PI control of the outputs to a target, with a feedforward that is known ahead, from rest under its first sample.
+
+    target, ahead, reading: (axes, samples). gains: (axes, 3), of the error, of its sum, and of what the limits take
+    away, which goes back into the sum. limits: (axes, 3), as in `limited`. quantum: (axes,), a count of the sensor, or
+    0. delay: samples from a reading to the drive that answers it. drive: (axes, steps * samples); it jumps at the start
+    of a sample, within one step, and holds for the others.
+    """
+    axes, samples = target.shape
+    steps = drive.shape[1] // samples
+    level, integral, output = np.zeros((axes, delay + 1)), np.zeros(axes), np.empty((axes, steps))
+    for axis in range(axes):
+        for i in range(delay + 1):
+            early = ahead[axis, min(max(i - 1, 0), samples - 1)]
+            level[axis, i] = min(max(early, limits[axis, 0]), limits[axis, 1])
+    respond(program, scratch, tiles, window, level[:, :1].copy(), substeps, True, output)
+    for i in range(samples):
+        for axis in range(axes):
+            reading[axis, i] = tiles[TILES * axis]
+            if quantum[axis] > 0:
+                reading[axis, i] = quantum[axis] * np.round(reading[axis, i] / quantum[axis])
+            error = target[axis, i] - reading[axis, i]
+            integral[axis] += gains[axis, 1] * error
+            asked = ahead[axis, min(i + delay, samples - 1)] + gains[axis, 0] * error + integral[axis]
+            level[axis, :-1] = level[axis, 1:].copy()
+            level[axis, -1] = limited(asked, level[axis, -1], limits[axis])
+            integral[axis] += gains[axis, 2] * (level[axis, -1] - asked)
+            drive[axis, steps * i : steps * (i + 1)] = level[axis, 0]
+        respond(program, scratch, tiles, window, drive[:, steps * i : steps * (i + 1)], substeps, False, output)
+
+
+@njit(nogil=True, cache=True)
 def beyond(tiles, target, weights):
     """Weighted sum of the outputs beyond their target."""
     total = 0.0
