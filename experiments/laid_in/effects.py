@@ -83,8 +83,8 @@ def encoder(response: Response, size: float, rng, hint) -> Array:
 
 
 def bend(response: Response, size: float, rng, hint) -> Array:
-    """A reading whose gain grows with the displacement: y + size y^2. size: 1/um."""
-    return response.values + size * response.values**2
+    """A reading whose gain grows with the displacement. size: 1/um; hint: where the gain is right, um."""
+    return response.values + size * (response.values - hint) ** 2
 
 
 EFFECTS = {"lag": lag, "delay": delay, "creep": creep, "drift": drift, "hum": hum, "encoder": encoder, "bend": bend}

@@ -140,8 +140,8 @@ RECORDS = {
     "stack": Record(
         "picma_stack/missing.yaml",
         0.060,
-        (5, 15, 50),
-        {"lag": 0, "delay": 0, "creep": 4, "drift": 20, "hum": 50.02, "encoder": 8, "bend": 0},
+        (5, 15),
+        {"lag": 0, "delay": 0, "creep": 4, "drift": 20, "hum": 50.02, "encoder": 8, "bend": -96.6},
         read_stack,
         write_stack,
     ),
@@ -156,7 +156,7 @@ RECORDS = {
     "mirror": Record(
         "steering_mirror/below_400_hz.yaml",
         0.0031,
-        (5, 15, 50),
+        (15, 50),
         {"lag": 0, "delay": 0, "creep": 0.1, "hum": 50, "encoder": 0.8, "bend": 0},
         read_mirror,
         write_mirror,

@@ -63,11 +63,12 @@ def text(found: list[Row]) -> str:
     """Tables by effect and by record, of the records as they are, and of all cases."""
     laid = [row for row in found if row["effect"] != AS_IT_IS]
     parts = ["**By effect**", _counts(laid, "effect"), "**By record**", _counts(laid, "record")]
-    parts += ["**By size**", _counts(laid, "units"), "**The records as they are**", _own(found)]
+    parts += ["**By size in noise floors**", _counts(laid, "units"), "**The records as they are**", _own(found)]
     return "\n\n".join([*parts, "**All cases**", _cases(laid)])
 
 
 def _counts(found: list[Row], key: str) -> str:
+    """One row a value of the key, and of all, those that the record lacks anyway apart."""
     header = [key, "cases", *OUTCOMES, "with another name", "own lacks still named", "CPU s, median / largest"]
     lines = [_count(str(name), [row for row in found if row[key] == name]) for name in _unique(found, key)]
     known = [row for row in found if row["known"]]
