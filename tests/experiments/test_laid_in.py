@@ -47,7 +47,8 @@ def test_a_change_that_a_gain_and_an_offset_take_up_is_not_seen():
 
 @pytest.mark.parametrize("effect", EFFECTS)
 def test_an_effect_is_scaled_to_what_is_seen_of_it(effect):
-    wave, hint = [Response(10 * np.sin(9 * T), DT)], {"hum": 50.0, "encoder": 3.0, "drift": 2.0, "bend": 0.0}.get(effect, 0.1)
+    wave = [Response(10 * np.sin(9 * T), DT)]
+    hint = {"hum": 50.0, "encoder": 3.0, "drift": 2.0, "bend": 0.0}.get(effect, 0.1)
     size = scale(effect, 0.05, wave, 3, hint)
     assert seen(lay(effect, size, wave, 3, hint), wave) == pytest.approx(0.05, rel=0.05)
     assert scale(effect, 1e3, wave, 3, hint) is None
