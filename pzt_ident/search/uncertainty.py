@@ -39,8 +39,10 @@ def estimates(problem: Problem, point: Array) -> tuple[list[Estimate], Array]:
     """Estimates of the free parameters and of the linear ones, and the correlations of the free ones (free, free).
 
     Standard errors are those of least squares with correlated residuals: (J'J)^-1 M (J'J)^-1 with M summed over
-    blocks of neighbouring samples (White 1980; Newey & West 1987). A parameter is not determined if its standard error
-    exceeds LOOSE, or if it changes the RMSE by less than one percent over more than WIDE, of its search range.
+    blocks of neighbouring samples (White 1980; Newey & West 1987), in no direction less than white noise or noise with
+    the spectrum of the residual gives: blocks miss what is correlated over their ends. A parameter is not determined if
+    its standard error exceeds LOOSE, or if it changes the RMSE by less than one percent over more than WIDE, of its
+    search range.
     """
     covariance = covariance_of(problem.jacobian(point), problem.residuals(point)[0])
     error = np.sqrt(np.diag(covariance))
@@ -141,9 +143,37 @@ def covariance_of(jacobian: Array, residual: Array, blocks: int = 40) -> Array:
     sums = np.array([part.sum(axis=0) for part in parts])
     meat = sums.T @ sums
     white = residual @ residual / max(1, residual.size - s.size)
-    meat += np.diag(np.maximum(white - np.diag(meat), 0))  # a direction without influence has no gradient
+    least = np.maximum(white, stationary(u, residual))  # a direction without influence has no gradient
+    meat += np.diag(np.maximum(least - np.diag(meat), 0))
     bread = vt.T / singular
     return bread @ meat @ bread.T
+
+
+def stationary(directions: Array, residual: Array) -> Array:
+    """Variance of each direction's sum with noise that has the spectrum of the residual: (directions,)."""
+    weights, variance = autoregression(residual)
+    length = 1 << (2 * residual.size - 1).bit_length()
+    density = variance / np.abs(np.fft.rfft(weights, length)) ** 2
+    density[1:-1] *= 2
+    return np.array([density @ np.abs(np.fft.rfft(column, length)) ** 2 for column in directions.T]) / length
+
+
+def autoregression(residual: Array) -> tuple[Array, float]:
+    """Weights a, from 1, and variance of e in sum_i a_i r[k - i] = e[k], by Levinson's recursion. The order is that of
+    the least AIC (Akaike 1974), 10 log10 of the number of samples at most."""
+    size = residual.size
+    most = min(size - 1, int(10 * np.log10(size)))
+    lags = np.fft.irfft(np.abs(np.fft.rfft(residual, 2 * size)) ** 2)[: most + 1] / size
+    weights, variance = np.ones(1), lags[0]
+    found = [(0.0, weights, variance)]
+    for order in range(1, most + 1):
+        if not variance > 1e-12 * lags[0]:
+            break
+        reflection = -(weights @ lags[order:0:-1]) / variance
+        weights = np.append(weights, 0.0) + reflection * np.append(0.0, weights[::-1])
+        variance = variance * (1 - reflection**2)
+        found.append((size * np.log(max(variance / lags[0], 1e-300)) + 2 * order, weights, variance))
+    return min(found, key=lambda entry: entry[0])[1:]
 
 
 def flat_share(problem: Problem, point: Array, steps: int = 24) -> Array:
