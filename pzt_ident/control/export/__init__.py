@@ -1,0 +1,1 @@
+"""An identified model for other programs: C99, FMU, MATLAB, tables."""
