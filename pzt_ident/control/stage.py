@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,16 +12,17 @@ from numpy.typing import ArrayLike, NDArray
 from pzt_ident.data.record import Record
 from pzt_ident.engine.lanes import Layout, layout_of
 from pzt_ident.engine.program import Operation, Program
-from pzt_ident.model.block import TILES, Beside, Block, Coupling, Place, Shift
+from pzt_ident.model.block import TILES, Beside, Block, Place, Shift
 from pzt_ident.model.chain import Chain
 
 Array = NDArray[np.float64]
+Blocks = Collection[type[Block]]
 
 ACTUATION = frozenset({Place.DELAY, Place.AMPLIFIER})
 MATERIAL = frozenset(
     {Place.READOUT, Place.OPERATOR, Place.STATIC, Place.CREEP, Place.COUPLING, Place.GUIDE}
 )  # what is solved for its input, sample by sample
-MECHANICS = frozenset({Place.MECHANICS, Place.MODE})
+MECHANICS = frozenset({Place.FLEXURE, Place.MECHANICS, Place.MODE})
 MOTION = ACTUATION | MATERIAL | MECHANICS
 EVERYTHING = frozenset(Place)
 
@@ -46,22 +48,22 @@ class Stage:
         limit, which is a limit."""
         return *(block for block in self.model.blocks if block.place not in MOTION), *self.model.additions
 
-    def part(self, places: Collection[Place] = MOTION, decoupled: bool = True) -> Part:
-        """The blocks at some places, at rest. decoupled: with those that act across axes."""
-        return Part(self, places, decoupled)
+    def part(self, places: Collection[Place] = MOTION, without: Blocks = ()) -> Part:
+        """The blocks at some places, at rest, but for those that it is to be `without`."""
+        return Part(self, places, without)
 
     def respond(self, drive: Array, places: Collection[Place] = MOTION) -> Array:
         """Displacement (axes, samples), SI units, under a drive (axes, samples) that is linear between its samples,
         from rest under the first one."""
         return self.part(places).respond(drive)
 
-    def operations(self, places: Collection[Place], decoupled: bool) -> list[Operation]:
+    def operations(self, places: Collection[Place], without: Blocks = ()) -> list[Operation]:
         """The steps of the blocks at some places, in signal order; the force of a path beside the mechanics is what
         they start from, where it is not kept among them."""
         chosen = [
             operation
             for operation in self.program.operations
-            if operation.action != "fill" and operation.place in places and (decoupled or not across(operation.block))
+            if operation.action != "fill" and operation.place in places and operation.block not in without
         ]
         beside = any(operation.block and issubclass(operation.block, Beside) for operation in chosen)
         if not beside or any(operation.action == "keep_force" for operation in chosen):
@@ -95,8 +97,8 @@ class Stage:
 class Part:
     """Blocks of a stage in signal order, with their state; at rest under the first input."""
 
-    def __init__(self, stage: Stage, places: Collection[Place], decoupled: bool) -> None:
-        operations = stage.operations(places, decoupled)
+    def __init__(self, stage: Stage, places: Collection[Place], without: Blocks) -> None:
+        operations = stage.operations(places, without)
         rows = [operation.row for operation in operations if operation.block]
         ends = [o.row + stage.layout(o).rows for o in operations if o.block]
         low, high = min(rows, default=0), max(ends, default=0)
@@ -105,7 +107,7 @@ class Part:
         axes = len(stage.model.axes)
         self._program = np.array(table, dtype=np.int64).reshape(-1, 3)
         self._state = stage.scratch[low:high].copy(), np.zeros(TILES * axes), np.zeros((axes, stage.history))
-        self._substeps = stage.program.substeps
+        self._substeps, self._measured = stage.program.substeps, list(stage.model.measured)
         self._fresh = True
 
     def respond(self, inputs: Array) -> Array:
@@ -118,20 +120,26 @@ class Part:
         self._fresh = False
         return outputs
 
-    def solve(
-        self, outputs: Array, inputs: Array, free: Array, limits: Array, move: Array, rates: Array
-    ) -> NDArray[np.bool_]:
-        """Fill in the inputs of the `free` axes under which the outputs are as given, within limits (axes, 2) and at
-        most `move` (axes,) a sample. Returns (axes, samples), whether the output first moved away from what was
-        asked."""
+    def solve(self, outputs: Array, limits: Array, move: Array, slopes: Array) -> Solution:
+        """Inputs of the measured axes under which the outputs (axes, samples) are as given, within limits (axes, 2) and
+        at most `move` (axes,) a sample; the others stay at zero. slopes: (axes, axes), rough ones of the outputs."""
         from pzt_ident.engine.realtime import solve
 
-        wrong = np.zeros(outputs.shape)
-        solve(self._program, *self._state, outputs, free, limits, move, rates, self._fresh, inputs, wrong)
+        inputs, wrong, missed = np.zeros(outputs.shape), np.zeros(outputs.shape), np.zeros(outputs.shape)
+        free = np.isin(np.arange(len(outputs)), self._measured)
+        own = np.diag(slopes).copy()
+        mixing = own[:, None] * np.linalg.inv(slopes)
+        asked = np.ascontiguousarray(outputs)
+        found = inputs, wrong, missed
+        solve(self._program, *self._state, asked, free, limits, move, own, mixing, self._fresh, *found)
         self._fresh = False
-        return wrong > 0
+        return Solution(inputs, wrong > 0, missed)
 
 
-def across(block: type[Block] | None) -> bool:
-    """Whether a block acts from axis to axis and can be left out."""
-    return block is not None and issubclass(block, Coupling)
+class Solution(NamedTuple):
+    """Inputs of a part for given outputs, each (axes, samples). wrong: where an output, on the way to what is asked,
+    first moves away from it. missed: outputs beyond what is asked."""
+
+    inputs: Array
+    wrong: NDArray[np.bool_]
+    missed: Array

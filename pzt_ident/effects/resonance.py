@@ -47,7 +47,7 @@ class Series(SecondMode, Block):
     Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems: modes in series.
     """
 
-    place = Place.GUIDE
+    place = Place.FLEXURE
 
     def start(u, share, r11, r12, r21, r22, b1, b2):
         return 0.0, 0.0, u
@@ -64,6 +64,7 @@ class OfVoltage(Series):
     """
 
     place = Place.READOUT
+    solvable = False
 
 
 Resonance.forms = {"series": Series, "voltage": OfVoltage}

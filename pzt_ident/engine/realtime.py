@@ -70,12 +70,23 @@ def respond(program, scratch, tiles, window, drive, substeps, fresh, output):
 
 
 @njit(nogil=True, cache=True)
-def solve(program, scratch, tiles, window, target, free, limits, move, rates, fresh, inputs, wrong):
+def beyond(tiles, target, weights):
+    """Weighted sum of the outputs beyond their target."""
+    total = 0.0
+    for axis in range(target.size):
+        total += weights[axis] * (tiles[TILES * axis] - target[axis])
+    return total
+
+
+@njit(nogil=True, cache=True)
+def solve(program, scratch, tiles, window, target, free, limits, move, slopes, mixing, fresh, inputs, wrong, missed):
     """Inputs (axes, samples) under which the outputs are the target (axes, samples).
 
     free: axes that are solved for, one after the other until all are met; the others keep what is in `inputs`.
-    limits: (axes, 2). move: (axes,), the largest change of an input in a sample. rates: (axes,), estimates of the
-    slope, whose sign counts. wrong: (axes, samples), set to 1 where the output first moves away from its target.
+    limits: (axes, 2). move: (axes,), the largest change of an input in a sample. slopes: (axes,), estimates of the
+    slope of each output, whose signs count. mixing: (axes, axes), mixes the outputs so that each depends on its own
+    input, as nearly as can be. wrong: (axes, samples), set to 1 where an output first moves away from its target.
+    missed: (axes, samples), outputs beyond their target.
     """
     search = np.zeros(root.SIZE)
     saved, kept = scratch.copy(), window.copy()
@@ -95,13 +106,13 @@ def solve(program, scratch, tiles, window, target, free, limits, move, rates, fr
                     low, high = limits[axis, 0], limits[axis, 1]
                     if not first:
                         low, high = max(low, before[axis] - move[axis]), min(high, before[axis] + move[axis])
-                    root.begin(search, trial[axis], 1e-9 * abs(trial[axis]) + 1e-12, low, high, rates[axis])
+                    root.begin(search, trial[axis], 1e-9 * abs(trial[axis]) + 1e-12, low, high, slopes[axis])
                     more = True
                     while more:
                         trial[axis] = search[root.X]
                         advance(program, scratch, tiles, window, trial, first)
                         scratch[:], window[:] = saved, kept
-                        more = root.propose(search, tiles[TILES * axis] - target[axis, i])
+                        more = root.propose(search, beyond(tiles, target[:, i], mixing[axis]))
                     trial[axis] = search[root.X]
                     wrong[axis, i] = max(wrong[axis, i], search[root.WRONG])
             advance(program, scratch, tiles, window, trial, first)
@@ -115,3 +126,5 @@ def solve(program, scratch, tiles, window, target, free, limits, move, rates, fr
             advance(program, scratch, tiles, window, trial, first)
         saved[:], kept[:] = scratch, window
         inputs[:, i] = trial
+        for axis in range(trial.size):
+            missed[axis, i] = tiles[TILES * axis] - target[axis, i]

@@ -1,13 +1,14 @@
 """The root of an increasing function, one evaluation a call: Chandrupatla (1997), Adv. Eng. Softw. 28, 145.
 
 The caller evaluates; so one text serves a function in Python, in compiled code and in exported C. `search` is an
-array of SIZE numbers: the trial X, its STEP and the LIMITS while a bracket is sought, and the bracket.
+array of SIZE numbers: the trial X, what is known while a bracket is sought (STEP, LOW, HIGH, BEST, LEAST), and the
+bracket.
 """
 
 from numba import njit
 
-SIZE = 14
-X, STEP, LOW, HIGH, PHASE, A, FA, B, FB, C, FC, T, WRONG, RATE = range(SIZE)
+SIZE = 15
+X, STEP, LOW, HIGH, RATE, BEST, LEAST, WRONG, PHASE, A, FA, B, FB, C, FC = range(SIZE)
 FIRST, WIDENING, CLOSING = 0.0, 1.0, 2.0
 EPSILON = 4.5e-16
 
@@ -22,7 +23,8 @@ def begin(search, x, step, low, high, rate):
 
 @njit(cache=True)
 def propose(search, f):
-    """Take f at the trial X and set the next trial. False once X is the root, or the limit where there is none.
+    """Take f at the trial X and set the next trial. False once X is the root, or where there is none between the
+    limits, the trial nearest to one.
 
     WRONG is 1 where the function first moved away from its root: there it does not increase.
     """
@@ -33,16 +35,28 @@ def propose(search, f):
     if search[PHASE] == WIDENING and (f > 0.0) != (search[FA] > 0.0):
         search[PHASE] = CLOSING
         search[B], search[FB], search[A], search[FA] = search[A], search[FA], search[X], f
-        search[T] = search[FA] / (search[FA] - search[FB])
-        search[X] = search[A] + search[T] * (search[B] - search[A])
+        search[X] = search[A] + search[FA] / (search[FA] - search[FB]) * (search[B] - search[A])
         return True
-    if search[PHASE] == WIDENING and abs(f) > abs(search[FA]):
-        search[WRONG] = 1.0
-    search[STEP] = 3.0 * search[STEP] if search[PHASE] == WIDENING else max(search[STEP], 1.2 * abs(f / search[RATE]))
+    return widen(search, f)
+
+
+@njit(cache=True)
+def widen(search, f):
+    """A step further, three times as long as the last one."""
+    if search[PHASE] == FIRST:
+        search[STEP] = max(search[STEP], 1.2 * abs(f / search[RATE]))
+    else:
+        search[STEP] = 3.0 * search[STEP]
+        search[WRONG] = 1.0 if abs(f) > abs(search[FA]) else search[WRONG]
+    if search[PHASE] == FIRST or abs(f) < search[LEAST]:
+        search[BEST], search[LEAST] = search[X], abs(f)
     search[PHASE], search[A], search[FA] = WIDENING, search[X], f
     down = (f > 0.0) == (search[RATE] > 0.0)
     search[X] = max(search[X] - search[STEP], search[LOW]) if down else min(search[X] + search[STEP], search[HIGH])
-    return search[X] != search[A]
+    if search[X] == search[A]:
+        search[X] = search[BEST]
+        return False
+    return True
 
 
 @njit(cache=True)

@@ -37,10 +37,11 @@ class Place(IntEnum):
     CREEP = 6
     COUPLING = 7
     GUIDE = 8
-    MECHANICS = 9
-    MODE = 10
-    OUTPUT = 11
-    SENSOR = 12
+    FLEXURE = 9
+    MECHANICS = 10
+    MODE = 11
+    OUTPUT = 12
+    SENSOR = 13
 
 
 class Block:
@@ -70,6 +71,7 @@ class Block:
     trials: ClassVar[Mapping[str, int]] = {}  # values tried of each parameter that has no influence at the null
     chosen_settings: ClassVar[dict[str, Any]] = {}
     forms: ClassVar[Mapping[str, type[Block]]] = {}  # variants, by the word of a `Form` or of an effect in their step
+    solvable: ClassVar[bool] = True  # whether `step` has a stable inverse, sample by sample (see control.inverse)
     margin: ClassVar[type[Block] | None] = None  # variant whose output must stay above zero for the equation to hold
     violation: ClassVar[str] = ""  # the sentence for a margin of zero or less
 

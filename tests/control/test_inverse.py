@@ -1,0 +1,117 @@
+"""The inverse is held against the model: what it drives the stage with, the stage follows."""
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from contracts.test_blocks import CHAINS, made
+from control.test_stage import stage_of
+from lin_lin import COUPLED_Y
+from pzt_ident.control.inverse import Inverse
+from pzt_ident.control.limits import Limits
+from pzt_ident.control.stage import ACTUATION, MECHANICS
+from pzt_ident.errors import InputError
+from rig import block_of, model, record
+
+INVERTED = [words for words in CHAINS if "bouc_wen_oscillator" not in words and "cubic_stiffness" not in words]
+
+
+def swept(samples, top=40.0):
+    """From rest to rest with reversals between."""
+    t = np.arange(samples) / samples
+    return top * np.sin(np.pi * t) ** 4 * (1 + np.sin(14 * np.pi * t))
+
+
+def dynamic(words):
+    """Whether a chain is not inverted sample by sample alone."""
+    listed = [block_of(word) for word in words.split()]
+    return any(getattr(block, "place", None) in ACTUATION | MECHANICS or not block.solvable for block in listed)
+
+
+def errors_of(words, gain):
+    """Errors over the span of the displacement, of candidates that the inverse does not call wrong."""
+    chain, measured, thetas = made(words, swept(600), count=8, dt=1e-3)
+    errors = []
+    for theta in thetas:
+        stage = stage_of(chain, measured, theta)
+        displacement = stage.respond(measured.drive)
+        if not np.isfinite(displacement).all():
+            continue
+        found = Inverse(stage, 100.0, gain=gain)(displacement)
+        if not found.wrong.any():
+            errors.append(np.abs(found.error).max() / np.ptp(displacement))
+    return errors
+
+
+@pytest.mark.parametrize("words", [words for words in INVERTED if not dynamic(words)])
+def test_stage_without_dynamics_follows_to_rounding(words):
+    assert max(errors_of(words, 10.0), default=0.0) < 1e-9
+
+
+@pytest.mark.parametrize("words", [words for words in INVERTED if dynamic(words)])
+def test_stage_with_dynamics_follows_as_far_as_the_noise_gain_allows(words):
+    loose, tight = (np.median(errors_of(words, gain)) for gain in (10.0, 1e4))
+    assert loose < 1e-3 and tight < 1e-6
+
+
+def stage(values, words, drive, dt=1e-4, **more):
+    chain = model(*words, **more)
+    theta = [values[name] for name in chain.names]
+    return stage_of(chain, record(*drive, dt=dt), theta)
+
+
+BOUC_WEN = {"bouc_wen.gain": 0.08, "bouc_wen.alpha": 0.5, "bouc_wen.beta": 0.02, "bouc_wen.gamma": 0.01}
+SPRING = {"lumped.mass": 0.15, "lumped.damping": 66.0, "lumped.stiffness": 7e7, "lumped.cubic": 0.02}
+
+
+def test_first_step_of_bouc_wen_is_the_root_of_its_closed_form():
+    target = np.array([[0.0, 1.0]])
+    found = Inverse(stage(BOUC_WEN, ["bouc_wen"], [[0.0, 100.0]]), 100.0)(target)
+
+    def displacement(u):
+        return 0.08 * (u - 0.5 * -np.expm1(-0.03 * u) / 0.03)
+
+    assert np.isclose(found.drive[0, 1], brentq(lambda u: displacement(u) - 1.0, 0, 100, xtol=1e-12), rtol=1e-12)
+
+
+def test_stiffening_spring_is_bent_further():
+    drive = swept(600)
+    made_up = stage(BOUC_WEN | SPRING, ["bouc_wen", "lumped", "cubic_stiffness"], [drive])
+    displacement = made_up.respond(drive[None])
+    assert np.abs(Inverse(made_up, 100.0)(displacement).error).max() < 1e-9 * np.ptp(displacement)
+
+
+def test_model_that_moves_the_wrong_way_is_told():
+    """Lin & Lin (2012), table 7, axis y: alpha 2 beta / (beta + gamma) > 1."""
+    there_and_back = 8 * np.concatenate([np.linspace(0, 1, 200), np.linspace(1, 0, 200)[1:]])[None]
+    found = Inverse(stage(COUPLED_Y, ["bouc_wen"], there_and_back, dt=1e-3), 90.0)(there_and_back)
+    assert np.flatnonzero(found.wrong[0])[0] == 200 and found.wrong.sum() < 20
+
+
+def test_axes_are_decoupled_or_each_is_inverted_by_itself():
+    values = {f"{axis}.{name}": value for axis in "xy" for name, value in BOUC_WEN.items()}
+    values |= {"x.cross_coupling.ratio": -0.05, "y.cross_coupling.ratio": 0.03}
+    drive = swept(600)
+    coupled = stage(values, ["bouc_wen", "cross_coupling"], [drive, drive[::-1]])
+    reference = coupled.respond(np.array([drive, drive[::-1]]))
+    assert np.abs(Inverse(coupled, 100.0)(reference).error).max() < 1e-12 * np.ptp(reference)
+    alone = Inverse(coupled, 100.0, decoupled=False)(reference)
+    left = np.array([-0.05 * alone.reference[1], 0.03 * alone.reference[0]])
+    assert np.allclose(alone.error, left, atol=1e-12 * np.ptp(reference))
+
+
+def test_limits_are_kept_and_what_is_asked_beyond_them_is_told():
+    made_up = stage(BOUC_WEN, ["bouc_wen"], [swept(600)])
+    reference = made_up.respond(2 * swept(600)[None])
+    limits = Limits(np.array([[-20.0, 60.0]]), np.array([3e3]))
+    found = Inverse(made_up, 100.0, limits)(reference)
+    assert found.drive.max() <= 60 and np.abs(np.diff(found.drive)).max() <= 0.3 * (1 + 1e-12)
+    assert np.allclose(found.asked, 2 * swept(600)) and found.limited.any()
+    inside = ~found.limited[0]
+    assert np.allclose(found.drive[0, inside], found.asked[0, inside])
+
+
+def test_model_stepped_finer_than_its_samples_is_refused():
+    chain, measured, theta = made("bouc_wen_oscillator", swept(100), count=1)
+    with pytest.raises(InputError, match="bouc_wen_oscillator: has no inverse"):
+        Inverse(stage_of(chain, measured, theta), 100.0)
