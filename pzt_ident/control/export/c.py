@@ -268,16 +268,8 @@ def notes(identified: Identified) -> list[str]:
     """What is in the model and what is not."""
     left = [block.name for block in identified.chain.additions]
     text = [identified.origin] if identified.origin else []
-    ranges = [
-        f"{axis} {low / factor_:.6g} to {high / factor_:.6g} {unit}"
-        for axis, unit, (low, high), factor_ in zip(
-            identified.chain.axes,
-            identified.drive_units,
-            identified.range,
-            [identified.scale(i)[0] for i in range(len(identified.drive_units))],
-            strict=True,
-        )
-    ]
+    axes = zip(identified.chain.axes, identified.drive_units, identified.ends, strict=True)
+    ranges = [f"{axis} {low:.6g} to {high:.6g} {unit}" for axis, unit, (low, high) in axes]
     text.append(f"Identified with drives of {', '.join(ranges)}.")
     if left:
         text.append(f"Not in it, since they do not follow from the drive: {', '.join(left)}, and the offset.")

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +23,8 @@ SAMPLES = 400  # of the test vector
 class Identified:
     """theta: (parameters,), SI units; units, errors: of each parameter, in the user's units, None where no standard
     error is known. dt: s. range: (axes, 2), the drives that it was identified with, SI units. response_units: None for
-    an axis that is not measured. origin: what it was identified from, in a sentence or more."""
+    an axis that is not measured. origin: what it was identified from, in a sentence. words: what a job calls its
+    blocks, `model`, `effects`, `shared` and `given`."""
 
     name: str
     chain: Chain
@@ -33,6 +36,7 @@ class Identified:
     drive_units: tuple[str, ...]
     response_units: tuple[str | None, ...]
     origin: str = ""
+    words: Mapping[str, Any] = field(default_factory=dict)
 
     @cached_property
     def stage(self) -> Stage:
@@ -60,6 +64,12 @@ class Identified:
     def scale(self, axis: int) -> tuple[float, float]:
         """Size of the units of drive and response of an axis, in SI units."""
         return factor(self.drive_units[axis]), factor(self.response_units[axis] or "1")
+
+    @property
+    def ends(self) -> list[tuple[float, float]]:
+        """Of each axis the least and the largest drive of the identification, in the user's units."""
+        sizes = [self.scale(axis)[0] for axis in range(len(self.range))]
+        return [(float(low / size), float(high / size)) for (low, high), size in zip(self.range, sizes, strict=True)]
 
     @cached_property
     def test_vector(self) -> tuple[Array, Array]:

@@ -49,7 +49,7 @@ class Exported:
         self.library = Library(reserved)
         self.kernels: dict[tuple[object, ...], Kernel] = {}
         self.members: list[str] = []
-        self.steps = [self._step(operation) for operation in self.stage.operations(EVERYTHING, True)]
+        self.steps = [self._step(operation) for operation in self.stage.operations(EVERYTHING)]
 
     @property
     def axes(self) -> int:
