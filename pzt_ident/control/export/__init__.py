@@ -42,6 +42,12 @@ def _fmu(identified: Identified, precision: str) -> dict[str, bytes]:
     return fmu.files(identified, precision)
 
 
+def _matlab(identified: Identified, precision: str) -> dict[str, str]:
+    from pzt_ident.control.export import matlab
+
+    return matlab.files(identified)
+
+
 def _csv(identified: Identified, precision: str) -> dict[str, str]:
     from pzt_ident.control.export import tables
 
@@ -57,6 +63,7 @@ def _json(identified: Identified, precision: str) -> dict[str, str]:
 FORMATS: dict[str, Callable[[Identified, str], dict[str, str] | dict[str, bytes]]] = {
     "c": _c,
     "fmu": _fmu,
+    "matlab": _matlab,
     "csv": _csv,
     "json": _json,
 }
