@@ -38,11 +38,11 @@ def is_tame(one):
     return np.all(np.abs(moved - response) < 1e-11 * np.abs(response).max())
 
 
-def compiled(models, folder, precision="double", flags=STRICT):
+def compiled(models, folder, precision="double", inverse=True):
     """One program that runs the tests of all models; returns how to run it."""
     sources, calls = [], []
     for one in models:
-        for name, text in c.files(one, precision).items():
+        for name, text in c.files(one, precision, inverse).items():
             text = text.replace("int main(void)", f"int {one.word}_main(void);\nint {one.word}_main(void)")
             (folder / name).write_text(text)
             sources += [name] if name.endswith(".c") else []
@@ -50,7 +50,7 @@ def compiled(models, folder, precision="double", flags=STRICT):
     declared = [f"int {one.word}_main(void);" for one in models]
     main = ["#include <stdio.h>", *declared, "int main(void)", "{", "    int failed = 0;", *calls]
     (folder / "all.c").write_text("\n".join([*main, "    return failed != 0;", "}", ""]))
-    command = [COMPILER, *flags, *sources, "all.c", "-lm", "-o", "all"]
+    command = [COMPILER, *STRICT, *sources, "all.c", "-lm", "-o", "all"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr[:3000]
     return folder / "all"

@@ -26,22 +26,6 @@ Errors = Mapping[str, float | None]
 A_RESULT = "give the folder of a finished run or improvement, or the JSON of an export"
 
 
-def identified_in(path: Path, plugins: bool = False) -> Identified:
-    """The model of a folder of `pzt-ident run`, `improve` or `Fit.save`, or of an exported JSON.
-
-    Raises InputError where there is none.
-    """
-    if path.is_file():
-        return of_json(path)
-    if (path / "improvement.json").is_file():
-        return of_improvement(path, plugins)
-    if not (path / "result.json").is_file():
-        raise InputError("holds no result", where=str(path), remedy=A_RESULT)
-    from pzt_ident.api.identification import load
-
-    return of_fit(load(path, plugins=plugins))
-
-
 def of_fit(fit: Any) -> Identified:
     errors = {name: parameter.stderr for name, parameter in fit.parameters.items()}
     theta = fit.statement.problem.parameters(fit.point)[0]

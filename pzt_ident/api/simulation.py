@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pzt_ident.api.arguments import Signals, path_of, writable
-from pzt_ident.api.exporting import blank_record, identified_in, of_fit, sample_time
+from pzt_ident.api.exporting import blank_record, of_fit, of_json, sample_time
 from pzt_ident.api.fitted import Parameter, Parameters, columns
 from pzt_ident.api.printed import table_text
 from pzt_ident.api.record import Record
@@ -60,7 +60,7 @@ class Simulation:
 
 def load_json(path: str | Path) -> Simulation:
     """Raises InputError for a file that is no exported JSON."""
-    return Simulation(identified_in(path_of(path, "load")))
+    return Simulation(of_json(path_of(path, "load")))
 
 
 def export_fit(fit: Any, folder: str | Path, to: str, precision: str, rate: Any) -> list[Path]:

@@ -287,7 +287,7 @@ def export(
     result: Path, to: str, out: Path, precision: str, rate: str | None, plugins: bool, as_json: bool, quiet: bool
 ) -> None:
     """Write an identified model for other programs: RESULT is a folder of results, or an exported JSON."""
-    from pzt_ident.api.exporting import identified_in
+    from pzt_ident.api.results import identified_in
     from pzt_ident.api.simulation import written
 
     files = [str(path) for path in written(identified_in(result, plugins), out, to, precision, rate)]

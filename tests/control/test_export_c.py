@@ -22,6 +22,12 @@ LONG = [
     "delay bouc_wen_oscillator drift",
 ]
 CHOICES = [["", *map(str, at(place))] for place in Place]
+INVERTED = [
+    "bouc_wen",
+    "delay amplifier_lag quadratic_gain distributed_memory bouc_wen asymmetry rate_dependence creep sensor_lag",
+    "bouc_wen saturation friction cross_coupling kinematic_coupling",
+    "homogenized_energy thermal_relaxation creep:elements",
+]
 RELAYS = "thermal_homogenized_energy"
 
 
@@ -30,7 +36,9 @@ RELAYS = "thermal_homogenized_energy"
 def test_every_block_in_c_responds_as_here(precision, tmp_path):
     words = [*EVERY_KIND, *LONG] if precision == "double" else [*EVERY_KIND[1::4], *LONG]
     models = [identified(each, name=f"m{i} {each.split()[0]}") for i, each in enumerate(words)]
-    ran = subprocess.run([compiled(models, tmp_path, precision)], capture_output=True, text=True)
+    ran = subprocess.run(
+        [compiled(models, tmp_path, precision, inverse=False)], capture_output=True, text=True, timeout=120
+    )
     assert ran.returncode == 0, ran.stdout + ran.stderr
 
 
@@ -46,8 +54,25 @@ def test_every_block_in_c_responds_as_here(precision, tmp_path):
 def test_any_chain_in_c_responds_as_here(words, seed, unmeasured, tmp_path):
     one = identified(" ".join(filter(None, words)) or "bouc_wen", seed, unmeasured=unmeasured and "modal" not in words)
     assume(is_tame(one))
-    ran = subprocess.run([compiled([one], tmp_path)], capture_output=True, text=True)
+    ran = subprocess.run([compiled([one], tmp_path, inverse=False)], capture_output=True, text=True, timeout=120)
     assert ran.returncode == 0, ran.stdout + ran.stderr
+
+
+@needs_compiler
+@pytest.mark.parametrize("precision", ["double", "float"])
+def test_inverse_in_c_is_the_one_here(precision, tmp_path):
+    models = [identified(words, name=f"m{i} {words.split()[0]}") for i, words in enumerate(INVERTED)]
+    ran = subprocess.run([compiled(models, tmp_path, precision)], capture_output=True, text=True, timeout=120)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    assert ran.stdout.count("of the inverse") == len(INVERTED)
+
+
+@pytest.mark.parametrize(
+    ("words", "why"), [("bouc_wen_oscillator", "stepped finer"), ("bouc_wen lumped cubic_stiffness", "not linear")]
+)
+def test_header_says_why_there_is_no_inverse(words, why):
+    header = c.files(identified(words))["stage.h"]
+    assert why in header.partition("No inverse: ")[2]
 
 
 def test_source_reads_as_the_author_wrote_it():

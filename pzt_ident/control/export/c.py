@@ -11,14 +11,17 @@ import numpy as np
 
 from pzt_ident.control.export.c_text import RESERVED, Text
 from pzt_ident.control.export.identified import Identified
-from pzt_ident.control.export.lower import reads
+from pzt_ident.control.export.inverse import ROOTS, Exportable
 from pzt_ident.control.export.program import Exported, Given, Step, is_array
 from pzt_ident.control.export.tile import Kernel
+from pzt_ident.control.export.trees import reads
+from pzt_ident.engine import root
 from pzt_ident.errors import InputError
 from pzt_ident.model.block import TILES
 
 TEMPLATES = Path(__file__).parent / "templates"
 TOLERANCE = {"double": 1e-9, "float": 1e-5}
+INVERSE_TOLERANCE = {"double": 1e-8, "float": 1e-3}
 WIDTH = 118
 HELPERS = {
     f"{word}_of{end}": f"static {kind} {word}_of{end}({kind} a, {kind} b)\n{{\n    return b {sign} a ? b : a;\n}}"
@@ -27,9 +30,9 @@ HELPERS = {
 }
 
 
-def files(identified: Identified, precision: str = "double") -> dict[str, str]:
-    """Text by name of file."""
-    model = CModel(identified, precision)
+def files(identified: Identified, precision: str = "double", inverse: bool = True) -> dict[str, str]:
+    """Text by name of file. inverse: with that of the model, where it has one."""
+    model = CModel(identified, precision, inverse)
     word = identified.word
     made = {f"{word}.{end}": model.render(f"model.{end}.jinja", **model.facts()) for end in ("h", "c")}
     return made | {f"{word}_test.c": model.render("test.c.jinja", **model.test())}
@@ -38,9 +41,11 @@ def files(identified: Identified, precision: str = "double") -> dict[str, str]:
 class CModel:
     """The parts of header and source as lines of C."""
 
-    def __init__(self, identified: Identified, precision: str) -> None:
+    def __init__(self, identified: Identified, precision: str, inverse: bool = False) -> None:
         self.identified, self.precision = identified, precision
         self.exported = Exported(identified, RESERVED)
+        self.inverse = Exportable(identified, inverse)
+        self.root_calls = {} if self.inverse.refused else self.roots()
         constants = self.exported.library.constants
         whole = [word for word, value in constants.items() if isinstance(value, int)]
         self.text = self.exact = Text(precision, whole)
@@ -48,6 +53,9 @@ class CModel:
             self.refuse_cells()
             self.exact = Text("double", whole, exact={f.name for f in self.exported.functions(init=True)})
         self.results = {f.name: f.results for f in self.exported.library.functions.values()}
+
+    def roots(self) -> dict[str, str]:
+        return {word: self.exported.root(getattr(root, word), count) for word, count in ROOTS}
 
     def refuse_cells(self) -> None:
         """Raises InputError for relays: their rates span more than single precision holds."""
@@ -109,7 +117,30 @@ class CModel:
             "uses_dt": any(given.is_dt for step in exported.steps for given in exported.givens(step)),
             "delays": self.delays(),
             **self.signals(),
+            **self.inverted(),
         }  # fmt: skip
+
+    def inverted(self) -> dict[str, Any]:
+        """What the templates ask about the inverse."""
+        one, found = self.identified, self.inverse
+        if found.refused:
+            return {"inverse": None, "no_inverse": found.refused}
+        chosen = found.operations()
+        facts = found.facts(self.number)
+        material = [self.call(step) for step in self.exported.steps if step.operation in chosen]
+        sizes = [one.scale(axis) for axis in range(self.exported.axes)]
+        return {
+            "inverse": facts | {"material": material or ["(void)t;"]},
+            "references": [
+                f"asked[{a}] = reference[{i}] * {self.number(sizes[a][1])};" for i, a in enumerate(one.outputs)
+            ],
+            "drives_out": [f"drive[{a}] = out[{a}] / {self.number(size)};" for a, (size, _) in enumerate(sizes)],
+            "signals_each": TILES,
+            "fabs": self.text.math("fabs"),
+            "least": self.number(1e-9),
+            "step": self.number(1e-12),
+            **self.root_calls,
+        }
 
     def has_cells(self) -> bool:
         return any(kernel.fields.cells for kernel in self.exported.kernels.values())
@@ -144,6 +175,8 @@ class CModel:
         return first + [self.text.function(function, self.results) for function in self.exported.functions(init=False)]
 
     def constant(self, word: str, value: Any) -> str:
+        if word == "EPSILON" and self.precision == "float":
+            value = 2.4e-7  # two last digits
         if isinstance(value, tuple):
             numbers = ", ".join(self.number(item) for item in value)
             return f"static const real {word}[{len(value)}] = {{ {numbers} }};"
@@ -245,7 +278,17 @@ class CModel:
         drive, response = self.identified.test_vector
         rows = [[", ".join(map(self.number, row)) for row in signal.T] for signal in (drive, response)]
         ranges = ", ".join(repr(float(np.abs(row).max()) or 1.0) for row in response)
+        inverse: dict[str, Any] = {"inverse": None}
+        if not self.inverse.refused:
+            asked = self.inverse.drive()[:, : drive.shape[1] - self.inverse.latency]
+            inverse = {
+                "inverse": True,
+                "asked": [", ".join(map(self.number, row)) for row in asked.T],
+                "largest_drive": repr(float(np.abs(asked).max()) or 1.0),
+                "inverse_tolerance": INVERSE_TOLERANCE[self.precision],
+            }
         return {
+            **inverse,
             "samples": drive.shape[1],
             "tolerance": TOLERANCE[self.precision],
             "drive": rows[0],

@@ -15,7 +15,7 @@ from types import FunctionType
 from typing import Any
 
 from pzt_ident.control.export.expressions import Expressions, elementary_name, prefix_of
-from pzt_ident.control.export.trees import Function, Value, assign, flat, indexed, name, number, reads, shape, stored
+from pzt_ident.control.export.trees import Function, Value, assign, flat, indexed, name, number, shape, stored
 
 
 class Names:
@@ -50,7 +50,8 @@ class Library:
         return self.functions[key]
 
     def constant(self, module: str, word: str, value: Any) -> str:
-        name = self.names.give((module, word), word, prefix_of(module))
+        wish = word if len(word) > 2 else f"{prefix_of(module).upper()}_{word}"
+        name = self.names.give((module, word), wish, prefix_of(module))
         self.constants[name] = value
         return name
 
@@ -157,9 +158,9 @@ class Lowering(Expressions):
         pairs = [(p, v) for p, v in zip(places, values, strict=True) if ast.dump(p) != ast.dump(v)]
         written = [ast.unparse(p) for p, _ in pairs]
         for i, (to, one) in enumerate(pairs):
-            later = {word for _, other in pairs[i + 1 :] for word in reads(other)}
+            later = {ast.unparse(node) for _, other in pairs[i + 1 :] for node in ast.walk(other)}
             if written[i] in later:
-                kept = name(self.new(f"{written[i]}_"))
+                kept = name(self.new("kept"))
                 self.out.append(assign(kept, one))
                 pairs[i] = (to, kept)
             else:

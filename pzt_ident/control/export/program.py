@@ -6,6 +6,7 @@ import ast
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 from pzt_ident.control.export.identified import Identified
 from pzt_ident.control.export.lower import Library
@@ -49,6 +50,7 @@ class Exported:
         self.library = Library(reserved)
         self.kernels: dict[tuple[object, ...], Kernel] = {}
         self.members: list[str] = []
+        self.roots: list[str] = []  # functions that are called from a template
         self.steps = [self._step(operation) for operation in self.stage.operations(EVERYTHING)]
 
     @property
@@ -116,17 +118,24 @@ class Exported:
             return Given(column=columns[row])
         return Given(number=float(self.stage.scratch[row]), is_dt=word == "dt")
 
+    def root(self, source: Any, arguments: int) -> str:
+        """The name of a function of so many numbers that a template calls."""
+        made = self.library.function(source.py_func, source.__name__, "root", [ast.Name("x")] * arguments)
+        self.roots.append(made.name)
+        return made.name
+
     def factor(self, column: int) -> float:
         return factor(self.identified.units[column])
 
     def functions(self, init: bool | None = None) -> list[Function]:
         """Those that the kernels call, directly or through others, callees first; those of init or of a step alone."""
         known = {function.name: function for function in self.library.functions.values()}
-        wanted: set[str] = set()
+        wanted: set[str] = set() if init else set(self.roots)
         stack: list[str] = []
         for kernel in self.kernels.values():
             stack += called(kernel.init) if init is not False else ()
             stack += called(kernel.step) if init is not True else ()
+        stack += [word for root in wanted for word in called(known[root])]
         while stack:
             word = stack.pop()
             if word in known and word not in wanted:
