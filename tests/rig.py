@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from pzt_ident.control.stage import Stage
 from pzt_ident.data.record import Record
 from pzt_ident.engine.simulator import simulate
 from pzt_ident.model.block import Coupling, Modes
@@ -60,6 +61,12 @@ def response(chain, parameters, *drives, dt=1e-3, **more):
     theta = np.array([[(nulls | parameters)[name] for name in made.names]])
     found = simulate(made, record(*drives, dt=dt, **more), theta)[0]
     return found if len(drives) > 1 else found[0]
+
+
+def stage_of(chain, measured, theta):
+    """One candidate on the drives of a record, a sample at a time."""
+    spans, peaks = np.ptp(measured.drive, axis=1), np.abs(measured.drive).max(axis=1)
+    return Stage(chain, theta, measured.dt, spans, peaks)
 
 
 def candidates(made, drive, count, seed, response=10.0):

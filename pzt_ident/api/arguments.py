@@ -122,6 +122,11 @@ def of_kind(value: Any, kind: type, where: str, remedy: str) -> None:
         raise InputError(f"{type(value).__name__} is no {kind.__name__}", where=where, remedy=remedy)
 
 
+def quantity_of(text: str, unit: str) -> float | None:
+    """A number with a unit of the kind of another one, in SI units; None if it is none."""
+    return _quantity(text, dimension(unit))
+
+
 def _quantity(text: Any, kind: Dimension) -> float | None:
     """A number with a unit of a kind, in SI units."""
     parts = QUANTITY.match(text.strip()) if isinstance(text, str) else None

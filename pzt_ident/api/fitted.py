@@ -19,11 +19,14 @@ from pzt_ident.data.units import factor
 from pzt_ident.engine.simulator import simulate
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.run.checkpoint import Checkpoint
+from pzt_ident.run.identified import Identified
 from pzt_ident.run.statement import Statement
 from pzt_ident.search.uncertainty import covariance
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from pzt_ident.api.drive import Drive
 
 Array = NDArray[np.float64]
 Records = Mapping[str, Sequence[Record]]
@@ -118,6 +121,18 @@ class Fitted:
             record.name: columns(error, list(record.units.values()))
             for record, error in self.statement.problem.errors(self.point)
         }
+
+    @property
+    def identified(self) -> Identified:
+        """What control and export start from."""
+        errors = {name: item.stderr for name, item in self.parameters.items()}
+        return Identified(self.statement, self.statement.problem.parameters(self.point)[0], errors)
+
+    def drive(self, t: ArrayLike | str | Record, reference: Signals | None = None, **options: Any) -> Drive:
+        """The drive under which the stage follows a reference; see `pzt_ident.api.drive.drive`."""
+        from pzt_ident.api.drive import drive
+
+        return drive(self.identified, t, reference, **options)
 
     def simulate(self, t: ArrayLike | str | Record, u: Signals | None = None) -> Array:
         """The model's response to a drive, in the units of the responses: (samples,), of several axes (samples, axes).

@@ -95,14 +95,20 @@ def drive_record(t: Any, u: Signals | None, like: data.Record) -> data.Record:
         if not same_kind(record.drive[axis], unit):
             problem = f"axis {axis} is in {record.drive[axis]}, the model takes {unit}"
             raise InputError(problem, where="simulate: u", remedy=f"give it in a unit such as {unit}")
+    drives = uniform(record, like.axes)
+    return replace(drives, response=np.zeros_like(drives.drive), response_units=like.response_units)
+
+
+def uniform(record: Record, axes: Sequence[str]) -> data.Record:
+    """The drives of a record on a uniform grid, in SI units, the axes in this order."""
     headers = record.channels()
-    axes = {axis: data.Axis(data.Channel(name=headers[axis]["drive"])) for axis in like.axes}
+    channels = {axis: data.Axis(data.Channel(name=headers[axis]["drive"])) for axis in axes}
     settings: dict[str, Any] = {"sample_rate": record.rate, "run_in": record.run_in, "steps": record.steps}
     source = data.Source(file_of(record), name=record.name, **settings)
     time = data.Channel(name="time [s]") if record.t is not None else None
     with as_arguments():
-        (drives,) = read_records([source], axes, time, Path(), {source.file: record.table(time is not None)})
-    return replace(drives, response=np.zeros_like(drives.drive), response_units=like.response_units)
+        (drives,) = read_records([source], channels, time, Path(), {source.file: record.table(time is not None)})
+    return drives
 
 
 def has_stamps(records: Mapping[str, Sequence[Record]]) -> bool:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from pzt_ident.cli.control_commands import drive
 from pzt_ident.cli.first_commands import demo, init, workbench
 from pzt_ident.cli.options import (
     EXISTING,
@@ -294,5 +295,5 @@ def export(
     answer({"files": files}, lambda: click.echo("\n".join(f"wrote {file}" for file in files)), as_json, quiet)
 
 
-for command in (init, demo, workbench):
+for command in (drive, init, demo, workbench):
     main.add_command(command)

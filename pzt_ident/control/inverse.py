@@ -3,8 +3,10 @@ to the drive."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +23,8 @@ Array = NDArray[np.float64]
 GAIN = 10.0  # noise gain of a preview
 RANGE = 10.0  # over the largest drive of the identification, within which the material is solved
 PASSES = 12
-SLOW = 0.7  # share of the error that a pass may at most leave for another one
+MEMORY = 4  # passes that the next one learns from
+WORSE = 3.0  # over the least error so far, at which passes lead nowhere
 CLOSE = 1e-12  # of the largest value, below which a difference is rounding
 SMALL = 1e-4  # of the largest drive, the size of a pulse
 
@@ -81,45 +84,70 @@ class Inverse:
         across = tuple(block for block in blocks if issubclass(block, Coupling) and not decoupled)
         self.without = (*across, *(block for block in blocks if not block.solvable))
         self.bounds = Limits(np.tile([-RANGE * size, RANGE * size], (axes, 1)), np.full(axes, np.inf))
-        self.limits = limits or self.bounds
+        self.limits = self.bounds if limits is None else limits.within(self.bounds)
 
     def __call__(self, reference: Array) -> Feedforward:
         """The drive for a reference (axes, samples), SI units, at the stage's sample time, from rest at its first
-        sample. An axis that is not measured is kept at zero drive."""
-        measured = list(self.stage.model.measured)
+        sample. In the place of the reference of an axis that is not measured is its drive."""
         best = self.once(reference, reference)
-        target, left = reference, np.abs(best.error[measured]).max()
+        targets, steps = [reference], [self.step(best)]
         for _ in range(PASSES if self.decoupled and not best.limited.any() else 0):
-            target = target - self.stage.respond(self.mechanics(best.error), MECHANICS)
-            found = self.once(target, reference)
-            before, left = left, np.abs(found.error[measured]).max()
-            if not left < before:
+            if self.left(best) <= CLOSE * np.abs(reference).max():
                 break
-            best = found
-            if left > SLOW * before or left <= CLOSE * np.abs(reference).max():
+            targets.append(accelerated(targets[-MEMORY:], steps[-MEMORY:]))
+            found = self.once(targets[-1], reference)
+            steps.append(self.step(found))
+            if self.left(found) > WORSE * self.left(best):
                 break
+            best = found if self.left(found) < self.left(best) else best
         return best
+
+    def left(self, found: Feedforward) -> float:
+        """The largest error of a measured axis."""
+        return float(np.abs(found.error[self._measured]).max())
+
+    def step(self, found: Feedforward) -> Array:
+        """What the target is to be moved by, were the stage linear: its error, as far as the mechanics can follow."""
+        return -self.stage.solvable.respond(self.mechanics(found.error), MECHANICS)
 
     def once(self, target: Array, reference: Array) -> Feedforward:
         """The inverse of every part for a target, and what the model does under the drive that it gives."""
-        force = self.mechanics(target) + bending(self.stage, target)
-        found = self.material(force, self.bounds)
-        asked = self.actuation(found.inputs)
+        force = self.mechanics(target) + bending(self.stage.solvable, target)
+        found = self.material(force, reference, self.bounds)
+        asked = self.command(found.inputs, reference)
         drive = self.limits.clip(asked, self.stage.dt)
         if not np.array_equal(drive, asked):
-            drive = self.limits.clip(self.actuation(self.material(force, self.limits).inputs), self.stage.dt)
+            least = self.material(force, reference, self.limits)
+            drive = self.limits.clip(self.command(least.inputs, reference), self.stage.dt)
         return Feedforward(reference, drive, asked, self.stage.respond(drive), found.wrong, found.missed)
 
-    def material(self, force: Array, limits: Limits) -> Solution:
-        """Inputs of the material under which it puts out a force."""
-        part = self.stage.part(MATERIAL, self.without)
-        return part.solve(force, limits.drive, limits.slew * self.stage.dt, self.slopes)
+    def material(self, force: Array, reference: Array, limits: Limits) -> Solution:
+        """Inputs of the material under which it puts out a force; those of an axis that is not measured follow from
+        its drive."""
+        part = self.stage.solvable.part(MATERIAL, self.without)
+        held = self.stage.respond(self._given(reference), ACTUATION)
+        return part.solve(force, held, limits.drive, limits.slew * self.stage.dt, self.slopes)
+
+    def command(self, inputs: Array, reference: Array) -> Array:
+        """The drive that gives the material its inputs."""
+        drive = self.actuation(inputs)
+        given = self._given(reference)
+        return np.where(self._measured[:, None], drive, given)
+
+    def _given(self, reference: Array) -> Array:
+        """The drive of the axes that are not measured, zero for the others."""
+        return np.where(self._measured[:, None], 0.0, reference)
+
+    @property
+    def _measured(self) -> NDArray[np.bool_]:
+        axes = range(len(self.stage.model.axes))
+        return np.array([axis in self.stage.model.measured for axis in axes])
 
     @cached_property
     def mechanics(self) -> Preview:
         """The inverse of mechanics and modes."""
         small = SMALL * self.size * np.abs(np.diag(self.slopes))
-        return preview(self.stage, MECHANICS, self.gain, small, self.without)
+        return preview(self.stage.solvable, MECHANICS, self.gain, small, self.without)
 
     @cached_property
     def actuation(self) -> Preview:
@@ -134,7 +162,20 @@ class Inverse:
         for axis in range(axes):
             move = np.zeros((axes, 2))
             move[axis, 1] = self.size
-            outputs = self.stage.part(MATERIAL, self.without).respond(move)
+            outputs = self.stage.solvable.part(MATERIAL, self.without).respond(move)
             columns.append((outputs[:, 1] - outputs[:, 0]) / self.size)
         slopes = np.array(columns).T
         return np.where(np.eye(axes, dtype=bool) & (slopes == 0), 1.0, slopes)
+
+
+def accelerated(targets: Sequence[Array], steps: Sequence[Array]) -> Array:
+    """The next target of a fixed-point iteration from the last ones and their steps.
+
+    Anderson (1965), J. ACM 12, 547.
+    """
+    if len(targets) == 1:
+        return targets[0] + steps[0]
+    moves = np.array([(b - a).ravel() for a, b in pairwise(targets)]).T
+    changes = np.array([(b - a).ravel() for a, b in pairwise(steps)]).T
+    shares = np.linalg.lstsq(changes, steps[-1].ravel(), rcond=1e-10)[0]
+    return targets[-1] + steps[-1] - ((moves + changes) @ shares).reshape(targets[-1].shape)

@@ -20,6 +20,11 @@ class Limits:
     drive: Array
     slew: Array
 
+    def within(self, other: Limits) -> Limits:
+        """The narrower limits of the two."""
+        low, high = other.drive.T
+        return Limits(np.clip(self.drive, low[:, None], high[:, None]), np.minimum(self.slew, other.slew))
+
     def clip(self, drive: Array, dt: float) -> Array:
         """The drive (axes, samples) that an amplifier puts out which is asked for another one."""
         clipped = np.clip(drive, self.drive[:, :1], self.drive[:, 1:])

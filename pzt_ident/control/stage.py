@@ -36,6 +36,7 @@ class Stage:
 
     def __init__(self, model: Chain, theta: ArrayLike, dt: float, span: Sequence[float], peak: Sequence[float]) -> None:
         self.model, self.theta, self.dt = model, np.atleast_2d(np.asarray(theta, dtype=np.float64)), dt
+        self.span, self.peak = tuple(span), tuple(peak)
         drive = np.array([(peak - span, peak) for span, peak in zip(span, peak, strict=True)])
         unmeasured = np.full(drive.shape, np.nan)
         record = Record("stage", "validate", dt, drive, unmeasured, axes=model.axes)
@@ -47,6 +48,12 @@ class Stage:
         """Blocks and additions that are no motion of the stage: disturbances and errors of the reading, and the slew
         limit, which is a limit."""
         return *(block for block in self.model.blocks if block.place not in MOTION), *self.model.additions
+
+    @cached_property
+    def solvable(self) -> Stage:
+        """The stage without the terms of its equations that are not solvable for their input."""
+        chain, kept = self.model.without_terms(lambda term: not term.solvable)
+        return Stage(chain, self.theta[0, kept], self.dt, self.span, self.peak)
 
     def part(self, places: Collection[Place] = MOTION, without: Blocks = ()) -> Part:
         """The blocks at some places, at rest, but for those that it is to be `without`."""
@@ -120,15 +127,17 @@ class Part:
         self._fresh = False
         return outputs
 
-    def solve(self, outputs: Array, limits: Array, move: Array, slopes: Array) -> Solution:
+    def solve(self, outputs: Array, held: Array, limits: Array, move: Array, slopes: Array) -> Solution:
         """Inputs of the measured axes under which the outputs (axes, samples) are as given, within limits (axes, 2) and
-        at most `move` (axes,) a sample; the others stay at zero. slopes: (axes, axes), rough ones of the outputs."""
+        at most `move` (axes,) a sample; the others have those of `held`. slopes: (axes, axes), rough ones of the
+        outputs."""
         from pzt_ident.engine.realtime import solve
 
-        inputs, wrong, missed = np.zeros(outputs.shape), np.zeros(outputs.shape), np.zeros(outputs.shape)
+        inputs, wrong, missed = np.array(held), np.zeros(outputs.shape), np.zeros(outputs.shape)
         free = np.isin(np.arange(len(outputs)), self._measured)
-        own = np.diag(slopes).copy()
-        mixing = own[:, None] * np.linalg.inv(slopes)
+        own, mixing = np.diag(slopes).copy(), np.zeros(slopes.shape)
+        among = np.ix_(self._measured, self._measured)
+        mixing[among] = own[self._measured, None] * np.linalg.inv(slopes[among])
         asked = np.ascontiguousarray(outputs)
         found = inputs, wrong, missed
         solve(self._program, *self._state, asked, free, limits, move, own, mixing, self._fresh, *found)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pzt_ident.diagnosis.candidates import is_tied
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.refit import Case, Fit, refit
-from pzt_ident.diagnosis.score import Scorer, applicable
+from pzt_ident.diagnosis.score import Scorer, applicable, fits
 from pzt_ident.diagnosis.step import Step, effects_without, explained_share
 from pzt_ident.diagnosis.verdict import diagnose
 from pzt_ident.model.registry import blocks
@@ -35,7 +35,7 @@ def exchange_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
     added = now.effects[len(first.effects) :]
     for effect in added:
         rivals = look_alikes(case, now, effect) if len(added) > 1 else []
-        items = rivals if adequate(case, first, now) else [*rivals, *other_forms(effect)]
+        items = rivals if adequate(case, first, now) else [*rivals, *other_forms(case, now, effect)]
         if items and not case.budget.allows("other forms and look-alikes"):
             break
         best = min(fits_in_place(case, now, effect, items), key=lambda fit: fit.total, default=now)
@@ -50,8 +50,9 @@ def clears_up(case: Case, now: Fit, other: Fit) -> bool:
     return explained_share(case, now, other) >= DECISIVE
 
 
-def other_forms(effect: str) -> list[str]:
-    return [item for item in blocks.forms(effect) if blocks[item].item() != blocks[effect].item()]
+def other_forms(case: Case, now: Fit, effect: str) -> list[str]:
+    others = [item for item in blocks.forms(effect) if blocks[item].item() != blocks[effect].item()]
+    return [item for item in others if fits(case, effects_without(now, effect), item)]
 
 
 def look_alikes(case: Case, now: Fit, effect: str) -> list[str]:

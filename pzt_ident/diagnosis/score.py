@@ -75,16 +75,16 @@ class Trial:
 
 def applicable(case: Case, effects: tuple[str, ...]) -> list[str]:
     """The effects that can be added to this model, which has `effects`."""
-    chain = blocks.chain((*case.words, *effects))
-    terms, present = {word for block in chain for word in block.effects()}, set(map(word_of, effects))
-    axes = len(case.records[0].axes)
-    words = []
-    for word in blocks.effects():
-        block = blocks[word]
-        fits = (not issubclass(block, Term) or word in terms) and (not issubclass(block, Coupling) or axes > 1)
-        if fits and word not in (*present, *case.ruled_out):
-            words.append(word)
-    return words
+    present = (*map(word_of, effects), *case.ruled_out)
+    return [word for word in blocks.effects() if word not in present and fits(case, effects, word)]
+
+
+def fits(case: Case, effects: tuple[str, ...], item: str) -> bool:
+    """Whether the model with `effects` has what a form of an effect acts in: a block with the term, a second axis."""
+    form, chain = blocks[item], blocks.chain((*case.words, *effects))
+    if issubclass(form, Term):
+        return any(block.holds(form) for block in chain)
+    return not issubclass(form, Coupling) or len(case.records[0].axes) > 1
 
 
 class Scorer:
@@ -105,7 +105,7 @@ class Scorer:
         """The scores of all forms of an effect, the first form first; of one with many trials the others only where
         the first explains some."""
         first = self.score(effect)
-        others = blocks.forms(effect)[1:]
+        others = [item for item in blocks.forms(effect)[1:] if fits(self.case, self.fit.effects, item)]
         if first.explained <= LEAST_SCORE and prod(blocks[effect].trials.values()) > MANY_TRIALS:
             others = []
         return [first, *map(self.score, others)]

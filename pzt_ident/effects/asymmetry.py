@@ -13,7 +13,7 @@ class Asymmetry(Term):
     the operator times alpha d.
     """
 
-    form = Form("voltage", ("voltage", "constant"), "How much more easily, by the voltage.")
+    form = Form("voltage", ("voltage", "constant", "branches"), "What is easier in one direction.")
     look_alikes = ("quadratic_gain", "creep")
     separate_by = "Cycle one loop until it has settled and compare one branch with the other rotated by 180 degrees."
     remedy = "Invert the asymmetric operator in the feedforward, or work on one branch only."
@@ -26,4 +26,15 @@ class Constant(Asymmetry):
     """
 
 
-Asymmetry.forms = {"constant": Constant}
+class Branches(Asymmetry):
+    """Another forgetting on each branch: dh <- dh - |h| (beta_2 sgn(x v) + beta_3 sgn(x h) + beta_4 sgn(v) +
+    beta_5 sgn(h) + beta_6 sgn(x)) du, v = du/dt, x = u - centre.
+
+    Generalised Bouc-Wen operator of Song & Der Kiureghian (2006), J. Eng. Mech. 132, 610, whose beta_1 is beta.
+    """
+
+    sizes = (0.06,)
+    trials = {"centre": 8}
+
+
+Asymmetry.forms = {"constant": Constant, "branches": Branches}

@@ -1,6 +1,7 @@
 """Dry friction in the guide."""
 
-from pzt_ident.model.block import Block, Place, expm1, log1p
+from pzt_ident.model.block import Block, Place, Term, expm1
+from pzt_ident.model.bristles import rub
 from pzt_ident.model.first_order_hold import decay
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
@@ -9,27 +10,30 @@ from pzt_ident.model.registry import blocks
 class Rubbing:
     """What all forms of friction declare."""
 
-    place = Place.GUIDE
-    form = Form("lugre", ("lugre", "coulomb"), "The law of friction.")
-    force = Parameter("response", (0, 0.1), "Sliding friction over the stiffness.", null=0)
+    form = Form("lugre", ("lugre", "coulomb", "motion", "coulomb_motion"), "The law of friction, and where it acts.")
+    sizes = (0.02, 0.1, 0.5)
     look_alikes = ("distributed_memory", "delay", "amplifier_lag")
     separate_by = "Hold the voltage and push the stage by an external force or another axis: only friction has a loop."
     remedy = "Free cables and guides, lubricate or change the preload, drive turning points slower or close the loop."
 
 
+class Ahead(Rubbing):
+    """Friction ahead of the equation of motion, which the force on the mechanics has to overcome."""
+
+    place = Place.GUIDE
+    force = Parameter("response", (0, 0.1), "Sliding friction over the stiffness.", null=0)
+
+
 @blocks.register
-class Friction(Rubbing, Block):
+class Friction(Ahead, Block):
     """Bristles of the guide bend, then slide (LuGre): x + F = f,  dF/dx = (g - F sgn dx/dt) / (reach g / force),
     g = force (1 + stiction exp(-(v / stribeck)^2)).
 
     Canudas de Wit, Olsson, Astrom & Lischinsky (1995), IEEE Trans. Autom. Control 40, 419, eq. 2 to 5, without
     viscous friction; without stiction it is the model of Dahl (1976), AIAA J. 14, 1675. F is the friction force over
-    the stiffness, F = 0 at the start; v = df/dt, which is the speed of the stage once it slides. A monotone step of
-    |dx| = d changes q = F sgn dx to g - (g - q) exp(-d / r), r = reach g / force, so that d is the root of
-    d + (g - q) (1 - exp(-d / r)) = |df|, found by Halley's method.
+    the stiffness, F = 0 at the start; v = df/dt, which is the speed of the stage once it slides.
     """
 
-    sizes = (0.02, 0.1, 0.5)
     trials = {"stribeck": 1}
     reach = Parameter("response", (1e-3, 0.5), "Displacement over which friction builds up.", scale="log")
     stiction = Parameter(
@@ -46,26 +50,17 @@ class Friction(Rubbing, Block):
         return 0.0, u
 
     def step(friction, before, u, force, reach, stiction, fast):
-        sign = 1.0 if u >= before else -1.0
-        move = abs(u - before)
-        level = 1 + stiction * (1 + expm1(-move * fast * move * fast))
-        push = move / (reach * level)
-        slack = force / reach - sign * friction / (reach * level)
-        above = 1 + max(slack - push, 0.0)
-        d = max(push - slack, log1p(max(min(push, slack), 0.0) / above))
-        d = halley_step(halley_step(halley_step(d, slack, push), slack, push), slack, push)
-        friction = sign * level * (force + reach * slack * -(1 + expm1(-d)))
+        friction = rub(friction, u - before, force, reach, stiction, fast, 1.0)
         return friction, u, u - friction
 
 
-class Coulomb(Rubbing, Block):
+class Coulomb(Ahead, Block):
     """Dry and viscous friction: x + viscous dx/dt = f - force tanh(v / speed), v = df/dt.
 
     Coulomb's law, smoothed over `speed`: Olsson, Astrom, Canudas de Wit, Gafvert & Lischinsky (1998), Eur. J. Control
     4, 176. The viscous part against the stiffness is a lag, stepped exactly.
     """
 
-    sizes = (0.02, 0.1, 0.5)
     speed = Parameter("response/s", (1e-3, 100), "Velocity over which dry friction builds up.", scale="log")
     viscous = Parameter("s", (0, 5e-3), "Viscous friction over the stiffness.", null=0)
 
@@ -81,12 +76,25 @@ class Coulomb(Rubbing, Block):
         return w, u, u + w - force * (grown / (grown + 2))
 
 
-Friction.forms = {"coulomb": Coulomb}
+class Motion(Rubbing, Term):
+    """The moving mass rubs as it is accelerated: m x'' + b x' + k (x + F) = k f, with the law of the first form in x.
+
+    Dahl (1968), A Solid Friction Model, without stiction; Olsson, Astrom, Canudas de Wit, Gafvert & Lischinsky (1998),
+    Eur. J. Control 4, 176. Ringing wears off within the reach, and v = dx/dt.
+    """
+
+    trials = {"stribeck": 1}
+    solvable = False
 
 
-def halley_step(d, slack, push):
-    """Halley's step for d + slack (1 - exp(-d)) = push: after three the error is rounding for slack <= 1000."""
-    bent = expm1(-d)
-    stiff = slack * (1 + bent)
-    value, slope = d - slack * bent - push, 1 + stiff
-    return d - value * slope / (slope * slope + value * stiff / 2)
+class CoulombMotion(Rubbing, Term):
+    """Dry friction of the moving mass: m x'' + b x' + k (x + dry tanh(x' / speed)) = k f; b is the viscous part.
+
+    Coulomb's law, smoothed over `speed`: Olsson, Astrom, Canudas de Wit, Gafvert & Lischinsky (1998), Eur. J. Control
+    4, 176.
+    """
+
+    solvable = False
+
+
+Friction.forms = {"coulomb": Coulomb, "motion": Motion, "coulomb_motion": CoulombMotion}

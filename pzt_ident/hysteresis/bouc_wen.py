@@ -26,6 +26,7 @@ class BoucWen(Operator):
     """
 
     place = Place.OPERATOR
+    wrong_way = "Bouc-Wen does so after a reversal where alpha max(1, 2 beta / (beta + gamma)) > 1"
     gain = Parameter("response/drive", (0, 3), "Displacement per volt without hysteresis, d.")
     alpha = Parameter("1", (0, 1), "Share of the prompt response that hysteresis takes back just after a rest.")
     beta = Parameter("1/drive", (0, 60), "Decay of h per volt on both branches.")
@@ -40,7 +41,16 @@ class BoucWen(Operator):
         "V/s", (SLOW, 1e5), "Drive rate at which alpha begins to grow.", SLOW, "log", effect="rate_dependence.onset"
     )
     exponent = Parameter("1", (-0.5, 0.5), "Power of the drive rate.", 0, effect="rate_dependence.power")
+    beta_2 = Parameter("1/drive", (-10, 10), "Decay of h by sgn(x du).", 0, effect="asymmetry.branches")
+    beta_3 = Parameter("1/drive", (-10, 10), "Decay of h by sgn(x h).", 0, effect="asymmetry.branches")
+    beta_4 = Parameter("1/drive", (-10, 10), "Decay of h by sgn(du).", 0, effect="asymmetry.branches")
+    beta_5 = Parameter("1/drive", (-10, 10), "Decay of h by sgn(h).", 0, effect="asymmetry.branches")
+    beta_6 = Parameter("1/drive", (-10, 10), "Decay of h by sgn(x).", 0, effect="asymmetry.branches")
+    centre = Parameter("drive", (-1, 1), "Voltage from which x counts.", effect="asymmetry.branches")
     relaxation = Parameter("1/s", (0, 1), "Decay rate of h, 1 / tau.", 0, effect="thermal_relaxation")
+    activation = Parameter(
+        "1/drive", (0, 50), "One over the h at which relaxation is faster.", 0, effect="thermal_relaxation.activated"
+    )
 
     def prepare(gain, alpha, beta, gamma):
         return (gain, alpha * gain), regime(beta + gamma), regime(beta - gamma)
@@ -71,18 +81,56 @@ class BoucWen(Operator):
     def output(h, u, gain, slope):
         return gain * u - slope * h
 
-    def terms(asymmetry, lean, rate, onset, exponent, relaxation, dt):
+    def terms(asymmetry, lean, rate, onset, exponent, relaxation, activation, dt):
         fast = RATE + onset
         root = 1 / exponent if exponent != 0 else 0.0
-        return asymmetry, lean, rate / log(10), 1 / (dt * fast), onset / fast, exponent, root, exp(-dt * relaxation)
+        rates = rate / log(10), 1 / (dt * fast), onset / fast, exponent, root
+        return asymmetry, lean, *rates, exp(-dt * relaxation), activation
 
-    def lift(distance, u, sign, asymmetry, lean, rate, faster, slow, exponent, root, keep):
+    def lift(distance, u, sign, asymmetry, lean, rate, faster, slow, exponent, root, keep, activation):
         decades = log1p(distance * faster + slow - 1)
         grown = root * expm1(exponent * decades) if exponent != 0 else decades
         return max(1 + sign * (asymmetry * u + lean) + rate * grown, 0.01)
 
-    def fade(asymmetry, lean, rate, faster, slow, exponent, root, keep):
+    def fade(h, asymmetry, lean, rate, faster, slow, exponent, root, keep, activation):
         return keep
+
+
+class ByBranch(BoucWen):
+    """dh/dt = alpha d du/dt - |h| psi du/dt, psi = gamma + beta sgn(v h) + beta_2 sgn(x v) + beta_3 sgn(x h) +
+    beta_4 sgn(v) + beta_5 sgn(h) + beta_6 sgn(x), v = du/dt, x = u - centre; over a step sgn(x) is its mean.
+
+    Song & Der Kiureghian (2006), J. Eng. Mech. 132, 610.
+    """
+
+    def prepare(gain, alpha, beta, gamma, beta_2, beta_3, beta_4, beta_5, beta_6, centre):
+        shared = gain, alpha * gain, beta_2, beta_3, beta_4, beta_5, beta_6, centre
+        return shared, regime(beta + gamma), regime(beta - gamma)
+
+    def output(h, u, gain, slope, beta_2, beta_3, beta_4, beta_5, beta_6, centre):
+        return gain * u - slope * h
+
+    def quadrant(way, rate, distance, u, sign, gain, slope, beta_2, beta_3, beta_4, beta_5, beta_6, centre):
+        side = max(-1.0, min(1.0, 2 * (u - centre) / (distance + 1e-300)))
+        of_x_and_v, of_h = (beta_2 * side + beta_4) * sign + beta_6 * side, beta_3 * side + beta_5
+        return regime(rate + way * of_x_and_v + of_h * sign)
+
+
+class Activated(BoucWen):
+    """dh/dt = ... - relaxation sinh(activation h) / activation: the barrier to a jump falls with h, so that h relaxes
+    with the logarithm of time while it is large; over a sample tanh(activation h / 2) fades by exp(-dt relaxation).
+
+    Eyring (1936), J. Chem. Phys. 4, 283. `activation` is one over the h, in volts, at which the rate has grown by 1.2.
+    """
+
+    def fade(h, asymmetry, lean, rate, faster, slow, exponent, root, keep, activation):
+        x = min(activation * abs(h), 40.0)
+        grown = expm1(x)
+        left = keep * grown / (grown + 2)
+        return log1p(2 * left / (1 - left)) / x if x > 1e-100 else keep
+
+
+BoucWen.forms = {"asymmetry.branches": ByBranch, "thermal_relaxation.activated": Activated}
 
 
 def regime(rate):

@@ -158,35 +158,37 @@ def _rule_out(document: Document, words: tuple[str, ...], earlier: Earlier) -> N
 
 
 def _effects(document: Document, items: tuple[str, ...], earlier: Earlier) -> None:
-    terms = {word for block in blocks.forms_of(earlier.get("model", ())) for word in block.effects()}
+    hosts = blocks.forms_of(earlier.get("model", ()))
+    terms = {word for block in hosts for word in block.effects()}
     known, words = terms | set(blocks.effects()), list(map(word_of, items))
     for i, word in enumerate(words):
         loc: Loc = ("effects", i)
+        effect = None
         with _as_fault(document, loc):
-            blocks.chain([items[i]])
+            effect = next(iter(blocks.chain([items[i]])), None)
         if word in words[:i]:
             document.fault(loc, f"duplicate effect {word!r}", "keep one of the two")
         elif word not in known and word in blocks:
             document.fault(loc, f"{blocks[word].name!r} is not an effect", f"move it to `model: [{word}]`")
         elif word not in known:
             document.fault(loc, f"unknown effect {word!r}", nearest(word, known))
-        elif word in blocks and "model" in earlier and word not in terms and _is_kind(word, "Term"):
-            owners = [block.name for block in blocks if word in block.effects()]
-            message = f"no block of this model has a term for {word!r}"
-            document.fault(loc, message, f"put one of these into `model`: {', '.join(owners)}")
         elif (
-            word in blocks
-            and "channels" in earlier
-            and len(earlier["channels"].axes) < 2
-            and _is_kind(word, "Coupling")
+            effect
+            and "model" in earlier
+            and _is_kind(effect, "Term")
+            and not any(block.holds(effect) for block in hosts)
         ):
+            owners = [block.name for block in blocks if block.holds(effect)]
+            message = f"no block of this model has a term for {items[i]!r}"
+            document.fault(loc, message, f"put one of these into `model`: {', '.join(owners)}")
+        elif effect and "channels" in earlier and len(earlier["channels"].axes) < 2 and _is_kind(effect, "Coupling"):
             document.fault(loc, f"{word!r} needs a second axis", "give the other axis, at least its `drive`")
 
 
-def _is_kind(word: str, kind: str) -> bool:
+def _is_kind(effect: Any, kind: str) -> bool:
     from pzt_ident.model import block
 
-    return issubclass(blocks[word], getattr(block, kind))
+    return issubclass(effect, getattr(block, kind))
 
 
 def _shared(document: Document, names: tuple[str, ...], earlier: Earlier) -> None:

@@ -1,7 +1,10 @@
 """One mass, damper and spring."""
 
+from math import sqrt
+
 from pzt_ident.mechanics._oscillator import Oscillator, mode
 from pzt_ident.model.block import expm1, log1p
+from pzt_ident.model.bristles import rub, slide
 from pzt_ident.model.first_order_hold import oscillate
 from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks
@@ -23,6 +26,26 @@ class Lumped(Oscillator):
     extra_damping = Parameter("N*s/m", (0, 5e3), "Added to the damping.", null=0, effect="viscous_damping")
     cubic = Parameter(
         "1/response^2", (-0.1, 0.5), "Cubic over linear stiffness, k3 / k.", null=0, effect="cubic_stiffness"
+    )
+    friction = Parameter("response", (0, 0.1), "Sliding friction over the stiffness.", null=0, effect="friction.motion")
+    reach = Parameter(
+        "response", (1e-3, 0.5), "Displacement over which friction builds up.", scale="log", effect="friction.motion"
+    )
+    stiction = Parameter(
+        "1", (0, 0.5), "Excess of the break-away force, as a share of friction.", null=0, effect="friction.motion"
+    )
+    stribeck = Parameter(
+        "response/s", (1e-3, 100), "Speed at which stiction has faded.", scale="log", effect="friction.motion"
+    )
+    dry = Parameter(
+        "response", (0, 0.1), "Coulomb friction over the stiffness.", null=0, effect="friction.coulomb_motion"
+    )
+    speed = Parameter(
+        "response/s",
+        (1e-3, 100),
+        "Speed over which Coulomb friction builds up.",
+        scale="log",
+        effect="friction.coulomb_motion",
     )
 
     def prepare(mass, damping, stiffness, load, extra_damping, dt):
@@ -48,7 +71,57 @@ class Stiffening(Lumped):
         return w, v, now, now + w
 
 
-Lumped.forms = {"cubic_stiffness": Stiffening}
+class Rubbing(Lumped):
+    """m x'' + b x' + k (x + c x^3 + F) = k f: the linear oscillator with the input f - c x^3 - F, linear in between.
+
+    A step is implicit in x: x + (1 + b1) (c x^3 + F(x)) = p, F by the law of LuGre, with the cubic spring as its chord
+    from x to where x would be if F stayed as it was.
+    """
+
+    def prepare(mass, damping, stiffness, load, extra_damping, cubic, friction, reach, stiction, stribeck, dt):
+        linear = mode(mass + load, damping + extra_damping, stiffness, dt)
+        return cubic, friction, reach, stiction, 1 / (stribeck * dt), *linear
+
+    def start(u, cubic, force, reach, stiction, fast, r11, r12, r21, r22, b1, b2):
+        return 0.0, 0.0, cubic_root(u, cubic, 1.0), 0.0
+
+    def step(w, v, f, friction, u, cubic, force, reach, stiction, fast, r11, r12, r21, r22, b1, b2):
+        before, held = f + w, friction
+        x = cubic_root(u + r11 * w + r12 * v + b1 * (u - f) - (1 + b1) * held, cubic, 1 + b1)
+        chord = max(cubic * (x * x + x * before + before * before), -3 * SOFTEST)
+        share = (1 + b1) / (1 + (1 + b1) * chord)
+        friction = rub(held, x - before, force, reach, stiction, fast, share)
+        x = x - share * (friction - held)
+        now = u - x * max(cubic * x * x, -SOFTEST) - friction
+        w, v = oscillate(w, v, now - f, r11, r12, r21, r22, b1, b2)
+        return w, v, now, friction, now + w
+
+
+class Sliding(Lumped):
+    """m x'' + b x' + k (x + c x^3 + dry tanh(x' / speed)) = k f, likewise implicit in x' = v omega, which is linear in
+    the friction; the cubic spring enters v at the x that friction as it was leads to.
+    """
+
+    def prepare(mass, damping, stiffness, load, extra_damping, cubic, dry, speed, dt):
+        linear = mode(mass + load, damping + extra_damping, stiffness, dt)
+        return cubic, dry, sqrt(stiffness / (mass + load)) / speed, *linear
+
+    def start(u, cubic, dry, fast, r11, r12, r21, r22, b1, b2):
+        return 0.0, 0.0, cubic_root(u, cubic, 1.0), 0.0
+
+    def step(w, v, f, friction, u, cubic, dry, fast, r11, r12, r21, r22, b1, b2):
+        free = u + r11 * w + r12 * v + b1 * (u - f)
+        x = cubic_root(free - (1 + b1) * friction, cubic, 1 + b1)
+        push = u - x * max(cubic * x * x, -SOFTEST) - f
+        friction = dry * slide(b2 * dry * fast, fast * (r21 * w + r22 * v + b2 * push))
+        x = cubic_root(free - (1 + b1) * friction, cubic, 1 + b1)
+        now = u - x * max(cubic * x * x, -SOFTEST) - friction
+        w, v = oscillate(w, v, now - f, r11, r12, r21, r22, b1, b2)
+        return w, v, now, friction, now + w
+
+
+Lumped.forms = {"friction.motion": Rubbing, "friction.coulomb_motion": Sliding, "cubic_stiffness": Stiffening}
+"""Where two act at once the first form has the term of the other, too."""
 
 
 def cubic_root(p, c, share):

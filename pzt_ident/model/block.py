@@ -71,6 +71,7 @@ class Block:
     trials: ClassVar[Mapping[str, int]] = {}  # values tried of each parameter that has no influence at the null
     chosen_settings: ClassVar[dict[str, Any]] = {}
     forms: ClassVar[Mapping[str, type[Block]]] = {}  # variants, by the word of a `Form` or of an effect in their step
+    wrong_way: ClassVar[str] = ""  # the condition under which the output first moves against its input
     solvable: ClassVar[bool] = True  # whether `step` has a stable inverse, sample by sample (see control.inverse)
     margin: ClassVar[type[Block] | None] = None  # variant whose output must stay above zero for the equation to hold
     violation: ClassVar[str] = ""  # the sentence for a margin of zero or less
@@ -96,6 +97,11 @@ class Block:
     def effects(cls) -> set[str]:
         """The words of the effects that act inside the equation of the block."""
         return {declared.effect.partition(".")[0] for declared in cls.parameters().values() if declared.effect}
+
+    @classmethod
+    def holds(cls, effect: type[Block]) -> bool:
+        """Whether an effect, in its form, acts inside the equation of the block."""
+        return any(declared.effect in (effect.name, effect.item()) for declared in cls.parameters().values())
 
     @classmethod
     def settings(cls) -> dict[str, Setting | Form]:
@@ -170,11 +176,13 @@ class Operator(Block):
     to 3e-13 for |rate further| <= 0.1, the rate being the first coefficient of a regime.
     exact(q, distance, along, against) -> q, for any q, also through a sign change of q.
     output(h, u, *shared) -> y.
+    quadrant(way, rate, distance, u, sign, *shared) -> the regime that takes the place of one with that rate on a step
+    of du = sign distance about u; way: 1 along, -1 against. Optional, for regimes that differ by branch.
 
     Effects inside the operator's equation are parameters with an `effect`. Only where a job lists one of these, three
     more functions are called: terms(*parameters[, dt][, span]) -> coefficients,
     lift(distance, u, sign, *coefficients) -> factor on the drive of q, with u in the middle of the step and the sign of
-    du, and fade(*coefficients) -> the share of h that is left after a sample.
+    du, and fade(h, *coefficients) -> the share of h that is left after a sample.
     """
 
     kind = "operator"

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,13 @@ from pzt_ident.model.block import Addition, Block, Coupling, Modes, Place, Term,
 from pzt_ident.model.parameter import Parameter
 
 Array = NDArray[np.float64]
+
+
+@cache
+def in_one(forms: tuple[type[Block], ...]) -> type[Block]:
+    """A block in several forms at once; of a function that two of them define, that of the first is taken."""
+    name = "".join(form.__name__ for form in forms)
+    return type(name, forms, {"__module__": forms[0].__module__}) if len(forms) > 1 else forms[0]
 
 
 @dataclass(frozen=True)
@@ -48,7 +56,8 @@ class Chain:
         chain = [block for block in blocks if not issubclass(block, Term | Addition)]
         self.blocks = tuple(sorted(chain, key=lambda block: block.place))
         self.additions = tuple(block for block in blocks if issubclass(block, Addition))
-        self._listed = {item for block in blocks if issubclass(block, Term) for item in (block.name, block.item())}
+        self.listed_terms = tuple(block for block in blocks if issubclass(block, Term))
+        self._listed = {item for block in self.listed_terms for item in (block.name, block.item())}
         self.axes, self.measured, self.shared = tuple(axes), tuple(measured), frozenset(shared)
         self.entries = tuple(
             entry for block in (*self.blocks, *self.additions) for entry in self._entries(block, given)
@@ -60,7 +69,8 @@ class Chain:
 
     def form_of(self, block: type[Block]) -> type[Block]:
         """The block, with the listed effects in its equation."""
-        return next((form for effect, form in block.forms.items() if effect in self._listed), block)
+        forms = tuple(form for effect, form in block.forms.items() if effect in self._listed)
+        return in_one(forms or (block,))
 
     @property
     def has_readout(self) -> bool:
@@ -101,6 +111,15 @@ class Chain:
             return (plain,)
         paired = (f"{plain}_from_{self.axes[entry.other]}",) if entry.other != entry.axis else ()
         return *(f"{self.axes[entry.axis]}.{name}" for name in (*paired, plain)), *paired, plain
+
+    def without_terms(self, refused: Callable[[type[Block]], bool]) -> tuple[Chain, list[int]]:
+        """The chain without some of the terms in its blocks' equations, and which columns of theta it keeps."""
+        chain, left = copy(self), [term for term in self.listed_terms if refused(term)]
+        gone = {name for term in left for name in (term.name, term.item())}
+        chain.listed_terms = tuple(term for term in self.listed_terms if term not in left)
+        kept = [column for column, entry in enumerate(self.entries) if entry.parameter.effect not in gone]
+        chain._listed, chain.entries = self._listed - gone, tuple(self.entries[column] for column in kept)
+        return chain, kept
 
     def margin_chain(self, block: type[Block]) -> Chain:
         """The chain up to and including a block, whose output is replaced by its margin."""

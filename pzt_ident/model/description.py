@@ -66,9 +66,10 @@ def _block(name: str) -> Facts:
         return facts | {"parameters": _parameters_of_effect(word_of(name))}
     forms = [block, *(block.make(**{word: value}) for word, value in _forms(block))]
     settings = {word: item for form in forms for word, item in form.settings().items() if word != "form"}
-    rows = [{"name": word, "default": item.value, "unit": "1"} | _choices(item) for word, item in settings.items()]
-    chosen = {"settings": rows} if rows else {}
-    return facts | {"place": block.place.name.lower(), "parameters": _parameters(block)} | chosen
+    choices = [{"name": word, "default": item.value, "unit": "1"} | _choices(item) for word, item in settings.items()]
+    chosen = {"settings": choices} if choices else {}
+    rows = _parameters(block) + _parameters_of_effect(name)
+    return facts | {"place": block.place.name.lower(), "parameters": rows} | chosen
 
 
 def _forms(block: type[Any]) -> list[tuple[str, str]]:

@@ -24,7 +24,10 @@ TERMS = [word for word in WORDS if issubclass(blocks[word], Term)]
 ADDITIONS = [item for item in ITEMS if issubclass(blocks[item], Addition)]
 IN_CHAIN = [word for word in WORDS if word not in TERMS + ADDITIONS]
 HOSTS = [
-    (host, item) for host in IN_CHAIN for item in ITEMS if blocks[item].name in blocks[host].effects() & set(TERMS)
+    (host, item)
+    for host in IN_CHAIN
+    for item in ITEMS
+    if issubclass(blocks[item], Term) and blocks[host].holds(blocks[item])
 ]
 
 
@@ -39,6 +42,7 @@ def at(place):
 
 BESIDE = [word for word in WORDS if issubclass(blocks[word], Beside)]
 FORMS = [f"{word}:{each}" for word in IN_CHAIN for item in blocks[word].settings().values() for each in words_of(item)]
+FORMS = [form for form in FORMS if not issubclass(block_of(form), Term)]
 CHAINS = [
     *IN_CHAIN,
     *FORMS,
@@ -110,12 +114,12 @@ def test_effect_says_what_else_it_may_be_and_what_to_do(word):
         assert re.fullmatch(r"[A-Z].{30,}[a-z%]\.", sentence)
 
 
-@pytest.mark.parametrize("item", [item for item in ITEMS if blocks[item].name not in TERMS])
+@pytest.mark.parametrize("item", [item for item in ITEMS if not issubclass(blocks[item], Term)])
 def test_effect_has_a_null(item):
     assert any(declared.null is not None for declared in blocks[item].parameters().values())
 
 
-@pytest.mark.parametrize("item", [item for item in ITEMS if blocks[item].name in TERMS])
+@pytest.mark.parametrize("item", [item for item in ITEMS if issubclass(blocks[item], Term)])
 def test_term_is_a_parameter_of_a_block(item):
     assert not blocks[item].parameters()
     known = {declared.effect for block in blocks for declared in block.parameters().values()}
@@ -170,11 +174,12 @@ def test_term_at_its_null_is_not_there(host, term, drive, seed):
         count = 3 if getattr(blocks[host], "solved", ()) else 30  # NumPy's share is once a candidate
         measured, theta = record(drive), candidates(without, SPAN, count, seed)
         known = dict(zip(without.names, theta.T, strict=True))
-        nulls = [np.full(count, entry.parameter.null or 0.0) for entry in within.entries]
-        every = np.array([known.get(name, null) for name, null in zip(within.names, nulls, strict=True)]).T
+        for entry, column in zip(within.entries, candidates(within, SPAN, count, seed).T, strict=True):
+            known.setdefault(entry.name, column if entry.parameter.null is None else 0 * column + entry.parameter.null)
+        every = np.array([known[name] for name in within.names]).T
         assert len(every.T) > len(theta.T)
         found, expected = simulate(within, measured, every), simulate(without, measured, theta)
-        if term not in blocks[host].forms and (ahead or host not in OPERATORS):
+        if within.form_of(within.blocks[-1]) is within.blocks[-1] and (ahead or host not in OPERATORS):
             assert np.array_equal(found, expected)
         else:
             assert_close(found, expected, rounding(without, measured, theta))

@@ -4,14 +4,9 @@ import numpy as np
 import pytest
 
 from contracts.test_blocks import CHAINS, made, waves
-from pzt_ident.control.stage import EVERYTHING, MATERIAL, MECHANICS, Stage
+from pzt_ident.control.stage import EVERYTHING, MATERIAL, MECHANICS
 from pzt_ident.engine.simulator import simulate
-from rig import assert_close, rounding
-
-
-def stage_of(chain, measured, theta):
-    spans, peaks = np.ptp(measured.drive, axis=1), np.abs(measured.drive).max(axis=1)
-    return Stage(chain, theta, measured.dt, spans, peaks)
+from rig import assert_close, rounding, stage_of
 
 
 @pytest.mark.parametrize("words", [words for words in CHAINS if "bouc_wen_oscillator" not in words])

@@ -1,7 +1,10 @@
 """Asymmetric Bouc-Wen memory against its closed forms."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from rig import path, response
 
@@ -48,3 +51,54 @@ def test_a_settled_loop_is_lopsided_unless_it_is_about_zero_volts(middle, lopsid
     assert lopsidedness(0.0) < 1e-9
     assert (lopsidedness(5e-3) > 0.01) == lopsided
     assert lopsidedness(5e-3, gamma=0.0) < 1e-9
+
+
+BETAS = {"beta_2": 0.01, "beta_3": -0.008, "beta_4": 0.02, "beta_5": -0.015, "beta_6": 0.012}
+BOUC_WEN = {"gain": GAIN, "alpha": ALPHA, "beta": 0.07, "gamma": 0.03}
+
+
+def by_branch(drive, **more):
+    """h / (alpha d), V."""
+    found = response(["bouc_wen"], {f"bouc_wen.{word}": value for word, value in (BOUC_WEN | more).items()}, drive)
+    return (GAIN * drive - found) / (ALPHA * GAIN)
+
+
+def test_by_branch_the_memory_is_that_of_the_differential_equation():
+    """Legs that end where sgn(x) changes, each integrated over u in pieces that end where h changes its sign."""
+    legs, known, h, expected = [0, 40, 80, 40, 10, 40, 60, 40, 0], BOUC_WEN | BETAS, 0.0, [0.0]
+    for start, end in pairwise(legs):
+        v, x, points = np.sign(end - start), np.sign((start + end) / 2 - 40), np.linspace(start, end, 51)[1:]
+
+        def slope(u, state, v=v, x=x):
+            s = np.sign(state[0]) or v
+            psi = known["gamma"] + known["beta"] * s * v + known["beta_2"] * x * v + known["beta_3"] * x * s
+            psi += known["beta_4"] * v + known["beta_5"] * s + known["beta_6"] * x
+            return 1 - abs(state) * psi
+
+        path_of_h = solve_ivp(slope, (start, end), [h], t_eval=points, rtol=1e-10, atol=1e-12, max_step=0.1)
+        expected += path_of_h.y[0].tolist()
+        h = expected[-1]
+    np.testing.assert_allclose(by_branch(path(*legs, points=50), centre=40.0, **BETAS), expected, rtol=0, atol=2e-4)
+
+
+@pytest.mark.parametrize(
+    ("word", "centre", "up", "down"),
+    [
+        *(("beta_2", 0.0, 0.12, 0.12), ("beta_3", 0.0, 0.12, 0.12), ("beta_6", 0.0, 0.12, 0.08)),
+        *(("beta_4", 0.0, 0.12, 0.08), ("beta_5", 0.0, 0.12, 0.08), ("beta_6", -1e3, 0.12, 0.12)),
+    ],
+)
+def test_the_memory_levels_off_at_another_height_on_each_branch(word, centre, up, down):
+    """At one over the rate of decay, beta + gamma = 0.1 with the term added or taken off."""
+    h = by_branch(path(-400, 400, -400, points=800), centre=centre, **{word: 0.02})
+    assert h[800] == pytest.approx(1 / up, rel=1e-6)
+    assert h[1600] == pytest.approx(-1 / down, rel=1e-6)
+
+
+def test_a_step_over_the_centre_takes_the_mean_of_both_sides():
+    """So that the response changes smoothly with the centre."""
+    drive = path(0, 80, 0, points=16)
+    shifted = [by_branch(drive, centre=centre, **BETAS) for centre in (41.0, 41.001, 41.002)]
+    first, second = shifted[1] - shifted[0], shifted[2] - shifted[1]
+    assert np.abs(first).max() > 0
+    np.testing.assert_allclose(first, second, rtol=0, atol=1e-3 * np.abs(first).max())

@@ -1,4 +1,5 @@
-"""Friction against its closed forms: Dahl's in the displacement, and Stribeck's in the speed of sliding."""
+"""Friction against its closed forms: Dahl's in the displacement, and Stribeck's in the speed of sliding; in the
+equation of motion against that equation, integrated."""
 
 from itertools import pairwise
 
@@ -6,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.integrate import solve_ivp
 
 from rig import path, response
 
@@ -59,3 +61,90 @@ def test_breaking_away_overshoots_the_sliding_friction():
     assert behind[7000] == pytest.approx(0.05 * (1 + 0.2 * np.exp(-0.01)), rel=1e-6)
     assert behind[-1] == pytest.approx(0.05, rel=1e-6)
     assert np.all(np.diff(behind[7001:]) <= 1e-15)
+
+
+MASS, DAMPING, STIFFNESS = 0.16, 60.0, 7e7
+STAGE = {"lumped.mass": MASS, "lumped.damping": DAMPING, "lumped.stiffness": STIFFNESS}
+LAW = {"lumped.friction": 0.3, "lumped.reach": 0.2, "lumped.stiction": 0.0, "lumped.stribeck": 1.0}
+
+
+def moved(force, dt, **law):
+    return response(["lumped"], STAGE | LAW | {f"lumped.{word}": value for word, value in law.items()}, force, dt=dt)
+
+
+def integrated(time, force, dt, friction=0.3, reach=0.2, stiction=0.0, stribeck=1.0, cubic=0.0):
+    """m x'' + b x' + k (x + c x^3 + F) = k f,  F' = x' - |x'| F / (reach g / friction), times friction / reach."""
+
+    def change(t, state):
+        x, v, pull = state
+        level = friction * (1 + stiction * np.exp(-((v / stribeck) ** 2)))
+        push = STIFFNESS * (np.interp(t, time, force) - x - cubic * x**3 - pull)
+        return v, (push - DAMPING * v) / MASS, (level * v - abs(v) * pull) / (reach * level / friction)
+
+    return solve_ivp(change, (0, time[-1]), (force[0], 0, 0), t_eval=time, rtol=1e-9, atol=1e-9, max_step=dt).y[0]
+
+
+@pytest.mark.parametrize("law", [{}, {"cubic": 2e-3}, {"stiction": 0.3, "stribeck": 2e3}, {"reach": 2.0}])
+def test_a_chirp_moves_it_as_the_equation_of_motion_says(law):
+    """Error of second order in the sample time."""
+    errors = []
+    for dt in (2e-5, 1e-5):
+        time = np.arange(0, 0.02, dt)
+        force = 2 * np.sin(2 * np.pi * (200 + 3e4 * time) * time)
+        truth = integrated(time, force, dt, **law)
+        errors.append(np.abs(moved(force, dt, **law) - truth).max() / np.ptp(truth))
+    assert errors[1] < 2e-3
+    assert errors[1] < 0.4 * errors[0]
+
+
+def test_slowly_driven_it_is_friction_ahead_of_the_motion():
+    force = path(0, 8, 3, 5, -2, 4, points=400)
+    ahead = rubbed(force, sliding=0.3, reach=0.2)
+    np.testing.assert_allclose(moved(force, 1.0), ahead, rtol=0, atol=1e-7)
+    assert np.ptp(moved(force, 1.0) - force) > 0.5
+
+
+def test_ringing_wears_off_within_the_reach():
+    """Without friction it goes on."""
+    step = np.append(np.zeros(2), np.full(2000, 1.0))
+    free, rubbing = (moved(step, 1e-5, friction=level, reach=0.01) for level in (0.0, 0.05))
+    assert np.ptp(free[1000:]) > 0.1
+    assert np.ptp(rubbing[1000:]) < 0.02 * np.ptp(free[1000:])
+
+
+@pytest.mark.parametrize(("dry", "speed", "cubic"), [(0.3, 2e3, 0.0), (0.3, 2e3, 2e-3), (1.0, 5e3, 0.0)])
+def test_a_chirp_moves_it_under_coulomb_friction_as_the_equation_of_motion_says(dry, speed, cubic):
+    """Error of second order in the sample time."""
+    errors, law = [], {"dry": dry, "speed": speed, "cubic": cubic}
+    for dt in (1e-5, 5e-6):
+        time = np.arange(0, 0.02, dt)
+        force = 2 * np.sin(2 * np.pi * (200 + 3e4 * time) * time)
+
+        def change(t, state, time=time, force=force):
+            x, v = state
+            pull = STIFFNESS * (np.interp(t, time, force) - x - cubic * x**3 - dry * np.tanh(v / speed))
+            return v, (pull - DAMPING * v) / MASS
+
+        truth = solve_ivp(change, (0, time[-1]), (0, 0), t_eval=time, rtol=1e-9, atol=1e-9, max_step=dt).y[0]
+        named = {f"lumped.{word}": value for word, value in law.items()}
+        errors.append(np.abs(response(["lumped"], STAGE | named, force, dt=dt) - truth).max() / np.ptp(truth))
+    assert errors[1] < 1e-3
+    assert errors[1] < 0.35 * errors[0]
+
+
+@pytest.mark.parametrize("speed", [1e-2, 1.0])
+def test_slowly_driven_coulomb_friction_follows_the_speed(speed):
+    force = path(0, 8, 3, 5, points=400)
+    rate = np.append(0, np.diff(force)) / 1e-2
+    found = response(["lumped"], STAGE | {"lumped.dry": 0.3, "lumped.speed": speed}, force, dt=1e-2)
+    expected = force - 0.3 * np.tanh(rate / speed)
+    assert np.median(np.abs(found - expected)) < 1e-5
+
+
+def test_friction_and_a_bent_spring_are_in_one_equation():
+    """Slowly x + c x^3 + F = f, to first order where the friction turns, and without friction the spring alone."""
+    force, cubic = path(0, 8, -4, 6, points=400), 2e-3
+    x = moved(force, 1.0, cubic=cubic)
+    np.testing.assert_allclose(driving(x, 0.3, 0.2) + cubic * x**3, force, rtol=0, atol=2e-4)
+    alone = response(["lumped"], STAGE | {"lumped.cubic": cubic}, force, dt=1e-3)
+    np.testing.assert_allclose(moved(force, 1e-3, cubic=cubic, friction=0.0), alone, rtol=0, atol=1e-12)

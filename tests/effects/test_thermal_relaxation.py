@@ -113,3 +113,32 @@ def test_a_step_back_arrests_the_domains_of_a_ferroelectric():
     ]
     assert crept[0] > 0.5
     assert crept[1] < 0.15 * crept[0]
+
+
+@pytest.mark.parametrize("activation", [1e-9, 0.1, 0.5, 5.0])
+def test_activated_it_decays_as_the_differential_equation_says_in_a_hold(activation):
+    """tanh(a h / 2) fades exponentially, h being in volts."""
+    drive = np.append(path(0, 80, points=50), np.full(2000, 80))
+    held = memory(drive, activation=activation)[50:] / (0.4 * 0.08)
+    t = 0.01 * np.arange(held.size)
+    law = solve_ivp(
+        lambda t, h: -np.sinh(activation * h) / (activation * TAU), (0, t[-1]), held[:1], "LSODA", t, rtol=1e-10, atol=0
+    )
+    np.testing.assert_allclose(held, law.y[0], rtol=1e-6)
+
+
+def test_activated_it_is_logarithmic_in_time_while_much_is_left():
+    """h falls by 1 / a for each factor of e in time."""
+    drive = np.append(path(0, 80, points=50), np.full(4000, 80))
+    held = memory(drive, activation=3.0)[50:] / (0.4 * 0.08)
+    assert held[40] - held[400] == pytest.approx(np.log(10) / 3, rel=0.05)
+
+
+def test_it_relaxes_by_branch_and_activated_at_once():
+    drive = np.append(path(0, 80, 20, points=50), np.full(100, 20.0))
+    by_branch = {"beta_4": 0.01, "beta_2": 0.0, "beta_3": 0.0, "beta_5": 0.0, "beta_6": 0.0, "centre": 0.0}
+    found = memory(drive, activation=0.5, **by_branch)
+    assert np.abs(found[:101] - memory(drive, activation=0.5)[:101]).max() > 1e-2
+    held = found[100:] / (0.4 * 0.08)
+    left = 2 * np.arctanh(np.tanh(held[0] / 4) * np.exp(-0.01 * np.arange(101) / TAU)) / 0.5
+    np.testing.assert_allclose(held, left, rtol=1e-9)

@@ -157,14 +157,20 @@ def operator(block, coefficients, terms, signal, prompt):
     """Only `exact`, in every sample. A factor on what drives h is one on h itself, as long as it is the same."""
     shared, along, against = coefficients
     (h,), before, result = block.start(signal[0]), signal[0], []
+    quadrant = getattr(block, "quadrant", None)
     for u, v in zip(signal, prompt, strict=True):
         sign, distance = 1.0 if u >= before else -1.0, abs(u - before)
-        up = block.lift(distance, (u + before) / 2, sign, *terms) if terms else 1.0
+        middle = (u + before) / 2
+        on = [
+            block.quadrant(way, rate, distance, middle, sign, *shared) if quadrant else regime
+            for way, rate, regime in ((1.0, along[0], along), (-1.0, against[0], against))
+        ]
+        up = block.lift(distance, middle, sign, *terms) if terms else 1.0
         try:
-            h, before = sign * up * block.exact(sign * h / up, distance, along, against), u
+            h, before = sign * up * block.exact(sign * h / up, distance, *on), u
         except OverflowError:
             h = math.nan
-        h *= block.fade(*terms) if terms else 1.0
+        h *= block.fade(h, *terms) if terms else 1.0
         result.append(block.output(h, v, *shared))
     return np.array(result)
 

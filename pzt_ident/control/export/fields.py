@@ -65,7 +65,7 @@ class Fields:
         if issubclass(block, Operator):
             shared, regime = argument_names(block.output)[2:], argument_names(block.travel)[1:]  # type: ignore[attr-defined]
             sides = [f"{word}_{side}" for side in ("along", "against") for word in regime]
-            terms = argument_names(block.fade)[: layout.terms] if layout.terms else ()  # type: ignore[attr-defined]
+            terms = argument_names(block.lift)[3 : 3 + layout.terms] if layout.terms else ()  # type: ignore[attr-defined]
             words = unique(["h", *shared, *sides, *terms, *WORK["operator"]])
             return words[:1], words[1 : 1 + layout.coefficients], words[1 + layout.coefficients : -3]
         if issubclass(block, Shift):

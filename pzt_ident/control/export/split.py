@@ -21,10 +21,11 @@ class Split:
                 self.follow(statement)
 
     def follow(self, statement: ast.stmt) -> None:
-        """Words that depend on a signal."""
+        """Words that depend on a signal; in the first sample no coefficient does."""
         for node in ast.walk(statement):
             if isinstance(node, ast.Assign) and reads(node.value) & self.signals:
-                self.signals |= {word for target in node.targets for word in assigned([ast.Expr(target)])}
+                written = {word for target in node.targets for word in assigned([ast.Expr(target)])}
+                self.signals |= {word for word in written if not is_coefficient(word)}
 
     def init(self, body: Sequence[ast.stmt]) -> list[ast.stmt]:
         kept: list[ast.stmt] = []
@@ -79,3 +80,8 @@ def needed(early: Sequence[ast.stmt], late: Sequence[ast.stmt]) -> list[ast.stmt
             wanted |= reads(statement)
             again = [*needed(early, [statement]), statement, *again]
     return again
+
+
+def is_coefficient(word: str) -> bool:
+    """Whether a kernel calls a coefficient by this word."""
+    return word[0] in "ke" and word[1:].isdigit()

@@ -17,8 +17,8 @@ from pzt_ident.control.export.expressions import prefix_of
 from pzt_ident.control.export.fields import Fields, InFields
 from pzt_ident.control.export.lower import Library, Lowering
 from pzt_ident.control.export.special import Put, Special, Statements
-from pzt_ident.control.export.split import Split
-from pzt_ident.control.export.trees import Function, copied, loaded, number, reads
+from pzt_ident.control.export.split import Split, is_coefficient, is_fresh
+from pzt_ident.control.export.trees import Function, assigned, copied, loaded, number, reads
 from pzt_ident.engine.lanes import TEMPLATES, functions, layout_of, render, template_of
 from pzt_ident.model.block import Block
 
@@ -42,7 +42,8 @@ def kernel_of(library: Library, block: type[Block], variant: Any, word: str, lat
     tile = next(node for node in tree.body if isinstance(node, ast.FunctionDef))
     fields = Fields(block, layout, variant)
     special = Special({"n": number(1), "first": number(latest)}, tile, InFields(fields))
-    body = Kept(fields.short).block(special.block(tile.body))
+    body = special.block(tile.body)
+    body = Kept(fields.short - rewritten(body)).block(body)
     early, late = Split(body).init(body), Split(body).step(body)
     made = partial(lowered, library, functions(block), word)
     init, step = made(f"{word}_init", early), made(word, late)
@@ -64,6 +65,17 @@ class TileLowering(Lowering):
     def wish(self, node: ast.Call, source: Any) -> tuple[str, str]:
         assert isinstance(node.func, ast.Name)
         return f"{self.word}_{node.func.id}", prefix_of(source.__module__)
+
+
+def rewritten(body: Sequence[ast.stmt]) -> set[str]:
+    """Coefficients that get another value for a sample, which is not kept."""
+    found: set[str] = set()
+    for statement in body:
+        if isinstance(statement, ast.For) or (isinstance(statement, ast.If) and not is_fresh(statement)):
+            found |= rewritten(statement.body)
+        elif isinstance(statement, ast.Assign) and not isinstance(statement.value, ast.Attribute | ast.Subscript):
+            found |= {word for word in assigned([statement]) if is_coefficient(word)}
+    return found
 
 
 class Kept(Statements):

@@ -36,7 +36,7 @@ from pzt_ident.model.contract import try_functions
 TEMPLATES = Path(__file__).parent
 FUNCTIONS = (
     *("prepare", "start", "step", "output", "rests"),
-    *("travel", "near", "exact", "terms", "lift", "fade"),
+    *("travel", "near", "exact", "terms", "lift", "fade", "quadrant"),
     *("field", "coercive_field", "mass", "leave"),
 )
 
@@ -159,6 +159,7 @@ def render(text: str, block: type[Block], layout: Layout, variant: Variant) -> s
         GT=layout.given_terms,
         readout=variant.readout,
         rests=has_rests(block),
+        quadrant=getattr(block, "quadrant", None) is not None,
         block=block,
         rows=layout.rows,
         work=layout.rows - layout.work,

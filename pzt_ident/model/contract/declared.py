@@ -117,7 +117,8 @@ def check_parameters(block: Any) -> None:
             if getattr(item, fact) not in known:
                 message = f"unknown {fact} {getattr(item, fact)!r}"
                 raise fault(block, word, message, nearest(str(getattr(item, fact)), known))
-        if item.effect and item.null is None:
+        nulls = [other.null for other in parameters(block).values() if other.effect == item.effect]
+        if item.effect and all(null is None for null in nulls):
             raise fault(
                 block, word, "belongs to an effect, but has no null", "give the value at which it has no effect"
             )

@@ -18,9 +18,10 @@ KINDS = {
         "near": "further, keep, add, *along -> keep, add",
         "exact": "q, distance, (along), (against) -> q",
         "output": "h, u, *shared -> y",
+        "quadrant?": "way, rate, distance, u, sign, *shared -> *along",
         "terms?": "given -> *terms",
         "lift?": "distance, u, sign, *terms -> factor",
-        "fade?": "*terms -> share",
+        "fade?": "h, *terms -> share",
     },
     "bank": STEPPED
     | {

@@ -1,0 +1,184 @@
+"""The drive under which a stage follows a reference."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pzt_ident.api.arguments import Array, Signals, path_of, writable
+from pzt_ident.api.printed import html, table_text
+from pzt_ident.api.record import Record
+from pzt_ident.api.statement import uniform
+from pzt_ident.control.inverse import GAIN, Feedforward, Inverse
+from pzt_ident.control.limits import Limits
+from pzt_ident.control.notes import Notes
+from pzt_ident.data.notation import quantity
+from pzt_ident.data.units import factor, same_kind
+from pzt_ident.errors import InputError
+from pzt_ident.run.identified import Identified
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+AGAIN = 8  # times that a drive is made again for effects that depend on its own range
+
+
+@dataclass(frozen=True)
+class Drive:
+    """The drive of each axis for a reference, and what the model does under it, each (samples,) by axis in the units
+    of the data. error: displacement minus reference. notes: sentences on what this drive does not do."""
+
+    t: Array
+    drive: Mapping[str, Array]
+    reference: Mapping[str, Array]
+    displacement: Mapping[str, Array]
+    drive_units: Mapping[str, str]
+    units: Mapping[str, str]
+    notes: tuple[str, ...]
+
+    @property
+    def error(self) -> dict[str, Array]:
+        return {axis: self.displacement[axis] - reference for axis, reference in self.reference.items()}
+
+    @property
+    def rmse(self) -> dict[str, float]:
+        return {axis: float(np.sqrt(np.mean(error**2))) for axis, error in self.error.items()}
+
+    @property
+    def peak(self) -> dict[str, float]:
+        """The largest magnitude of the error."""
+        return {axis: float(np.abs(error).max()) for axis, error in self.error.items()}
+
+    def save(self, path: str | Path) -> Path:
+        """Write time and drive of each axis as CSV, to be played out."""
+        from pzt_ident.files import write_text
+
+        path = path_of(path, "save")
+        columns = {"time [s]": self.t} | {f"u_{a} [{self.drive_units[a]}]": u for a, u in self.drive.items()}
+        rows = zip(*(column.tolist() for column in columns.values()), strict=True)
+        with writable(path):
+            write_text(path, "\n".join([",".join(columns), *(",".join(map(repr, row)) for row in rows)]) + "\n")
+        return path
+
+    def plot(self, width: float = 180) -> Figure:
+        """Reference, drive and error of each axis over time. width: mm."""
+        from pzt_ident.report.control_figures import drive_figure
+
+        return drive_figure(self, width)
+
+    def __str__(self) -> str:
+        return "\n".join([table_text(*self._table()), *(f"note: {note}" for note in self.notes)])
+
+    __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        return html("; ".join(self.notes), *self._table())
+
+    def _table(self) -> tuple[list[str], list[list[str]]]:
+        rows = []
+        for axis, u in self.drive.items():
+            ends = (quantity(float(end), self.drive_units[axis]) for end in (u.min(), u.max()))
+            errors = (quantity(error[axis], self.units[axis]) for error in (self.rmse, self.peak))
+            rows.append([axis, " to ".join(ends), *errors])
+        return ["axis", "drive", "RMSE, predicted", "largest error"], rows
+
+
+def drive(
+    identified: Identified,
+    t: ArrayLike | str | Record,
+    reference: Signals | None = None,
+    *,
+    limits: tuple[float, float] | None = None,
+    slew: float | None = None,
+    decoupled: bool = True,
+    noise_gain: float = GAIN,
+) -> Drive:
+    """The drive under which a stage follows a reference, and what the model says will be left.
+
+    t, reference: as a `Record` has time and drive, the displacement of each measured axis in the unit of its data, and
+    the drive of one that is not measured, zero unless given; or t is a `Record` of these. The stage is at rest at the
+    first sample. limits, slew: lowest and highest drive,
+    and its largest change in a second, in the units of the drive; those of the job unless given. decoupled: make up for
+    what acts from axis to axis. noise_gain: the most by which dynamics are made up for, see `control.inverse`.
+
+    Raises InputError where the reference is in another unit, lacks an axis, or is not uniform in time.
+    """
+    if not noise_gain >= 1:
+        raise InputError(f"{noise_gain:g} is no noise gain", where="noise_gain", remedy="give 1 or more, such as 10")
+    wanted, dt, stamps = reference_of(identified, t, reference)
+    at_hand = limits_of(identified, limits, slew)
+    spans, peaks = identified.spans, identified.peaks
+    largest = float(identified.peaks.max())
+    for _ in range(AGAIN):
+        inverse = Inverse(identified.stage(dt, spans, peaks), largest, at_hand, noise_gain, decoupled)
+        found = inverse(wanted)
+        now = np.ptp(found.drive, axis=1), np.abs(found.drive).max(axis=1)
+        if not depends_on_range(identified) or np.allclose(now, (spans, peaks), rtol=1e-9):
+            break
+        spans, peaks = now
+    return in_units(identified, stamps, found, Notes(inverse, found, identified.records).sentences())
+
+
+def depends_on_range(identified: Identified) -> bool:
+    """Whether the model asks for the range of the drive of a record."""
+    return any({"span", "peak"} & set(block.arguments()) for block in identified.statement.problem.model.blocks)
+
+
+def in_units(identified: Identified, stamps: Array, found: Feedforward, notes: tuple[str, ...]) -> Drive:
+    like, model = identified.records[0], identified.statement.problem.model
+    drive_units = {model.axes[a]: like.drive_units[a] for a in model.measured}
+    units = like.units
+
+    def by_axis(signals: Array, units: Mapping[str, str]) -> dict[str, Array]:
+        return {model.axes[a]: signals[a] / factor(units[model.axes[a]]) for a in model.measured}
+
+    return Drive(
+        stamps,
+        by_axis(found.drive, drive_units),
+        by_axis(found.reference, units),
+        by_axis(found.displacement, units),
+        drive_units,
+        units,
+        notes,
+    )
+
+
+def reference_of(identified: Identified, t: Any, reference: Signals | None) -> tuple[Array, float, Array]:
+    """The reference of every axis (axes, samples) in SI units, of one that is not measured its drive, zero unless
+    given; its sample time and its time stamps."""
+    model, units = identified.statement.problem.model, identified.inputs
+    known = ", ".join(f"{axis} in {unit}" for axis, unit in units.items())
+    for axis in t.axes if isinstance(t, Record) else reference if isinstance(reference, Mapping) else ():
+        if axis not in units:
+            raise InputError(f"axis {axis!r} is not in the result", where="reference", remedy=f"give {known}")
+    given = t if isinstance(t, Record) else Record(t, reference, drive=dict(units), name="reference")
+    for axis in given.axes:
+        if not same_kind(given.drive[axis], units[axis]):
+            message = f"axis {axis} is in {given.drive[axis]}, not in {units[axis]}"
+            raise InputError(message, where="reference", remedy=f"give it in a unit such as {units[axis]}")
+    for axis in identified.axes:
+        if axis not in given.axes:
+            raise InputError(f"axis {axis!r} is missing", where="reference", remedy=f"give {known}")
+    record = uniform(given.with_name(given.name or "reference"), given.axes)
+    wanted = np.zeros((len(model.axes), record.samples))
+    for place, axis in enumerate(record.axes):
+        wanted[model.axes.index(axis)] = record.drive[place]
+    return wanted, record.dt, record.time
+
+
+def limits_of(identified: Identified, limits: tuple[float, float] | None, slew: float | None) -> Limits:
+    """In SI units, of every axis; those of the job unless given."""
+    like, stated = identified.records[0], identified.statement.job.limits
+    low, high = limits or stated.drive or (-np.inf, np.inf)
+    fastest = slew if slew is not None else stated.slew or np.inf
+    if not fastest > 0:
+        raise InputError(f"{fastest:g} is no slew rate", where="slew", remedy="give drive units per second above zero")
+    if not low < high:
+        raise InputError(f"{low:g} to {high:g} are no limits", where="limits", remedy="give (lowest, highest)")
+    units = np.array([factor(unit) for unit in like.drive_units])
+    return Limits(np.outer(units, [low, high]), units * fastest)

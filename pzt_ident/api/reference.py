@@ -1,0 +1,52 @@
+"""The reference that a stage is to follow, from a file."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from pzt_ident.api.record import Record
+from pzt_ident.data.readers.open import open_table
+from pzt_ident.data.readers.table import Column
+from pzt_ident.data.record import Source
+from pzt_ident.errors import InputError
+from pzt_ident.run.identified import Identified
+
+TIME = re.compile(r"t|time|zeit|seconds?", re.IGNORECASE)
+
+
+def read_reference(path: Path, identified: Identified, rate: str | None = None) -> Record:
+    """The displacement that each axis is to follow: a column named like the axis, with a unit in its header, and a
+    column of time unless there is a rate. Of an axis that is not measured there may be a column of its drive.
+
+    Raises InputError where a column or a unit is missing.
+    """
+    columns = open_table(path, Source(str(path))).columns
+    time = next((column for column in columns if TIME.fullmatch(column.name)), None)
+    if time is None and rate is None:
+        remedy = "add a column `time [s]`, or give --rate"
+        raise InputError("has no column of time", where=str(path), remedy=remedy)
+    others = [column for column in columns if column is not time]
+    needed = {axis: unit for axis, unit in identified.inputs.items() if axis in identified.axes}
+    chosen = {axis: _column_of(axis, others, needed, path) for axis in needed}
+    driven = {axis: _named(axis, others) for axis in identified.inputs if axis not in needed}
+    chosen |= {axis: found[0].header for axis, found in driven.items() if found}
+    stamps = None if rate else time.header if time else None
+    return Record.read(path, drive=chosen, time=stamps, sample_rate=rate, name=path.stem)
+
+
+def _column_of(axis: str, columns: Sequence[Column], units: Mapping[str, str], path: Path) -> str:
+    found = _named(axis, columns) or (list(columns) if len(columns) == len(units) == 1 else [])
+    header = f"`{axis} [{units[axis]}]`"
+    if not found:
+        known = ", ".join(repr(column.header) for column in columns) or "nothing else"
+        raise InputError(f"has no column for axis {axis}, but {known}", where=str(path), remedy=f"name it {header}")
+    if found[0].unit is None:
+        remedy = f"write {header} into its header"
+        raise InputError(f"column {found[0].header!r} has no unit", where=str(path), remedy=remedy)
+    return found[0].header
+
+
+def _named(axis: str, columns: Sequence[Column]) -> list[Column]:
+    return [c for c in columns if re.fullmatch(rf"{axis}|{axis}[_ ].*|.*[_ ]{axis}", c.name, re.IGNORECASE)]

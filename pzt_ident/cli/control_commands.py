@@ -1,0 +1,110 @@
+"""The commands that put an identified model to work."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from pzt_ident.cli.options import EXISTING, Command, answer, output_options, plugins_flag
+
+if TYPE_CHECKING:
+    from pzt_ident.api.drive import Drive
+
+
+class Ends(click.ParamType):
+    """Lowest and highest value: `-20:150`."""
+
+    name = "low:high"
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> tuple[float, float]:
+        low, _, high = str(value).partition(":")
+        try:
+            return float(low), float(high)
+        except ValueError:
+            self.fail(f"{value!r} is no range: write it as -20:150", param, ctx)
+
+
+class Quantity(click.ParamType):
+    """A number with a unit of a kind, in SI units: `50 mA`, `1.8uF`."""
+
+    name = "quantity"
+
+    def __init__(self, unit: str) -> None:
+        self.unit = unit
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> float:
+        from pzt_ident.api.arguments import quantity_of
+
+        found = quantity_of(str(value), self.unit)
+        if found is None or not found > 0:
+            self.fail(f"{value!r} is no quantity above zero: write it in {self.unit}", param, ctx)
+        return found
+
+
+def reference_options(command: Command) -> Command:
+    """RESULT, --reference and what the amplifier can do."""
+    options: list[Any] = [
+        click.option("--reference", type=EXISTING, required=True, help="File with the displacement to follow."),
+        click.option("--rate", help="Sample rate of a reference without a column of time, such as 10kHz."),
+        click.option("--limits", type=Ends(), help="Lowest and highest drive, such as -20:150; those of the job."),
+        click.option("--slew", type=float, help="Largest change of the drive in a second; that of the job."),
+        click.option("--current", type=Quantity("A"), help="Of the amplifier, such as 50mA; needs --capacitance."),
+        click.option("--capacitance", type=Quantity("F"), help="Of the actuator, such as 1.8uF."),
+        click.option("--noise-gain", type=click.FloatRange(min=1), default=10.0, show_default=True, help=GAIN),
+        click.option("--as-given", is_flag=True, help="Of an improvement take the model that it started from."),
+        click.option("--coupled", is_flag=True, help="Do not make up for what acts from axis to axis."),
+    ]
+    for option in reversed([click.argument("result", type=EXISTING), *options]):
+        command = option(command)
+    return plugins_flag(output_options(command))
+
+
+GAIN = "The most by which dynamics are made up for, over their static gain."
+
+
+@click.command()
+@reference_options
+@click.option("-o", "--out", type=EXISTING, required=True, help="The drive, as CSV.")
+def drive(result: Path, out: Path, as_json: bool, quiet: bool, **options: Any) -> None:
+    """Write the drive under which the stage of a folder RESULT follows a reference."""
+    found = made(result, **options)
+    found.save(out)
+    answer(facts_of(found) | {"file": str(out)}, lambda: click.echo(f"{found}\nwrote {out}"), as_json, quiet)
+
+
+def made(
+    result: Path, plugins: bool, reference: Path, rate: str | None, as_given: bool = False, **options: Any
+) -> Drive:
+    from pzt_ident.api.drive import drive
+    from pzt_ident.api.reference import read_reference
+    from pzt_ident.run.identified import read_identified
+
+    identified = read_identified(result, plugins, as_given)
+    record = read_reference(reference, identified, rate)
+    return drive(identified, record, **amplifier(**options))
+
+
+def amplifier(
+    current: float | None, capacitance: float | None, slew: float | None, coupled: bool, **options: Any
+) -> dict[str, Any]:
+    """The options of `api.drive`; a current through a capacitance limits the slew rate."""
+    from pzt_ident.errors import InputError
+
+    if (current is None) != (capacitance is None):
+        missing, given = ("--capacitance", "--current") if current else ("--current", "--capacitance")
+        raise InputError(f"{given} limits nothing alone", where=given, remedy=f"give {missing} too")
+    rates = [rate for rate in (slew, current and current / (capacitance or 1)) if rate]
+    return {**options, "decoupled": not coupled, "slew": min(rates, default=None)}
+
+
+def facts_of(found: Drive) -> dict[str, Any]:
+    return {
+        "units": dict(found.units),
+        "drive_units": dict(found.drive_units),
+        "rmse": found.rmse,
+        "peak": found.peak,
+        "drive": {axis: [float(u.min()), float(u.max())] for axis, u in found.drive.items()},
+        "notes": list(found.notes),
+    }

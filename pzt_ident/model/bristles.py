@@ -1,0 +1,51 @@
+"""Laws of friction under a spring, stepped implicitly: bristles that bend, then slide (LuGre), and Coulomb's."""
+
+from pzt_ident.model.elementary import expm1, log1p
+
+
+def rub(friction, pull, force, reach, stiction, fast, share):
+    """Friction F after a step dx, the root of dx + share (F(dx) - F) = pull, pull being dx if F stayed as it was.
+
+    dF/dx = (g - F sgn dx) / (reach g / force), g = force (1 + stiction exp(-(v / stribeck)^2)), v = pull / dt and
+    fast = 1 / (stribeck dt). A monotone step of |dx| = d r, r = reach g / force, changes q = F sgn dx to
+    g - (g - q) exp(-d), so that d is the root of d + share (g - q) / r (1 - exp(-d)) = |pull| / r.
+    """
+    sign = 1.0 if pull >= 0 else -1.0
+    move = abs(pull)
+    level = 1 + stiction * (1 + expm1(-move * fast * move * fast))
+    push = move / (reach * level)
+    gap = force / reach - sign * friction / (reach * level)
+    slack = share * gap
+    above = 1 + max(slack - push, 0.0)
+    d = max(push - slack, log1p(max(min(push, slack), 0.0) / above))
+    d = halley_step(halley_step(halley_step(d, slack, push), slack, push), slack, push)
+    return sign * level * (force + reach * gap * -(1 + expm1(-d)))
+
+
+def halley_step(d, slack, push):
+    """Halley's step for d + slack (1 - exp(-d)) = push: after three the error is rounding for slack <= 1000."""
+    bent = expm1(-d)
+    stiff = slack * (1 + bent)
+    value, slope = d - slack * bent - push, 1 + stiff
+    return d - value * slope / (slope * slope + value * stiff / 2)
+
+
+def slide(load, pull):
+    """tanh(y) at the root of y + load tanh(y) = pull: Coulomb's law over the speed y, in units of its smoothing."""
+    push = abs(pull)
+    y = max(push - load, log1p(2 * min(push, load) / (1 + max(load - push, 0.0))) / 2)
+    y = coulomb_step(coulomb_step(coulomb_step(coulomb_step(y, load, push), load, push), load, push), load, push)
+    return tanh(y) if pull >= 0 else -tanh(y)
+
+
+def coulomb_step(y, load, push):
+    """Halley's step for y + load tanh(y) = push: after four the error is rounding for load <= 1000."""
+    grown = tanh(y)
+    stiff = load * (1 - grown) * (1 + grown)
+    value, slope = y + load * grown - push, 1 + stiff
+    return y - value * slope / (slope * slope + value * stiff * grown)
+
+
+def tanh(y):
+    grown = expm1(2 * min(y, 20.0))
+    return grown / (grown + 2)
