@@ -119,7 +119,7 @@ class Fitted:
         """Model minus measurement of each record, in the units of its axes: (samples,), of several axes
         (samples, axes)."""
         return {
-            record.name: _columns(error, list(record.units.values()))
+            record.name: columns(error, list(record.units.values()))
             for record, error in self.statement.problem.errors(self.point)
         }
 
@@ -149,7 +149,7 @@ class Fitted:
         """
         record = drive_record(t, u, self.statement.records[0])
         theta = self.statement.problem.parameters(self.point)
-        return _columns(simulate(self.statement.problem.model, record, theta)[0], [*record.units.values()])
+        return columns(simulate(self.statement.problem.model, record, theta)[0], [*record.units.values()])
 
 
 def _parameter(name: str, item: Mapping[str, Any]) -> Parameter:
@@ -165,7 +165,7 @@ def _parameter(name: str, item: Mapping[str, Any]) -> Parameter:
     )
 
 
-def _columns(signals: Array, units: Sequence[str]) -> Array:
+def columns(signals: Array, units: Sequence[str]) -> Array:
     """(axes, samples) in SI units as (samples, axes) in the user's, (samples,) of one axis."""
     columns = np.array([row / factor(unit) for row, unit in zip(signals, units, strict=True)]).T
     return columns[:, 0] if len(units) == 1 else columns

@@ -127,3 +127,22 @@ def facts_of(found: Drive) -> dict[str, Any]:
         "drive": {axis: [float(u.min()), float(u.max())] for axis, u in found.drive.items()},
         "notes": list(found.notes),
     }
+
+
+@click.command()
+@click.argument("result", type=EXISTING)
+@click.option("--to", "to", required=True, help="What to write: c, fmu, matlab, csv or json.")
+@click.option("--out", type=EXISTING, required=True, help="Folder for the files.")
+@click.option("--precision", default="double", help="Of the C: double, the default, or float.")
+@click.option("--rate", help="Sample rate of the controller, such as 10kHz; that of the records if not given.")
+@plugins_flag
+@output_options
+def export(
+    result: Path, to: str, out: Path, precision: str, rate: str | None, plugins: bool, as_json: bool, quiet: bool
+) -> None:
+    """Write an identified model for other programs: RESULT is a folder of results, or an exported JSON."""
+    from pzt_ident.api.results import identified_in
+    from pzt_ident.api.simulation import written
+
+    files = [str(path) for path in written(identified_in(result, plugins), out, to, precision, rate)]
+    answer({"files": files}, lambda: click.echo("\n".join(f"wrote {file}" for file in files)), as_json, quiet)
