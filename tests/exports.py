@@ -9,13 +9,20 @@ import pytest
 
 from contracts.test_blocks import SPAN, waves
 from pzt_ident.control.export import c
-from pzt_ident.control.export.identified import Identified
+from pzt_ident.control.identified import Identified
 from rig import candidates, model
 
 COMPILER = shutil.which("gcc") or shutil.which("cc")
 needs_compiler = pytest.mark.skipif(not COMPILER, reason="no C compiler is installed")
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-fsanitize=address,undefined",
           "-fno-sanitize-recover=all"]  # fmt: skip
+
+LONG = [
+    "delay amplifier_lag quadratic_gain distributed_memory bouc_wen asymmetry rate_dependence creep lumped resonance",
+    "slew_limit bouc_wen saturation friction cross_coupling lumped kinematic_coupling encoder_cyclic_error",
+    "amplitude_gain:running homogenized_energy thermal_relaxation creep:elements cross_coupling modal",
+    "delay bouc_wen_oscillator drift",
+]
 
 
 def identified(words, seed=1, dt=1e-4, name="stage", units=("V", "um"), unmeasured=False):
@@ -28,7 +35,7 @@ def identified(words, seed=1, dt=1e-4, name="stage", units=("V", "um"), unmeasur
     ends = np.array([[drive.min(), drive.max()] for drive in (waves(seed + axis, 150) for axis in axes)])
     responses = tuple(units[1] if axis in chain.measured else None for axis in axes)
     blank = ("1",) * len(chain.entries), (None,) * len(chain.entries)
-    return Identified(name, chain, theta, *blank, dt, ends, (units[0],) * len(axes), responses)
+    return Identified(name, chain, theta, *blank, dt, ends, (units[0],) * len(axes), responses, (1.0,) * len(axes))
 
 
 def is_tame(one):

@@ -9,8 +9,8 @@ import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from pzt_ident.api.results import identified_in
 from pzt_ident.control.export import export
+from pzt_ident.run.identified import read_identified
 
 LOOP = """
 #include "{word}.h"
@@ -39,7 +39,7 @@ int main(int count, char **words)
 
 def measure(result: Path, precision: str) -> tuple[float, float | None]:
     """ns and instructions a step, of the model in a result."""
-    one = identified_in(result)
+    one = read_identified(result)
     with TemporaryDirectory() as scratch:
         folder = Path(scratch)
         export(one, folder, "c", precision)

@@ -14,13 +14,13 @@ from pzt_ident.api.arguments import Array, Signals, path_of, writable
 from pzt_ident.api.printed import html, table_text
 from pzt_ident.api.record import Record
 from pzt_ident.api.statement import uniform
+from pzt_ident.control.identified import Identified
 from pzt_ident.control.inverse import GAIN, Feedforward, Inverse
 from pzt_ident.control.limits import Limits
 from pzt_ident.control.notes import Notes
 from pzt_ident.data.notation import quantity
 from pzt_ident.data.units import factor, same_kind
 from pzt_ident.errors import InputError
-from pzt_ident.run.identified import Identified
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -121,18 +121,18 @@ def drive(
         if not depends_on_range(identified) or np.allclose(now, (spans, peaks), rtol=1e-9):
             break
         spans, peaks = now
-    return in_units(identified, stamps, found, Notes(inverse, found, identified.records).sentences())
+    return in_units(identified, stamps, found, Notes(inverse, found, identified).sentences())
 
 
 def depends_on_range(identified: Identified) -> bool:
     """Whether the model asks for the range of the drive of a record."""
-    return any({"span", "peak"} & set(block.arguments()) for block in identified.statement.problem.model.blocks)
+    return any({"span", "peak"} & set(block.arguments()) for block in identified.chain.blocks)
 
 
 def in_units(identified: Identified, stamps: Array, found: Feedforward, notes: tuple[str, ...]) -> Drive:
-    like, model = identified.records[0], identified.statement.problem.model
-    drive_units = {model.axes[a]: like.drive_units[a] for a in model.measured}
-    units = like.units
+    model = identified.chain
+    drive_units = {model.axes[a]: identified.drive_units[a] for a in model.measured}
+    units = {axis: identified.inputs[axis] for axis in identified.axes}
 
     def by_axis(signals: Array, units: Mapping[str, str]) -> dict[str, Array]:
         return {model.axes[a]: signals[a] / factor(units[model.axes[a]]) for a in model.measured}
@@ -151,7 +151,7 @@ def in_units(identified: Identified, stamps: Array, found: Feedforward, notes: t
 def reference_of(identified: Identified, t: Any, reference: Signals | None) -> tuple[Array, float, Array]:
     """The reference of every axis (axes, samples) in SI units, of one that is not measured its drive, zero unless
     given; its sample time and its time stamps."""
-    model, units = identified.statement.problem.model, identified.inputs
+    model, units = identified.chain, identified.inputs
     known = ", ".join(f"{axis} in {unit}" for axis, unit in units.items())
     for axis in t.axes if isinstance(t, Record) else reference if isinstance(reference, Mapping) else ():
         if axis not in units:
@@ -173,12 +173,12 @@ def reference_of(identified: Identified, t: Any, reference: Signals | None) -> t
 
 def limits_of(identified: Identified, limits: tuple[float, float] | None, slew: float | None) -> Limits:
     """In SI units, of every axis; those of the job unless given."""
-    like, stated = identified.records[0], identified.statement.job.limits
-    low, high = limits or stated.drive or (-np.inf, np.inf)
-    fastest = slew if slew is not None else stated.slew or np.inf
+    stated, stated_slew = identified.limits
+    low, high = limits or stated or (-np.inf, np.inf)
+    fastest = slew if slew is not None else stated_slew or np.inf
     if not fastest > 0:
         raise InputError(f"{fastest:g} is no slew rate", where="slew", remedy="give drive units per second above zero")
     if not low < high:
         raise InputError(f"{low:g} to {high:g} are no limits", where="limits", remedy="give (lowest, highest)")
-    units = np.array([factor(unit) for unit in like.drive_units])
+    units = np.array([factor(unit) for unit in identified.drive_units])
     return Limits(np.outer(units, [low, high]), units * fastest)

@@ -14,12 +14,12 @@ from pzt_ident.api.arguments import Signals
 from pzt_ident.api.model import Model
 from pzt_ident.api.record import Record
 from pzt_ident.api.statement import drive_record
+from pzt_ident.control.identified import Identified
 from pzt_ident.data.noise import units_and_floors
 from pzt_ident.data.units import factor
 from pzt_ident.engine.simulator import simulate
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.run.checkpoint import Checkpoint
-from pzt_ident.run.identified import Identified
 from pzt_ident.run.statement import Statement
 from pzt_ident.search.uncertainty import covariance
 
@@ -126,8 +126,10 @@ class Fitted:
     @property
     def identified(self) -> Identified:
         """What control and export start from."""
+        from pzt_ident.run.identified import of_statement
+
         errors = {name: item.stderr for name, item in self.parameters.items()}
-        return Identified(self.statement, self.statement.problem.parameters(self.point)[0], errors)
+        return of_statement(self.statement, self.statement.problem.parameters(self.point)[0], errors, self.rmse)
 
     def drive(self, t: ArrayLike | str | Record, reference: Signals | None = None, **options: Any) -> Drive:
         """The drive under which the stage follows a reference; see `pzt_ident.api.drive.drive`."""

@@ -7,11 +7,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from pzt_ident.api.record import Record
+from pzt_ident.control.identified import Identified
 from pzt_ident.data.readers.open import open_table
 from pzt_ident.data.readers.table import Column
 from pzt_ident.data.record import Source
 from pzt_ident.errors import InputError
-from pzt_ident.run.identified import Identified
 
 TIME = re.compile(r"t|time|zeit|seconds?", re.IGNORECASE)
 

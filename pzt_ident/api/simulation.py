@@ -9,16 +9,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pzt_ident.api.arguments import Signals, path_of, writable
-from pzt_ident.api.exporting import blank_record, of_fit, of_json, sample_time
+from pzt_ident.api.arguments import Signals, path_of, rate_or_stamps, writable
 from pzt_ident.api.fitted import Parameter, Parameters, columns
 from pzt_ident.api.printed import table_text
 from pzt_ident.api.record import Record
 from pzt_ident.api.statement import drive_record
 from pzt_ident.control.export import export
-from pzt_ident.control.export.identified import Identified
+from pzt_ident.control.identified import Identified
 from pzt_ident.data.notation import unit, with_error
+from pzt_ident.data.record import Record as Signal
 from pzt_ident.engine.simulator import simulate
+from pzt_ident.errors import InputError
+from pzt_ident.run.identified import of_json
 
 
 class Simulation:
@@ -64,7 +66,7 @@ def load_json(path: str | Path) -> Simulation:
 
 
 def export_fit(fit: Any, folder: str | Path, to: str, precision: str, rate: Any) -> list[Path]:
-    return written(of_fit(fit), folder, to, precision, rate)
+    return written(fit.identified, folder, to, precision, rate)
 
 
 def written(identified: Identified, folder: str | Path, to: str, precision: str, rate: Any) -> list[Path]:
@@ -73,3 +75,26 @@ def written(identified: Identified, folder: str | Path, to: str, precision: str,
     chosen = identified if rate is None else replace(identified, dt=sample_time(rate))
     with writable(folder):
         return export(chosen, folder, to, precision)
+
+
+def sample_time(rate: str | float) -> float:
+    """s, of a rate such as `10kHz`. Raises InputError for what is no rate."""
+    hertz = rate_or_stamps(rate, "rate")[0]
+    if hertz is None:
+        raise InputError(f"{rate!r} is no sample rate", where="rate", remedy="give text such as '10kHz'")
+    return 1 / hertz
+
+
+def blank_record(identified: Identified) -> Signal:
+    """A record with the axes and units of a model, and nothing measured."""
+    drive = np.zeros((len(identified.drive_units), 1))
+    return Signal(
+        identified.name,
+        "validate",
+        identified.dt,
+        drive,
+        np.full(drive.shape, np.nan),
+        axes=identified.chain.axes,
+        drive_units=identified.drive_units,
+        response_units=identified.response_units,
+    )

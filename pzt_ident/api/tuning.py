@@ -11,6 +11,7 @@ import numpy as np
 from pzt_ident.api.arguments import rate_or_stamps
 from pzt_ident.api.printed import html, table_text
 from pzt_ident.control.continuous import routh_damping
+from pzt_ident.control.identified import Identified
 from pzt_ident.control.plant import plant_of
 from pzt_ident.control.stage import MECHANICS
 from pzt_ident.control.tuning import Loop
@@ -18,7 +19,6 @@ from pzt_ident.control.tuning import tune as tuned
 from pzt_ident.data.notation import number, quantity
 from pzt_ident.data.units import factor
 from pzt_ident.errors import InputError
-from pzt_ident.run.identified import Identified
 
 STEPS = 256, 2**15  # of the stage in a sample of the controller, least and most
 FINE = 4e-6  # s, of a step, by which resonances of a stage are followed
@@ -148,17 +148,15 @@ def tune(
 
 
 def _of(identified: Identified, axis: str, rate: float, delay: int, gain: float, phase: float) -> Gains:
-    model, like = identified.statement.problem.model, identified.records[0]
-    place = model.axes.index(axis)
-    drives = [record.drive[place] for record in identified.records]
-    span = min(float(u.min()) for u in drives), max(float(u.max()) for u in drives)
+    place = identified.chain.axes.index(axis)
+    low, high = identified.range[place].tolist()
     steps = int(np.clip(round(1 / (rate * FINE)), *STEPS))
-    plant = plant_of(sliding(identified).stage(1 / (rate * steps)), place, span, steps)
+    plant = plant_of(sliding(identified).stage(1 / (rate * steps)), place, (low, high), steps)
     try:
         loop = tuned(plant, delay, gain, phase)
     except InputError as error:
         raise InputError(error.message, where=f"axis {axis}", remedy=error.remedy) from None
-    drive, response = like.drive_units[place], like.units[axis]
+    drive, response = identified.drive_units[place], identified.inputs[axis]
     over = factor(response) / factor(drive)
     return Gains(
         loop.kp * over,
@@ -177,7 +175,7 @@ def _of(identified: Identified, axis: str, rate: float, delay: int, gain: float,
 def sliding(identified: Identified) -> Identified:
     """Without friction in its equation of motion, which for small motions is a spring."""
     theta = identified.theta.copy()
-    for column, entry in enumerate(identified.statement.problem.model.entries):
+    for column, entry in enumerate(identified.chain.entries):
         if (entry.parameter.effect or "").startswith("friction") and entry.parameter.null is not None:
             theta[column] = entry.parameter.null
     return replace(identified, theta=theta)
@@ -185,7 +183,7 @@ def sliding(identified: Identified) -> Identified:
 
 def _damping(identified: Identified, axis: str, loop: Loop) -> tuple[float | None, float | None]:
     """Of a model whose one block of mechanics is one mass on a spring."""
-    model = identified.statement.problem.model
+    model = identified.chain
     mechanics = [block for block in model.blocks if block.place in MECHANICS]
     values = dict(zip(model.names, identified.theta, strict=True))
     if [block.name for block in mechanics] != ["lumped"] or model.terms(mechanics[0]):

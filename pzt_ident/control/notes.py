@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.control.identified import Identified
 from pzt_ident.control.inverse import Feedforward, Inverse
 from pzt_ident.data.notation import listed, quantity, spelled
-from pzt_ident.data.record import Record
 from pzt_ident.data.units import factor
 from pzt_ident.model.block import Addition, Place
 
@@ -22,10 +22,10 @@ REACHED = 1e-6  # of the reference's range
 
 
 class Notes:
-    """Sentences on a drive for a reference, in the user's units. records: those of the identification."""
+    """Sentences on a drive for a reference, in the user's units."""
 
-    def __init__(self, inverse: Inverse, found: Feedforward, records: Sequence[Record]) -> None:
-        self.inverse, self.found, self.records = inverse, found, records
+    def __init__(self, inverse: Inverse, found: Feedforward, identified: Identified) -> None:
+        self.inverse, self.found, self.identified = inverse, found, identified
         self.model, self.dt = inverse.stage.model, inverse.stage.dt
 
     def sentences(self) -> tuple[str, ...]:
@@ -82,8 +82,7 @@ class Notes:
     def new(self) -> Iterator[str]:
         """What the identification did not see: larger drives, faster references."""
         for axis, name, unit in self._axes("drive_units"):
-            drives = np.concatenate([record.drive[axis] for record in self.records])
-            low, high = drives.min(), drives.max()
+            low, high = self.identified.range[axis]
             margin = (FURTHER - 1) * (high - low)
             drive = self.found.drive[axis]
             if drive.min() < low - margin or drive.max() > high + margin:
@@ -92,7 +91,7 @@ class Notes:
                     for a, b in ((low, high), (drive.min(), drive.max()))
                 )
                 yield spelled(f"{name}: the drive goes from {asked}, the model was identified from {seen}")
-            fastest = max(frequency(record.drive[axis], record.dt) for record in self.records)
+            fastest = self.identified.frequencies[axis]
             asked_for = frequency(self.found.reference[axis], self.dt)
             if asked_for > FASTER * fastest:
                 yield (
@@ -102,7 +101,7 @@ class Notes:
 
     def _axes(self, units: str) -> Iterator[tuple[int, str, str]]:
         for axis in self.model.measured:
-            yield axis, self.model.axes[axis], str(getattr(self.records[0], units)[axis])
+            yield axis, self.model.axes[axis], str(getattr(self.identified, units)[axis])
 
     def _times(self, where: NDArray[np.bool_]) -> str:
         """Stretches of time: from 0.2 s to 0.3 s."""

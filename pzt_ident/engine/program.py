@@ -62,6 +62,8 @@ class Program:
                     self._keep(number, axis)
                     self._append(block, axis)
         self._fill(self._fresh & set(model.measured), Place.SENSOR)
+        if not single:
+            self.steps  # noqa: B018  what cannot be compiled is refused before anything is simulated
 
     @cached_property
     def steps(self) -> list[tuple[int, ...]]:

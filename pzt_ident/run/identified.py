@@ -1,110 +1,141 @@
-"""The model that a folder of results holds, with its identified parameters: what control and export start from."""
+"""The identified model in a folder of results, or in an exported JSON: what control and export start from."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.control.stage import Stage
-from pzt_ident.data.record import Record
+from pzt_ident.control.export.tables import FORMAT
+from pzt_ident.control.identified import Identified
+from pzt_ident.control.notes import frequency
 from pzt_ident.data.units import factor
 from pzt_ident.errors import InputError
+from pzt_ident.job.chain import ChainParts
 from pzt_ident.job.schema import Job
+from pzt_ident.job.sections import Choice
 from pzt_ident.run.folder import check_unchanged, read_environment
 from pzt_ident.run.statement import Statement
 
 Array = NDArray[np.float64]
+Errors = Mapping[str, float | None]
+A_RESULT = "give the folder of a finished run or improvement, or the JSON of an export"
 
 
-@dataclass(frozen=True)
-class Identified:
-    """theta: all parameters of the model, SI units. errors: standard errors in the user's units, where they are known,
-    by the names of the parameters."""
+def read_identified(path: Path, plugins: bool = False, as_given: bool = False) -> Identified:
+    """The last model of a folder that `run`, `improve` or a saved fit wrote, or of an exported JSON; of an improvement
+    the first one if `as_given`.
 
-    statement: Statement
-    theta: Array
-    errors: Mapping[str, float | None]
-
-    @property
-    def records(self) -> list[Record]:
-        return [record for record in self.statement.records if record.use == "identify"]
-
-    @property
-    def axes(self) -> tuple[str, ...]:
-        """The measured axes, those that can follow a reference."""
-        model = self.statement.problem.model
-        return tuple(model.axes[axis] for axis in model.measured)
-
-    @property
-    def inputs(self) -> dict[str, str]:
-        """What control takes of each axis, by its unit: the displacement, or the drive where none is measured."""
-        like = self.records[0]
-        return {
-            axis: response or drive
-            for axis, response, drive in zip(like.axes, like.response_units, like.drive_units, strict=True)
-        }
-
-    @property
-    def peaks(self) -> Array:
-        """The largest magnitude of the drive of each axis in the identification records, SI units."""
-        return np.max([np.abs(record.drive).max(axis=1) for record in self.records], axis=0)
-
-    @property
-    def spans(self) -> Array:
-        """The largest peak-to-peak drive of each axis."""
-        return np.max([np.ptp(record.drive, axis=1) for record in self.records], axis=0)
-
-    def stage(self, dt: float, spans: Array | None = None, peaks: Array | None = None) -> Stage:
-        """The stage at a sample time, s; spans and peaks of its drive as in the identification unless given."""
-        spans, peaks = self.spans if spans is None else spans, self.peaks if peaks is None else peaks
-        return Stage(self.statement.problem.model, self.theta, dt, spans.tolist(), peaks.tolist())
-
-
-def read_identified(folder: Path, plugins: bool = False, as_given: bool = False) -> Identified:
-    """The last model of a folder that `run`, `improve` or a saved fit wrote; of an improvement the first one if
-    `as_given`.
-
-    Raises InputError where it holds none, or its data have changed.
+    Raises InputError where there is none, or its data have changed.
     """
-    begun = read_environment(folder)
-    improved = (folder / "improvement.json").exists()
-    best, name = _improved(folder, as_given) if improved else _best(folder)
-    home = folder if (folder / "data").is_dir() else Path(begun["job_folder"])
-    job = Job.from_text((folder / name).read_text(encoding="utf-8"), home, str(folder / name), plugins)
+    if path.is_file():
+        return of_json(path)
+    improved = (path / "improvement.json").is_file()
+    if not improved and not (path / "result.json").is_file():
+        raise InputError("holds no result", where=str(path), remedy=A_RESULT)
+    values, rmse, name = _improved(path, as_given) if improved else _best(path)
+    begun = read_environment(path)
+    home = path if (path / "data").is_dir() else Path(begun["job_folder"])
+    job = Job.from_text((path / name).read_text(encoding="utf-8"), home, str(path / name), plugins)
     statement = Statement(job)
     if not improved:
-        check_unchanged(job, statement.records, begun, folder)
-    return Identified(statement, _theta(statement, best), _errors(best))
+        check_unchanged(job, statement.records, begun, path)
+    errors = {name: item.get("standard_error") for name, item in values.items()}
+    return of_statement(statement, _theta(statement, values, path), errors, rmse)
 
 
-def _best(folder: Path) -> tuple[dict[str, Any], str]:
-    try:
-        best = json.loads((folder / "result.json").read_text(encoding="utf-8"))["best"]
-    except FileNotFoundError:
-        remedy = "give the folder of a finished `pzt-ident run` or `pzt-ident improve`"
-        raise InputError("holds no result", where=str(folder), remedy=remedy) from None
-    return best["parameters"] | best["fixed"], "job.yaml"
+Values = Mapping[str, Mapping[str, Any]]
 
 
-def _improved(folder: Path, as_given: bool) -> tuple[dict[str, Any], str]:
+def _best(folder: Path) -> tuple[Values, Errors, str]:
+    best = json.loads((folder / "result.json").read_text(encoding="utf-8"))["best"]
+    return best["parameters"] | best["fixed"], best["rmse"], "job.yaml"
+
+
+def _improved(folder: Path, as_given: bool) -> tuple[Values, Errors, str]:
     steps = json.loads((folder / "improvement.json").read_text(encoding="utf-8"))["steps"]
-    return (steps[0]["parameters"], "job.yaml") if as_given else (steps[-1]["parameters"], "improved.yaml")
+    step, name = (steps[0], "job.yaml") if as_given else (steps[-1], "improved.yaml")
+    return step["parameters"], step["rmse"], name
 
 
-def _theta(statement: Statement, values: Mapping[str, Any]) -> Array:
+def _theta(statement: Statement, values: Values, folder: Path) -> Array:
     problem = statement.problem
     theta = problem.theta.copy()
     for column, (name, unit) in enumerate(zip(problem.model.names, problem.all_units, strict=True)):
         if name in values:
             theta[column] = values[name]["value"] * factor(unit)
+    if unknown := [name for name, value in zip(problem.model.names, theta, strict=True) if np.isnan(value)]:
+        raise InputError(f"holds no value of {unknown[0]}", where=str(folder), remedy="run it again")
     return theta
 
 
-def _errors(values: Mapping[str, Any]) -> dict[str, float | None]:
-    return {name: item.get("standard_error") for name, item in values.items()}
+def of_statement(statement: Statement, theta: Array, errors: Errors, rmse: Errors) -> Identified:
+    """theta: SI units. errors: standard errors by name, in the user's units. rmse: by use."""
+    problem, records = statement.problem, [r for r in statement.records if r.use == "identify"]
+    stated, axes = statement.job.limits, range(len(problem.model.axes))
+    ends = np.array([[record.drive.min(axis=1), record.drive.max(axis=1)] for record in records])
+    told = ", ".join(f"{error:.3g} {statement.unit} {use}" for use, error in rmse.items() if error is not None)
+    return Identified(
+        statement.job.name,
+        problem.model,
+        theta,
+        tuple(problem.all_units),
+        tuple(errors.get(name) for name in problem.model.names),
+        min(record.dt for record in records),
+        np.array([ends[:, 0].min(axis=0), ends[:, 1].max(axis=0)]).T,
+        tuple(records[0].drive_units),
+        tuple(records[0].response_units),
+        tuple(max(frequency(record.drive[axis], record.dt) for record in records) for axis in axes),
+        (stated.drive, stated.slew),
+        f"RMSE: {told}.",
+        words_of(statement.job),
+    )
+
+
+def words_of(job: Job) -> dict[str, Any]:
+    """What makes the chain of a job again."""
+    model = [item if isinstance(item, str) else {"name": item.name, **item.settings} for item in job.model]
+    return {"model": model, "effects": list(job.effects), "shared": list(job.shared), "given": sorted(job.parameters)}
+
+
+def of_json(path: Path) -> Identified:
+    """Raises InputError for a file that is no export."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        content = {}
+    if not isinstance(content, dict) or content.get("format") != FORMAT:
+        raise InputError(f"is no {FORMAT!r}", where=str(path), remedy=A_RESULT)
+    axes, values, stated = content["axes"], content["parameters"], content["limits"]
+    measured = tuple(i for i, units in enumerate(axes.values()) if units["response"] is not None)
+    items = [item if isinstance(item, str) else choice(item) for item in (*content["model"], *content["effects"])]
+    shared, given = tuple(content["shared"]), frozenset(content["given"])
+    chain = ChainParts(tuple(items), tuple(axes), measured, shared, given).chain()
+    if set(chain.names) != set(values):
+        raise InputError("its parameters are not those of its blocks", where=str(path), remedy="export it again")
+    units = tuple(values[name]["unit"] for name in chain.names)
+    drives = tuple(units_["drive"] for units_ in axes.values())
+    sizes = np.array([[factor(unit)] for unit in drives])
+    return Identified(
+        content["name"],
+        chain,
+        np.array([values[name]["value"] * factor(unit) for name, unit in zip(chain.names, units, strict=True)]),
+        units,
+        tuple(values[name]["standard_error"] for name in chain.names),
+        content["sample_time"]["value"],
+        np.array([content["range"][axis] for axis in axes]) * sizes,
+        drives,
+        tuple(units_["response"] for units_ in axes.values()),
+        tuple(content["frequency"][axis] for axis in axes),
+        (None if stated["drive"] is None else tuple(stated["drive"]), stated["slew"]),
+        content["origin"],
+        {key: content[key] for key in ("model", "effects", "shared", "given")},
+    )
+
+
+def choice(item: Mapping[str, Any]) -> Choice:
+    return Choice(item["name"], {key: value for key, value in item.items() if key != "name"})

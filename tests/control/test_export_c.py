@@ -8,19 +8,13 @@ from hypothesis import HealthCheck, Phase, assume, given, settings
 from hypothesis import strategies as st
 
 from contracts.test_blocks import FORMS, HOSTS, IN_CHAIN, at
-from exports import compiled, identified, is_tame, needs_compiler
+from exports import LONG, compiled, identified, is_tame, needs_compiler
 from pzt_ident.control.export import c
 from pzt_ident.errors import InputError
 from pzt_ident.model.block import Block, Place
 from rig import model
 
 EVERY_KIND = [*IN_CHAIN, *FORMS, *map(" ".join, HOSTS)]
-LONG = [
-    "delay amplifier_lag quadratic_gain distributed_memory bouc_wen asymmetry rate_dependence creep lumped resonance",
-    "slew_limit bouc_wen saturation friction cross_coupling lumped kinematic_coupling encoder_cyclic_error",
-    "amplitude_gain:running homogenized_energy thermal_relaxation creep:elements cross_coupling modal",
-    "delay bouc_wen_oscillator drift",
-]
 CHOICES = [["", *map(str, at(place))] for place in Place]
 INVERTED = [
     "bouc_wen",

@@ -7,7 +7,7 @@ import pytest
 
 from exports import identified, needs_compiler
 from pzt_ident.control.export import fmu
-from pzt_ident.control.stage import EVERYTHING
+from pzt_ident.control.stage import EVERYTHING, Stage
 
 CHAINS = [
     "delay amplifier_lag bouc_wen creep lumped",
@@ -61,7 +61,7 @@ def test_parameters_of_the_fmu_are_those_of_the_model(tmp_path):
     found = simulated(written(one, tmp_path), one, drive, start_values={"bouc_wen.gain": 2 * one.value(at)})
     theta = one.theta.copy()
     theta[at] *= 2
-    stage = type(one.stage)(one.chain, theta, one.dt, [1.0], [1.0])
+    stage = Stage(one.chain, theta, one.dt, [1.0], [1.0])
     expected = stage.respond(drive, EVERYTHING)
     np.testing.assert_allclose(found[:, 1:], expected[:, : found.shape[1] - 1], atol=1e-9 * np.abs(response).max())
 

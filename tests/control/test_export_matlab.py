@@ -5,9 +5,9 @@ import subprocess
 
 import numpy as np
 import pytest
-from control.test_export_c import FORMS, HOSTS, LONG
 
-from exports import identified
+from contracts.test_blocks import FORMS, HOSTS
+from exports import LONG, identified
 from pzt_ident.control.export import matlab
 
 CHAINS = ["bouc_wen lumped", *FORMS[::4], *map(" ".join, HOSTS[::4]), *LONG]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from pzt_ident.control.export.identified import Identified
+from pzt_ident.control.identified import Identified
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.files import replaced
 

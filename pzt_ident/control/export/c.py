@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from pzt_ident.control.export.c_text import RESERVED, Text
-from pzt_ident.control.export.identified import Identified
 from pzt_ident.control.export.inverse import ROOTS, Exportable
 from pzt_ident.control.export.program import Exported, Given, Step, is_array
 from pzt_ident.control.export.tile import Kernel
 from pzt_ident.control.export.trees import reads
+from pzt_ident.control.identified import Identified
 from pzt_ident.engine import root
 from pzt_ident.errors import InputError
 from pzt_ident.model.block import TILES

@@ -15,7 +15,7 @@ from typing import Any
 from xml.sax.saxutils import quoteattr
 
 from pzt_ident.control.export.c import CModel
-from pzt_ident.control.export.identified import Identified
+from pzt_ident.control.identified import Identified
 from pzt_ident.data.units import dimension, factor
 from pzt_ident.errors import RunError
 

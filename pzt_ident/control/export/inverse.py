@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.control.export.identified import Identified
+from pzt_ident.control.identified import Identified
 from pzt_ident.control.inverse import RANGE, Inverse
 from pzt_ident.control.preview import Preview
 from pzt_ident.control.stage import MATERIAL
@@ -28,7 +28,7 @@ class Exportable:
         self.identified, self.refused = identified, "" if wanted else "it was not asked for"
         if not wanted:
             return
-        stage, size = identified.stage, float(np.abs(identified.range).max())
+        stage, size = identified.stage(), float(np.abs(identified.range).max())
         try:
             self.inverse = Inverse(stage, size)
         except InputError as error:
@@ -101,4 +101,4 @@ class Exportable:
 
     def operations(self) -> list[Any]:
         """The steps of the material."""
-        return self.identified.stage.operations(MATERIAL, self.inverse.without)
+        return self.identified.stage().operations(MATERIAL, self.inverse.without)

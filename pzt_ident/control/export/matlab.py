@@ -5,11 +5,11 @@ from __future__ import annotations
 import textwrap
 
 from pzt_ident.control.export.c import headline, notes, parameter_name
-from pzt_ident.control.export.identified import Identified
 from pzt_ident.control.export.matlab_text import RESERVED, MatlabText, word_of
 from pzt_ident.control.export.program import Exported, Given, Step, is_array
 from pzt_ident.control.export.tile import Kernel
 from pzt_ident.control.export.trees import reads
+from pzt_ident.control.identified import Identified
 from pzt_ident.model.block import TILES
 
 PICK = ["function value = pick(test, this, other)", "    if test", "        value = this;", "    else",

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from pzt_ident.control.export.identified import Identified
 from pzt_ident.control.export.lower import Library
 from pzt_ident.control.export.tile import Kernel, kernel_of
 from pzt_ident.control.export.trees import Function, indexed
+from pzt_ident.control.identified import Identified
 from pzt_ident.control.stage import EVERYTHING
 from pzt_ident.data.units import factor
 from pzt_ident.engine.program import Operation
@@ -46,7 +46,7 @@ class Exported:
     """`steps` in signal order, `kernels` by name."""
 
     def __init__(self, identified: Identified, reserved: set[str]) -> None:
-        self.identified, self.stage = identified, identified.stage
+        self.identified, self.stage = identified, identified.stage()
         self.library = Library(reserved)
         self.kernels: dict[tuple[object, ...], Kernel] = {}
         self.members: list[str] = []

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from pzt_ident.control.export.identified import Identified
+from pzt_ident.control.identified import Identified
 from pzt_ident.files import plain
 
 FORMAT = "pzt-ident model 1"
@@ -50,6 +50,8 @@ def json_files(identified: Identified) -> dict[str, str]:
         "axes": {axis: {"drive": drive, "response": response} for axis, drive, response in axes},
         "sample_time": {"value": identified.dt, "unit": "s"},
         "range": {axis: list(ends) for axis, ends in zip(identified.chain.axes, identified.ends, strict=True)},
+        "frequency": dict(zip(identified.chain.axes, identified.frequencies, strict=True)),
+        "limits": {"drive": identified.limits[0], "slew": identified.limits[1]},
         "parameters": {
             entry.name: {
                 "value": identified.value(i),

@@ -1,4 +1,4 @@
-"""An identified model with all that its export needs."""
+"""An identified model with all that control and export need: no records."""
 
 from __future__ import annotations
 
@@ -23,8 +23,10 @@ SAMPLES = 400  # of the test vector
 class Identified:
     """theta: (parameters,), SI units; units, errors: of each parameter, in the user's units, None where no standard
     error is known. dt: s. range: (axes, 2), the drives that it was identified with, SI units. response_units: None for
-    an axis that is not measured. origin: what it was identified from, in a sentence. words: what a job calls its
-    blocks, `model`, `effects`, `shared` and `given`."""
+    an axis that is not measured. frequencies: (axes,), the highest root-mean-square frequency of their drives, Hz.
+    limits: lowest and highest drive and its largest change in a second, as the job states them, None where it does not.
+    origin: what it was identified from, in a sentence. words: what a job calls its blocks, `model`, `effects`, `shared`
+    and `given`."""
 
     name: str
     chain: Chain
@@ -35,13 +37,36 @@ class Identified:
     range: Array
     drive_units: tuple[str, ...]
     response_units: tuple[str | None, ...]
+    frequencies: tuple[float, ...]
+    limits: tuple[tuple[float, float] | None, float | None] = (None, None)
     origin: str = ""
     words: Mapping[str, Any] = field(default_factory=dict)
 
-    @cached_property
-    def stage(self) -> Stage:
-        spans, peaks = np.ptp(self.range, axis=1), np.abs(self.range).max(axis=1)
-        return Stage(self.chain, self.theta, self.dt, spans, peaks)
+    @property
+    def spans(self) -> Array:
+        """The peak-to-peak drive of each axis in the identification."""
+        return np.ptp(self.range, axis=1)
+
+    @property
+    def peaks(self) -> Array:
+        """The largest magnitude of the drive of each axis in the identification."""
+        return np.abs(self.range).max(axis=1)
+
+    def stage(self, dt: float | None = None, spans: Array | None = None, peaks: Array | None = None) -> Stage:
+        """The stage at a sample time, s, by default that of the identification, as are spans and peaks of its drive."""
+        chosen = [self.spans if spans is None else spans, self.peaks if peaks is None else peaks]
+        return Stage(self.chain, self.theta, dt or self.dt, *(each.tolist() for each in chosen))
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """The measured axes, those that can follow a reference."""
+        return tuple(self.chain.axes[axis] for axis in self.outputs)
+
+    @property
+    def inputs(self) -> dict[str, str]:
+        """What control takes of each axis, by its unit: the displacement, or the drive where none is measured."""
+        units = zip(self.chain.axes, self.response_units, self.drive_units, strict=True)
+        return {axis: response or drive for axis, response, drive in units}
 
     @property
     def word(self) -> str:
@@ -83,7 +108,7 @@ class Identified:
         low, high = self.range.T[:, :, None]
         drive = low + (high - low) * np.clip(waves, 0, 1)
         with np.errstate(all="ignore"):
-            response = self.stage.respond(drive, EVERYTHING)[self.outputs]
+            response = self.stage().respond(drive, EVERYTHING)[self.outputs]
         drives = [row / self.scale(axis)[0] for axis, row in enumerate(drive)]
         responses = [row / self.scale(axis)[1] for axis, row in zip(self.outputs, response, strict=True)]
         return np.array(drives), np.array(responses)
