@@ -67,9 +67,10 @@ class Drive:
 
     def plot(self, width: float = 180) -> Figure:
         """Reference, drive and error of each axis over time. width: mm."""
-        from pzt_ident.report.control_figures import drive_figure
+        from pzt_ident.api.drawing import shown
+        from pzt_ident.report.control_figures import drive_plate
 
-        return drive_figure(self, width)
+        return shown(drive_plate(self), width)
 
     def __str__(self) -> str:
         return "\n".join([table_text(*self._table()), *(f"note: {note}" for note in self.notes)])

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from pzt_ident.api.drive import Drive
+    from pzt_ident.api.tracking import Comparison
     from pzt_ident.api.tuning import Tuning
 
 Array = NDArray[np.float64]
@@ -136,6 +137,12 @@ class Fitted:
         from pzt_ident.api.drive import drive
 
         return drive(self.identified, t, reference, **options)
+
+    def control(self, t: ArrayLike | str | Record, reference: Signals | None = None, **options: Any) -> Comparison:
+        """How well the stage follows a reference, in several ways; see `pzt_ident.api.tracking.control`."""
+        from pzt_ident.api.tracking import control
+
+        return control(self.identified, t, reference, **options)
 
     def tune(self, rate: float | str = 1000.0, delay: int = 1, **options: Any) -> Tuning:
         """PI gains for a controller of a sample rate and computing delay; see `pzt_ident.api.tuning.tune`."""

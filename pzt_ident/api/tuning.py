@@ -150,7 +150,7 @@ def tune(
 def _of(identified: Identified, axis: str, rate: float, delay: int, gain: float, phase: float) -> Gains:
     place = identified.chain.axes.index(axis)
     low, high = identified.range[place].tolist()
-    steps = int(np.clip(round(1 / (rate * FINE)), *STEPS))
+    steps = substeps(rate)
     plant = plant_of(sliding(identified).stage(1 / (rate * steps)), place, (low, high), steps)
     try:
         loop = tuned(plant, delay, gain, phase)
@@ -170,6 +170,11 @@ def _of(identified: Identified, axis: str, rate: float, delay: int, gain: float,
         f"{response}/{drive}",
         *_damping(identified, axis, loop),
     )
+
+
+def substeps(rate: float) -> int:
+    """Steps of the stage in a sample of the controller."""
+    return int(np.clip(round(1 / (rate * FINE)), *STEPS))
 
 
 def sliding(identified: Identified) -> Identified:

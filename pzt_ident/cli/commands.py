@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from pzt_ident.cli.control_commands import drive, export, tune
+from pzt_ident.cli.control_commands import control, drive, export, tune
 from pzt_ident.cli.first_commands import demo, init, workbench
 from pzt_ident.cli.options import (
     EXISTING,
@@ -276,5 +276,5 @@ def report(folders: tuple[Path, ...], out: Path | None, as_json: bool, quiet: bo
     answer({"reports": pages}, lambda: click.echo("\n".join(pages)), as_json, quiet)
 
 
-for command in (drive, tune, export, init, demo, workbench):
+for command in (control, drive, tune, export, init, demo, workbench):
     main.add_command(command)

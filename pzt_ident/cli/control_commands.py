@@ -76,6 +76,40 @@ def drive(result: Path, out: Path, as_json: bool, quiet: bool, **options: Any) -
 
 
 @click.command()
+@reference_options
+@click.option("--record", type=EXISTING, help="File with the displacement that the stage took, to be put beside.")
+@click.option("--delay", type=click.IntRange(min=0), default=1, show_default=True, help=LATE)
+@click.option("--count", type=click.FloatRange(min=0), default=0.0, help="Of the sensor, in the unit of the data.")
+@click.option("--kp", type=float, help="Proportional gain, drive per response; as `tune` finds it if not given.")
+@click.option("--ki", type=float, help="Integral gain, drive per response and second.")
+@click.option("--out", type=EXISTING, required=True, help="Folder for table, signals and figure.")
+def control(
+    result: Path,
+    out: Path,
+    plugins: bool,
+    reference: Path,
+    rate: str | None,
+    as_given: bool,
+    record: Path | None,
+    as_json: bool,
+    quiet: bool,
+    **options: Any,
+) -> None:
+    """Compare how well the stage of a folder RESULT follows a reference: in open loop, by its inverse, and with PI."""
+    from pzt_ident.api.reference import read_reference
+    from pzt_ident.api.tracking import control
+    from pzt_ident.run.identified import read_identified
+
+    identified = read_identified(result, plugins, as_given)
+    measured = read_reference(record, identified, rate) if record else None
+    loop = {word: options.pop(word) for word in ("delay", "count", "kp", "ki")}
+    wanted = read_reference(reference, identified, rate)
+    found = control(identified, wanted, measured=measured, **loop, **amplifier(**options))
+    found.save(out)
+    answer(found.facts | {"folder": str(out)}, lambda: click.echo(f"{found}\nwrote {out}"), as_json, quiet)
+
+
+@click.command()
 @click.argument("result", type=EXISTING)
 @click.option("--rate", required=True, help="Sample rate of the controller, such as 1kHz.")
 @click.option("--delay", type=click.IntRange(min=0), default=1, show_default=True, help=LATE)
