@@ -33,12 +33,12 @@ def run(seeds: str, effects: str, out: Path) -> None:
 @main.command()
 @click.option("--out", type=FOLDER, default=OUT, show_default=True)
 def table(out: Path) -> None:
-    """Print medians and ranges over the seeds, and draw tracking.svg."""
+    """Print medians and ranges over the seeds, and draw tracking.svg and tracking.png."""
     from experiments.missing_effect import figure
 
     rows = tracking.rows(out)
     click.echo(tracking.table(rows))
-    figure.draw(rows, out / "tracking.svg")
+    figure.draw(rows, out, out / "tracking.svg")
 
 
 if __name__ == "__main__":

@@ -90,7 +90,8 @@ def drive(folder: Path, way: str) -> Drive:
 
 
 def rows(out: Path) -> list[Row]:
-    return [json.loads(path.read_text(encoding="utf-8")) for path in sorted(out.glob("*/tracking.json"))]
+    found = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(out.glob("*/tracking.json"))]
+    return sorted(found, key=lambda row: EFFECTS.index(row["effect"]))
 
 
 def table(found: Sequence[Mapping[str, Any]]) -> str:
@@ -108,4 +109,4 @@ def table(found: Sequence[Mapping[str, Any]]) -> str:
 
 
 def spread(values: Sequence[float]) -> str:
-    return f"{median(values):.3g} ({min(values):.2g} to {max(values):.2g})"
+    return f"{median(values):.3g} ({min(values):.3g} to {max(values):.3g})"

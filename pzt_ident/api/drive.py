@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -98,6 +98,7 @@ def drive(
     slew: float | None = None,
     decoupled: bool = True,
     noise_gain: float = GAIN,
+    held: bool = False,
 ) -> Drive:
     """The drive under which a stage follows a reference, and what the model says will be left.
 
@@ -105,7 +106,9 @@ def drive(
     the drive of one that is not measured, zero unless given; or t is a `Record` of these. The stage is at rest at the
     first sample. limits, slew: lowest and highest drive,
     and its largest change in a second, in the units of the drive; those of the job unless given. decoupled: make up for
-    what acts from axis to axis. noise_gain: the most by which dynamics are made up for, see `control.inverse`.
+    what acts from axis to axis. noise_gain: the most by which dynamics are made up for, see `control.inverse`. held:
+    for a converter that holds each sample until the next one, which is late by half a sample; else the drive is linear
+    between its samples, and so it is in what the model says.
 
     Raises InputError where the reference is in another unit, lacks an axis, or is not uniform in time.
     """
@@ -122,7 +125,13 @@ def drive(
         if not depends_on_range(identified) or np.allclose(now, (spans, peaks), rtol=1e-9):
             break
         spans, peaks = now
-    return in_units(identified, stamps, found, Notes(inverse, found, identified).sentences())
+    notes = Notes(inverse, found, identified).sentences()
+    return in_units(identified, stamps, replace(found, drive=middles(found.drive)) if held else found, notes)
+
+
+def middles(drive: Array) -> Array:
+    """A drive (axes, samples) halfway to its next sample: held until then, it is not late."""
+    return (drive + np.hstack([drive[:, 1:], drive[:, -1:]])) / 2
 
 
 def depends_on_range(identified: Identified) -> bool:

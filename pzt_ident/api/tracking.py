@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pzt_ident.api.arguments import Array, Signals, path_of, writable
-from pzt_ident.api.drive import drive, limits_of, reference_of
+from pzt_ident.api.drive import drive, limits_of, middles, reference_of
 from pzt_ident.api.printed import html, table_text
 from pzt_ident.api.record import Record
 from pzt_ident.api.tuning import substeps, tune
@@ -194,12 +194,12 @@ class Following:
         self.count = count * factor(identified.inputs[identified.axes[0]])
 
     def ahead(self, drives: Mapping[str, Array]) -> Array:
-        """Drives of every axis in SI units, of one that is not measured as given."""
+        """Drives of every axis in SI units, to be held; of one that is not measured as given."""
         made = self.wanted.copy()
         for place, axis in enumerate(self.identified.chain.axes):
             if axis in drives:
                 made[place] = drives[axis] * factor(self.identified.drive_units[place])
-        return made
+        return middles(made)
 
     def line(self, drives: Mapping[str, Array]) -> Array:
         """The drive of an open loop: the reference over the slope of a line through displacement and drive."""
@@ -207,7 +207,7 @@ class Following:
         for place in self.identified.outputs:
             slope = np.polyfit(made[place], self.wanted[place], 1)[0] if np.ptp(made[place]) > 0 else 1.0
             made[place] = self.wanted[place] / slope
-        return self.limits.clip(made, self.dt)
+        return self.limits.clip(middles(made), self.dt)
 
     def gains(self, kp: float | None, ki: float | None) -> dict[str, tuple[float, float]]:
         if kp is not None and ki is not None:

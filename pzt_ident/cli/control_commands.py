@@ -67,6 +67,7 @@ GAIN = "The most by which dynamics are made up for, over their static gain."
 
 @click.command()
 @reference_options
+@click.option("--held", is_flag=True, help="For a converter that holds each sample: half a sample earlier.")
 @click.option("-o", "--out", type=EXISTING, required=True, help="The drive, as CSV.")
 def drive(result: Path, out: Path, as_json: bool, quiet: bool, **options: Any) -> None:
     """Write the drive under which the stage of a folder RESULT follows a reference."""

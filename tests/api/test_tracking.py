@@ -34,7 +34,7 @@ def test_each_way_is_better_than_the_one_before(two_axes):
         open_, alone, inverse, _ = (way.rmse[axis] for way in found.ways.values())
         assert open_ > alone > 5 * inverse
     left = -0.05 * REFERENCE[::-1]
-    assert np.abs(found.ways[ALONE].error["x"] - left).max() < 0.02 * np.abs(left).max()
+    assert np.abs(found.ways[ALONE].error["x"] - left).max() < 0.06 * np.abs(left).max()
 
 
 def test_spectrum_holds_the_whole_error(fit):
