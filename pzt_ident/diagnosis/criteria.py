@@ -11,8 +11,9 @@ CLEAR = 0.6  # noise floors: an effect removes at least this much, root mean squ
 LEAST_SHARE = 0.15  # and at least this much of the misfit
 DECISIVE = 0.5  # of the misfit: removing less is not yet the account of a model that stays above the noise
 NEAR = 1.5  # noise floors, up to which an error may be that of the floor itself
-VALIDATION_FACTOR = 3.0  # times the threshold that the validation records of an adequate model may be above the noise
+VALIDATION_FACTOR = 3.0  # times the tolerance that the validation records of an adequate model may be above the noise
 MODEL_FORM = 0.03  # of the initial misfit: less may as well be the form of the effects added as another effect
+MOST_FORM = 2.0  # noise floors: what a model leaves above this is not adequate, whatever there was before
 
 
 def removed_rms(before: float | None, after: float | None) -> float:
@@ -23,9 +24,14 @@ def removed_rms(before: float | None, after: float | None) -> float:
 
 
 def threshold(case: Case, first: Fit) -> float:
-    """The least that an effect must remove, root mean square, in units of the loss; a model no further above the noise
-    is adequate. `first` is the model before anything was added."""
+    """The least that an effect must remove, root mean square, in units of the loss. `first` is the model before
+    anything was added."""
     return max(CLEAR * case.floor, MODEL_FORM * squared_misfit(case, first) ** 0.5)
+
+
+def tolerance(case: Case, first: Fit) -> float:
+    """How far an adequate model may be above the noise, root mean square."""
+    return min(threshold(case, first), MOST_FORM * case.floor)
 
 
 def removes_enough(case: Case, first: Fit, before: Fit, after: Fit) -> bool:
@@ -40,13 +46,13 @@ def removes_enough(case: Case, first: Fit, before: Fit, after: Fit) -> bool:
 
 def not_in_validation(case: Case, first: Fit, before: Fit, after: Fit) -> bool:
     """Whether an effect explains all of the misfit, and the validation records are at the noise with it and without."""
-    noise = np.hypot(case.floor, threshold(case, first))
+    noise = np.hypot(case.floor, tolerance(case, first))
     return all(error is not None and error <= noise for error in (before.validate, after.validate, after.identify))
 
 
 def adequate(case: Case, first: Fit, fit: Fit) -> bool:
     """Whether a fit is at the noise of the identification records and close to that of the validation records."""
-    most = np.hypot(case.floor, VALIDATION_FACTOR * threshold(case, first))
+    most = np.hypot(case.floor, VALIDATION_FACTOR * tolerance(case, first))
     return reaches_noise(case, first, fit) and bool(fit.validate is None or fit.validate <= most)
 
 
@@ -57,4 +63,4 @@ def near_noise(case: Case, first: Fit, fit: Fit) -> bool:
 
 def reaches_noise(case: Case, first: Fit, fit: Fit) -> bool:
     """Whether a fit is at the noise of the identification records."""
-    return bool(fit.identify <= np.hypot(case.floor, threshold(case, first)))
+    return bool(fit.identify <= np.hypot(case.floor, tolerance(case, first)))

@@ -67,6 +67,12 @@ def test_an_effect_removes_half_as_much_of_the_records_that_were_not_fitted(firs
     assert removes_enough(CASE, above(first), before, after) == earned
 
 
+@pytest.mark.parametrize("first", [1.0, 40.0, 1e3, 1e6])
+def test_nothing_is_adequate_that_leaves_many_noise_floors(first):
+    assert not reaches_noise(CASE, above(first), above(2.01))
+    assert not adequate(CASE, above(first), fit(1.0, np.hypot(1, 6.01)))
+
+
 def test_where_all_records_were_fitted_they_alone_decide():
     assert removes_enough(CASE, SMALL, above(2.0), fit(1.0))
     assert not removes_enough(CASE, SMALL, above(2.0), above(2.0))
