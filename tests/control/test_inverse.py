@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from contracts.test_blocks import CHAINS, made
@@ -12,7 +14,7 @@ from pzt_ident.control.stage import ACTUATION, MECHANICS
 from pzt_ident.errors import InputError
 from pzt_ident.model.block import Term
 from pzt_ident.model.registry import blocks
-from rig import block_of, model, record, stage_of
+from rig import block_of, model, path, record, stage_of
 
 
 def left_to_passes(word):
@@ -82,6 +84,37 @@ def test_first_step_of_bouc_wen_is_the_root_of_its_closed_form():
         return 0.08 * (u - 0.5 * -np.expm1(-0.03 * u) / 0.03)
 
     assert np.isclose(found.drive[0, 1], brentq(lambda u: displacement(u) - 1.0, 0, 100, xtol=1e-12), rtol=1e-12)
+
+
+def plays(u, widths):
+    """p <- max(u - r, min(u + r, p)) of each half-width r: (widths, samples)."""
+    p, moved = np.zeros(len(widths)), []
+    for each in u:
+        p = np.maximum(each - widths, np.minimum(each + widths, p))
+        moved.append(p)
+    return np.transpose(moved)
+
+
+@given(
+    gain=st.floats(0.05, 2),
+    weights=st.lists(st.floats(-0.005, 0.5), min_size=8, max_size=8),
+    levels=st.lists(st.floats(-80, 80), min_size=2, max_size=8),
+)
+@settings(deadline=None, max_examples=25, derandomize=True)
+def test_plays_are_inverted_as_by_the_closed_form(gain, weights, levels):
+    """Kuhnen (2003), Eur. J. Control 9, 407: w0' = 1 / w0, w_i' = -w_i / (W_i W_(i-1)) with W_i = w0 + w_1 + ... + w_i,
+    r_i' = w0 r_i + sum_j<i w_j (r_i - r_j)."""
+    weights, widths = np.array(weights), 40.0 * np.arange(1, 9) / 8
+    sums = gain + np.concatenate([[0.0], np.cumsum(weights)])
+    bent = np.array([gain * r + weights[:i] @ (r - widths[:i]) for i, r in enumerate(widths)])
+    values = {f"prandtl_ishlinskii.weight_{i + 1}": weight for i, weight in enumerate(weights)}
+    values |= {"prandtl_ishlinskii.gain": gain, "prandtl_ishlinskii.reach": 40.0}
+    drive = path(0, *levels, points=12)
+    made_up = stage(values, ["prandtl_ishlinskii"], [drive])
+    displacement = gain * drive + weights @ plays(drive, widths)
+    closed = displacement / gain - (weights / (sums[1:] * sums[:-1])) @ plays(displacement, bent)
+    found = Inverse(made_up, 100.0)(displacement[None])
+    assert np.allclose(found.drive[0], closed, atol=1e-9)
 
 
 def test_stiffening_spring_is_bent_further():
