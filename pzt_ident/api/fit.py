@@ -53,16 +53,6 @@ class Fit(Fitted):
             self._write(folder)
         return folder
 
-    def export(self, folder: str | Path, to: str = "c", precision: str = "double", rate: Any = None) -> list[Path]:
-        """Write the model for another program: `c`, `fmu`, `matlab`, `csv` or `json`; returns the files.
-
-        precision: `double` or `float`, of the C. rate: of its samples, Hz or text such as `10kHz`; by default that
-        of the fastest record. Raises InputError for another format, or a block that cannot be written in it.
-        """
-        from pzt_ident.api.simulation import export_fit
-
-        return export_fit(self, folder, to, precision, rate)
-
     def _write(self, folder: Path) -> None:
         text = self.statement.job.text
         job = Job.from_text(text, folder, "job.yaml")

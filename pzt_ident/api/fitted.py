@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pzt_ident.api.arguments import Signals
+from pzt_ident.api.controlled import Controlled
 from pzt_ident.api.model import Model
 from pzt_ident.api.record import Record
 from pzt_ident.api.statement import drive_record
@@ -26,9 +27,6 @@ from pzt_ident.search.uncertainty import covariance
 if TYPE_CHECKING:
     import pandas as pd
 
-    from pzt_ident.api.drive import Drive
-    from pzt_ident.api.tracking import Comparison
-    from pzt_ident.api.tuning import Tuning
 
 Array = NDArray[np.float64]
 Records = Mapping[str, Sequence[Record]]
@@ -66,7 +64,7 @@ class Parts(NamedTuple):
     runs: Sequence[tuple[dict[str, Any], Checkpoint]]
 
 
-class Fitted:
+class Fitted(Controlled):
     """What a fit knows of itself, from its `Parts`."""
 
     def __init__(
@@ -131,24 +129,6 @@ class Fitted:
 
         errors = {name: item.stderr for name, item in self.parameters.items()}
         return of_statement(self.statement, self.statement.problem.parameters(self.point)[0], errors, self.rmse)
-
-    def drive(self, t: ArrayLike | str | Record, reference: Signals | None = None, **options: Any) -> Drive:
-        """The drive under which the stage follows a reference; see `pzt_ident.api.drive.drive`."""
-        from pzt_ident.api.drive import drive
-
-        return drive(self.identified, t, reference, **options)
-
-    def control(self, t: ArrayLike | str | Record, reference: Signals | None = None, **options: Any) -> Comparison:
-        """How well the stage follows a reference, in several ways; see `pzt_ident.api.tracking.control`."""
-        from pzt_ident.api.tracking import control
-
-        return control(self.identified, t, reference, **options)
-
-    def tune(self, rate: float | str = 1000.0, delay: int = 1, **options: Any) -> Tuning:
-        """PI gains for a controller of a sample rate and computing delay; see `pzt_ident.api.tuning.tune`."""
-        from pzt_ident.api.tuning import tune
-
-        return tune(self.identified, rate, delay, **options)
 
     def simulate(self, t: ArrayLike | str | Record, u: Signals | None = None) -> Array:
         """The model's response to a drive, in the units of the responses: (samples,), of several axes (samples, axes).

@@ -14,7 +14,7 @@ from pzt_ident.api.computing import computing
 from pzt_ident.api.fit import Fit
 from pzt_ident.api.model import Model
 from pzt_ident.api.record import Record
-from pzt_ident.api.simulation import load_json
+from pzt_ident.api.simulation import load_simulation
 from pzt_ident.api.statement import job_text, named_apart, sections_of, statement_of
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import Job
@@ -73,15 +73,15 @@ def identify(
 
 
 def load(folder: str | Path, *, plugins: bool = False) -> Any:
-    """Read the fit of a folder that `Fit.save` or `pzt-ident run` wrote; or the `Simulation` of a file that was
-    exported to JSON. plugins: load the files of code that its job names.
+    """Read the fit of a folder that `Fit.save` or `pzt-ident run` wrote; or, as a `Simulation`, the last model of an
+    improvement or a file that was exported to JSON. plugins: load the files of code that its job names.
 
     Raises InputError where the folder holds no finished run, or its data have changed.
     """
     folder = path_of(folder, "load")
-    if folder.suffix == ".json" and folder.is_file():
-        return load_json(folder)
     try:
+        if (folder.suffix == ".json" and folder.is_file()) or (folder / "improvement.json").is_file():
+            return load_simulation(folder, plugins)
         return _read(folder, plugins)
     except (OSError, UnicodeDecodeError) as error:
         remedy = "give the folder of a finished run"

@@ -1,33 +1,34 @@
-"""A model with its parameters, read from the JSON of an export."""
+"""A model with its parameters, of an exported JSON or an improvement."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pzt_ident.api.arguments import Signals, path_of, rate_or_stamps, writable
+from pzt_ident.api.arguments import Signals
+from pzt_ident.api.controlled import Controlled
 from pzt_ident.api.fitted import Parameter, Parameters, columns
 from pzt_ident.api.printed import table_text
 from pzt_ident.api.record import Record
 from pzt_ident.api.statement import drive_record
-from pzt_ident.control.export import export
 from pzt_ident.control.identified import Identified
 from pzt_ident.data.notation import unit, with_error
 from pzt_ident.data.record import Record as Signal
 from pzt_ident.engine.simulator import simulate
-from pzt_ident.errors import InputError
-from pzt_ident.run.identified import of_json
+from pzt_ident.run.identified import read_identified
 
 
-class Simulation:
+class Simulation(Controlled):
     """What an identification found, without its records: parameters by name, and the response to any drive."""
 
     def __init__(self, identified: Identified) -> None:
-        self.identified = identified
+        self._identified = identified
+
+    @property
+    def identified(self) -> Identified:
+        return self._identified
 
     @property
     def name(self) -> str:
@@ -51,38 +52,14 @@ class Simulation:
         responses = simulate(self.identified.chain, record, self.identified.theta[None])[0]
         return columns(responses, [*record.units.values()])
 
-    def export(self, folder: str | Path, to: str = "c", precision: str = "double", rate: Any = None) -> list[Path]:
-        """As `Fit.export`."""
-        return written(self.identified, folder, to, precision, rate)
-
     def __repr__(self) -> str:
         rows = [[p.name, with_error(p.value, p.stderr), unit(p.unit)] for p in self.parameters.values()]
         return f"{self.name}\n\n{table_text(['parameter', 'value', 'unit'], rows)}"
 
 
-def load_json(path: str | Path) -> Simulation:
-    """Raises InputError for a file that is no exported JSON."""
-    return Simulation(of_json(path_of(path, "load")))
-
-
-def export_fit(fit: Any, folder: str | Path, to: str, precision: str, rate: Any) -> list[Path]:
-    return written(fit.identified, folder, to, precision, rate)
-
-
-def written(identified: Identified, folder: str | Path, to: str, precision: str, rate: Any) -> list[Path]:
-    """Export at a sample rate, by default that of the identification."""
-    folder = path_of(folder, "export")
-    chosen = identified if rate is None else replace(identified, dt=sample_time(rate))
-    with writable(folder):
-        return export(chosen, folder, to, precision)
-
-
-def sample_time(rate: str | float) -> float:
-    """s, of a rate such as `10kHz`. Raises InputError for what is no rate."""
-    hertz = rate_or_stamps(rate, "rate")[0]
-    if hertz is None:
-        raise InputError(f"{rate!r} is no sample rate", where="rate", remedy="give text such as '10kHz'")
-    return 1 / hertz
+def load_simulation(path: Path, plugins: bool = False) -> Simulation:
+    """Raises InputError for what is no exported JSON and no improvement."""
+    return Simulation(read_identified(path, plugins))
 
 
 def blank_record(identified: Identified) -> Signal:

@@ -176,7 +176,7 @@ def export(
     result: Path, to: str, out: Path, precision: str, rate: str | None, plugins: bool, as_json: bool, quiet: bool
 ) -> None:
     """Write an identified model for other programs: RESULT is a folder of results, or an exported JSON."""
-    from pzt_ident.api.simulation import written
+    from pzt_ident.api.controlled import written
     from pzt_ident.run.identified import read_identified
 
     files = [str(path) for path in written(read_identified(result, plugins), out, to, precision, rate)]

@@ -97,3 +97,24 @@ def test_the_command_refuses_in_one_sentence(fit, tmp_path, header, options, mes
     command = ["drive", str(result), "--reference", str(file), "-o", str(tmp_path / "drive.csv"), *options]
     answer = CliRunner().invoke(main, command)
     assert answer.exit_code == 2 and message in answer.output and "Traceback" not in answer.output
+
+
+def test_an_improvement_and_an_exported_model_are_put_to_work_too(fit, tmp_path):
+    from importlib.resources import files
+
+    from click.testing import CliRunner
+
+    from pzt_ident.cli.commands import main
+
+    (exported,) = fit.export(tmp_path / "json", to="json")
+    again = pzt.load(exported)
+    assert np.allclose(again.drive(T, REFERENCE).drive["x"], fit.drive(T, REFERENCE).drive["x"], rtol=1e-12)
+    assert again.tune(200.0)["x"] == fit.tune(200.0)["x"]
+
+    job = files("pzt_ident.job") / "examples" / "demo" / "job.yaml"
+    out = tmp_path / "improved"
+    answer = CliRunner().invoke(main, ["improve", str(job), "--out", str(out), "--no-report", "--quiet"])
+    assert answer.exit_code == 0, answer.output
+    improved = pzt.load(out)
+    assert improved.drive(T, REFERENCE).peak["x"] < 1e-3
+    assert set(improved.parameters) > set(fit.parameters)
