@@ -33,7 +33,11 @@ def read_reference(path: Path, identified: Identified, rate: str | None = None) 
     driven = {axis: _named(axis, others) for axis in identified.inputs if axis not in needed}
     chosen |= {axis: found[0].header for axis, found in driven.items() if found}
     stamps = None if rate else time.header if time else None
-    return Record.read(path, drive=chosen, time=stamps, sample_rate=rate, name=path.stem)
+    try:
+        return Record.read(path, drive=chosen, time=stamps, sample_rate=rate, name=path.stem)
+    except InputError as error:
+        remedy = error.remedy.replace("the sample rate as t", "--rate")
+        raise InputError(error.message, where=error.where.replace(".drive", ""), remedy=remedy) from None
 
 
 def _column_of(axis: str, columns: Sequence[Column], units: Mapping[str, str], path: Path) -> str:

@@ -202,11 +202,11 @@ class Following:
         return middles(made)
 
     def line(self, drives: Mapping[str, Array]) -> Array:
-        """The drive of an open loop: the reference over the slope of a line through displacement and drive."""
+        """The drive of an open loop: the reference over the slope of a line through zero, displacement over drive."""
         made = self.ahead(drives)
         for place in self.identified.outputs:
-            slope = np.polyfit(made[place], self.wanted[place], 1)[0] if np.ptp(made[place]) > 0 else 1.0
-            made[place] = self.wanted[place] / slope
+            slope = made[place] @ self.wanted[place] / (made[place] @ made[place] or 1.0)
+            made[place] = self.wanted[place] / (slope or 1.0)
         return self.limits.clip(middles(made), self.dt)
 
     def gains(self, kp: float | None, ki: float | None) -> dict[str, tuple[float, float]]:
