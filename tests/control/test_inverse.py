@@ -153,6 +153,17 @@ def test_axes_are_decoupled_or_each_is_inverted_by_itself():
     assert np.allclose(alone.error, left, atol=1e-12 * np.ptp(reference))
 
 
+def test_two_axes_with_three_effects_follow_to_rounding():
+    effects = {"creep.ratio": 0.1, "creep.tau": 1.0, "creep.decades": 3.0, "quadratic_gain.curvature": 5e-4}
+    own = BOUC_WEN | SPRING | effects | {"cross_coupling.ratio": 0.05}
+    words = ["bouc_wen", "lumped", "creep", "quadratic_gain", "cross_coupling"]
+    values = {f"{axis}.{name}": value for axis in "xy" for name, value in own.items()}
+    drives = np.array([swept(600), swept(600)[::-1]])
+    made_up = stage(values, words, drives, dt=1e-3)
+    reference = made_up.respond(drives)
+    assert np.abs(Inverse(made_up, 100.0)(reference).error).max() < 1e-9 * np.ptp(reference)
+
+
 def test_an_axis_that_is_not_measured_has_its_drive_given():
     values = BOUC_WEN | {"cross_coupling.ratio": 0.4, "amplifier_lag.tau": 1e-3}
     drives = np.array([swept(600), swept(600)[::-1]])
