@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.control.identified import Identified
 from pzt_ident.control.inverse import Feedforward, Inverse
-from pzt_ident.data.notation import listed, quantity, spelled
+from pzt_ident.data.notation import listed, percent, quantity, spelled
 from pzt_ident.data.units import factor
 from pzt_ident.model.block import Addition, Place
 
@@ -19,6 +19,7 @@ SHOWN = 3  # stretches of time that a sentence names
 FASTER = 1.5  # over the identification, from which on a reference is called fast
 FURTHER = 1.02  # over the identification, from which on a drive is called large
 REACHED = 1e-6  # of the reference's range
+RESTLESS = 0.1  # of its samples: a reference that turns back more often is called noisy
 
 
 class Notes:
@@ -29,7 +30,8 @@ class Notes:
         self.model, self.dt = inverse.stage.model, inverse.stage.dt
 
     def sentences(self) -> tuple[str, ...]:
-        return (*self.left_out(), *self.static(), *self.limited(), *self.unreached(), *self.wrong_way(), *self.new())
+        told = self.left_out, self.static, self.noisy, self.limited, self.unreached, self.wrong_way, self.new
+        return tuple(sentence for each in told for sentence in each())
 
     def left_out(self) -> Iterator[str]:
         """Blocks that the drive does not make up for."""
@@ -48,6 +50,17 @@ class Notes:
     def static(self) -> Iterator[str]:
         if self.inverse.mechanics.rings:
             yield "the mechanics ring without an end, so that only their static gain is fed forward"
+
+    def noisy(self) -> Iterator[str]:
+        """Where a reference turns as often as a measured signal does."""
+        for axis, name, _ in self._axes("response_units"):
+            moves = np.diff(self.found.reference[axis])
+            turns = float(np.mean(moves[1:] * moves[:-1] < 0)) if moves.size > 1 else 0.0
+            if turns > RESTLESS:
+                yield (
+                    f"{name}: the reference turns back at {percent(turns)} of its samples, as noise does; each is a "
+                    "loop of its own to hysteresis: smooth it first"
+                )
 
     def limited(self) -> Iterator[str]:
         """Where the amplifier does not follow."""

@@ -38,6 +38,12 @@ def test_what_the_identification_did_not_see_is_told(fit):
     assert "the model was identified from" in notes and "the model was identified up to" in notes
 
 
+def test_a_reference_with_noise_is_told(fit):
+    noisy = REFERENCE + 0.01 * np.random.default_rng(1).normal(size=T.size)
+    assert any("as noise does" in note for note in fit.drive(T, noisy).notes)
+    assert not any("as noise does" in note for note in fit.drive(T, REFERENCE).notes)
+
+
 def test_a_drive_is_kept_as_csv(fit, tmp_path):
     found = fit.drive(T, REFERENCE)
     path = found.save(tmp_path / "drive.csv")
