@@ -39,7 +39,8 @@ def read_identified(path: Path, plugins: bool = False, as_given: bool = False) -
         raise InputError("holds no result", where=str(path), remedy=A_RESULT)
     values, rmse, name = _improved(path, as_given) if improved else _best(path)
     begun = read_environment(path)
-    home = path if (path / "data").is_dir() else Path(begun["job_folder"])
+    beside = improved or (path / "data").is_dir()  # the data are named from where the job lies
+    home = path if beside else Path(begun["job_folder"])
     job = Job.from_text((path / name).read_text(encoding="utf-8"), home, str(path / name), plugins)
     statement = Statement(job)
     if not improved:

@@ -1,11 +1,13 @@
 """The drive for a reference: what it is, what it says, and what it refuses."""
 
 import json
+import shutil
 
 import numpy as np
 import pytest
 
 import pzt_ident as pzt
+from pzt_ident.run.identified import read_identified
 
 T = np.arange(800) * 5e-3
 REFERENCE = 3 * np.sin(np.pi * T / T[-1]) ** 2
@@ -117,10 +119,12 @@ def test_an_improvement_and_an_exported_model_are_put_to_work_too(fit, tmp_path)
     assert np.allclose(again.drive(T, REFERENCE).drive["x"], fit.drive(T, REFERENCE).drive["x"], rtol=1e-12)
     assert again.tune(200.0)["x"] == fit.tune(200.0)["x"]
 
-    job = files("pzt_ident.job") / "examples" / "demo" / "job.yaml"
-    out = tmp_path / "improved"
+    demo = tmp_path / "deep" / "in" / "a" / "folder"
+    shutil.copytree(str(files("pzt_ident.job") / "examples" / "demo"), demo)
+    job, out = demo / "job.yaml", tmp_path / "improved"
     answer = CliRunner().invoke(main, ["improve", str(job), "--out", str(out), "--no-report", "--quiet"])
     assert answer.exit_code == 0, answer.output
     improved = pzt.load(out)
+    assert [*read_identified(out, as_given=True).chain.names] == [*fit.identified.chain.names]
     assert improved.drive(T, REFERENCE).peak["x"] < 1e-3
     assert set(improved.parameters) > set(fit.parameters)
