@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pzt_ident.api.arguments import Array, Signals, path_of, writable
-from pzt_ident.api.printed import html, table_text
+from pzt_ident.api.printed import Noted
 from pzt_ident.api.record import Record
 from pzt_ident.api.statement import uniform
 from pzt_ident.control.identified import Identified
@@ -28,8 +28,24 @@ if TYPE_CHECKING:
 AGAIN = 8  # times that a drive is made again for effects that depend on its own range
 
 
-@dataclass(frozen=True)
-class Drive:
+class Followed:
+    """Sizes of the error of each axis, displacement minus reference."""
+
+    error: Mapping[str, Array]
+
+    @property
+    def rmse(self) -> dict[str, float]:
+        """Root mean square."""
+        return {axis: float(np.sqrt(np.mean(error**2))) for axis, error in self.error.items()}
+
+    @property
+    def peak(self) -> dict[str, float]:
+        """Largest magnitude."""
+        return {axis: float(np.abs(error).max()) for axis, error in self.error.items()}
+
+
+@dataclass(frozen=True, repr=False)
+class Drive(Followed, Noted):
     """The drive of each axis for a reference, and what the model does under it, each (samples,) by axis in the units
     of the data. error: displacement minus reference. notes: sentences on what this drive does not do."""
 
@@ -37,32 +53,19 @@ class Drive:
     drive: Mapping[str, Array]
     reference: Mapping[str, Array]
     displacement: Mapping[str, Array]
+    error: Mapping[str, Array]
     drive_units: Mapping[str, str]
     units: Mapping[str, str]
     notes: tuple[str, ...]
 
-    @property
-    def error(self) -> dict[str, Array]:
-        return {axis: self.displacement[axis] - reference for axis, reference in self.reference.items()}
-
-    @property
-    def rmse(self) -> dict[str, float]:
-        return {axis: float(np.sqrt(np.mean(error**2))) for axis, error in self.error.items()}
-
-    @property
-    def peak(self) -> dict[str, float]:
-        """The largest magnitude of the error."""
-        return {axis: float(np.abs(error).max()) for axis, error in self.error.items()}
-
     def save(self, path: str | Path) -> Path:
         """Write time and drive of each axis as CSV, to be played out."""
-        from pzt_ident.files import write_text
+        from pzt_ident.files import write_columns
 
         path = path_of(path, "save")
-        columns = {"time [s]": self.t} | {f"u_{a} [{self.drive_units[a]}]": u for a, u in self.drive.items()}
-        rows = zip(*(column.tolist() for column in columns.values()), strict=True)
         with writable(path):
-            write_text(path, "\n".join([",".join(columns), *(",".join(map(repr, row)) for row in rows)]) + "\n")
+            drives = {f"u_{axis} [{self.drive_units[axis]}]": u for axis, u in self.drive.items()}
+            write_columns(path, {"time [s]": self.t} | drives)
         return path
 
     def plot(self, width: float = 180) -> Figure:
@@ -71,14 +74,6 @@ class Drive:
         from pzt_ident.report.control_figures import drive_plate
 
         return shown(drive_plate(self), width)
-
-    def __str__(self) -> str:
-        return "\n".join([table_text(*self._table()), *(f"note: {note}" for note in self.notes)])
-
-    __repr__ = __str__
-
-    def _repr_html_(self) -> str:
-        return html("; ".join(self.notes), *self._table())
 
     def _table(self) -> tuple[list[str], list[list[str]]]:
         rows = []
@@ -104,29 +99,30 @@ def drive(
 
     t, reference: as a `Record` has time and drive, the displacement of each measured axis in the unit of its data, and
     the drive of one that is not measured, zero unless given; or t is a `Record` of these. The stage is at rest at the
-    first sample. limits, slew: lowest and highest drive,
-    and its largest change in a second, in the units of the drive; those of the job unless given. decoupled: make up for
-    what acts from axis to axis. noise_gain: the most by which dynamics are made up for, see `control.inverse`. held:
-    for a converter that holds each sample until the next one, which is late by half a sample; else the drive is linear
-    between its samples, and so it is in what the model says.
+    first sample. limits, slew: lowest and highest drive, and its largest change in a second, in the units of the drive;
+    those of the job unless given. decoupled: make up for what acts from axis to axis. noise_gain: the most by which
+    dynamics are made up for, see `control.inverse`. held: for a converter that holds each sample until the next one,
+    which is late by half a sample; else the drive is linear between its samples, and so it is in what the model says.
 
     Raises InputError where the reference is in another unit, lacks an axis, or is not uniform in time.
     """
     if not noise_gain >= 1:
         raise InputError(f"{noise_gain:g} is no noise gain", where="noise_gain", remedy="give 1 or more, such as 10")
     wanted, dt, stamps = reference_of(identified, t, reference)
-    at_hand = limits_of(identified, limits, slew)
+    amplifier = limits_of(identified, limits, slew)
     spans, peaks = identified.spans, identified.peaks
     largest = float(identified.peaks.max())
     for _ in range(AGAIN):
-        inverse = Inverse(identified.stage(dt, spans, peaks), largest, at_hand, noise_gain, decoupled)
-        found = inverse(wanted)
-        now = np.ptp(found.drive, axis=1), np.abs(found.drive).max(axis=1)
+        inverse = Inverse(identified.stage(dt, spans, peaks), largest, amplifier, noise_gain, decoupled)
+        feedforward = inverse(wanted)
+        now = np.ptp(feedforward.drive, axis=1), np.abs(feedforward.drive).max(axis=1)
         if not depends_on_range(identified) or np.allclose(now, (spans, peaks), rtol=1e-9):
             break
         spans, peaks = now
-    notes = Notes(inverse, found, identified).sentences()
-    return in_units(identified, stamps, replace(found, drive=middles(found.drive)) if held else found, notes)
+    notes = Notes(inverse, feedforward, identified).sentences()
+    if held:
+        feedforward = replace(feedforward, drive=middles(feedforward.drive))
+    return in_units(identified, stamps, feedforward, notes)
 
 
 def middles(drive: Array) -> Array:
@@ -139,7 +135,7 @@ def depends_on_range(identified: Identified) -> bool:
     return any({"span", "peak"} & set(block.arguments()) for block in identified.chain.blocks)
 
 
-def in_units(identified: Identified, stamps: Array, found: Feedforward, notes: tuple[str, ...]) -> Drive:
+def in_units(identified: Identified, stamps: Array, feedforward: Feedforward, notes: tuple[str, ...]) -> Drive:
     model = identified.chain
     drive_units = {model.axes[a]: identified.drive_units[a] for a in model.measured}
     units = {axis: identified.inputs[axis] for axis in identified.axes}
@@ -149,9 +145,10 @@ def in_units(identified: Identified, stamps: Array, found: Feedforward, notes: t
 
     return Drive(
         stamps,
-        by_axis(found.drive, drive_units),
-        by_axis(found.reference, units),
-        by_axis(found.displacement, units),
+        by_axis(feedforward.drive, drive_units),
+        by_axis(feedforward.reference, units),
+        by_axis(feedforward.displacement, units),
+        by_axis(feedforward.error, units),
         drive_units,
         units,
         notes,

@@ -8,6 +8,24 @@ from html import escape
 STYLE = "text-align: left; padding: 0.15em 1em 0.15em 0"
 
 
+class Noted:
+    """Prints its table, and `notes` below it."""
+
+    notes: tuple[str, ...]
+
+    def _table(self) -> tuple[list[str], list[list[str]]]:
+        """Header and rows."""
+        raise NotImplementedError
+
+    def __str__(self) -> str:
+        return "\n".join([table_text(*self._table()), *(f"note: {note}" for note in self.notes)])
+
+    __repr__ = __str__
+
+    def _repr_html_(self) -> str:
+        return html("\n".join(self.notes), *self._table())
+
+
 def table_text(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """Columns under their headings."""
     widths = [max(map(len, column)) for column in zip(header, *rows, strict=True)]

@@ -175,11 +175,9 @@ class Record:
 
     def write_csv(self, path: Path, stamps: bool = True) -> None:
         """The record as a CSV file that gives the same numbers again."""
-        from pzt_ident.files import write_text
+        from pzt_ident.files import write_columns
 
-        columns = {column.header: column.load().tolist() for column in self.table(stamps).columns}
-        rows = zip(*columns.values(), strict=True)
-        write_text(path, "\n".join([",".join(columns), *(",".join(map(repr, row)) for row in rows)]) + "\n")
+        write_columns(path, {column.header: column.load() for column in self.table(stamps).columns})
 
     def _with(self, attribute: str, value: Any) -> Record:
         if value == getattr(self, attribute):

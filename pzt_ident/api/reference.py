@@ -31,7 +31,7 @@ def read_reference(path: Path, identified: Identified, rate: str | None = None) 
     needed = {axis: unit for axis, unit in identified.inputs.items() if axis in identified.axes}
     chosen = {axis: _column_of(axis, others, needed, path) for axis in needed}
     driven = {axis: _named(axis, others) for axis in identified.inputs if axis not in needed}
-    chosen |= {axis: found[0].header for axis, found in driven.items() if found}
+    chosen |= {axis: matching[0].header for axis, matching in driven.items() if matching}
     stamps = None if rate else time.header if time else None
     try:
         return Record.read(path, drive=chosen, time=stamps, sample_rate=rate, name=path.stem)
@@ -41,15 +41,15 @@ def read_reference(path: Path, identified: Identified, rate: str | None = None) 
 
 
 def _column_of(axis: str, columns: Sequence[Column], units: Mapping[str, str], path: Path) -> str:
-    found = _named(axis, columns) or (list(columns) if len(columns) == len(units) == 1 else [])
+    matching = _named(axis, columns) or (list(columns) if len(columns) == len(units) == 1 else [])
     header = f"`{axis} [{units[axis]}]`"
-    if not found:
+    if not matching:
         known = ", ".join(repr(column.header) for column in columns) or "nothing else"
         raise InputError(f"has no column for axis {axis}, but {known}", where=str(path), remedy=f"name it {header}")
-    if found[0].unit is None:
+    if matching[0].unit is None:
         remedy = f"write {header} into its header"
-        raise InputError(f"column {found[0].header!r} has no unit", where=str(path), remedy=remedy)
-    return found[0].header
+        raise InputError(f"column {matching[0].header!r} has no unit", where=str(path), remedy=remedy)
+    return matching[0].header
 
 
 def _named(axis: str, columns: Sequence[Column]) -> list[Column]:

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pzt_ident.api.arguments import Array, Signals, path_of, writable
-from pzt_ident.api.drive import drive, limits_of, middles, reference_of
-from pzt_ident.api.printed import html, table_text
+from pzt_ident.api.drive import Followed, drive, limits_of, middles, reference_of
+from pzt_ident.api.printed import Noted
 from pzt_ident.api.record import Record
 from pzt_ident.api.tuning import substeps, tune
 from pzt_ident.control.identified import Identified
@@ -35,7 +35,7 @@ OPEN, ALONE, INVERSE, LOOP, MEASURED = (
 
 
 @dataclass(frozen=True)
-class Way:
+class Way(Followed):
     """One way to follow: displacement, error (displacement minus reference) and drive by axis, in the units of the
     data; the root mean square of the error at each frequency of the comparison."""
 
@@ -44,17 +44,9 @@ class Way:
     error: Mapping[str, Array]
     spectrum: Mapping[str, Array]
 
-    @property
-    def rmse(self) -> dict[str, float]:
-        return {axis: float(np.sqrt(np.mean(error**2))) for axis, error in self.error.items()}
 
-    @property
-    def peak(self) -> dict[str, float]:
-        return {axis: float(np.abs(error).max()) for axis, error in self.error.items()}
-
-
-@dataclass(frozen=True)
-class Comparison:
+@dataclass(frozen=True, repr=False)
+class Comparison(Noted):
     """Ways to follow one reference, by name, on the virtual stage: the identified model with a drive that is held from
     sample to sample. gains: of the PI controller, (Kp, Ki) by axis in drive per response, per second."""
 
@@ -80,14 +72,14 @@ class Comparison:
 
     def save(self, folder: str | Path) -> Path:
         """Write control.json, control.csv with all signals, and tracking.svg and .pdf into a folder."""
-        from pzt_ident.files import replaced, write_json, write_text
+        from pzt_ident.files import replaced, write_columns, write_json
         from pzt_ident.report.control_figures import tracking_files
 
         folder = path_of(folder, "save")
         with writable(folder):
             folder.mkdir(parents=True, exist_ok=True)
             write_json(folder / "control.json", self.facts)
-            write_text(folder / "control.csv", self._csv())
+            write_columns(folder / "control.csv", self._columns())
             for name, content in tracking_files(self).items():
                 with replaced(folder / name) as new:
                     new.write_bytes(content)
@@ -100,7 +92,7 @@ class Comparison:
 
         return shown(tracking_plate(self), width)
 
-    def _csv(self) -> str:
+    def _columns(self) -> dict[str, Array]:
         columns = {"time [s]": self.t}
         for axis, reference in self.reference.items():
             columns[f"{axis}, reference [{self.units[axis]}]"] = reference
@@ -108,17 +100,7 @@ class Comparison:
                 columns[f"{axis}, {name} [{self.units[axis]}]"] = way.displacement[axis]
                 if axis in way.drive:
                     columns[f"u_{axis}, {name} [{self.drive_units[axis]}]"] = way.drive[axis]
-        rows = zip(*(column.tolist() for column in columns.values()), strict=True)
-        head = ",".join(f'"{name}"' if "," in name else name for name in columns)
-        return "\n".join([head, *(",".join(map(repr, row)) for row in rows)]) + "\n"
-
-    def __str__(self) -> str:
-        return "\n".join([table_text(*self._table()), *(f"note: {note}" for note in self.notes)])
-
-    __repr__ = __str__
-
-    def _repr_html_(self) -> str:
-        return html("; ".join(self.notes), *self._table())
+        return columns
 
     def _table(self) -> tuple[list[str], list[list[str]]]:
         rows = [
@@ -155,23 +137,24 @@ def control(
     wanted, dt, stamps = reference_of(identified, t, reference)
     follow = Following(identified, wanted, dt, delay, count, limits, slew)
     best = drive(identified, t, reference, limits=limits, slew=slew, **options)
-    ways = {OPEN: follow.by(follow.line(best.drive))}
+    feedforward = follow.in_si(best.drive)
+    ways = {OPEN: follow.by(follow.line(feedforward))}
     if any(issubclass(block, Coupling) for block in identified.chain.blocks) and len(identified.axes) > 1:
         alone = drive(identified, t, reference, limits=limits, slew=slew, **(options | {"decoupled": False}))
-        ways[ALONE] = follow.by(follow.ahead(alone.drive))
-    ways[INVERSE] = follow.by(follow.ahead(best.drive))
+        ways[ALONE] = follow.by(follow.in_si(alone.drive))
+    ways[INVERSE] = follow.by(feedforward)
     notes, gains = list(best.notes), {}
     try:
         gains = follow.gains(kp, ki)
-        ways[LOOP] = follow.by(follow.ahead(best.drive), gains)
+        ways[LOOP] = follow.by(feedforward, gains)
     except InputError as error:
         notes.append(f"without PI: {error.where}: {error.message}; {error.remedy}")
-    shown = {name: follow.in_units(found) for name, found in ways.items()}
+    by_name = {name: follow.in_units(tracking) for name, tracking in ways.items()}
     if measured is not None:
-        shown[MEASURED] = follow.of(measured, stamps)
-    frequency = next(iter(ways.values())).spectrum[0]
-    told = best.reference, shown, gains, best.drive_units, best.units, tuple(notes)
-    return Comparison(stamps, frequency, *told)
+        by_name[MEASURED] = follow.of(measured, stamps)
+    frequency = ways[OPEN].spectrum[0]
+    units = best.drive_units, best.units
+    return Comparison(stamps, frequency, best.reference, by_name, gains, *units, tuple(notes))
 
 
 class Following:
@@ -191,50 +174,47 @@ class Following:
         self.steps = substeps(1 / dt)
         self.stage = identified.stage(dt / self.steps)
         self.limits = limits_of(identified, limits, slew)
-        self.count = count * factor(identified.inputs[identified.axes[0]])
+        self.counts = np.array([count * identified.scale(place)[1] for place in range(len(wanted))])
 
-    def ahead(self, drives: Mapping[str, Array]) -> Array:
-        """Drives of every axis in SI units, to be held; of one that is not measured as given."""
-        made = self.wanted.copy()
+    def in_si(self, drives: Mapping[str, Array]) -> Array:
+        """Drives of every axis (axes, samples); of one that is not measured as given."""
+        signals = self.wanted.copy()
         for place, axis in enumerate(self.identified.chain.axes):
             if axis in drives:
-                made[place] = drives[axis] * factor(self.identified.drive_units[place])
-        return middles(made)
+                signals[place] = drives[axis] * factor(self.identified.drive_units[place])
+        return signals
 
-    def line(self, drives: Mapping[str, Array]) -> Array:
+    def line(self, drives: Array) -> Array:
         """The drive of an open loop: the reference over the slope of a line through zero, displacement over drive."""
-        made = self.ahead(drives)
+        straight = drives.copy()
         for place in self.identified.outputs:
-            slope = made[place] @ self.wanted[place] / (made[place] @ made[place] or 1.0)
-            made[place] = self.wanted[place] / (slope or 1.0)
-        return self.limits.clip(middles(made), self.dt)
+            slope = drives[place] @ self.wanted[place] / (drives[place] @ drives[place] or 1.0)
+            straight[place] = self.wanted[place] / (slope or 1.0)
+        return self.limits.clip(straight, self.dt)
 
     def gains(self, kp: float | None, ki: float | None) -> dict[str, tuple[float, float]]:
         if kp is not None and ki is not None:
             return dict.fromkeys(self.identified.axes, (kp, ki))
-        found = tune(self.identified, 1 / self.dt, self.delay)
-        return {axis: (found[axis].kp, found[axis].ki) for axis in self.identified.axes}
+        tuning = tune(self.identified, 1 / self.dt, self.delay)
+        return {axis: (tuning[axis].kp, tuning[axis].ki) for axis in self.identified.axes}
 
-    def by(self, ahead: Array, gains: Mapping[str, tuple[float, float]] | None = None) -> Tracking:
-        """The stage under a feedforward, with a PI controller of these gains around it."""
+    def by(self, feedforward: Array, gains: Mapping[str, tuple[float, float]] | None = None) -> Tracking:
+        """The stage under a feedforward that is held from sample to sample, with a PI controller around it."""
         scales = np.zeros((2, len(self.wanted)))
         for place, axis in enumerate(self.identified.chain.axes):
             if axis in (gains or {}):
                 drive, response = self.identified.scale(place)
                 scales[:, place] = np.array(gains[axis]) * drive / response  # type: ignore[index]
-        options: dict[str, Any] = {"substeps": self.steps, "delay": self.delay, "quantum": self.count}
-        return closed_loop(self.stage, self.wanted, PI(*scales), ahead, limits=self.limits, **options)
+        options: dict[str, Any] = {"substeps": self.steps, "delay": self.delay, "quantum": self.counts}
+        return closed_loop(self.stage, self.wanted, PI(*scales), middles(feedforward), limits=self.limits, **options)
 
-    def in_units(self, found: Tracking) -> Way:
-        spectrum = found.spectrum[1]
-
+    def in_units(self, tracking: Tracking) -> Way:
         def by_axis(rows: Array, kind: int) -> dict[str, Array]:
-            one = self.identified
-            return {one.chain.axes[place]: rows[place] / one.scale(place)[kind] for place in one.outputs}
+            model = self.identified
+            return {model.chain.axes[place]: rows[place] / model.scale(place)[kind] for place in model.outputs}
 
-        return Way(
-            by_axis(found.drive, 0), by_axis(found.displacement, 1), by_axis(found.error, 1), by_axis(spectrum, 1)
-        )
+        responses = tracking.displacement, tracking.error, tracking.spectrum[1]
+        return Way(by_axis(tracking.drive, 0), *(by_axis(rows, 1) for rows in responses))
 
     def of(self, measured: Record, stamps: Array) -> Way:
         """What a record of the stage has at the times of the reference, without its mean error."""

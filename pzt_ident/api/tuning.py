@@ -87,28 +87,28 @@ class Tuning:
         rows = [
             [
                 axis,
-                quantity(each.kp, each.kp_unit),
-                quantity(each.ki, each.ki_unit),
-                number(each.gain_margin, 3),
-                f"{number(each.phase_margin, 3)}°",
-                number(each.sensitivity, 3),
-                number(each.radius),
-                quantity(each.bandwidth, "Hz", 3),
+                quantity(gains.kp, gains.kp_unit),
+                quantity(gains.ki, gains.ki_unit),
+                number(gains.gain_margin, 3),
+                f"{number(gains.phase_margin, 3)}°",
+                number(gains.sensitivity, 3),
+                number(gains.radius),
+                quantity(gains.bandwidth, "Hz", 3),
             ]
-            for axis, each in self.gains.items()
+            for axis, gains in self.gains.items()
         ]
         return header, rows
 
     def _foot(self) -> str:
         lines = [
-            f"{axis}: the loop gain is the largest slope of the material, {quantity(each.slope, each.slope_unit)}"
-            for axis, each in self.gains.items()
+            f"{axis}: the loop gain is the largest slope of the material, {quantity(gains.slope, gains.slope_unit)}"
+            for axis, gains in self.gains.items()
         ]
         lines += [
-            f"{axis}: in continuous time these gains would need a damping of {number(each.damping_needed, 3)} N s/m"
-            f" (Routh); the model has {number(each.damping, 3)}"
-            for axis, each in self.gains.items()
-            if each.damping_needed is not None
+            f"{axis}: in continuous time these gains would need a damping of {number(gains.damping_needed, 3)} N s/m"
+            f" (Routh); the model has {number(gains.damping, 3)}"
+            for axis, gains in self.gains.items()
+            if gains.damping_needed is not None
         ]
         return "\n" + "\n".join(lines)
 
@@ -144,7 +144,7 @@ def tune(
         raise InputError(f"axis {axis!r} is not in the result", where="axis", remedy=remedy)
     stated = per_second, delay, gain_margin, phase_margin
     chosen = identified.axes if axis is None else (axis,)
-    return Tuning(per_second, delay, {each: _of(identified, each, *stated) for each in chosen})
+    return Tuning(per_second, delay, {name: _of(identified, name, *stated) for name in chosen})
 
 
 def _of(identified: Identified, axis: str, rate: float, delay: int, gain: float, phase: float) -> Gains:

@@ -37,10 +37,10 @@ class Quantity(click.ParamType):
     def convert(self, value: Any, param: Any, ctx: Any) -> float:
         from pzt_ident.api.arguments import quantity_of
 
-        found = quantity_of(str(value), self.unit)
-        if found is None or not found > 0:
+        size = quantity_of(str(value), self.unit)
+        if size is None or not size > 0:
             self.fail(f"{value!r} is no quantity above zero: write it in {self.unit}", param, ctx)
-        return found
+        return size
 
 
 def reference_options(command: Command) -> Command:
@@ -71,9 +71,9 @@ GAIN = "The most by which dynamics are made up for, over their static gain."
 @click.option("-o", "--out", type=EXISTING, required=True, help="The drive, as CSV.")
 def drive(result: Path, out: Path, as_json: bool, quiet: bool, **options: Any) -> None:
     """Write the drive under which the stage of a folder RESULT follows a reference."""
-    found = made(result, **options)
-    found.save(out)
-    answer(facts_of(found) | {"file": str(out)}, lambda: click.echo(f"{found}\nwrote {out}"), as_json, quiet)
+    solution = solved(result, **options)
+    solution.save(out)
+    answer(facts_of(solution) | {"file": str(out)}, lambda: click.echo(f"{solution}\nwrote {out}"), as_json, quiet)
 
 
 @click.command()
@@ -105,9 +105,9 @@ def control(
     measured = read_reference(record, identified, rate) if record else None
     loop = {word: options.pop(word) for word in ("delay", "count", "kp", "ki")}
     wanted = read_reference(reference, identified, rate)
-    found = control(identified, wanted, measured=measured, **loop, **amplifier(**options))
-    found.save(out)
-    answer(found.facts | {"folder": str(out)}, lambda: click.echo(f"{found}\nwrote {out}"), as_json, quiet)
+    comparison = control(identified, wanted, measured=measured, **loop, **amplifier(**options))
+    comparison.save(out)
+    answer(comparison.facts | {"folder": str(out)}, lambda: click.echo(f"{comparison}\nwrote {out}"), as_json, quiet)
 
 
 @click.command()
@@ -124,11 +124,11 @@ def tune(result: Path, rate: str, plugins: bool, as_json: bool, quiet: bool, **o
     from pzt_ident.api.tuning import tune
     from pzt_ident.run.identified import read_identified
 
-    found = tune(read_identified(result, plugins), rate, **options)
-    answer(found.facts, lambda: click.echo(str(found)), as_json, quiet)
+    tuning = tune(read_identified(result, plugins), rate, **options)
+    answer(tuning.facts, lambda: click.echo(str(tuning)), as_json, quiet)
 
 
-def made(
+def solved(
     result: Path, plugins: bool, reference: Path, rate: str | None, as_given: bool = False, **options: Any
 ) -> Drive:
     from pzt_ident.api.drive import drive
@@ -153,14 +153,14 @@ def amplifier(
     return {**options, "decoupled": not coupled, "slew": min(rates, default=None)}
 
 
-def facts_of(found: Drive) -> dict[str, Any]:
+def facts_of(solution: Drive) -> dict[str, Any]:
     return {
-        "units": dict(found.units),
-        "drive_units": dict(found.drive_units),
-        "rmse": found.rmse,
-        "peak": found.peak,
-        "drive": {axis: [float(u.min()), float(u.max())] for axis, u in found.drive.items()},
-        "notes": list(found.notes),
+        "units": dict(solution.units),
+        "drive_units": dict(solution.drive_units),
+        "rmse": solution.rmse,
+        "peak": solution.peak,
+        "drive": {axis: [float(u.min()), float(u.max())] for axis, u in solution.drive.items()},
+        "notes": list(solution.notes),
     }
 
 

@@ -49,13 +49,13 @@ class Identified:
 
     @property
     def peaks(self) -> Array:
-        """The largest magnitude of the drive of each axis in the identification."""
+        """The largest magnitude of the drive of size axis in the identification."""
         return np.abs(self.range).max(axis=1)
 
     def stage(self, dt: float | None = None, spans: Array | None = None, peaks: Array | None = None) -> Stage:
         """The stage at a sample time, s, by default that of the identification, as are spans and peaks of its drive."""
         chosen = [self.spans if spans is None else spans, self.peaks if peaks is None else peaks]
-        return Stage(self.chain, self.theta, dt or self.dt, *(each.tolist() for each in chosen))
+        return Stage(self.chain, self.theta, dt or self.dt, *(size.tolist() for size in chosen))
 
     @property
     def axes(self) -> tuple[str, ...]:

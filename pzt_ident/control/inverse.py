@@ -88,44 +88,44 @@ class Inverse:
     def __call__(self, reference: Array) -> Feedforward:
         """The drive for a reference (axes, samples), SI units, at the stage's sample time, from rest at its first
         sample. In the place of the reference of an axis that is not measured is its drive."""
-        best = found = self.once(reference, reference)
+        best = self.once(reference, reference)
         targets, steps, width = [reference], [self.step(best, 0.0)], 0.0
         for _ in range(PASSES if self.decoupled and not best.limited.any() else 0):
             if self.left(best) <= CLOSE * np.abs(reference).max():
                 break
             targets.append(accelerated(targets[-MEMORY:], steps[-MEMORY:]))
-            found = self.once(targets[-1], reference)
-            if self.left(found) > self.left(best):
+            trial = self.once(targets[-1], reference)
+            if self.left(trial) > self.left(best):
                 width = 2 * width or 1.0
                 targets, steps = [targets[-2]], [self.step(best, width)]
                 continue
-            best = found
+            best = trial
             steps.append(self.step(best, width))
         return best
 
-    def left(self, found: Feedforward) -> float:
+    def left(self, feedforward: Feedforward) -> float:
         """The largest error of a measured axis."""
-        return float(np.abs(found.error[self._measured]).max())
+        return float(np.abs(feedforward.error[self._measured]).max())
 
-    def step(self, found: Feedforward, width: float) -> Array:
+    def step(self, feedforward: Feedforward, width: float) -> Array:
         """What the target is to be moved by, were the stage linear: its error, as far as the mechanics can follow.
         width: samples over which it is smoothed; near a resonance that friction or a bent spring shift, a step does
         harm."""
         from scipy.ndimage import gaussian_filter1d
 
-        step = -self.stage.solvable.respond(self.mechanics(found.error), MECHANICS)
+        step = -self.stage.solvable.respond(self.mechanics(feedforward.error), MECHANICS)
         return gaussian_filter1d(step, width, mode="nearest") if width else step
 
     def once(self, target: Array, reference: Array) -> Feedforward:
         """The inverse of every part for a target, and what the model does under the drive that it gives."""
         force = self.mechanics(target) + bending(self.stage.solvable, target)
-        found = self.material(force, reference, self.bounds)
-        asked = self.command(found.inputs, reference)
+        solution = self.material(force, reference, self.bounds)
+        asked = self.command(solution.inputs, reference)
         drive = self.limits.clip(asked, self.stage.dt)
         if not np.array_equal(drive, asked):
             least = self.material(force, reference, self.limits)
             drive = self.limits.clip(self.command(least.inputs, reference), self.stage.dt)
-        return Feedforward(reference, drive, asked, self.stage.respond(drive), found.wrong, found.missed)
+        return Feedforward(reference, drive, asked, self.stage.respond(drive), solution.wrong, solution.missed)
 
     def material(self, force: Array, reference: Array, limits: Limits) -> Solution:
         """Inputs of the material under which it puts out a force; those of an axis that is not measured follow from

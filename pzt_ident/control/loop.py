@@ -81,14 +81,15 @@ def closed_loop(
     *,
     substeps: int = 20,
     delay: int = 1,
-    quantum: float = 0.0,
+    quantum: float | Array = 0.0,
     limits: Limits | None = None,
 ) -> Tracking:
     """Let a stage follow a reference (axes, samples), from rest. With gains of zero it is the open loop.
 
     stage: one at the sample time of the controller over `substeps`; the drive jumps within the first of them and then
     holds. delay: samples that pass from a reading to the drive that answers it; the feedforward is known ahead and is
-    not late. quantum: a count of the sensor, 0 for none. An axis that is not measured gets the feedforward alone.
+    not late. quantum: a count of the sensor, one or (axes,), 0 for none.
+    An axis that is not measured gets the feedforward alone.
     """
     dt, axes = substeps * stage.dt, len(reference)
     ahead = np.zeros(reference.shape) if feedforward is None else feedforward
@@ -96,7 +97,7 @@ def closed_loop(
     within = np.full((axes, 3), np.inf) * [-1, 1, 1]
     if limits:
         within = np.column_stack([limits.drive, limits.slew * dt])
-    counts = np.full(axes, float(quantum))
+    counts = np.full(axes, np.asarray(quantum, dtype=np.float64))
     drive, reading = stage.part(EVERYTHING).regulate(reference, ahead, rates, within, counts, delay, substeps)
     rest = np.clip(ahead[:, :1], within[:, :1], within[:, 1:2])
     displacement = stage.part(MOVED).respond(np.hstack([rest, drive[:, :-1]]))[:, ::substeps]

@@ -25,13 +25,13 @@ RESTLESS = 0.1  # of its samples: a reference that turns back more often is call
 class Notes:
     """Sentences on a drive for a reference, in the user's units."""
 
-    def __init__(self, inverse: Inverse, found: Feedforward, identified: Identified) -> None:
-        self.inverse, self.found, self.identified = inverse, found, identified
+    def __init__(self, inverse: Inverse, feedforward: Feedforward, identified: Identified) -> None:
+        self.inverse, self.feedforward, self.identified = inverse, feedforward, identified
         self.model, self.dt = inverse.stage.model, inverse.stage.dt
 
     def sentences(self) -> tuple[str, ...]:
-        told = self.left_out, self.static, self.noisy, self.limited, self.unreached, self.wrong_way, self.new
-        return tuple(sentence for each in told for sentence in each())
+        topics = self.left_out, self.static, self.noisy, self.limited, self.unreached, self.wrong_way, self.new
+        return tuple(sentence for topic in topics for sentence in topic())
 
     def left_out(self) -> Iterator[str]:
         """Blocks that the drive does not make up for."""
@@ -44,7 +44,7 @@ class Notes:
             yield f"{listed(disturbances)} of another record cannot be foreseen and is not fed forward"
         if any(block.place == Place.SLEW for block in blocks):
             yield "slew_limit is a limit: give it as one, with --slew"
-        if still := [self.model.axes[a] for a in np.flatnonzero(~self.found.drive.any(axis=1))]:
+        if still := [self.model.axes[a] for a in np.flatnonzero(~self.feedforward.drive.any(axis=1))]:
             yield f"the drive of {listed(still)} is zero throughout"
 
     def static(self) -> Iterator[str]:
@@ -54,7 +54,7 @@ class Notes:
     def noisy(self) -> Iterator[str]:
         """Where a reference turns as often as a measured signal does."""
         for axis, name, _ in self._axes("response_units"):
-            moves = np.diff(self.found.reference[axis])
+            moves = np.diff(self.feedforward.reference[axis])
             turns = float(np.mean(moves[1:] * moves[:-1] < 0)) if moves.size > 1 else 0.0
             if turns > RESTLESS:
                 yield (
@@ -65,10 +65,10 @@ class Notes:
     def limited(self) -> Iterator[str]:
         """Where the amplifier does not follow."""
         for axis, name, unit in self._axes("drive_units"):
-            where = self.found.limited[axis]
+            where, asked = self.feedforward.limited[axis], self.feedforward.asked[axis] / factor(unit)
             if where.any():
-                short = np.abs(self.found.asked[axis] - self.found.drive[axis]).max() / factor(unit)
-                most = self.found.asked[axis][where][np.argmax(np.abs(self.found.asked[axis][where]))] / factor(unit)
+                short = np.abs(asked - self.feedforward.drive[axis] / factor(unit)).max()
+                most = asked[where][np.argmax(np.abs(asked[where]))]
                 yield spelled(
                     f"{name}: beyond the limits of the amplifier {self._times(where)}; the reference asks for up to "
                     f"{quantity(most, unit)}, the drive falls short by up to {quantity(short, unit)}"
@@ -77,8 +77,8 @@ class Notes:
     def unreached(self) -> Iterator[str]:
         """Where no drive leads to the reference."""
         for axis, name, unit in self._axes("response_units"):
-            missed = np.abs(self.found.missed[axis])
-            where = missed > REACHED * np.ptp(self.found.reference[axis])
+            missed = np.abs(self.feedforward.missed[axis])
+            where = missed > REACHED * np.ptp(self.feedforward.reference[axis])
             if where.any():
                 most = quantity(missed.max() / factor(unit), unit)
                 yield spelled(f"{name}: no drive reaches the reference {self._times(where)}, {most} are missing")
@@ -87,7 +87,7 @@ class Notes:
         """Where the model has no unique inverse."""
         reasons = [block.wrong_way for block in self.model.blocks if block.wrong_way]
         for axis, name, _ in self._axes("response_units"):
-            where = self.found.wrong[axis]
+            where = self.feedforward.wrong[axis]
             if where.any():
                 why = f": {'; or '.join(reasons)}" if reasons else ""
                 yield f"{name}: the model first moves away from the reference {self._times(where)}{why}"
@@ -97,7 +97,7 @@ class Notes:
         for axis, name, unit in self._axes("drive_units"):
             low, high = self.identified.range[axis]
             margin = (FURTHER - 1) * (high - low)
-            drive = self.found.drive[axis]
+            drive = self.feedforward.drive[axis]
             if drive.min() < low - margin or drive.max() > high + margin:
                 seen, asked = (
                     f"{quantity(a / factor(unit), unit)} to {quantity(b / factor(unit), unit)}"
@@ -105,7 +105,7 @@ class Notes:
                 )
                 yield spelled(f"{name}: the drive goes from {asked}, the model was identified from {seen}")
             fastest = self.identified.frequencies[axis]
-            asked_for = frequency(self.found.reference[axis], self.dt)
+            asked_for = frequency(self.feedforward.reference[axis], self.dt)
             if asked_for > FASTER * fastest:
                 yield (
                     f"{name}: the reference moves at {quantity(asked_for, 'Hz', 3)} (root mean square), the model was "
@@ -120,9 +120,9 @@ class Notes:
         """Stretches of time: from 0.2 s to 0.3 s."""
         edges = np.flatnonzero(np.diff(np.concatenate([[0], where.astype(int), [0]])))
         stretches = [(a * self.dt, (b - 1) * self.dt) for a, b in edges.reshape(-1, 2)]
-        told = [f"from {quantity(a, 's', 4)} to {quantity(b, 's', 4)}" for a, b in stretches[:SHOWN]]
+        named = [f"from {quantity(a, 's', 4)} to {quantity(b, 's', 4)}" for a, b in stretches[:SHOWN]]
         more = [f"{len(stretches) - SHOWN} more times"] if len(stretches) > SHOWN else []
-        return listed([*told, *more])
+        return listed([*named, *more])
 
 
 def frequency(signal: Array, dt: float) -> float:

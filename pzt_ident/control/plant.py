@@ -66,8 +66,8 @@ def plant_of(stage: Stage, axis: int, span: tuple[float, float], substeps: int) 
     pulse = held_pulse(stage, axis, SMALL * max(map(abs, span)) * abs(gain), substeps)
     half = pulse.size // 2 - 1
     _, sizes = control.eigensys_realization(pulse, 1, half, half)
-    found, _ = control.eigensys_realization(pulse, int(np.count_nonzero(sizes > RANK * sizes[0])), half, half)
-    return Plant(control.ss(found.A, found.B, found.C, 0.0, stage.dt * substeps), gain)
+    realization, _ = control.eigensys_realization(pulse, int(np.count_nonzero(sizes > RANK * sizes[0])), half, half)
+    return Plant(control.ss(realization.A, realization.B, realization.C, 0.0, stage.dt * substeps), gain)
 
 
 def largest_slope(stage: Stage, axis: int, span: tuple[float, float]) -> float:

@@ -96,12 +96,12 @@ class Stage:
     @cached_property
     def late(self) -> Array:
         """Dead time of each axis, samples."""
-        found = np.zeros(len(self.model.axes))
+        late = np.zeros(len(self.model.axes))
         for operation in self.program.operations:
             if operation.block and issubclass(operation.block, Shift):
                 form: Any = self.form(operation)
-                found[operation.tile // TILES] += float(form.prepare(*self.given(operation))[0])
-        return found
+                late[operation.tile // TILES] += float(form.prepare(*self.given(operation))[0])
+        return late
 
     @property
     def history(self) -> int:
@@ -143,12 +143,12 @@ class Part:
 
         inputs, wrong, missed = np.array(held), np.zeros(outputs.shape), np.zeros(outputs.shape)
         free = np.isin(np.arange(len(outputs)), self._measured)
-        own, mixing = np.diag(slopes).copy(), np.zeros(slopes.shape)
+        diagonal, mixing = np.diag(slopes).copy(), np.zeros(slopes.shape)
         among = np.ix_(self._measured, self._measured)
-        mixing[among] = own[self._measured, None] * np.linalg.inv(slopes[among])
+        mixing[among] = diagonal[self._measured, None] * np.linalg.inv(slopes[among])
         asked = np.ascontiguousarray(outputs)
-        found = inputs, wrong, missed
-        solve(self._program, *self._state, asked, free, limits, move, own, mixing, self._fresh, *found)
+        results = inputs, wrong, missed
+        solve(self._program, *self._state, asked, free, limits, move, diagonal, mixing, self._fresh, *results)
         self._fresh = False
         return Solution(inputs, wrong > 0, missed)
 

@@ -39,7 +39,7 @@ def is_linear(stage: Stage, axis: int, reach: float) -> bool:
 
 
 def statics(stage: Stage, axis: int, force: Array) -> Array:
-    """Displacements of an axis at rest under each force, the others being free of force."""
+    """Displacements of an axis at rest under row force, the others being free of force."""
     forces = np.zeros((force.size, len(stage.model.axes), 1))
     forces[:, axis, 0] = force
-    return np.array([stage.respond(each, MECHANICS)[axis, 0] for each in forces])
+    return np.array([stage.respond(row, MECHANICS)[axis, 0] for row in forces])

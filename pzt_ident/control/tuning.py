@@ -102,9 +102,9 @@ def tune(plant: Plant, delay: int, gain_margin: float, phase_margin: float) -> L
     search = Search(plant, delay, gain_margin, np.radians(phase_margin))
     grid = KP
     for _ in range(ZOOMS):
-        found = [search.largest(kp) for kp in grid]
-        best = int(np.argmax(found))
-        kp, ki = float(grid[best]), found[best]
+        integral = [search.largest(kp) for kp in grid]
+        best = int(np.argmax(integral))
+        kp, ki = float(grid[best]), integral[best]
         grid = np.linspace(grid[max(best - 1, 0)], grid[min(best + 1, grid.size - 1)], 9)
     if not ki > 0:
         free = np.abs(plant.dynamics.poles()).max() > UNDAMPED
@@ -129,14 +129,14 @@ class Search:
 
     def largest(self, kp: float) -> float:
         """The largest ki that keeps the margins, 0 where none does."""
-        grid, found = KI, 0.0
+        grid, largest = KI, 0.0
         for _ in range(ZOOMS):
             kept = np.flatnonzero(self.keeps(kp, grid))
             if not kept.size:
                 break
-            found = float(grid[kept[0]])
-            grid = np.geomspace(grid[max(kept[0] - 1, 0)], found, 12)
-        return found
+            largest = float(grid[kept[0]])
+            grid = np.geomspace(grid[max(kept[0] - 1, 0)], largest, 12)
+        return largest
 
     def keeps(self, kp: float, ki: Array) -> NDArray[np.bool_]:
         matrices = self.free + kp * self.by_kp + ki[:, None, None] * self.by_ki

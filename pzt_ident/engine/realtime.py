@@ -118,6 +118,18 @@ def beyond(tiles, target, weights):
 
 
 @njit(nogil=True, cache=True)
+def seek(program, scratch, tiles, window, saved, kept, target, weights, fresh, search, trial, axis):
+    """Move the input of one axis to where the weighted outputs meet their target; the state stays as `saved`."""
+    more = True
+    while more:
+        trial[axis] = search[root.X]
+        advance(program, scratch, tiles, window, trial, fresh)
+        scratch[:], window[:] = saved, kept
+        more = root.propose(search, beyond(tiles, target, weights))
+    trial[axis] = search[root.X]
+
+
+@njit(nogil=True, cache=True)
 def solve(program, scratch, tiles, window, target, free, limits, move, slopes, mixing, fresh, inputs, wrong, missed):
     """Inputs (axes, samples) under which the outputs are the target (axes, samples).
 
@@ -146,13 +158,8 @@ def solve(program, scratch, tiles, window, target, free, limits, move, slopes, m
                     if not first:
                         low, high = max(low, before[axis] - move[axis]), min(high, before[axis] + move[axis])
                     root.begin(search, trial[axis], 1e-9 * abs(trial[axis]) + 1e-12, low, high, slopes[axis])
-                    more = True
-                    while more:
-                        trial[axis] = search[root.X]
-                        advance(program, scratch, tiles, window, trial, first)
-                        scratch[:], window[:] = saved, kept
-                        more = root.propose(search, beyond(tiles, target[:, i], mixing[axis]))
-                    trial[axis] = search[root.X]
+                    asked = target[:, i], mixing[axis]
+                    seek(program, scratch, tiles, window, saved, kept, *asked, first, search, trial, axis)
                     wrong[axis, i] = max(wrong[axis, i], search[root.WRONG])
             advance(program, scratch, tiles, window, trial, first)
             met = True

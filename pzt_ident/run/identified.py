@@ -79,7 +79,7 @@ def of_statement(statement: Statement, theta: Array, errors: Errors, rmse: Error
     problem, records = statement.problem, [r for r in statement.records if r.use == "identify"]
     stated, axes = statement.job.limits, range(len(problem.model.axes))
     ends = np.array([[record.drive.min(axis=1), record.drive.max(axis=1)] for record in records])
-    told = ", ".join(f"{error:.3g} {statement.unit} {use}" for use, error in rmse.items() if error is not None)
+    errors_by_use = ", ".join(f"{error:.3g} {statement.unit} {use}" for use, error in rmse.items() if error is not None)
     return Identified(
         statement.job.name,
         problem.model,
@@ -92,7 +92,7 @@ def of_statement(statement: Statement, theta: Array, errors: Errors, rmse: Error
         tuple(records[0].response_units),
         tuple(max(frequency(record.drive[axis], record.dt) for record in records) for axis in axes),
         (stated.drive, stated.slew),
-        f"RMSE: {told}.",
+        f"RMSE: {errors_by_use}.",
         words_of(statement.job),
     )
 

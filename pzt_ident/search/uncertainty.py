@@ -165,15 +165,15 @@ def autoregression(residual: Array) -> tuple[Array, float]:
     most = min(size - 1, int(10 * np.log10(size)))
     lags = np.fft.irfft(np.abs(np.fft.rfft(residual, 2 * size)) ** 2)[: most + 1] / size
     weights, variance = np.ones(1), lags[0]
-    found = [(0.0, weights, variance)]
+    models = [(0.0, weights, variance)]
     for order in range(1, most + 1):
         if not variance > 1e-12 * lags[0]:
             break
         reflection = -(weights @ lags[order:0:-1]) / variance
         weights = np.append(weights, 0.0) + reflection * np.append(0.0, weights[::-1])
         variance = variance * (1 - reflection**2)
-        found.append((size * np.log(max(variance / lags[0], 1e-300)) + 2 * order, weights, variance))
-    return min(found, key=lambda entry: entry[0])[1:]
+        models.append((size * np.log(max(variance / lags[0], 1e-300)) + 2 * order, weights, variance))
+    return min(models, key=lambda entry: entry[0])[1:]
 
 
 def flat_share(problem: Problem, point: Array, steps: int = 24) -> Array:

@@ -1,13 +1,14 @@
 """Ways to follow a reference, beside each other."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
 import pzt_ident as pzt
-from pzt_ident.api.tracking import ALONE, INVERSE, LOOP, MEASURED, OPEN, control
+from pzt_ident.api.tracking import ALONE, INVERSE, LOOP, MEASURED, OPEN, Following, control
 from pzt_ident.cli.commands import main
 from pzt_ident.control.identified import Identified
 from rig import model
@@ -28,13 +29,30 @@ def two_axes():
 
 
 def test_each_way_is_better_than_the_one_before(two_axes):
-    found = control(two_axes, T, {"x": REFERENCE, "y": REFERENCE[::-1]}, kp=0.1, ki=10.0)
+    fine = np.linspace(0, T[-1], 30_000)
+    reference = 3 * np.sin(np.pi * fine / fine[-1]) ** 2 * (1 + 0.3 * np.sin(9 * fine / fine[-1]))
+    found = control(two_axes, fine, {"x": reference, "y": reference[::-1]}, kp=0.1, ki=10.0)
     assert [*found.ways] == [OPEN, ALONE, INVERSE, LOOP]
     for axis in "xy":
         open_, alone, inverse, _ = (way.rmse[axis] for way in found.ways.values())
-        assert open_ > alone > 5 * inverse
-    left = -0.05 * REFERENCE[::-1]
-    assert np.abs(found.ways[ALONE].error["x"] - left).max() < 0.06 * np.abs(left).max()
+        assert open_ > alone > 100 * inverse
+    left = -0.05 * reference[::-1]
+    assert np.abs(found.ways[ALONE].error["x"] - left).max() < 0.01 * np.abs(left).max()
+
+
+def test_a_held_drive_is_late_by_half_a_sample_at_the_samples(two_axes):
+    found = control(two_axes, T, {"x": REFERENCE, "y": REFERENCE}, kp=0.0, ki=0.0)
+    late = -np.gradient(REFERENCE, T) * (T[1] - T[0]) / 2
+    assert np.abs(found.ways[INVERSE].error["x"] - late).max() < 0.02 * np.abs(late).max()
+
+
+def test_each_axis_has_the_count_of_its_own_unit(two_axes):
+    in_nanometres = replace(two_axes, response_units=("um", "nm"))
+    wanted = 1e-6 * np.array([REFERENCE, REFERENCE])
+    follow = Following(in_nanometres, wanted, T[1] - T[0], 1, 0.1, None, None)
+    reading = follow.by(np.zeros(wanted.shape)).reading + follow.by(wanted / 8e-8).reading
+    counts = reading / np.array([[1e-7], [1e-10]])
+    assert np.abs(counts - np.round(counts)).max() < 1e-6
 
 
 def test_spectrum_holds_the_whole_error(fit):

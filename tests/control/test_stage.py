@@ -18,9 +18,12 @@ def test_one_sample_at_a_time_is_what_lanes_compute(words):
 
 def test_a_drive_between_samples_is_a_line():
     """Where lanes take a spline, since the equation is finer than the samples."""
-    chain, measured, theta = made("bouc_wen_oscillator", waves(3, 2000), count=1, dt=1e-4)
-    found = stage_of(chain, measured, theta).respond(measured.drive, EVERYTHING)
-    assert_close(found, simulate(chain, measured, theta)[0], close=1e-3)
+    errors = []
+    for samples in (500, 2000, 8000):
+        chain, measured, theta = made("bouc_wen_oscillator", waves(3, samples), count=1, dt=0.2 / samples)
+        found = stage_of(chain, measured, theta).respond(measured.drive, EVERYTHING)
+        errors.append(np.abs(found - simulate(chain, measured, theta)[0]).max())
+    assert np.allclose([errors[0] / errors[1], errors[1] / errors[2]], 16, rtol=0.1), "second order in the step"
 
 
 def test_a_part_goes_on_where_it_ended():

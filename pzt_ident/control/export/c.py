@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-import textwrap
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from pzt_ident.control.export.c_layout import headline, notes, parameter_name, wrapped
 from pzt_ident.control.export.c_text import RESERVED, Text
 from pzt_ident.control.export.inverse import ROOTS, Exportable
 from pzt_ident.control.export.program import Exported, Given, Step, is_array
@@ -21,8 +21,6 @@ from pzt_ident.model.block import TILES
 
 TEMPLATES = Path(__file__).parent / "templates"
 TOLERANCE = {"double": 1e-9, "float": 1e-5}
-INVERSE_TOLERANCE = {"double": 1e-8, "float": 1e-3}
-WIDTH = 118
 HELPERS = {
     f"{word}_of{end}": f"static {kind} {word}_of{end}({kind} a, {kind} b)\n{{\n    return b {sign} a ? b : a;\n}}"
     for word, sign in (("min", "<"), ("max", ">"))
@@ -122,11 +120,11 @@ class CModel:
 
     def inverted(self) -> dict[str, Any]:
         """What the templates ask about the inverse."""
-        one, found = self.identified, self.inverse
-        if found.refused:
-            return {"inverse": None, "no_inverse": found.refused}
-        chosen = found.operations()
-        facts = found.facts(self.number)
+        one, inverse = self.identified, self.inverse
+        if inverse.refused:
+            return {"inverse": None, "no_inverse": inverse.refused}
+        chosen = inverse.operations()
+        facts = inverse.facts(self.number)
         material = [self.call(step) for step in self.exported.steps if step.operation in chosen]
         sizes = [one.scale(axis) for axis in range(self.exported.axes)]
         return {
@@ -154,18 +152,18 @@ class CModel:
     def parameter(self, column: int) -> dict[str, str]:
         one, entry = self.identified, self.identified.entry(column)
         error = one.errors[column]
-        said = f"{one.units[column]}"
-        said += f", standard error {error:.2g}" if error is not None else ""
+        comment = f"{one.units[column]}"
+        comment += f", standard error {error:.2g}" if error is not None else ""
         return {
             "name": parameter_name(entry.name),
             "value": self.exact.number(one.value(column)),
-            "said": f"{said}. {entry.parameter.doc}",
+            "comment": f"{comment}. {entry.parameter.doc}",
         }
 
     def struct(self, kernel: Kernel) -> dict[str, Any]:
         fields = [word if copies == 1 else f"{word}[{copies}]" for word, copies in kernel.fields.names.items()]
         cells = [f"cells[{kernel.fields.cells}]"] if kernel.fields.cells else []
-        return {"name": kernel.name, "said": headline(kernel), "fields": fields + cells}
+        return {"name": kernel.name, "comment": headline(kernel), "fields": fields + cells}
 
     def authors(self) -> list[str]:
         """The functions of authors: in double for the coefficients, in the precision of the signals for a step."""
@@ -285,7 +283,7 @@ class CModel:
                 "inverse": True,
                 "asked": [", ".join(map(self.number, row)) for row in asked.T],
                 "largest_drive": repr(float(np.abs(asked).max()) or 1.0),
-                "inverse_tolerance": INVERSE_TOLERANCE[self.precision],
+                "inverse_tolerance": TOLERANCE[self.precision],
             }
         return {
             **inverse,
@@ -295,35 +293,3 @@ class CModel:
             "response": rows[1],
             "ranges": ranges,
         }
-
-
-def parameter_name(name: str) -> str:
-    return name.replace(".", "_")
-
-
-def headline(kernel: Kernel) -> str:
-    """The equation of a block, and its name in a job."""
-    first = (kernel.block.__doc__ or "").strip().partition("\n\n")[0]
-    return " ".join(f"{kernel.block.item()}: {first}".split()).replace("*/", "* /")
-
-
-def notes(identified: Identified) -> list[str]:
-    """What is in the model and what is not."""
-    left = [block.name for block in identified.chain.additions]
-    text = [identified.origin] if identified.origin else []
-    axes = zip(identified.chain.axes, identified.drive_units, identified.ends, strict=True)
-    ranges = [f"{axis} {low:.6g} to {high:.6g} {unit}" for axis, unit, (low, high) in axes]
-    text.append(f"Identified with drives of {', '.join(ranges)}.")
-    if left:
-        text.append(f"Not in it, since they do not follow from the drive: {', '.join(left)}, and the offset.")
-    return [line for paragraph in text for line in textwrap.wrap(paragraph, 110)]
-
-
-def wrapped(line: str) -> list[str]:
-    """A line of C in lines that fit."""
-    if len(line) <= WIDTH or line.startswith("#") or '"' in line:
-        return [line]
-    indent = line[: len(line) - len(line.lstrip())]
-    deeper = indent + ("   " if line.lstrip().startswith("/*") else "        ")
-    return textwrap.wrap(line, WIDTH, initial_indent="", subsequent_indent=deeper, break_long_words=False,
-                         break_on_hyphens=False, drop_whitespace=True, replace_whitespace=False)  # fmt: skip

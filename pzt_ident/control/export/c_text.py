@@ -159,8 +159,8 @@ class Text(Kinds):
 
     def text(self, node: ast.expr, level: int = 0) -> str:
         """An expression, in brackets where its operator binds less than `level`."""
-        own, text = self.parts(node)
-        return f"({text})" if own < level else text
+        precedence, text = self.parts(node)
+        return f"({text})" if precedence < level else text
 
     def parts(self, node: ast.expr) -> tuple[int, str]:
         if isinstance(node, ast.Constant):

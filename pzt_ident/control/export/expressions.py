@@ -48,14 +48,14 @@ class Expressions:
 
     def refused(self, node: ast.AST, what: str = "") -> InputError:
         line = getattr(node, "lineno", 0)
-        said = what or f"`{ast.unparse(node)}`"
-        return InputError(f"line {line}: {said} cannot be exported", where=self.name, remedy=REMEDY)
+        construct = what or f"`{ast.unparse(node)}`"
+        return InputError(f"line {line}: {construct} cannot be exported", where=self.name, remedy=REMEDY)
 
     def look_up(self, node: ast.expr) -> Any:
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
             return getattr(self.globals.get(node.value.id), node.attr, None)
-        found = self.globals.get(node.id, getattr(builtins, node.id, None)) if isinstance(node, ast.Name) else None
-        return getattr(found, "py_func", found)
+        value = self.globals.get(node.id, getattr(builtins, node.id, None)) if isinstance(node, ast.Name) else None
+        return getattr(value, "py_func", value)
 
     def calls_function(self, node: ast.AST) -> bool:
         """Whether a function of an author is called in it."""
@@ -97,10 +97,10 @@ class Expressions:
         return number(value) if known or not word.isupper() else name(self.library.constant(self.module, word, value))
 
     def _attribute_value(self, node: ast.Attribute) -> Value:
-        found = self.look_up(node)
-        if found is None:
+        value = self.look_up(node)
+        if value is None:
             return ast.Attribute(node.value, node.attr, ast.Load())
-        return self.constant(node, node.attr, found)
+        return self.constant(node, node.attr, value)
 
     def _tuple_value(self, node: ast.Tuple) -> Value:
         members: list[Value] = []
@@ -179,11 +179,11 @@ class Expressions:
         self.out[-1].together = word  # type: ignore[attr-defined]
         return kept
 
-    def named(self, word: str, each: Any) -> Value:
+    def named(self, word: str, shape: Any) -> Value:
         """Local words for a value of some shape."""
-        if each == "number":
+        if shape == "number":
             return name(word)
-        return tuple(self.named(f"{word}_{i}", member) for i, member in enumerate(each))
+        return tuple(self.named(f"{word}_{i}", member) for i, member in enumerate(shape))
 
     def new(self, word: str) -> str:
         """A word that is not taken."""
@@ -218,5 +218,5 @@ def elementary_name(source: Any) -> str:
     """The name of an elementary function; empty for any other."""
     module = getattr(source, "__module__", None)
     plain = isinstance(source, BuiltinFunctionType) and module == "math"
-    found = getattr(source, "__name__", "")
-    return found if found in ELEMENTARY and (plain or module in (elementary.__name__, "numpy")) else ""
+    word = getattr(source, "__name__", "")
+    return word if word in ELEMENTARY and (plain or module in (elementary.__name__, "numpy")) else ""

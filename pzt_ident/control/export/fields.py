@@ -107,11 +107,11 @@ class Fields:
 
 def unique(words: Iterable[str]) -> list[str]:
     """Words, with a number at the end where one comes again."""
-    found: list[str] = []
+    names: list[str] = []
     for word in words:
         options = [word, *(f"{word}_{n}" for n in range(2, 100))]
-        found.append(next(option for option in options if option not in found))
-    return found
+        names.append(next(option for option in options if option not in names))
+    return names
 
 
 def affine(index: ast.expr) -> tuple[int, int, ast.expr | None]:

@@ -59,7 +59,7 @@ def description(model: CModel, guid: str) -> dict[str, Any]:
     }
 
 
-def variable(name: str, causality: str, unit: str, said: str, start: float | None = None) -> dict[str, str]:
+def variable(name: str, causality: str, unit: str, comment: str, start: float | None = None) -> dict[str, str]:
     fixed = causality == "parameter"
     return {
         "name": name,
@@ -67,7 +67,7 @@ def variable(name: str, causality: str, unit: str, said: str, start: float | Non
         "variability": "fixed" if fixed else "discrete",
         "initial": {"parameter": ' initial="exact"', "output": ' initial="calculated"'}.get(causality, ""),
         "unit": unit,
-        "said": escaped(said),
+        "comment": escaped(comment),
         "start": "" if start is None else f' start="{start!r}"',
     }
 

@@ -70,7 +70,7 @@ class Exportable:
     def facts(self, number: Any) -> dict[str, Any]:
         """For the templates. number: a number as text."""
         slopes = self.inverse.slopes
-        own = np.diag(slopes)
+        diagonal = np.diag(slopes)
         force = np.abs(self.mechanics(self.reference)).max(axis=1)
         axes = range(len(slopes))
         return {
@@ -80,8 +80,8 @@ class Exportable:
                 self.filter(self.actuation, "input", "drive", number),
             ],
             "free": [int(axis in self.identified.outputs) for axis in axes],
-            "slopes": [number(value) for value in own],
-            "mixing": [[number(value) for value in row] for row in own[:, None] * np.linalg.inv(slopes)],
+            "slopes": [number(value) for value in diagonal],
+            "mixing": [[number(value) for value in row] for row in diagonal[:, None] * np.linalg.inv(slopes)],
             "most": number(RANGE * self.inverse.size),
             "exact": [number(realtime.EXACT * value) for value in force],
             "sweeps": realtime.SWEEPS if len(self.identified.outputs) > 1 else 1,

@@ -66,7 +66,7 @@ class Kinds:
 
     def scopes(self, body: Sequence[ast.stmt]) -> dict[str, int]:
         """Words that are declared where they are first assigned, by the number of that statement."""
-        found: dict[str, int] = {}
+        places: dict[str, int] = {}
         every = counts(body)
 
         def visit(block: Sequence[ast.stmt]) -> None:
@@ -76,9 +76,9 @@ class Kinds:
                     whole = inside.get(word) == every.get(word)
                     first = all(word not in counts([earlier]) for earlier in block[: block.index(statement)])
                     if word in self.local and whole and first and word not in reads(value_of(statement)):
-                        found.setdefault(word, id(statement))
+                        places.setdefault(word, id(statement))
                 for part in ("body", "orelse"):
                     visit(getattr(statement, part, []))
 
         visit(body)
-        return found
+        return places

@@ -68,8 +68,8 @@ class Lowering(Expressions):
         self.taken = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
         if tree.args.vararg or tree.args.kwarg or len(words) != len(shapes):
             raise self.refused(tree, "its arguments")
-        for word, each in zip(words, shapes, strict=True):
-            self.scope[word] = self.named(word, each)
+        for word, members in zip(words, shapes, strict=True):
+            self.scope[word] = self.named(word, members)
         parameters = [one.id for word in words for one in flat(self.scope[word])]  # type: ignore[attr-defined]
         body = self.block(tree.body)
         doc = (ast.get_docstring(tree) or "").strip()

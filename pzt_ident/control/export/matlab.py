@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import textwrap
 
-from pzt_ident.control.export.c import headline, notes, parameter_name
+from pzt_ident.control.export.c_layout import headline, notes, parameter_name
 from pzt_ident.control.export.matlab_text import RESERVED, MatlabText, word_of
 from pzt_ident.control.export.program import Exported, Given, Step, is_array
 from pzt_ident.control.export.tile import Kernel

@@ -69,13 +69,13 @@ class TileLowering(Lowering):
 
 def rewritten(body: Sequence[ast.stmt]) -> set[str]:
     """Coefficients that get another value for a sample, which is not kept."""
-    found: set[str] = set()
+    words: set[str] = set()
     for statement in body:
         if isinstance(statement, ast.For) or (isinstance(statement, ast.If) and not is_fresh(statement)):
-            found |= rewritten(statement.body)
+            words |= rewritten(statement.body)
         elif isinstance(statement, ast.Assign) and not isinstance(statement.value, ast.Attribute | ast.Subscript):
-            found |= {word for word in assigned([statement]) if is_coefficient(word)}
-    return found
+            words |= {word for word in assigned([statement]) if is_coefficient(word)}
+    return words
 
 
 class Kept(Statements):

@@ -61,9 +61,9 @@ def stored(place: ast.expr) -> Any:
 def reads(tree: ast.AST | Sequence[ast.AST]) -> set[str]:
     """The names of which something reads the value."""
     trees = [tree] if isinstance(tree, ast.AST) else tree
-    nodes = [node for each in trees for node in ast.walk(each)]
-    found = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
-    return found | {
+    nodes = [node for tree in trees for node in ast.walk(tree)]
+    words = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
+    return words | {
         node.target.id for node in nodes if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name)
     }
 
@@ -109,12 +109,12 @@ def words_in(body: Sequence[ast.stmt]) -> set[str]:
 
 def counts(body: Sequence[ast.stmt]) -> dict[str, int]:
     """How often each word occurs."""
-    found: dict[str, int] = {}
+    counts: dict[str, int] = {}
     for statement in body:
         for node in ast.walk(statement):
             if isinstance(node, ast.Name):
-                found[node.id] = found.get(node.id, 0) + 1
-    return found
+                counts[node.id] = counts.get(node.id, 0) + 1
+    return counts
 
 
 def direct(statement: ast.stmt) -> list[str]:
