@@ -159,21 +159,23 @@ def stationary(directions: Array, residual: Array) -> Array:
 
 
 def autoregression(residual: Array) -> tuple[Array, float]:
-    """Weights a, from 1, and variance of e in sum_i a_i r[k - i] = e[k], by Levinson's recursion. The order is that of
-    the least AIC (Akaike 1974), 10 log10 of the number of samples at most."""
+    """Weights a, from 1, and variance of e in sum_i a_i r[k - i] = e[k], from the equations of Yule and Walker. The
+    order is that of the least AIC (Akaike 1974), 10 log10 of the number of samples at most."""
+    from scipy.linalg import solve_toeplitz
+
     size = residual.size
     most = min(size - 1, int(10 * np.log10(size)))
     lags = np.fft.irfft(np.abs(np.fft.rfft(residual, 2 * size)) ** 2)[: most + 1] / size
-    weights, variance = np.ones(1), lags[0]
-    models = [(0.0, weights, variance)]
-    for order in range(1, most + 1):
+    best, least = (np.ones(1), float(lags[0])), 0.0
+    for order in range(1, most + 1 if lags[0] > 0 else 1):
+        weights = np.append(1.0, solve_toeplitz(lags[:order], -lags[1 : order + 1]))
+        variance = float(weights @ lags[: order + 1])
         if not variance > 1e-12 * lags[0]:
             break
-        reflection = -(weights @ lags[order:0:-1]) / variance
-        weights = np.append(weights, 0.0) + reflection * np.append(0.0, weights[::-1])
-        variance = variance * (1 - reflection**2)
-        models.append((size * np.log(max(variance / lags[0], 1e-300)) + 2 * order, weights, variance))
-    return min(models, key=lambda entry: entry[0])[1:]
+        criterion = size * np.log(variance / lags[0]) + 2 * order
+        if criterion < least:
+            best, least = (weights, variance), criterion
+    return best
 
 
 def flat_share(problem: Problem, point: Array, steps: int = 24) -> Array:
