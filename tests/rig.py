@@ -13,6 +13,7 @@ from pzt_ident.model.parameter import Setting
 from pzt_ident.model.registry import blocks
 
 AXES = "xyz"
+CHAOTIC = 1e-7
 
 
 def record(*drives, response=None, dt=1e-3, measured=None, **more):
@@ -105,9 +106,10 @@ def rounding(made, measured, theta):
 
 
 def assert_close(found, expected, rounding=0.0, close=1e-12):
-    """To 1e-12 of each largest value, as long as that is a sensible number, and what rounding may do."""
+    """To 1e-12 of each largest value and what rounding may do. Where that is no sensible number, or a last digit has
+    grown to more than CHAOTIC of it, nothing is compared: any two ways to compute it differ."""
     so_far = np.maximum.accumulate(np.abs(expected), axis=-1)
-    known = so_far < 1e6
+    grown = np.maximum.accumulate(np.abs(rounding + 0 * so_far), axis=-1)
+    known = (so_far < 1e6) & (grown <= CHAOTIC * so_far)
     largest = np.where(known, so_far, 0).max(axis=-1, keepdims=True)
-    allowed = close * largest + 100 * np.maximum.accumulate(np.abs(rounding + 0 * so_far), axis=-1)
-    assert np.all((np.abs(found - expected) <= allowed) | ~known)
+    assert np.all((np.abs(found - expected) <= close * largest + 100 * grown) | ~known)
