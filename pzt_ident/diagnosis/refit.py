@@ -225,12 +225,11 @@ def descend(problem: Problem, point: Array, most: int = 30) -> Array:
         gradient, curvature = jacobian.T @ residual, jacobian.T @ jacobian
         free = ~(((point <= 0) & (gradient > 0)) | ((point >= 1) & (gradient < 0)))
         trials = np.array([damped_step(point, gradient, curvature, free, damping) for damping in DAMPINGS])
-        losses = problem.loss(trials)
-        best = int(np.argmin(losses))
-        if not losses[best] < loss:
+        best, least = problem.best(trials, point)
+        if not least < loss:
             break
-        slow = slow + 1 if losses[best] > (1 - 1e-4) * loss else 0
-        point, loss = trials[best], losses[best]
+        slow = slow + 1 if least > (1 - 1e-4) * loss else 0
+        point, loss = best, least
         if slow == 3:
             break
     return point

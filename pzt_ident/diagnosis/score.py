@@ -93,6 +93,7 @@ class Scorer:
     def __init__(self, case: Case, fit: Fit) -> None:
         self.case, self.fit = case, fit
         self.projection = Projection(fit.problem.jacobian(fit.point), fit.point)
+        self.tangent = fit.problem.tangent(fit.point)
         self.full_residual = fit.problem.residuals(fit.point)[0]
         self.residual = self.projection.remainder(self.full_residual)
         self.misfit = squared_misfit(case, fit)
@@ -116,7 +117,8 @@ class Scorer:
         case, fit, effects = self.case, self.fit, (*self.fit.effects, effect)
         first = case.unmeasured_nulls(effects) and not case.unmeasured_nulls(fit.effects)
         variants = (False, True) if first else (fit.measured_only,)
-        scores = [self._score(effect, case.problem(effects, fit.steps, measured_only)) for measured_only in variants]
+        problems = [case.problem(effects, fit.steps, measured_only).along(self.tangent) for measured_only in variants]
+        scores = [self._score(effect, problem) for problem in problems]
         return max(scores, key=lambda score: score.explained)
 
     def _score(self, effect: str, problem: Problem) -> Score:

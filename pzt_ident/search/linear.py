@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -18,6 +19,7 @@ Residuals = Callable[[Array], Array]
 MAX_PASSES = 4  # of linearisation, where a block behind makes the response nonlinear
 LINEAR = 1e-9  # of the residual: the error of prediction below which no further pass is needed
 NEGLIGIBLE = 1e-6  # of the largest column: below it a column is rounding
+SOLUTIONS, VALUES = 4, 4096  # that are kept: whole ones, each as large as all columns, and their values
 
 
 class LinearSolution(NamedTuple):
@@ -32,6 +34,29 @@ class LinearSolution(NamedTuple):
     units: Array
 
 
+@dataclass(frozen=True)
+class Tangent:
+    """How what is solved for follows to first order beside a point, where what is zero stays zero.
+
+    values: by name, in SI units. residual: (samples,), there. basis: (samples, active), upper rows of an orthonormal
+    basis of the columns and their prior: least squares take basis basis' of a change of the residual away.
+    """
+
+    values: Mapping[str, float]
+    residual: Array
+    basis: Array
+
+    @classmethod
+    def of(cls, names: Sequence[str], solution: LinearSolution) -> Tangent:
+        stacked = np.vstack([solution.columns, solution.prior])[:, solution.values != 0]
+        basis = np.linalg.qr(stacked / np.linalg.norm(stacked, axis=0))[0][: len(solution.columns)]
+        return cls(dict(zip(names, solution.values.tolist(), strict=True)), solution.residual, basis)
+
+    def follow(self, residuals: Array) -> Array:
+        """Residuals (candidates, samples) with these values, as they are once the values have followed."""
+        return residuals - ((residuals - self.residual) @ self.basis) @ self.basis.T
+
+
 class Linear:
     """The columns of theta that are solved for, as a function of the other columns.
 
@@ -41,8 +66,9 @@ class Linear:
 
     def __init__(self, model: Chain, columns: Sequence[int], units: Array, residuals: Residuals) -> None:
         self.columns = np.array(columns, dtype=int)
-        self._units, self._residuals = units, residuals
-        self._solved = lru_cache(256)(self._solve)
+        self.units, self._residuals = units, residuals
+        self._solved = lru_cache(SOLUTIONS)(self._solve)
+        self._values = lru_cache(VALUES)(lambda raw: self._solved(raw).values)
         entries = [model.entries[column] for column in columns]
         names = [f"{entry.axis} {entry.parameter.name}" if entry.parameter.smooth else "" for entry in entries]
         self._curves = [np.flatnonzero(np.array(names) == name) for name in dict.fromkeys(names) if name]
@@ -54,13 +80,17 @@ class Linear:
     def fill(self, theta: Array) -> None:
         """Write the solved values into theta (candidates, parameters), in place."""
         if self.columns.size:
-            theta[:, self.columns] = [self.solved(row).values for row in theta]
+            theta[:, self.columns] = [self._values(self._key(row)) for row in theta]
 
     def solved(self, row: Array) -> LinearSolution:
-        """The solution for one candidate, which does not depend on its linear columns."""
+        """The solution for one candidate."""
+        return self._solved(self._key(row))
+
+    def _key(self, row: Array) -> bytes:
+        """A candidate without its linear columns, on which the solution does not depend."""
         others = row.copy()
         others[self.columns] = 0
-        return self._solved(others.tobytes())
+        return others.tobytes()
 
     def _solve(self, raw: bytes) -> LinearSolution:
         row = np.frombuffer(raw)
@@ -70,7 +100,7 @@ class Linear:
             theta[:, self.columns] = values
             return self._residuals(theta)
 
-        return solve(residuals, self._units, self._curves, row[self._weights])
+        return solve(residuals, self.units, self._curves, row[self._weights])
 
 
 def solve(residuals: Residuals, units: Array, curves: Sequence[Indices], weights: ArrayLike) -> LinearSolution:
@@ -94,11 +124,11 @@ def solve(residuals: Residuals, units: Array, curves: Sequence[Indices], weights
         visible = sizes > NEGLIGIBLE * sizes.max(initial=0)
         columns[:, ~visible] = 0
         prior = second_differences(np.where(visible, sizes, 0), curves, np.asarray(weights))
-        q, r = np.linalg.qr(columns[:, visible] / sizes[visible])
-        target = q.T @ (columns @ (values / units) - residual)
-        system = np.vstack([r, prior[:, visible] / sizes[visible]])
+        target = columns @ (values / units) - residual
+        triangle = np.linalg.qr(np.column_stack([columns[:, visible] / sizes[visible], target]), mode="r")
+        system = np.vstack([triangle[:, :-1], prior[:, visible] / sizes[visible]])
         multiples = np.zeros(units.size)
-        solution = nnls(system, np.append(target, np.zeros(len(prior))), maxiter=100 * units.size)[0]
+        solution = nnls(system, np.append(triangle[:, -1], np.zeros(len(prior))), maxiter=100 * units.size)[0]
         multiples[visible] = solution / sizes[visible]
         expected = residual + columns @ (multiples - values / units)
         values = multiples * units

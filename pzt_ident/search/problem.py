@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -16,7 +17,7 @@ from pzt_ident.engine.simulator import Simulator
 from pzt_ident.errors import InputError
 from pzt_ident.model.chain import Chain, Entry
 from pzt_ident.search.feasibility import check_feasible, check_units
-from pzt_ident.search.linear import Linear
+from pzt_ident.search.linear import Linear, Tangent
 
 Array = NDArray[np.float64]
 
@@ -111,6 +112,7 @@ class Problem:
         signs = [np.sign(drive_correlation(identify, entry.axis)) or 1.0 for entry in entries]
         units = np.array([sign * self._size(entry, identify) for sign, entry in zip(signs, entries, strict=True)])
         self.linear = Linear(self.model, linear, units, self._scaled)
+        self._tangent: Tangent | None = None
 
     def _unit(self, entry: Entry, record: Record) -> str:
         """Unit of a parameter as the user writes it: that of the declaration with the units of the record."""
@@ -225,6 +227,17 @@ class Problem:
         rmse = self.by_axis(points, use) / self.sizes
         return rmse[:, 0] if rmse.shape[1] == 1 else np.sqrt(np.mean(rmse**2, axis=1))
 
+    def best(self, points: Array, near: Array) -> tuple[Array, float]:
+        """The point of least loss of those beside another one, and its loss; where parameters are solved for, they
+        follow to first order until a point is chosen."""
+        tangent = self.tangent(near)
+        if tangent is None:
+            losses = self.loss(points)
+            best = int(np.argmin(losses))
+            return points[best], float(losses[best])
+        point = points[np.argmin(np.linalg.norm(self.along(tangent).residuals(points), axis=1))]
+        return point, float(self.loss(point)[0])
+
     def residuals(self, points: Array) -> Array:
         """(candidates, scored samples of all records and axes), scaled so that the norm is the loss; inf if failed."""
         residuals = self._scaled(self.parameters(points))
@@ -236,20 +249,43 @@ class Problem:
 
     def _scaled(self, theta: Array) -> Array:
         with np.errstate(all="ignore"):
-            scaled = [simulator.residuals(theta) / self.sizes[:, None] for simulator in self.simulators["identify"]]
-            return np.hstack([part.reshape(len(theta), -1) for part in scaled]) / np.sqrt(self.scored)
+            parts = [simulator.residuals(theta) / self.sizes[:, None] for simulator in self.simulators["identify"]]
+            scaled = np.hstack([part.reshape(len(theta), -1) for part in parts]) / np.sqrt(self.scored)
+            return self._tangent.follow(scaled) if self._tangent else scaled
+
+    def tangent(self, point: Array) -> Tangent | None:
+        """How the parameters that are solved for follow beside a point; None where there are none."""
+        if not self.linear.columns.size:
+            return None
+        names = [self.model.names[column] for column in self.linear.columns]
+        return Tangent.of(names, self.linear.solved(self.parameters(point)[0]))
+
+    def along(self, tangent: Tangent | None) -> Problem:
+        """The problem whose residuals have what is solved for follow to first order, for a fraction of the cost; the
+        model may have more blocks than that of the tangent, if they are at their null in it."""
+        if tangent is None:
+            return self
+        near, columns = copy(self), self.linear.columns
+        followed = np.array([self.model.names[column] in tangent.values for column in columns])
+        near.theta = self.theta.copy()
+        near.theta[columns[followed]] = [tangent.values[self.model.names[column]] for column in columns[followed]]
+        near._tangent = tangent
+        near.linear = Linear(self.model, columns[~followed], self.linear.units[~followed], near._scaled)
+        return near
 
     def jacobian(self, point: Array, step: float = 1e-5) -> Array:
         """Jacobian of the residuals over the cube by central differences, one-sided on its faces and beside points that
-        fail, zero between two failed points: (samples, free)."""
+        fail, zero between two failed points: (samples, free). What is solved for follows to first order (Kaufman 1975,
+        BIT 15, 49)."""
         point = np.asarray(point, dtype=float)
+        near = self.along(self.tangent(point))
         ends = np.concatenate([np.minimum(point + step, 1), np.maximum(point - step, 0)])
         count = self.dimensions
         shifted = np.where(np.tile(np.eye(count, dtype=bool), (2, 1)), ends[:, None], point)
-        residuals = self.residuals(shifted)
+        residuals = near.residuals(shifted)
         failed = np.isinf(residuals[:, 0])
         if failed.any():
-            residuals[failed], ends[failed] = self.residuals(point), np.tile(point, 2)[failed]
+            residuals[failed], ends[failed] = near.residuals(point), np.tile(point, 2)[failed]
         width = ends[:count] - ends[count:]
         return ((residuals[:count] - residuals[count:]) / np.where(width > 0, width, 1)[:, None]).T
 
