@@ -26,7 +26,7 @@ def beyond_bounds(case: Case, first: Fit) -> tuple[Case, Fit] | None:
         return None
     wide = case.with_specs(specs)
     problem = wide.problem(first.effects, first.steps, first.measured_only)
-    point = descend(problem, problem.unit_point(first.values))
+    point = descend(problem, problem.unit_point(first.values), case.budget)
     fit = refine_steps(wide, fit_at(first.effects, problem, point, first.converged, first.measured_only))
     return (wide, fit) if removes_enough(case, first, first, fit) else None
 

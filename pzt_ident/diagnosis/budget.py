@@ -9,6 +9,7 @@ from pzt_ident.data.notation import listed
 LEAST = 60.0  # s, of CPU
 PER_SAMPLE = 1e-3  # s
 EXPLORING = 0.7  # of the budget: the rest is for proving what was found
+LAST = 2.0  # of the budget: fits end there, settled or not
 
 
 class Budget:
@@ -26,6 +27,10 @@ class Budget:
         if not enough and what not in self.untried:
             self.untried.append(what)
         return enough
+
+    def lasts(self) -> bool:
+        """Whether a fit may go on."""
+        return self.allows("settled fits", LAST)
 
     @property
     def sentence(self) -> str:

@@ -58,17 +58,21 @@ def score_all(case: Case, before: Fit, scorer: Scorer) -> list[Candidate]:
     return candidates
 
 
-def refit_all(case: Case, before: Fit, candidates: Sequence[Candidate]) -> None:
-    """Refit the model with each effect, in its first form and in the one that scores best."""
-    scores = [{score.effect: score for score in (item.forms[0], item.score)} for item in candidates]
+def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Refit the model with each effect, in its first form and in the one that scores best; returns the refitted ones,
+    which are all that the budget suffices for, but at least the best one beside the model as given."""
 
-    def refitted(score: Score) -> Fit:
-        return refit(case, before, (*before.effects, score.effect), score.guess)
+    def refits(candidate: Candidate) -> dict[str, Fit]:
+        needed = before is first and candidate is candidates[0]
+        if not needed and not case.budget.allows("the refits of all candidates"):
+            return {}
+        forms = {score.effect: score for score in (candidate.forms[0], candidate.score)}
+        return {item: refit(case, before, (*before.effects, item), score.guess) for item, score in forms.items()}
 
     with ThreadPoolExecutor(2) as pool:
-        fits = pool.map(refitted, [score for forms in scores for score in forms.values()])
-        for candidate, forms in zip(candidates, scores, strict=True):
-            candidate.refits = {item: next(fits) for item in forms}
+        for candidate, fits in zip(candidates, pool.map(refits, candidates), strict=True):
+            candidate.refits = fits
+    return [candidate for candidate in candidates if candidate.refits]
 
 
 def choose_forms(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:
@@ -99,7 +103,7 @@ def restart_look_alikes(case: Case, first: Fit, before: Fit, candidates: list[Ca
         word, fit = candidate.score.effect, candidate.fit
         close = fit and removed_rms(fit.identify, best.fit.identify) < 2 * TIE * case.floor
         if fit and close and are_look_alikes(word, best.score.effect) and len(candidate.score.guess) > 1:
-            candidate.fit = candidate.refits[word] = restart(fit, word_of(word), LOOK_ALIKE_STARTS)
+            candidate.fit = candidate.refits[word] = restart(case, fit, word_of(word), LOOK_ALIKE_STARTS)
 
 
 def are_look_alikes(one: str, other: str) -> bool:

@@ -177,7 +177,7 @@ def _best_of_axes(case: Case, before: Fit, effects: tuple[str, ...], problem: Pr
         if residuals_differ(case, problem.residuals(start)[0], restricted.residuals(start)[0]):
             variants.append((restricted, True))
     fits = [
-        refine_steps(case, fit_at(effects, variant, descend(variant, start), measured_only=measured_only))
+        refine_steps(case, fit_at(effects, variant, descend(variant, start, case.budget), measured_only=measured_only))
         for variant, measured_only in variants
     ]
     return min(fits, key=lambda fit: fit.total)
@@ -198,7 +198,7 @@ def refine_steps(case: Case, fit: Fit) -> Fit:
         return fit
     steps = [count * (2 if halve else 1) for count, halve in zip(fit.steps, coarse, strict=True)]
     problem = case.problem(fit.effects, steps, fit.measured_only)
-    point = descend(problem, fit.point)
+    point = descend(problem, fit.point, case.budget)
     return refine_steps(case, fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
 
 
@@ -215,12 +215,14 @@ def step_errors(case: Case, fit: Fit) -> Array:
     return np.array(errors)
 
 
-def descend(problem: Problem, point: Array, most: int = 30) -> Array:
+def descend(problem: Problem, point: Array, budget: Budget, most: int = 30) -> Array:
     """The point that Levenberg-Marquardt on the normal equations reaches in the unit cube, all dampings in one
     batch."""
     point = np.clip(point, 0, 1)
     loss, slow = problem.loss(point)[0], 0
     for _ in range(most if np.isfinite(loss) else 0):
+        if not budget.lasts():
+            break
         jacobian, residual = problem.jacobian(point), problem.residuals(point)[0]
         gradient, curvature = jacobian.T @ residual, jacobian.T @ jacobian
         free = ~(((point <= 0) & (gradient > 0)) | ((point >= 1) & (gradient < 0)))

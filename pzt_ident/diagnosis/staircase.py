@@ -45,7 +45,7 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
         wide = improve_beyond(case, first, *beyond, on_step)
         if accounts(wide, case):
             return wide
-    given = improve_within(case, first, first, on_step)
+    given = improve_within(case, first, on_step)
     if given.last.verdict == "adequate" or not beyond or not case.budget.allows("wider bounds"):
         return given
     wide = improve_beyond(case, first, *beyond, on_step)
@@ -60,7 +60,7 @@ def accounts(wide: Staircase, case: Case) -> bool:
 
 def improve_beyond(case: Case, first: Fit, wide: Case, start: Fit, on_step: StepListener) -> Staircase:
     """The staircase with wider bounds; where its last model comes back to those of the job, in these."""
-    found = improve_within(wide, first, start, on_step)
+    found = improve_within(wide, start, on_step)
     back = [brought_back(case, step.fit) for step in found.steps[1:]]
     if back and back[-1] is not None:
         steps = [replace(step, fit=fit) for step, fit in zip(found.steps[1:], back, strict=True) if fit]
@@ -71,17 +71,17 @@ def improve_beyond(case: Case, first: Fit, wide: Case, start: Fit, on_step: Step
     return found
 
 
-def improve_within(case: Case, first: Fit, start: Fit, on_step: StepListener = lambda step: None) -> Staircase:
-    """The staircase within the bounds of a case, from the fit `start`; `first` is that of the model as given.
+def improve_within(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
+    """The staircase within the bounds of a case, from the fit `first`.
 
     Where the best first effect leads to no adequate model, the next best one is tried: the first may have stood in for
     something else.
     """
-    diagnosis = diagnose(case, start, first)
+    diagnosis = diagnose(case, first)
     paths: list[Staircase] = []
-    candidates: list[Candidate | None] = [*first_candidates(case, first, start, diagnosis)]
+    candidates: list[Candidate | None] = [*first_candidates(case, first, diagnosis)]
     for candidate in candidates or [None]:
-        path = climb(case, first, start, diagnosis, candidate, on_step)
+        path = climb(case, first, diagnosis, candidate, on_step)
         paths.append(path)
         if path.last.verdict in ("adequate", "refused") or path.steps[-1].fit.identify / case.floor > HOPELESS:
             break
@@ -93,7 +93,7 @@ def improve_within(case: Case, first: Fit, start: Fit, on_step: StepListener = l
     return best
 
 
-def first_candidates(case: Case, first: Fit, start: Fit, diagnosis: Diagnosis) -> list[Candidate]:
+def first_candidates(case: Case, first: Fit, diagnosis: Diagnosis) -> list[Candidate]:
     """The best candidate, and the next best one, for which another form of any effect counts too."""
     if not diagnosis.passing:
         return []
@@ -104,7 +104,7 @@ def first_candidates(case: Case, first: Fit, start: Fit, diagnosis: Diagnosis) -
         for score in item.forms
         if score.effect in item.refits and item.fit is not item.refits[score.effect]
     ]
-    others += [item for item in every if item.fit and removes_enough(case, first, start, item.fit)]
+    others += [item for item in every if item.fit and removes_enough(case, first, first, item.fit)]
     return [best, *sorted(others, key=lambda item: item.fit.total if item.fit else np.inf)[: FIRST_EFFECTS - 1]]
 
 
@@ -129,12 +129,12 @@ def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListene
 
 
 def climb(
-    case: Case, first: Fit, start: Fit, diagnosis: Diagnosis, candidate: Candidate | None, on_step: StepListener
+    case: Case, first: Fit, diagnosis: Diagnosis, candidate: Candidate | None, on_step: StepListener
 ) -> Staircase:
     """One path: the candidate is added first, then always the best one."""
-    steps = [Step(start)]
+    steps = [Step(first)]
     on_step(steps[0])
-    while len(steps) <= MOST_STEPS and not stuck(steps) and case.budget.allows("more effects"):
+    while len(steps) <= MOST_STEPS and not stuck(steps) and (candidate or case.budget.allows("more effects")):
         new = next_steps(case, first, steps, diagnosis, candidate)
         if not new:
             break
@@ -160,7 +160,7 @@ def stuck(steps: list[Step]) -> bool:
 def restart_if_inadequate(case: Case, first: Fit, before: Fit, step: Step) -> None:
     """Where a step does not reach the noise, restart its fit before anything else is blamed."""
     if not adequate(case, first, step.fit) and case.budget.allows("other starts"):
-        step.fit = restart(step.fit)
+        step.fit = restart(case, step.fit)
         step.explained = explained_share(case, before, step.fit)
 
 
@@ -212,7 +212,7 @@ def add_restarted(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> lis
     """An effect of the short list that fits once its own or another block, such as the hysteresis, starts elsewhere."""
     if now.identify > HOPELESS * case.floor:
         return []
-    refitted = [(candidate.score, restart(candidate.fit)) for candidate in diagnosis.candidates if candidate.fit]
+    refitted = [(candidate.score, restart(case, candidate.fit)) for candidate in diagnosis.candidates if candidate.fit]
     passing = [(score, fit) for score, fit in refitted if removes_enough(case, first, now, fit)]
     if not passing:
         return []

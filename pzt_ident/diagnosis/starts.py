@@ -28,27 +28,27 @@ def first_fit(case: Case, seed: int) -> Fit:
     while len(minima) < MOST_REFINED and not agreed:
         batch = starts[order[len(minima) : len(minima) + REFINED]]
         with ThreadPoolExecutor(2) as pool:
-            for minimum in pool.map(lambda start: descend(problem, start), batch):
+            for minimum in pool.map(lambda start: descend(problem, start, case.budget), batch):
                 minima = np.vstack([minima, minimum])
                 case.on_event({"event": "fitted", "done": len(minima), "of": len(order)})
         losses = problem.loss(minima)
         best, second = np.sort(losses)[:2]
         agreed = bool(second <= (1 + AGREEMENT) * best + 0.1 * case.floor and np.isfinite(best))
-    point = min((minima[np.argmin(losses)], best_of_each_axis(problem, minima)), key=lambda p: problem.loss(p)[0])
+    point = min((minima[np.argmin(losses)], best_of_each_axis(case, problem, minima)), key=lambda p: problem.loss(p)[0])
     return refine_steps(case, fit_at(case.effects, problem, point, agreed))
 
 
-def best_of_each_axis(problem: Problem, minima: Array) -> Array:
+def best_of_each_axis(case: Case, problem: Problem, minima: Array) -> Array:
     """The minimum from the parameters that each axis has in the minimum which is best for its own response: axes that
     are nearly independent of each other need not be lucky together."""
     errors = np.nan_to_num(problem.by_axis(minima), nan=np.inf)
     best = dict(zip(problem.model.measured, np.argmin(errors, axis=0), strict=True))
     axes = [problem.model.entries[column].axis for column in problem.free]
     point = np.array([minima[best.get(axis, np.argmin(errors.sum(axis=1)))][i] for i, axis in enumerate(axes)])
-    return descend(problem, point) if len(set(best.values())) > 1 else point
+    return descend(problem, point, case.budget) if len(set(best.values())) > 1 else point
 
 
-def restart(fit: Fit, block: str = "", starts_per_block: int = RESTARTS) -> Fit:
+def restart(case: Case, fit: Fit, block: str = "", starts_per_block: int = RESTARTS) -> Fit:
     """The best of the fit and of fits restarted from other values of one block on one axis, the rest kept: of each
     block in turn, or of `block` only. A block may rest in a side minimum, such as a distant resonance, when it was
     fitted beside a misfit that has since been explained, or from a poor guess."""
@@ -61,7 +61,7 @@ def restart(fit: Fit, block: str = "", starts_per_block: int = RESTARTS) -> Fit:
         restarted = np.array([column_owner == owner for column_owner in owners])
         starts = np.where(restarted, random_points(problem, rng), fit.point)
         for start in starts[np.argsort(problem.loss(starts))[:starts_per_block]]:
-            point = descend(problem, start)
+            point = descend(problem, start, case.budget)
             fits.append(fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
     return min(fits, key=lambda candidate: candidate.total)
 

@@ -67,8 +67,8 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     if adequate(case, first, before) and not any(promises_enough(case, first, before, item) for item in candidates):
         decide_by_score(case, first, before, candidates)
         return without_effect(case, first, before, candidates)
-    shortlist = [item for item in candidates if item.score.explained > LEAST_SCORE][:SHORTLIST]
-    refit_all(case, before, shortlist)
+    promising = [item for item in candidates if item.score.explained > LEAST_SCORE][:SHORTLIST]
+    shortlist = refit_all(case, first, before, promising)
     choose_forms(case, first, shortlist)
     restart_look_alikes(case, first, before, shortlist)
     candidates.sort(key=lambda item: (item.fit.total if item.fit else np.inf, -item.score.explained))

@@ -125,7 +125,7 @@ def solve(residuals: Residuals, units: Array, curves: Sequence[Indices], weights
         columns[:, ~visible] = 0
         prior = second_differences(np.where(visible, sizes, 0), curves, np.asarray(weights))
         target = columns @ (values / units) - residual
-        triangle = np.linalg.qr(np.column_stack([columns[:, visible] / sizes[visible], target]), mode="r")
+        triangle: Array = np.linalg.qr(np.column_stack([columns[:, visible] / sizes[visible], target]), mode="r")  # type: ignore
         system = np.vstack([triangle[:, :-1], prior[:, visible] / sizes[visible]])
         multiples = np.zeros(units.size)
         solution = nnls(system, np.append(triangle[:, -1], np.zeros(len(prior))), maxiter=100 * units.size)[0]

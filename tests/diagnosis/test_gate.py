@@ -121,10 +121,11 @@ def judged(monkeypatch):
         monkeypatch.setattr(verdict, "score_all", lambda case, before, scorer: scores)
         monkeypatch.setattr(verdict, "refusal", lambda case, first, before: "")
         monkeypatch.setattr(verdict, "restart_look_alikes", lambda case, first, before, items: None)
-        monkeypatch.setattr(verdict, "refit_all", lambda case, before, items: [given(item) for item in items])
+        monkeypatch.setattr(verdict, "refit_all", lambda case, first, before, items: [given(item) for item in items])
 
         def given(item):
             item.refits = {item.score.effect: fits[item.score.effect]}
+            return item
 
         return diagnose(CASE, fit(30.0, 30.0))
 
@@ -218,7 +219,7 @@ def test_a_form_of_more_parameters_than_the_best_effect_may_contain_it():
 
 
 def test_a_look_alike_in_another_form_is_started_anew_by_the_name_of_its_block(monkeypatch):
-    def started(fit, block, starts):
+    def started(case, fit, block, starts):
         assert block == "sensor_lag"
         return replace(fit, identify=1.5)
 

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 import rig
 import stage
 from pzt_ident.diagnosis import refit, starts
+from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.caveats import bounds_sentence, measured_only_sentence
 from pzt_ident.diagnosis.refit import damped_step, descend, fit_at
 from pzt_ident.diagnosis.starts import first_fit, restart
@@ -48,7 +49,7 @@ def test_the_first_fit_is_a_function_of_its_seed(creeping):
 
 
 def test_a_fit_whose_starts_end_apart_has_not_converged(plain, monkeypatch):
-    monkeypatch.setattr(starts, "descend", lambda problem, point: point)
+    monkeypatch.setattr(starts, "descend", lambda problem, point, budget: point)
     assert not first_fit(plain, 0).converged
 
 
@@ -56,9 +57,9 @@ def test_more_starts_are_refined_until_two_agree(plain, monkeypatch):
     """Of each four of the first twenty all but the first get nowhere."""
     points, descent = [], refit.descend
 
-    def lame(problem, point):
+    def lame(problem, point, budget):
         points.append(point)
-        return descent(problem, point) if len(points) in (1, 21) else point
+        return descent(problem, point, budget) if len(points) in (1, 21) else point
 
     monkeypatch.setattr(starts, "descend", lame)
     assert first_fit(plain, 0).converged
@@ -72,9 +73,16 @@ def test_a_block_is_found_elsewhere_and_a_fit_at_the_noise_stays(plain):
     stiff = stage.STAGE | {"bouc_wen.gain": 0.082, "lumped.mass": 0.01, "lumped.stiffness": 9e8, "lumped.damping": 50.0}
     stuck = fit_at((), problem, problem.unit_point(stiff))
     assert stuck.identify > 3e-9
-    assert restart(stuck).identify == pytest.approx(1e-9, rel=0.1)
+    assert restart(ringing, stuck).identify == pytest.approx(1e-9, rel=0.1)
     fit = first_fit(plain, 0)
-    assert restart(fit).identify == pytest.approx(fit.identify, rel=1e-3)
+    assert restart(plain, fit).identify == pytest.approx(fit.identify, rel=1e-3)
+
+
+def test_a_descent_ends_with_twice_the_budget(plain):
+    problem, budget = plain.problem(()), Budget(0.0)
+    start = np.full(problem.dimensions, 0.5)
+    assert (descend(problem, start, budget) == start).all()
+    assert budget.untried == ["settled fits"]
 
 
 def test_without_records_to_validate_there_is_no_error_of_them(plain):
@@ -98,7 +106,7 @@ def test_a_refit_goes_on_from_what_was_found(creeping):
 def test_descent_stays_in_the_cube_and_never_climbs(creeping, start):
     problem = creeping.problem(())
     ahead = np.clip(start, 0, 1)
-    end = descend(problem, np.array(start), most=6)
+    end = descend(problem, np.array(start), Budget(), most=6)
     assert np.all((end >= 0) & (end <= 1))
     assert problem.loss(end)[0] <= problem.loss(ahead)[0]
 
@@ -151,8 +159,8 @@ def test_a_descent_from_where_the_simulation_fails_is_no_success(plain, monkeypa
     problem = plain.problem(("failing",))
     start = np.array([0.5, 0.5, 0.5, 0.5, 0.9])
     with np.errstate(invalid="ignore"):
-        assert problem.loss(descend(problem, start))[0] == np.inf
-        inside = descend(problem, np.array([0.5, 0.5, 0.5, 0.5, 0.49]))
+        assert problem.loss(descend(problem, start, Budget()))[0] == np.inf
+        inside = descend(problem, np.array([0.5, 0.5, 0.5, 0.5, 0.49]), Budget())
     assert np.isfinite(problem.loss(inside)[0])
     assert inside[4] < 0.5
 

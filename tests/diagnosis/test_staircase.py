@@ -62,6 +62,16 @@ def test_two_effects_are_both_found_and_nothing_else():
     assert rmse == sorted(rmse, reverse=True)
 
 
+def test_a_spent_budget_suffices_for_the_best_effect_and_the_rest_is_said():
+    case = stage.case(stage.EFFECTS["quadratic_gain"])
+    first = first_fit(case, 0)
+    case.budget = Budget(0.0)
+    case.budget.lasts = lambda: True
+    steps = improve(case, first).steps
+    assert [step.added for step in steps] == [None, "quadratic_gain"]
+    assert "the refits of all candidates" in case.budget.untried
+
+
 def test_the_effects_of_the_job_stay():
     steps, _ = climbed(stage.case(PAIR, effects=["creep"]))
     assert [step.fit.effects for step in steps] == [("creep",), ("creep", "quadratic_gain")]
@@ -172,12 +182,12 @@ def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, mon
         Staircase([Step(SimpleNamespace(identify=identify, total=total))], SimpleNamespace(verdict=verdict))
         for verdict, identify, total in ends
     ]
-    monkeypatch.setattr(improving, "diagnose", lambda case, start, first: None)
-    monkeypatch.setattr(improving, "first_candidates", lambda case, first, start, diagnosis: [0, 1])
-    monkeypatch.setattr(improving, "climb", lambda case, first, start, diagnosis, number, on_step: paths[number])
+    monkeypatch.setattr(improving, "diagnose", lambda case, first: None)
+    monkeypatch.setattr(improving, "first_candidates", lambda case, first, diagnosis: [0, 1])
+    monkeypatch.setattr(improving, "climb", lambda case, first, diagnosis, number, on_step: paths[number])
     monkeypatch.setattr(improving, "take_back", lambda *arguments: None)
     monkeypatch.setattr(improving, "find_rivals", lambda *arguments: None)
-    assert improve_within(SimpleNamespace(floor=1.0, budget=Budget()), None, None) is paths[taken]
+    assert improve_within(SimpleNamespace(floor=1.0, budget=Budget()), None) is paths[taken]
 
 
 def test_an_effect_that_only_led_out_of_a_side_minimum_is_taken_out_again():
