@@ -7,10 +7,10 @@ from collections.abc import Sequence
 from pzt_ident.diagnosis.candidates import is_tied
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.refit import Case, Fit, refit
-from pzt_ident.diagnosis.score import Scorer, applicable, fits
+from pzt_ident.diagnosis.score import Scorer, applicable, fitting_forms
 from pzt_ident.diagnosis.step import Step, effects_without, explained_share
 from pzt_ident.diagnosis.verdict import diagnose
-from pzt_ident.model.registry import blocks
+from pzt_ident.model.registry import blocks, word_of
 
 LEAST_GAIN = 0.05  # noise floors by which one effect fits better than another: less may be simulation error
 
@@ -51,14 +51,15 @@ def clears_up(case: Case, now: Fit, other: Fit) -> bool:
 
 
 def other_forms(case: Case, now: Fit, effect: str) -> list[str]:
-    others = [item for item in blocks.forms(effect) if blocks[item].item() != blocks[effect].item()]
-    return [item for item in others if fits(case, effects_without(now, effect), item)]
+    possible = fitting_forms(case, effects_without(now, effect), word_of(effect))
+    return [item for item in possible if blocks[item].item() != blocks[effect].item()]
 
 
 def look_alikes(case: Case, now: Fit, effect: str) -> list[str]:
-    """The look-alikes that could be in the place of an effect."""
-    possible = applicable(case, effects_without(now, effect))
-    return [word for word in blocks[effect].look_alikes if word in possible]
+    """The look-alikes that could be in the place of an effect, each in the first form that fits."""
+    effects = effects_without(now, effect)
+    possible = applicable(case, effects)
+    return [fitting_forms(case, effects, word)[0] for word in blocks[effect].look_alikes if word in possible]
 
 
 def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str]) -> list[Fit]:

@@ -76,7 +76,12 @@ class Trial:
 def applicable(case: Case, effects: tuple[str, ...]) -> list[str]:
     """The effects that can be added to this model, which has `effects`."""
     present = (*map(word_of, effects), *case.ruled_out)
-    return [word for word in blocks.effects() if word not in present and fits(case, effects, word)]
+    return [word for word in blocks.effects() if word not in present and fitting_forms(case, effects, word)]
+
+
+def fitting_forms(case: Case, effects: tuple[str, ...], word: str) -> list[str]:
+    """The items of the forms of an effect that can act in the model with `effects`, in the order of the declaration."""
+    return [item for item in blocks.forms(word) if fits(case, effects, item)]
 
 
 def fits(case: Case, effects: tuple[str, ...], item: str) -> bool:
@@ -105,8 +110,8 @@ class Scorer:
     def scores(self, effect: str) -> list[Score]:
         """The scores of all forms of an effect, the first form first; of one with many trials the others only where
         the first explains some."""
-        first = self.score(effect)
-        others = [item for item in blocks.forms(effect)[1:] if fits(self.case, self.fit.effects, item)]
+        usual, *others = fitting_forms(self.case, self.fit.effects, effect)
+        first = self.score(usual)
         if first.explained <= LEAST_SCORE and prod(blocks[effect].trials.values()) > MANY_TRIALS:
             others = []
         return [first, *map(self.score, others)]

@@ -36,7 +36,7 @@ from pzt_ident.diagnosis.score import LEAST_SCORE, Scorer, squared_misfit
 from pzt_ident.diagnosis.wording import percent
 from pzt_ident.model.registry import phrase_of
 
-SHORTLIST = 5  # effects that are refitted
+SHORTLIST = 6  # effects that are refitted
 STEP_FAULT = 0.6  # of the misfit: where halving the simulation step changes more, the step is to blame
 
 

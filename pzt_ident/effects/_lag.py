@@ -10,7 +10,7 @@ class Lag(Block):
     share = (1 - keep) T / dt. At T = 0 both are exactly zero.
     """
 
-    sizes = tuple(0.004 * 1.5**k for k in range(14))
+    sizes = tuple(4e-4 * 1.5**k for k in range(20))
 
     def prepare(tau, dt):
         return decay(tau, dt)

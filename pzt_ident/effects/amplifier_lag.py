@@ -11,7 +11,7 @@ class Charging:
 
     place = Place.AMPLIFIER
     form = Form("one_pole", ("one_pole", "two_poles"), "Order of the low-pass.")
-    tau = Parameter("s", (0, 5e-3), "Time constant of output resistance and capacitance.", null=0)
+    tau = Parameter("s", (0, 0.05), "Time constant of output resistance and capacitance.", null=0)
     look_alikes = ("sensor_lag", "delay", "viscous_damping")
     separate_by = (
         "Put a known capacitor in parallel with the stack, which lengthens this lag alone, or record the amplifier's "

@@ -11,7 +11,7 @@ class Filtering:
 
     place = Place.SENSOR
     form = Form("one_pole", ("one_pole", "second_order"), "Order of the filter.")
-    tau = Parameter("s", (0, 5e-3), "Time constant of the sensor's filter.", null=0)
+    tau = Parameter("s", (0, 0.05), "Time constant of the sensor's filter.", null=0)
     look_alikes = ("amplifier_lag", "delay", "viscous_damping")
     separate_by = (
         "Change the filter of the sensor electronics, which changes this lag alone, or put a known capacitor in "

@@ -225,7 +225,7 @@ def test_a_parameter_on_a_bound_is_told_unless_it_is_its_null(creeping):
     point[place["amplifier_lag.tau"]] = 1.0
     assert set(replace(fit, point=point).on_bounds) == {"bouc_wen.gamma", "amplifier_lag.tau"}
     sentence = bounds_sentence(replace(fit, point=point))
-    assert "amplifier_lag.tau and bouc_wen.gamma ended on their bounds of 0.005 s and 0.5 1/V" in sentence
+    assert "amplifier_lag.tau and bouc_wen.gamma ended on their bounds of 0.05 s and 0.5 1/V" in sentence
 
 
 COUPLED = ("bouc_wen", "lumped", "kinematic_coupling")

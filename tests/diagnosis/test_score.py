@@ -5,7 +5,7 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis.refit import Case
-from pzt_ident.diagnosis.score import Scorer, applicable, squared_misfit
+from pzt_ident.diagnosis.score import Scorer, applicable, fitting_forms, squared_misfit
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.job.sections import Setting
 
@@ -81,9 +81,9 @@ def test_an_effect_whose_null_is_on_its_bound_goes_one_way_only():
 def test_guesses_are_within_the_bounds():
     case = stage.case(stage.EFFECTS["creep"])
     scorer = Scorer(case, first_fit(case, 0))
-    for effect in applicable(case, ()):
-        score = scorer.score(effect)
-        problem = case.problem((effect,))
+    for item in (item for effect in applicable(case, ()) for item in fitting_forms(case, (), effect)):
+        score = scorer.score(item)
+        problem = case.problem((item,))
         bounds = dict(zip(problem.names, zip(problem.lower, problem.upper, strict=True), strict=True))
         for name, value in score.guess.items():
             low, high = bounds[name]
@@ -121,7 +121,7 @@ def test_power_is_what_the_strongest_plausible_effect_would_leave():
     score = Scorer(case, fit).score("amplifier_lag")
     problem = case.problem(("amplifier_lag",))
     off, full = problem.residuals(
-        np.array([problem.unit_point(fit.values | {"amplifier_lag.tau": tau}) for tau in (0, 5e-3)])
+        np.array([problem.unit_point(fit.values | {"amplifier_lag.tau": tau}) for tau in (0, 0.05)])
     )
     left = np.linalg.norm(Scorer(case, fit).projection.remainder(full - off)) / case.floor
     assert score.power == pytest.approx(left, rel=0.1)
@@ -157,9 +157,9 @@ def test_every_axis_has_its_own_amounts_and_its_own_line():
 
 
 def test_what_lies_beyond_the_bounds_is_not_promised():
-    """A lag of 12 ms, where 5 ms are plausible: as if linear it explains nearly all."""
-    score = scored(stage.case({"sensor_lag.tau": 12e-3}), "sensor_lag")
-    assert score.guess["sensor_lag.tau"] == pytest.approx(5e-3)
+    """A lag of 0.12 s, where 50 ms are plausible: as if linear it explains nearly all."""
+    score = scored(stage.case({"sensor_lag.tau": 0.12}), "sensor_lag")
+    assert score.guess["sensor_lag.tau"] == pytest.approx(0.05)
     assert score.explained_in_bounds < 0.9 * score.explained
     within = scored(stage.case({"sensor_lag.tau": 3e-3}), "sensor_lag")
     assert within.explained_in_bounds == within.explained

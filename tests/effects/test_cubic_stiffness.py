@@ -62,3 +62,11 @@ def test_the_resonance_goes_up_with_the_bias(bias):
     lines = np.abs(np.fft.rfft(ringing * np.hanning(ringing.size), 2**19))
     found = np.argmax(lines) / (2**19 * dt)
     assert found == pytest.approx(np.sqrt(STIFFNESS / MASS * (1 + 3 * cubic * bias**2)) / (2 * np.pi), rel=1e-3)
+
+
+@pytest.mark.parametrize("cubic", [-5e-4, 1e-12, 2e-4, 1e-2, 1.0])
+def test_at_rest_it_is_the_equilibrium(cubic):
+    force = np.linspace(-12, 12, 41)
+    x = response(["cubic_stiffness.rest"], {"cubic_stiffness.cubic": cubic}, force)
+    np.testing.assert_allclose(x + cubic * x**3, force, rtol=3e-14, atol=1e-14)
+    np.testing.assert_allclose(bent(np.full(3, 9.0), cubic)[-1], np.interp(9.0, force, x), rtol=1e-4)
