@@ -21,6 +21,13 @@ class Section(NamedTuple):
     rows: list[Key]
 
 
+WORDS = {
+    "integer": "whole number",
+    "number": "number",
+    "string": "text",
+    "boolean": "true or false",
+    "object": "mapping",
+}
 PLACES = {
     "Source": "each item of records",
     "Channels": "channels",
@@ -74,13 +81,5 @@ def _value(item: dict[str, Any]) -> str:
         return " or ".join(dict.fromkeys(options))
     if item.get("type") == "array":
         parts = item.get("prefixItems")
-        return f"[{', '.join(map(_value, parts))}]" if parts else f"list of {_value(item['items'])}s"
-    if item.get("type") == "object":
-        return (
-            f"mapping of {_value(item['additionalProperties'])}s"
-            if isinstance(item.get("additionalProperties"), dict)
-            else "mapping"
-        )
-    return {"integer": "whole number", "string": "text", "boolean": "true or false"}.get(
-        item.get("type", ""), item.get("type", "any")
-    )
+        return f"[{', '.join(map(_value, parts))}]" if parts else f"list: {_value(item['items'])}"
+    return WORDS.get(item.get("type", ""), "any")

@@ -24,7 +24,7 @@ class Channels:
 
 @dataclass(frozen=True)
 class Setting:
-    """Bounds free a parameter, a value fixes it: one of the two, in the user's units."""
+    """`bounds` free a parameter, a `value` fixes it: one of the two, in the user's units."""
 
     bounds: tuple[float, float] | None = None
     value: float | None = None

@@ -19,5 +19,5 @@ def test_every_key_of_a_job_is_there_and_described():
 def test_values_are_in_words():
     rows = {row.key: row for row in key_tables()[0].rows}
     assert rows["repeats"].value == "whole number" and rows["repeats"].default == "1"
-    assert rows["model"].value == "list of texts or mappings"
+    assert rows["model"].value == "list: text or mapping"
     assert rows["records"].default == "required"
