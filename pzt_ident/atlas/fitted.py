@@ -14,7 +14,7 @@ from pzt_ident.search.problem import FixedValue, Problem
 
 Values = dict[str, float]
 
-EVALUATIONS = 300
+EVALUATIONS = 150
 
 
 class Range(NamedTuple):

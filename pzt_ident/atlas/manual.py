@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 from html import escape
 from importlib.resources import files
+from itertools import count
 from typing import NamedTuple
 
 from pzt_ident.atlas.job_keys import key_tables
@@ -53,12 +54,12 @@ def chapter(text: str, name: str) -> Chapter:
     assert title, f"{name} has no title"
     html = MarkdownIt("commonmark").enable("table").render(text)
     html = re.sub(r"(</?h)(\d)", lambda found: f"{found[1]}{int(found[2]) + 2}", html)
-    html = html.replace("<pre>", '<pre tabindex="0">').replace(
-        "<table>", '<div class="scroll" tabindex="0" role="region" aria-label="Table"><table>'
-    )
-    html = html.replace("</table>", "</table></div>")
-    html = re.sub(r"<p>\{\{ (\w+) \}\}</p>", lambda found: TABLES[found[1]](), html)
+    html = html.replace("<pre>", '<pre tabindex="0">')
     html = re.sub(r"<code>([^<]+)</code>", lambda found: linked(f"`{found[1]}`"), html)
+    numbers = count(1)
+    html = html.replace("</table>", "</table></div>")
+    html = re.sub("<table>", lambda found: f"{_scrolling(f'{title[1]}, table {next(numbers)}')}<table>", html)
+    html = re.sub(r"<p>\{\{ (\w+) \}\}</p>", lambda found: TABLES[found[1]](), html)
     return Chapter(f"manual-{anchor(name)}", title[1], html)
 
 
@@ -70,6 +71,11 @@ def code_blocks(text: str) -> list[Code]:
     """In order. A block whose first line is `# file: NAME` is that file."""
     found = re.findall(r"^```(\w+)\n(?:# file: (\S+)\n)?(.*?)^```$", text, re.S | re.M)
     return [Code(*block) for block in found]
+
+
+def _scrolling(name: str) -> str:
+    """The start of a region that scrolls on a narrow screen."""
+    return f'<div class="scroll" tabindex="0" role="region" aria-label="{escape(name)}">'
 
 
 def _job_keys() -> str:
@@ -84,8 +90,8 @@ def _job_keys() -> str:
         head = "".join(f'<th scope="col">{title}</th>' for title in ("key", "value", "default", "what it is"))
         parts.append(
             f"<h4>{section.title}</h4><p>{about}</p>"
-            f'<div class="scroll" tabindex="0" role="region" aria-label="Keys of {escape(section.title)}">'
-            f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>"
+            f"{_scrolling('Keys of ' + section.title)}<table>"
+            f"<thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>"
         )
     return "".join(parts)
 

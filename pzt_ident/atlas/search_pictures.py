@@ -12,7 +12,7 @@ from pzt_ident.atlas.stage import Array
 from pzt_ident.model.registry import optimizers
 from pzt_ident.search.loop import Stop, optimize
 
-BUDGET, SEEDS, DRAWN = 3000, 7, 500
+BUDGET, SEEDS, DRAWN = 2000, 5, 500
 
 
 def valley(points: Array) -> Array:
@@ -62,7 +62,7 @@ def _candidates(word: str) -> Picture:
 def _losses(word: str) -> Picture:
     grid = np.arange(50.0, BUDGET + 1, 50)
     curves = [Curve("bare", grid, random_search()), Curve("with", grid, _median(word))]
-    panel = Panel(curves, "best loss, median of seven searches", MAIN + STRIP, True)
+    panel = Panel(curves, "best loss, median of five searches", MAIN + STRIP, True)
     title = "Rosenbrock's function in four dimensions; dashed: random search"
     return Picture(drawing([panel], "evaluations", f"{word}-steps", title), title, 1.0, f"{word}-steps")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import re
+import sys
 from collections.abc import Collection, Iterable
 from functools import cached_property
 from html import escape
@@ -12,7 +13,7 @@ from typing import Any, NamedTuple
 
 from pzt_ident.atlas.href import href
 from pzt_ident.atlas.look_alikes import LookAlike, look_alikes
-from pzt_ident.atlas.mathml import lead_and_equation, marked_up, symbol
+from pzt_ident.atlas.mathml import GREEK, lead_and_equation, marked_up, symbol
 from pzt_ident.atlas.pictures import STYLES, Picture, pictures
 from pzt_ident.atlas.search_pictures import search_pictures
 from pzt_ident.atlas.shown import shown
@@ -70,8 +71,10 @@ class Word:
 
     @property
     def headline(self) -> str:
+        """What it is, in a few words: the docstring of its file, or else the beginning of its own."""
         item = blocks[self.word] if self.word in blocks else optimizers[self.word]
-        return lead_and_equation(headline(item), self.symbols)[0] or marked_up(headline(item), self.symbols)
+        file = inspect.getdoc(sys.modules[item.__module__]) or ""
+        return escape(file.partition("\n\n")[0], quote=False) or lead_and_equation(headline(item), self.symbols)[0]
 
     @cached_property
     def symbols(self) -> set[str]:
@@ -115,7 +118,7 @@ class Word:
         last = re.search(r", ([A-Za-z][\w ]{0,9}(?: / [\w ]+)?)\.$", row["doc"])
         if last and all(re.search(rf"\b{part}", doc) for part in re.findall(r"\w+", last[1])):
             return " ".join(symbol(part) if part.isidentifier() else part for part in last[1].split())
-        return symbol(name) if re.search(rf"\b{name}(?:\b|_)", doc) else ""
+        return symbol(name) if name in GREEK and re.search(rf"\b{name}(?:\b|_)", doc) else ""
 
     @property
     def settings(self) -> list[dict[str, Any]]:
@@ -180,7 +183,7 @@ def linked(html: str) -> str:
 
 def cited(html: str) -> str:
     """Authors with their year marked as what is cited."""
-    name = r"[A-Z][\w'’-]+(?: [A-Z][\w-]+)*"
+    name = r"[A-Z][\w'’-]+(?: (?:(?:de|del|der|van|von) )?[A-Z][\w-]+)*"
     authors = rf"{name}(?:, {name})*(?: &amp; {name}| et al\.)?"
     return re.sub(rf"({authors}(?:, Model Development[^,.]*| \(\d{{4}}\)))", r"<cite>\1</cite>", html)
 

@@ -9,7 +9,6 @@ import pytest
 
 from pzt_ident.atlas.href import anchor, href
 from pzt_ident.atlas.look_alikes import look_alikes
-from pzt_ident.atlas.page import atlas
 from pzt_ident.atlas.pictures import change
 from pzt_ident.atlas.symptoms import SHOWN, table
 from pzt_ident.atlas.traces import traced
@@ -37,8 +36,8 @@ class Page(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def html():
-    return atlas()
+def html(atlas_page):
+    return atlas_page.read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("word", WORDS)
