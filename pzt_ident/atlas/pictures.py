@@ -16,12 +16,13 @@ from pzt_ident.model.registry import blocks, word_of
 
 Complex = NDArray[np.complex128]
 
-LOOPS, STEPS, SWEEPS = ("loops", "fast", "other"), ("holds", "steps", "rest", "tone", "other"), ("sweep", "other_sweep")
+LOOPS, STEPS, SWEEPS = ("loops", "fast", "other"), ("holds", "steps", "rest"), ("sweep", "other_sweep")
 MAIN, STRIP = 150, 62
 STYLES = ("bare", "with")
 ROUNDING = 1e-9  # of the usual gain
 FLAT = 0.02  # least change of a frequency response, or of the lines of a spectrum, that is worth its picture
 NEARLY = 0.8  # of the largest change, from which the drive that comes first is taken
+HIDDEN = 1e-3  # of the stroke: a change that is not seen
 DENSE = 200  # swings in one picture that the eye no longer tells apart
 
 
@@ -38,7 +39,7 @@ class Picture(NamedTuple):
 def pictures(item: str) -> list[Picture]:
     """Loop, steps and spectrum of an item."""
     found, effect = traced(item), blocks.is_effect(word_of(item))
-    of_loop, of_steps = (_clearest(found, names) for names in (LOOPS, STEPS))
+    of_loop, of_steps = _clearest(found, LOOPS), _clearest(found, STEPS, ("tone", "other"))
     made = [_loop(item, found, of_loop, effect), _steps(item, found, of_steps, effect), _spectrum(item, found)]
     return [picture for picture in made if picture]
 
@@ -47,11 +48,12 @@ def change(found: Traced, name: str) -> float:
     return float(np.abs(found.with_it[name] - found.bare[name]).max() / STROKE)
 
 
-def _clearest(found: Traced, names: tuple[str, ...]) -> str:
-    """The first drive on which the item shows nearly as much as on any."""
-    there = [name for name in names if name in found.with_it]
-    there = [name for name in there if _swings(found, name) < DENSE] or there
-    largest = max(change(found, name) for name in there)
+def _clearest(found: Traced, names: tuple[str, ...], others: tuple[str, ...] = ()) -> str:
+    """The first drive on which the item shows nearly as much as on any; one of the others where it shows on none."""
+    there = [name for name in names if name in found.with_it and _swings(found, name) < DENSE]
+    largest = max((change(found, name) for name in there), default=0.0)
+    if largest < HIDDEN and others:
+        return _clearest(found, others)
     return next(name for name in there if change(found, name) >= NEARLY * largest)
 
 

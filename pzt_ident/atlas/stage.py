@@ -57,6 +57,7 @@ class Drive(NamedTuple):
 def drives() -> dict[str, Drive]:
     """By name."""
     still = 0.0
+    polar = ramps((0, 100, -100, 100, 0), 200, 1e-3)
     slow, fast, holds = ramps(LOOPS, 200, 1e-3), ramps(LOOPS, 2e4, 1e-5), holding(LEVELS, 2e3, 20.0, 2e-2)
     steps, sweep, tone = holding((100, 50, 0), 6e4, 0.012, 1e-5), multisine(2e-5), sine(10.0, 3.0, 1e-3)
     swing = SPAN / 2 * (1 - np.cos(2 * np.pi * 1.3 * 1e-3 * np.arange(slow.size)))
@@ -64,6 +65,7 @@ def drives() -> dict[str, Drive]:
         "loops": Drive("nested loops at 200 V/s", "slow loops", 1e-3, slow, still * slow),
         "fast": Drive("nested loops at 20,000 V/s", "fast loops", 1e-5, fast, still * fast),
         "small": Drive("nested loops of a fifth of the range", "small loops", 1e-3, slow[::5] / 5, still * slow[::5]),
+        "polar": Drive("loops over both polarities", "both polarities", 1e-3, polar, still * polar),
         "holds": Drive("steps with holds of 20 s", "steps and holds", 2e-2, holds, still * holds),
         "steps": Drive("steps within two milliseconds", "fast steps", 1e-5, steps, still * steps),
         "sweep": Drive("a multisine of 6 V about 50 V", "small multisine", 2e-5, sweep, still * sweep),

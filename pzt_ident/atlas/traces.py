@@ -12,6 +12,7 @@ from pzt_ident.atlas.stage import MECHANICS, OPERATOR, STROKE, VALUES, Array, Dr
 from pzt_ident.model.registry import blocks
 
 STEP = 1e-3  # of a parameter, in a difference
+UNSEEN = ("polar",)  # no part of a refit: the drive that a user has not run yet
 
 Traces = dict[str, Array]
 """By the name of a drive: (samples,), m."""
@@ -31,7 +32,8 @@ class Traced(NamedTuple):
 
     @property
     def largest(self) -> float:
-        return max(map(self.size, self.left))
+        """On the drives that were fitted."""
+        return max(self.size(name) for name in self.left if name not in UNSEEN)
 
 
 @cache
@@ -46,13 +48,13 @@ def traced(item: str) -> Traced:
 
 def refitted(change: Traces) -> Traces:
     """The change less what the parameters of the standard stage and an offset in each record take up, to first order,
-    over all drives together; every drive counts alike."""
-    names = list(change)
+    over all drives that were seen together; each of them counts alike."""
+    names = [name for name in change if name not in UNSEEN]
     weights = {name: np.full(change[name].size, change[name].size ** -0.5) for name in names}
     columns = np.hstack([slopes(name) for name in names]) * np.concatenate([weights[name] for name in names])
     wanted = np.concatenate([weights[name] * (change[name] - change[name].mean()) for name in names])
     taken = np.linalg.lstsq(columns.T, wanted, rcond=1e-9)[0]
-    left = {name: change[name] - change[name].mean() - taken @ slopes(name) for name in names}
+    left = {name: change[name] - change[name].mean() - taken @ slopes(name) for name in change}
     return {name: trace - trace.mean() for name, trace in left.items()}
 
 

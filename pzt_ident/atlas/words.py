@@ -146,10 +146,11 @@ class Word:
     @property
     def values(self) -> str:
         """At which it is shown."""
-        return ", ".join(
-            f"{item.name.partition('.')[2]} = {short(item.value, 3)}{'' if item.unit == '1' else ' ' + item.unit}"
-            for item in shown(self.word).values
-        )
+        made: dict[tuple[str, str], list[str]] = {}
+        for item in shown(self.word).values:
+            name, unit = item.name.partition(".")[2], "" if item.unit == "1" else f" {item.unit}"
+            made.setdefault((re.sub(r"_\d+$", "", name), short(item.value, 3) + unit), []).append(name)
+        return ", ".join(f"{name} = {value}" for (_, value), names in made.items() for name in ranges(names))
 
     @property
     def look_alikes(self) -> list[LookAlike]:
@@ -183,7 +184,8 @@ def linked(html: str) -> str:
 
 def cited(html: str) -> str:
     """Authors with their year marked as what is cited."""
-    name = r"[A-Z][\w'’-]+(?: (?:(?:de|del|der|van|von) )?[A-Z][\w-]+)*"
+    particle = r"(?:(?:de|del|der|van|von) )?"
+    name = rf"{particle}[A-Z][\w'’-]+(?: {particle}[A-Z][\w-]+)*"
     authors = rf"{name}(?:, {name})*(?: &amp; {name}| et al\.)?"
     return re.sub(rf"({authors}(?:, Model Development[^,.]*| \(\d{{4}}\)))", r"<cite>\1</cite>", html)
 

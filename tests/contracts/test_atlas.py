@@ -78,7 +78,9 @@ def test_pictures_have_units_and_differ_from_those_without_the_word(word):
 
 @pytest.mark.parametrize("word", EFFECTS)
 def test_look_alikes_are_linked_both_ways(word):
-    for other in look_alikes(word):
+    found = look_alikes(word)
+    assert set(blocks[word].look_alikes) <= {other.word for other in found}
+    for other in found:
         assert word in [back.word for back in look_alikes(other.word)]
         assert 0 <= other.least <= other.most <= 1 + 1e-9
 
