@@ -15,17 +15,15 @@ from pzt_ident.search.loop import Stop, optimize
 BUDGET, SEEDS, DRAWN = 2000, 5, 500
 
 
-def valley(points: Array) -> Array:
-    """Rosenbrock's function from -2 to 2 in each coordinate, over the unit cube: (M, P) -> (M,)."""
-    x = 4 * points - 2
-    return np.sqrt(np.sum((1 - x[:, :-1]) ** 2 + 100 * (x[:, 1:] - x[:, :-1] ** 2) ** 2, axis=1))
-
-
 def residuals(points: Array) -> Array:
-    """Of which it is the root of the sum of squares, as the mean."""
+    """Of Rosenbrock's function from -2 to 2 in each coordinate, over the unit cube: (M, P) -> (M, 2 P - 2)."""
     x = 4 * points - 2
-    parts = np.stack([1 - x[:, :-1], 10 * (x[:, 1:] - x[:, :-1] ** 2)], axis=1).reshape(len(x), -1)
-    return parts * np.sqrt(parts.shape[1])
+    return np.hstack([1 - x[:, :-1], 10 * (x[:, 1:] - x[:, :-1] ** 2)])
+
+
+def loss(points: Array) -> Array:
+    """Their root mean square: (M,)."""
+    return np.sqrt(np.mean(residuals(points) ** 2, axis=1))
 
 
 @cache
@@ -42,11 +40,12 @@ def _run(word: str, dimensions: int, budget: int, seed: int) -> tuple[list[Array
         seen.append(points)
         return residuals(points)
 
-    def loss(points: Array) -> Array:
-        return np.sqrt(np.mean(look(points) ** 2, axis=1))
+    def lost(points: Array) -> Array:
+        seen.append(points)
+        return loss(points)
 
     optimizer = optimizers[word].make().with_budget(budget)
-    outcome = optimize(optimizer, dimensions, loss, seed, Stop(budget), look)
+    outcome = optimize(optimizer, dimensions, lost, seed, Stop(budget), look)
     return seen, np.asarray(outcome.history.evaluations, dtype=float), outcome.history.best
 
 
@@ -80,5 +79,5 @@ def _median(word: str) -> Array:
 @cache
 def random_search() -> Array:
     """The same of points drawn evenly."""
-    losses = [valley(np.random.default_rng(seed).random((BUDGET, 4))) for seed in range(SEEDS)]
+    losses = [loss(np.random.default_rng(seed).random((BUDGET, 4))) for seed in range(SEEDS)]
     return np.median(np.minimum.accumulate(losses, axis=1), axis=0)[49::50]
