@@ -33,3 +33,16 @@ def long(tmp_path_factory) -> Path:
     """Two records of 20,000 samples, six optimizers."""
     optimizers = ("pso", "rga", "csa", "cma_es", "differential_evolution", "least_squares")
     return make_run(tmp_path_factory.mktemp("long"), samples=20_000, repeats=5, optimizers=optimizers)
+
+
+@pytest.fixture(scope="session")
+def atlas_page(tmp_path_factory):
+    """The atlas of all words, as the command writes it."""
+    from click.testing import CliRunner
+
+    from pzt_ident.cli.commands import main
+
+    path = tmp_path_factory.mktemp("atlas") / "atlas.html"
+    ran = CliRunner().invoke(main, ["atlas", "-o", str(path)])
+    assert ran.output == f"atlas: {path}\n"
+    return path

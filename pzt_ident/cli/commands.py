@@ -252,6 +252,25 @@ def show(name: str, as_json: bool, quiet: bool) -> None:
 
 
 @main.command()
+@click.option("-o", "--out", type=EXISTING, default=Path("atlas.html"), show_default=True, help="The page to write.")
+@plugins_option
+@output_options
+def atlas(out: Path, as_json: bool, quiet: bool) -> None:
+    """Write the atlas of effects and the manual, one page that needs no network.
+
+    Every word that a job may use has a section: equation, sources, parameters, pictures of what it does, what looks
+    like it, the drive that tells them apart, and the remedy.
+    """
+    from pzt_ident.atlas.page import drawn, write_atlas
+    from pzt_ident.cli.table import tracked
+
+    for _ in tracked(drawn(), "words", as_json or quiet):
+        pass
+    path = write_atlas(out)
+    answer({"atlas": str(path)}, lambda: click.echo(f"atlas: {path}"), as_json, quiet)
+
+
+@main.command()
 @click.argument("folders", metavar="DIR...", nargs=-1, required=True, type=EXISTING)
 @click.option("-o", "--out", type=EXISTING, help="Page of several results; side-by-side.html if not given.")
 @output_options

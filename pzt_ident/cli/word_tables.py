@@ -6,6 +6,7 @@ from typing import Any
 
 import click
 
+from pzt_ident.atlas.href import href
 from pzt_ident.cli.table import grouped_by_range, table
 
 Facts = dict[str, Any]
@@ -38,6 +39,7 @@ def show_word(facts: Facts) -> None:
     for title, key in (("Leaves the same trace as", "look_alikes"), ("To tell", "separate_by"), ("To do", "remedy")):
         if text := facts.get(key):
             click.echo(f"\n{title}: {text if isinstance(text, str) else ', '.join(text)}")
+    click.echo(f"\nPictures and more: `pzt-ident atlas` writes {href(facts['name'])}")
 
 
 def _allowed(row: Facts) -> str:

@@ -14,8 +14,9 @@ Use = Literal["identify", "validate"]
 
 @dataclass(frozen=True)
 class Channel:
-    """Where a signal is in a file: a header text such as `u_x [V]`, a column number counted from 1, or a data set or
-    array (then `file` may be another file than the record's). `unit` overrides the unit in the header."""
+    """Where a signal is in a file: the `name` in the header, such as `u_x [V]`, a `column` counted from 1, or a
+    `dataset`, of an array with an `index` (then `file` may be another file than the record's). `unit` overrides that in
+    the header."""
 
     name: str | None = None
     column: int | None = None
@@ -35,11 +36,15 @@ class Axis:
 
 @dataclass(frozen=True)
 class Source:
-    """One record as the job names it. rows: counted from 0, the end excluded. time: an interval, s. settle: the time at
-    the start that is simulated but not scored, s.
+    """One record as the job names it: `file`, relative to the job, its `use`, and the `name` in results.
+
+    sample_rate: Hz, where no column has the time. rows: counted from 0, the end excluded. time: an interval, s. settle:
+    the time at the start that is simulated but not scored, s. decimate: every n-th sample is taken. run_in: how often
+    the drive is simulated before the first sample, for a periodic record in steady state. steps: of the simulation in a
+    sample. dataset, table, sheet and index: which part of a file with several ones, and of an array.
 
     `channels` overrides channels in this record, by `time`, `drive`, `response` or, of one axis, `x.drive`:
-    `{"response": Channel(file="y.npy")}` takes every response from another file.
+    `{response: {file: y.npy}}` takes every response from another file.
     """
 
     file: str

@@ -17,9 +17,9 @@ class EncoderCyclicError(Block):
     place = Place.SENSOR
     form = Form("first", ("first", "second"), "Up to which harmonic of the grating.")
     trials = {"pitch": 120}
-    sine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, odd about x = 0.", null=0)
-    cosine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, even about x = 0.", null=0)
-    pitch = Parameter("response", (0.01, 1), "Period of the grating's signal.", scale="log")
+    sine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, odd about x = 0, a.", null=0)
+    cosine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, even about x = 0, b.", null=0)
+    pitch = Parameter("response", (0.01, 1), "Period of the grating's signal, p.", scale="log")
     look_alikes = ("quadratic_gain", "cubic_stiffness", "saturation")
     separate_by = "Shift the encoder head by half a pitch and repeat: this error changes its sign, all others stay."
     remedy = "Correct offset, gain and phase of the encoder's signals, or subtract the error tabulated over a pitch."
@@ -40,8 +40,8 @@ class SecondHarmonic(EncoderCyclicError):
     Heydemann (1981), Applied Optics 20, 3382.
     """
 
-    second_sine = Parameter("response", (-0.05, 0.05), "Error of the second harmonic, odd about x = 0.", null=0)
-    second_cosine = Parameter("response", (-0.05, 0.05), "Error of the second harmonic, even about x = 0.", null=0)
+    second_sine = Parameter("response", (-0.05, 0.05), "Error of the second harmonic, odd about x = 0, c.", null=0)
+    second_cosine = Parameter("response", (-0.05, 0.05), "Error of the second harmonic, even about x = 0, d.", null=0)
 
     def prepare(sine, cosine, second_sine, second_cosine, pitch):
         return sine, cosine, second_sine, second_cosine, 2 * pi / pitch

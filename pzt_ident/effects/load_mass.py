@@ -8,7 +8,7 @@ from pzt_ident.model.registry import blocks
 class LoadMass(Term):
     """A load moves with the stage and lowers its resonance: m <- m + load in the equation of the mechanics.
 
-    The resonance falls by (1 + load / m)^(-1/2); slow records do not show it.
+    The resonance falls to w = w0 / sqrt(1 + load / m); slow records do not show it.
     """
 
     sizes = tuple(0.003 * 1.03**k for k in range(197))

@@ -21,9 +21,9 @@ class PeriodicDisturbance(Addition):
 
     place = Place.OUTPUT
     form = Form("sine", ("sine", "harmonics"), "The course of the disturbance.")
-    sine = Parameter("response", (-1, 1), "Part in phase at the start of a record.", null=0, per_record=True)
-    cosine = Parameter("response", (-1, 1), "Part a quarter period ahead of it.", null=0, per_record=True)
-    frequency = Parameter("Hz", (1, 1000), "Frequency of the disturbance.", scale="log")
+    sine = Parameter("response", (-1, 1), "Part in phase at the start of a record, a.", null=0, per_record=True)
+    cosine = Parameter("response", (-1, 1), "Part a quarter period ahead of it, b.", null=0, per_record=True)
+    frequency = Parameter("Hz", (1, 1000), "Frequency of the disturbance, f.", scale="log")
     look_alikes = ()
     separate_by = "Record at constant voltage, then with the driver off: a line that stays is not the drive's."
     remedy = "Ground and shield against hum, isolate the stage from the floor, or filter the line out."

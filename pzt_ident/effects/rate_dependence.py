@@ -24,7 +24,7 @@ class Onset(RateDependence):
     """Below a rate v0 the hysteresis does not change: alpha <- alpha (1 + c log10(1 + |du/dt| / v0)).
 
     Ang, Khosla & Riviere (2007), with a rate from which on it counts. Written relative to 100 V/s, so that alpha keeps
-    its meaning: 1 + rate log10((|du/dt| + v0) / (100 V/s + v0)), v0 being `onset`.
+    its meaning: alpha <- alpha (1 + rate log10((|du/dt| + v0) / (100 V/s + v0))), v0 being `onset`.
     """
 
     trials = {"onset": 5}

@@ -9,7 +9,7 @@ from pzt_ident.model.registry import blocks
 class Saturation(Block):
     """All domains are switched: y = d U tanh(u / U) - h, knee = 1 / U.
 
-    Royston & Houston (1998), J. Acoust. Soc. Am. 104, 2814. Odd in u; u (1 - (knee u)^2 / 3) for small u.
+    Royston & Houston (1998), J. Acoust. Soc. Am. 104, 2814. Odd in u; y = d u (1 - (knee u)^2 / 3) - h for small u.
     """
 
     place = Place.READOUT

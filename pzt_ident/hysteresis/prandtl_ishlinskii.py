@@ -19,7 +19,7 @@ class PrandtlIshlinskii(Bank):
     place = Place.OPERATOR
     branches = PLAYS
     gain = Parameter("response/drive", (0, 3), "Weight of the drive itself, w0.")
-    weight = Parameter("response/drive", (-0.5, 1.5), "Weight of the i-th play.", count=PLAYS)
+    weight = Parameter("response/drive", (-0.5, 1.5), "Weight of the i-th play, w_i.", count=PLAYS)
     reach = Parameter("drive", (0.05, 1), "Half-width of the widest play.", value=0.5)
 
     def threshold(reach, branch):

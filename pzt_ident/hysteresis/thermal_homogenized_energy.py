@@ -14,18 +14,19 @@ SHELL = 0.1  # width of the shell about the inflection point from which domains 
 
 @blocks.register
 class ThermalHomogenizedEnergy(Relays):
-    """y = a1 (P - P_R) + a2 (P - P_R)^2,  P = int int nu1(Ec) nu2(EI) (x <P+> + (1 - x) <P->) dEI dEc,
-    dx/dt = -p+- x + p-+ (1 - x).
+    """y = a1 (P - P_R) + a2 (P - P_R)^2,  P = int int nu1(Ec) nu2(EI) (x P_up + (1 - x) P_down) dEI dEc,
+    dx/dt = r_up (1 - x) - r_down x.
 
-    Smith et al., Model Development for Atomic Force Microscope Stage Mechanisms, eqs. 8 to 12 and 15. With the thermal
-    width s = 1 / sqrt(B eta), B = V / kT, a = -(E + EI + Ec) / (eta s), g(a) = sqrt(2 / pi) / erfcx(a / sqrt 2):
-    <P+> = P_R + (E + EI) / eta + s g(a) and p+- = (1 / T) N / (N + s / g(a)), N the integral of the Boltzmann density
-    over a shell of 0.1 s behind the inflection point. The energy is approximated as linear over the shell, a relative
-    error of p+- of (0.1)^2 / 6 Ec / (eta P_R - Ec). p-+ and <P-> are the mirror images. There are 64 lognormal coercive
-    fields of equal probability below eta P_R; beyond it a domain has no inflection point, and its mass is left out. The
-    spacing of the interaction fields is an eighth of their standard deviation. For loops and for larger steps its error
-    is small (4 % of the creep); creep after a step of a thirtieth of the standard deviation is off by about 8 %, after
-    a hundredth by 20 to 30 %.
+    Smith et al., Model Development for Atomic Force Microscope Stage Mechanisms, eqs. 8 to 12 and 15: x, P_up and
+    r_down are x+, <P+> and p+- there. With the thermal width s = 1 / sqrt(B eta), B = V / kT, and with
+    a = -(E + EI + Ec) / (eta s), g(a) = sqrt(2 / pi) / erfcx(a / sqrt(2)), the polarization of a domain that points up
+    is P_up = P_R + (E + EI) / eta + s g(a), and the rate at which it leaves r_down = (1 / T) N / (N + s / g(a)), N the
+    integral of the Boltzmann density over a shell of 0.1 s behind the inflection point. The energy is approximated as
+    linear over the shell, a relative error of r_down of (0.1)^2 / 6 Ec / (eta P_R - Ec). P_down and r_up are the mirror
+    images. There are 64 lognormal coercive fields of equal probability below eta P_R; beyond it a domain
+    has no inflection point, and its mass is left out. The spacing of the interaction fields is an eighth of their
+    standard deviation. For loops and for larger steps its error is small (4 % of the creep); creep after a step of a
+    thirtieth of the standard deviation is off by about 8 %, after a hundredth by 20 to 30 %.
     """
 
     place = Place.OPERATOR

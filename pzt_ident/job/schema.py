@@ -36,21 +36,32 @@ class Job(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
-    plugins: tuple[str, ...] = ()
-    name: Annotated[str, Field(pattern=r"^\w([\w .+-]*\w)?$")]
-    records: tuple[Source, ...]
-    channels: Channels
-    model: tuple[Item, ...]
-    effects: tuple[str, ...] = ()
-    rule_out: tuple[str, ...] = ()
-    shared: tuple[str, ...] = ()
-    parameters: dict[str, Setting] = {}
-    optimizers: tuple[Choice, ...] = (Choice("pso"),)
-    repeats: Repeats = 1
-    seed: Annotated[int, Field(ge=0)] = 0
-    polish: bool = True
-    stop: Stopping = Stopping()
-    limits: Limits = Limits()
+    plugins: Annotated[
+        tuple[str, ...], Field(description="Python files of your own: effects, optimizers, readers.")
+    ] = ()
+    name: Annotated[
+        str,
+        Field(pattern=r"^\w([\w .+-]*\w)?$", description="Results go to `results/NAME`; the file's name if not given."),
+    ]
+    records: Annotated[tuple[Source, ...], Field(description="The measurements.")]
+    channels: Annotated[Channels, Field(description="Which columns are time, drives and responses.")]
+    model: Annotated[tuple[Item, ...], Field(description="Blocks: a hysteresis operator and mechanics.")]
+    effects: Annotated[
+        tuple[str, ...], Field(description="Effects beside the model, such as `creep` or `creep.voltage`.")
+    ] = ()
+    rule_out: Annotated[
+        tuple[str, ...], Field(description="Effects that the rig cannot have: no diagnosis names them.")
+    ] = ()
+    shared: Annotated[tuple[str, ...], Field(description="Parameters with one value for all axes.")] = ()
+    parameters: Annotated[dict[str, Setting], Field(description="Bounds or values of parameters, by name.")] = {}
+    optimizers: Annotated[
+        tuple[Choice, ...], Field(description="The searches; all get the evaluations of the first.")
+    ] = (Choice("pso"),)
+    repeats: Annotated[Repeats, Field(description="Searches of each optimizer, from different random starts.")] = 1
+    seed: Annotated[int, Field(ge=0, description="The same seed gives the same result.")] = 0
+    polish: Annotated[bool, Field(description="Whether least squares go on from where a search ended.")] = True
+    stop: Annotated[Stopping, Field(description="What ends a search before its evaluations are spent.")] = Stopping()
+    limits: Annotated[Limits, Field(description="What a proposed drive may do.")] = Limits()
 
     _text: str = PrivateAttr("")
     _folder: Path = PrivateAttr(Path())

@@ -16,7 +16,7 @@ Repeats = Annotated[int, Field(ge=1, le=1000)]
 
 @dataclass(frozen=True)
 class Channels:
-    """Where time, drives and responses stand in the files of the records."""
+    """Where the `time` and, by axis, the drives and responses (`axes`) stand in the files of the records."""
 
     axes: dict[str, Axis]
     time: Channel | None = None
@@ -24,7 +24,7 @@ class Channels:
 
 @dataclass(frozen=True)
 class Setting:
-    """Bounds free a parameter, a value fixes it: one of the two, in the user's units."""
+    """`bounds` free a parameter, a `value` fixes it: one of the two, in the user's units."""
 
     bounds: tuple[float, float] | None = None
     value: float | None = None
@@ -32,7 +32,7 @@ class Setting:
 
 @dataclass(frozen=True)
 class Choice:
-    """An optimizer or block by name, with its settings."""
+    """An optimizer or block by its `name`, its `settings` as keys beside that: `{name: rod, elements: 12}`."""
 
     name: str
     settings: dict[str, Any] = field(default_factory=dict)
@@ -48,7 +48,7 @@ Item = Annotated[Annotated[str, Tag("word")] | Annotated[Choice, Tag("choice")],
 
 @dataclass(frozen=True)
 class Quantity:
-    """A value in a unit, or in the unit of the response where none is given."""
+    """A value in a unit, or in the unit of the response where none is given: `0.05 um`."""
 
     value: Positive
     unit: str | None = None
@@ -56,7 +56,8 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Stopping:
-    """When a search ends, whichever comes first: evaluations, wall time, RMSE reached, generations without progress."""
+    """When a search ends, whichever comes first: evaluations, seconds of wall time, the RMSE reached (target), or
+    generations without progress (stagnation)."""
 
     evaluations: Count | None = None
     seconds: Positive | None = None
@@ -66,7 +67,8 @@ class Stopping:
 
 @dataclass(frozen=True)
 class Limits:
-    """What a proposed drive may do, in the user's units: lowest and highest drive, its rate per second, length in s."""
+    """What a proposed drive may do, in the user's units: lowest and highest drive, its rate per second (slew), and its
+    duration in s."""
 
     drive: tuple[float, float] | None = None
     slew: Positive | None = None

@@ -17,9 +17,9 @@ class Lumped(Oscillator):
     Lin & Lin (2012), Mechatronics 22, 614, eq. 2.
     """
 
-    mass = Parameter("kg", (0.01, 10), "Moving mass.", scale="log")
-    damping = Parameter("N*s/m", (0, 1e4), "Viscous damping.")
-    stiffness = Parameter("N/m", (1e5, 1e9), "Stiffness of flexure and actuator together.", scale="log")
+    mass = Parameter("kg", (0.01, 10), "Moving mass, m.", scale="log")
+    damping = Parameter("N*s/m", (0, 1e4), "Viscous damping, b.")
+    stiffness = Parameter("N/m", (1e5, 1e9), "Stiffness of flexure and actuator together, k.", scale="log")
     load = Parameter("kg", (0, 1), "Mass of a payload, added to the moving mass.", null=0, effect="load_mass")
     extra_damping = Parameter("N*s/m", (0, 5e3), "Added to the damping.", null=0, effect="viscous_damping")
     cubic = Parameter(

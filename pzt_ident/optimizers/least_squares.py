@@ -18,9 +18,9 @@ SMALLEST = 1e-11  # step below which a start ends
 @optimizers.register
 @dataclass(frozen=True)
 class LeastSquares(Budgeted):
-    """Levenberg-Marquardt from many starts: (J'J + mu D) s = -J'r within the bounds, J by a batch of differences.
+    """Levenberg-Marquardt from many starts: (J' J + mu D) s = -J' r within the bounds, J by a batch of differences.
 
-    Without residuals the model of the loss is quadratic with a BFGS Hessian in place of J'J. Each start is the best of
+    Without residuals the model of the loss is quadratic with a BFGS Hessian in place of J' J. Each start is the best of
     `samples` random points.
     """
 

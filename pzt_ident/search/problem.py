@@ -75,21 +75,21 @@ class Problem:
         """Sort the parameters into free ones with bounds, fixed ones and linear ones."""
         check_units(self.model, identify[0], self._unit)
         self.all_units = [self._unit(entry, identify[0]) for entry in self.model.entries]
-        self._factor = np.array([factor(unit) for unit in self.all_units])
+        self.factors = np.array([factor(unit) for unit in self.all_units])
         self.theta = np.full(len(self.model.entries), np.nan)
         free, lower, upper, linear = [], [], [], []
         for column, entry in enumerate(self.model.entries):
             spec = next((specs[name] for name in self.model.spellings(entry) if name in specs), None)
             parameter = entry.parameter
             if spec and spec.bounds is None and spec.value is not None:
-                self.theta[column] = spec.value * self._factor[column]
+                self.theta[column] = spec.value * self.factors[column]
             elif parameter.value is not None and not spec:
                 self.theta[column] = parameter.value * self._size(entry, identify)
             elif parameter.linear and not spec:
                 linear.append(column)
             else:
                 given_bounds = spec.bounds if spec else None
-                low, high = given_bounds or self._bounds(entry, identify) / self._factor[column]
+                low, high = given_bounds or self._bounds(entry, identify) / self.factors[column]
                 free.append(column)
                 lower.append(low)
                 upper.append(high)
@@ -155,13 +155,13 @@ class Problem:
     def parameters_at(self, values: Array) -> Array:
         """All parameters in SI units, the free ones at `values` (free,) in the user's units: (parameters,)."""
         theta = self.theta.copy()
-        theta[self.free] = values * self._factor[self.free]
+        theta[self.free] = values * self.factors[self.free]
         return theta
 
     def declared_bounds(self, column: int) -> tuple[float, float]:
         """Bounds of a parameter where the job gives none, in the user's units."""
         identify = [record for record in self.records if record.use == "identify"]
-        low, high = self._bounds(self.model.entries[column], identify) / self._factor[column]
+        low, high = self._bounds(self.model.entries[column], identify) / self.factors[column]
         return float(low), float(high)
 
     def range_of(self, column: int) -> tuple[float, float]:
@@ -169,7 +169,7 @@ class Problem:
         place = np.flatnonzero(self.free == column)
         if place.size:
             return float(self.lower[place[0]]), float(self.upper[place[0]])
-        return (float(self.theta[column] / self._factor[column]),) * 2
+        return (float(self.theta[column] / self.factors[column]),) * 2
 
     @property
     def scored(self) -> int:
@@ -202,7 +202,7 @@ class Problem:
         values = self.physical(points)
         theta = np.empty((len(values), len(self.theta)))
         theta[:] = self.theta
-        theta[:, self.free] = values * self._factor[self.free]
+        theta[:, self.free] = values * self.factors[self.free]
         self.linear.fill(theta)
         return theta
 

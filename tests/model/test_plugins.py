@@ -1,13 +1,12 @@
 """An effect in a file of the user's: joins the catalogue where it is asked for, and only there."""
 
 import json
-import re
 import sys
-from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
 
+from pzt_ident.atlas.manual import code_blocks, source
 from pzt_ident.cli.commands import main
 from pzt_ident.diagnosis.score import applicable
 from pzt_ident.errors import InputError
@@ -15,7 +14,6 @@ from pzt_ident.job.schema import load_job
 from pzt_ident.model.registry import blocks
 from pzt_ident.run.improve import opened_case
 
-README = Path(__file__).parents[2] / "README.md"
 JOB = """\
 plugins: [cubic_gain.py]
 name: own
@@ -34,10 +32,8 @@ optimizers:
 
 @pytest.fixture
 def folder(tmp_path):
-    """A job beside its data and the recipe of README."""
-    recipe = next(
-        code for code in re.findall(r"```python\n(.*?)```", README.read_text("utf-8"), re.S) if "CubicGain" in code
-    )
+    """A job beside its data and the recipe of the manual."""
+    (recipe,) = (code.text for code in code_blocks(source("50_your_own.md")) if code.file == "cubic_gain.py")
     (tmp_path / "cubic_gain.py").write_text(recipe, encoding="utf-8")
     (tmp_path / "job.yaml").write_text(JOB, encoding="utf-8")
     rows = [f"{i * 1e-2:.2f},{u},{0.08 * u + 1e-6 * u**3:.6f}" for i, u in enumerate([*range(60), *range(60, 0, -1)])]

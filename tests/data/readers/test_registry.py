@@ -1,6 +1,5 @@
 """Laws over the readers: what is a reader of a file format, is tested by being there."""
 
-import re
 import subprocess
 import sys
 from importlib.metadata import EntryPoint
@@ -10,6 +9,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
+from pzt_ident.atlas.manual import code_blocks, source
 from pzt_ident.data import formats
 from pzt_ident.data.readers import registry
 from pzt_ident.data.readers.open import open_table, parts_of
@@ -21,14 +21,13 @@ from pzt_ident.run.summary import summary_of
 from sheets import write_sheets
 
 ALL = list(readers)
-README = Path(__file__).parents[3] / "README.md"
 SIGNALS = {"t [s]": np.arange(400.0), "u [V]": np.arange(400) % 7.0, "x [um]": np.arange(400) % 5.0}
 
 
 @pytest.fixture
 def example(tmp_path):
-    """The reader that README shows, in a file."""
-    code = re.search(r"<!-- reader -->\s*```python\n(.*?)```", README.read_text("utf-8"), re.S)[1]
+    """The reader that the manual shows, in a file."""
+    (code,) = (code.text for code in code_blocks(source("50_your_own.md")) if code.file == "force_curves.py")
     (tmp_path / "force_curves.py").write_text(code, encoding="utf-8")
     before = readers._added
     yield tmp_path / "force_curves.py"

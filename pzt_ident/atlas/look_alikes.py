@@ -1,0 +1,62 @@
+"""Effects that leave the same trace: as declared, and on which standard drives they do and do not."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from pzt_ident.atlas.stage import Array, drives
+from pzt_ident.atlas.traces import Traced, traced
+from pzt_ident.model.registry import blocks
+
+ALIKE = 0.5  # on all drives together, from which an effect is listed that no declaration names
+VISIBLE = 0.25  # of the largest trace of an effect
+PARTED = 0.9  # most that two effects have in common on a drive that tells them apart
+
+
+class LookAlike(NamedTuple):
+    """An effect that may be taken for another one: how much what both leave has in common on all standard drives
+    together, and the drives on which it is most and least alike; cosines. apart: "" where none parts them."""
+
+    word: str
+    together: float
+    alike: str
+    most: float
+    apart: str
+    least: float
+
+
+def look_alikes(word: str) -> list[LookAlike]:
+    """Those that an effect declares, those that declare it, and those that look like it, the closest first."""
+    others = [other for other in blocks.effects() if other != word]
+    declared = {other for other in others if other in blocks[word].look_alikes or word in blocks[other].look_alikes}
+    compared = [_compared(word, other) for other in others]
+    return sorted((c for c in compared if c.word in declared or c.together >= ALIKE), key=lambda c: -c.together)
+
+
+def _compared(word: str, other: str) -> LookAlike:
+    a, b = traced(word), traced(other)
+    both = [name for name in a.left if name in b.left]
+    together = cosine(
+        *(np.concatenate([found.left[name] / found.left[name].size ** 0.5 for name in both]) for found in (a, b))
+    )
+    cosines = {name: _on_drive(a, b, name) for name in both if _visible(a, name) or _visible(b, name)}
+    alike, apart = max(cosines, key=lambda name: cosines[name]), min(cosines, key=lambda name: cosines[name])
+    parting = drives()[apart].short if cosines[apart] < PARTED else ""
+    return LookAlike(other, together, drives()[alike].short, cosines[alike], parting, cosines[apart])
+
+
+def _visible(found: Traced, name: str) -> bool:
+    return found.size(name) > VISIBLE * found.largest
+
+
+def _on_drive(a: Traced, b: Traced, name: str) -> float:
+    """0 where one of them leaves next to nothing."""
+    seen = min(a.size(name) / a.largest, b.size(name) / b.largest) >= VISIBLE / 10
+    return cosine(a.left[name], b.left[name]) if seen else 0.0
+
+
+def cosine(x: Array, y: Array) -> float:
+    """Between two traces, without its sign."""
+    return float(abs(x @ y) / np.sqrt((x @ x) * (y @ y)))

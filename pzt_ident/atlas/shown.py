@@ -1,0 +1,124 @@
+"""A word of the registry at work: the standard stage with it and without it, at values from its declaration alone."""
+
+from __future__ import annotations
+
+from functools import cache, cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from pzt_ident.atlas.fitted import fitted
+from pzt_ident.atlas.stage import MECHANICS, OPERATOR, STROKE, VALUES, Array, Drive, Stage, drives, record
+from pzt_ident.engine.additions import Additions
+from pzt_ident.model.block import Addition, Place, Term
+from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks, word_of
+
+LARGEST = 0.3  # of the range of a parameter
+VISIBLE = 0.12  # of the span of the response: the largest change of a loop or a hold
+SEEN_IN = ("loops", "fast", "holds", "other", "rest")
+
+
+class Value(NamedTuple):
+    """A parameter, or the amount of an addition, in the user's units."""
+
+    name: str
+    value: float
+    unit: str
+
+
+class Shown:
+    """An item of the registry in the standard chain: `respond` with it, `bare` without it.
+
+    An effect is shown at a share of its ranges: the largest, up to LARGEST, at which it changes no loop and no hold by
+    more than VISIBLE. Operators and mechanics are fitted; without them a straight line is left, or a rigid stage.
+    """
+
+    def __init__(self, item: str) -> None:
+        self.item, self.block = item, blocks[item]
+        self.effect = blocks.is_effect(word_of(item))
+        words, self.fixed = fitted(self._host() if self.effect else item)
+        self.stage = self._stage([*words, *([item] if self.effect else [])])
+        self.rest = [word for word in words if word != item]
+        self.share = self._share() if self.effect else 0.0
+
+    def _host(self) -> str:
+        """The block in whose equation an effect acts, of the standard stage where that holds it."""
+        holders = (w for w in (OPERATOR, MECHANICS, *blocks.words()) if blocks[w].holds(self.block))
+        return next(holders) if issubclass(self.block, Term) else OPERATOR
+
+    def _stage(self, items: list[str]) -> Stage:
+        return Stage([blocks[item] for item in items], VALUES | self.fixed)
+
+    def _share(self) -> float:
+        """The largest by factors of two at which the change is as small as it should be."""
+        share, least = LARGEST, 1e-3
+        while share > least and not max(self._change(drives()[name], share) for name in SEEN_IN) < VISIBLE:
+            share /= 2
+        return share
+
+    def _change(self, drive: Drive, share: float) -> float:
+        """The largest change of the response over the stroke, NaN where the item at that share cannot be simulated."""
+        return float(np.abs(self._respond(drive, share) - self.bare(drive)).max() / STROKE)
+
+    @cached_property
+    def values(self) -> list[Value]:
+        """All that the item declares, as it is shown."""
+        problem, chain = self.stage.problem, self.stage.chain
+        theta = self._theta(self.share) / problem.factors
+        rows = zip(chain.entries, theta, problem.all_units, strict=True)
+        mine = [Value(e.name, float(v), u) for e, v, u in rows if self._declares(e.parameter, e.block)]
+        return mine + [Value(f"{self.block.name}.{name}", 1e6 * a, "um") for name, a in self._amounts(self.share)]
+
+    def _declares(self, parameter: Parameter, block: type) -> bool:
+        return parameter.effect in (self.block.name, self.block.item()) if parameter.effect else block is self.block
+
+    def _theta(self, share: float) -> Array:
+        problem = self.stage.problem
+        entries = (self.stage.chain.entries[column] for column in problem.free)
+        ranges = zip(entries, problem.lower, problem.upper, strict=True)
+        values = [_value(entry.parameter, float(low), float(high), share) for entry, low, high in ranges]
+        return problem.parameters_at(np.array(values))
+
+    def _amounts(self, share: float) -> list[tuple[str, float]]:
+        """Of an addition, m."""
+        declared = self.block.parameters().items() if issubclass(self.block, Addition) else ()
+        return [(name, share * item.bounds[1] * STROKE) for name, item in declared if item.per_record]
+
+    def respond(self, drive: Drive) -> Array:
+        """The response with the item, m: (samples,)."""
+        return self._respond(drive, self.share)
+
+    def _respond(self, drive: Drive, share: float) -> Array:
+        theta = self._theta(share)
+        with np.errstate(all="ignore"):
+            found = self.stage.respond(drive, theta)
+        if amounts := [amount for _, amount in self._amounts(share)]:
+            found = found + Additions(self.stage.chain, record(drive)).basis(0, theta)[:, 1:] @ amounts
+        return found
+
+    def bare(self, drive: Drive) -> Array:
+        """The response without the item, m: (samples,). Without an operator, the straight line nearest to it."""
+        if self.effect or (self.block.place == Place.MECHANICS and self.rest):
+            stage = self._stage(self.rest)
+            return stage.respond(drive, stage.problem.theta)
+        with_it, line = self.respond(drive), np.column_stack([drive.u, np.ones(drive.u.size)])
+        if self.rest and np.ptp(drive.u):
+            stage = self._stage(self.rest)
+            line[:, 0] = stage.respond(drive, stage.problem.theta)
+        return line @ np.linalg.lstsq(line, with_it, rcond=None)[0]
+
+
+def _value(parameter: Parameter, low: float, high: float, share: float) -> float:
+    """At a share of the way from the null to the upper bound; the middle of the range where there is no null."""
+    if parameter.scale == "log":
+        return float(np.sqrt(low * high))
+    if parameter.null is None or not parameter.null <= high:
+        return (low + high) / 2
+    return parameter.null + share * (high - parameter.null)
+
+
+@cache
+def shown(item: str) -> Shown:
+    """Each is made once."""
+    return Shown(item)
