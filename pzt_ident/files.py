@@ -40,6 +40,22 @@ def write_text(path: Path, text: str) -> None:
         beside.write_text(text, encoding="utf-8")
 
 
+def write_bytes(path: Path, content: bytes) -> None:
+    with replaced(path) as beside:
+        beside.write_bytes(content)
+
+
+def read_files(folder: Path) -> dict[str, bytes]:
+    """The files of a folder and its folders, by their paths in it."""
+    files = sorted(path for path in folder.rglob("*") if path.is_file())
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+
+
+def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
+    for name, content in files.items():
+        write_bytes(folder / name, content)
+
+
 def write_columns(path: Path, columns: Mapping[str, Any]) -> None:
     """Arrays under their headers as CSV that gives the same numbers again."""
     rows = zip(*(values.tolist() for values in columns.values()), strict=True)

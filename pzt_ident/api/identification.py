@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from pzt_ident.api.arguments import of_kind, path_of
-from pzt_ident.api.computing import computing
 from pzt_ident.api.fit import Fit
 from pzt_ident.api.model import Model
 from pzt_ident.api.record import Record
@@ -19,6 +18,7 @@ from pzt_ident.api.statement import job_text, named_apart, sections_of, statemen
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import Job
 from pzt_ident.run.checkpoint import Checkpoint
+from pzt_ident.run.computing import computing
 from pzt_ident.run.events import nobody
 from pzt_ident.run.folder import check_unchanged, read_environment
 from pzt_ident.run.identify import tasks_of

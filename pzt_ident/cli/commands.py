@@ -33,6 +33,7 @@ from pzt_ident.cli.options import (
 
 if TYPE_CHECKING:
     from pzt_ident.cli.progress import Listener
+    from pzt_ident.run.place import Place
 
 
 @click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -54,16 +55,14 @@ def main(debug: bool) -> None:
 @run_options
 @plugins_flag
 @output_options
-def run(
-    job: Path, out: Path | None, workers: int | None, no_report: bool, plugins: bool, as_json: bool, quiet: bool
-) -> None:
+def run(job: Path, out: Path | None, place: Place, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
     """Identify the model of a job file JOB."""
 
     def start(listen: Listener) -> Path:
         from pzt_ident.job.schema import load_job
         from pzt_ident.run.identify import run
 
-        return run(load_job(job, plugins), out, workers=workers, listen=listen)
+        return run(load_job(job, plugins), out, place=place, listen=listen)
 
     _identify(start, no_report, as_json, quiet)
 
@@ -73,13 +72,13 @@ def run(
 @run_options
 @plugins_flag
 @output_options
-def resume(folder: Path, workers: int | None, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
+def resume(folder: Path, place: Place, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
     """Go on with the run in the folder DIR."""
 
     def start(listen: Listener) -> Path:
         from pzt_ident.run.identify import resume
 
-        return resume(folder, workers=workers, listen=listen, plugins=plugins)
+        return resume(folder, place=place, listen=listen, plugins=plugins)
 
     _identify(start, no_report, as_json, quiet)
 

@@ -15,6 +15,7 @@ from typing import Any, Protocol
 import click
 
 from pzt_ident.cli.table import is_terminal, number
+from pzt_ident.errors import LostError
 
 SECONDS_BETWEEN_LINES = 5.0
 
@@ -78,7 +79,8 @@ class Progress:
 def listening(silent: bool) -> Iterator[Listener]:
     """A listener for the events of a run: a live bar on a terminal, else a line every few seconds, on stderr.
 
-    After an interrupt, SIGTERM (sent by the scheduler of a cluster) or a full disk, it prints how to resume the run.
+    After an interrupt, SIGTERM (sent by the scheduler of a cluster), a full disk or the loss of a cluster, it prints
+    how to resume the run.
     """
     progress = Progress()
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -90,7 +92,7 @@ def listening(silent: bool) -> Iterator[Listener]:
                 yield listener
         else:
             yield _lines(progress)
-    except (KeyboardInterrupt, OSError):
+    except (KeyboardInterrupt, OSError, LostError):
         if progress.folder and not silent:
             click.echo(f"`pzt-ident resume {quote(progress.folder)}` goes on from here", err=True)
         raise
@@ -135,8 +137,10 @@ def _message(event: Event) -> str:
     """The sentence that is printed for an event; empty for most events."""
     if event["event"] == "finished":
         return "every run is finished: nothing is searched again"
-    if event["event"] == "stair":
+    if event["event"] in ("stair", "cluster"):
         return str(event["said"])
+    if event["event"] == "again":
+        return f"{event['run']} is done again: {event['reason']}"
     return failure_message(event) if event["event"] == "failed" else ""
 
 

@@ -53,7 +53,7 @@ def environment(job: Job, records: Sequence[Record]) -> dict[str, Any]:
         "platform": platform.platform(),
         "cpu": platform.processor() or platform.machine(),
         "cores": os.cpu_count(),
-        "packages": {name: _version(name) for name in PACKAGES},
+        "packages": {name: version_of(name) for name in PACKAGES},
         "command": " ".join(["pzt-ident", *sys.argv[1:]]),
         "data": {record.name: record.sha256 for record in records},
         "job_hash": job.hash,
@@ -62,7 +62,7 @@ def environment(job: Job, records: Sequence[Record]) -> dict[str, Any]:
     }
 
 
-def _version(package: str) -> str:
+def version_of(package: str) -> str:
     from importlib.metadata import PackageNotFoundError, version
 
     try:

@@ -1,4 +1,4 @@
-"""One optimizer, one repeat: what runs in a process of its own."""
+"""One optimizer, one repeat: what a worker does at a time."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import json
 import time
 import zlib
 from collections.abc import Callable, Sequence
-from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 
 from pzt_ident.data.record import Record
 from pzt_ident.data.units import factor
-from pzt_ident.errors import InputError, RunError
-from pzt_ident.files import write_json
+from pzt_ident.errors import RunError
+from pzt_ident.files import read_files, write_bytes, write_json
 from pzt_ident.model.optimizer import Optimizer
 from pzt_ident.model.registry import optimizers
 from pzt_ident.run.checkpoint import Checkpoint
@@ -51,22 +51,22 @@ class Task:
         return self.folder / "runs" / f"{self.run}.json"
 
 
-def work(task: Task, job_text: str, folder: Path, records: Sequence[Record], pipe: Any) -> None:
-    """Entry of the process: results go to the disk, events and errors through the pipe, until nobody listens."""
-    import signal
-
+def work(tell: Tell, job_text: str, folder: Path, records: Sequence[Record], task: Task) -> None:
+    """Entry of a worker that shares the disk: results go to the task's folder."""
     from pzt_ident.job.schema import Job
 
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    np.seterr(all="ignore")  # a simulation that overflows is counted, not warned about
-    with suppress(ConnectionError):
-        try:
-            search(task, Statement(Job.from_text(job_text, folder, plugins=True), records), pipe.send)
-            pipe.send(None)
-        except (InputError, RunError) as error:
-            pipe.send({"event": "failed", "run": task.run, "reason": str(error)})
-        except Exception as error:
-            pipe.send({"event": "failed", "run": task.run, "reason": f"{type(error).__name__}: {error}"})
+    search(task, Statement(Job.from_text(job_text, folder, plugins=True), records), tell)
+
+
+def work_away(
+    tell: Tell, job_text: str, folder: Path, records: Sequence[Record], task: Task, told: bytes
+) -> dict[str, bytes]:
+    """Entry of a worker that may be anywhere; returns the files of its result. told: the losses so far, as a file."""
+    with TemporaryDirectory() as scratch:
+        there = replace(task, folder=Path(scratch))
+        write_bytes(there.losses, told)
+        work(tell, job_text, folder, records, there)
+        return read_files(there.folder)
 
 
 def search(task: Task, statement: Statement, tell: Tell) -> None:
