@@ -17,6 +17,7 @@ import click
 
 from pzt_ident.cli.control_commands import control, drive, export, tune
 from pzt_ident.cli.first_commands import demo, init, workbench
+from pzt_ident.cli.fleet_commands import fleet, resume_fleet
 from pzt_ident.cli.options import (
     EXISTING,
     Group,
@@ -73,7 +74,10 @@ def run(job: Path, out: Path | None, place: Place, no_report: bool, plugins: boo
 @plugins_flag
 @output_options
 def resume(folder: Path, place: Place, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
-    """Go on with the run in the folder DIR."""
+    """Go on with the run or the fleet in the folder DIR."""
+    if (folder / "fleet.json").is_file():
+        resume_fleet(folder, place, plugins, as_json, quiet)
+        return
 
     def start(listen: Listener) -> Path:
         from pzt_ident.run.identify import resume
@@ -275,5 +279,5 @@ def report(folders: tuple[Path, ...], out: Path | None, as_json: bool, quiet: bo
     answer({"reports": pages}, lambda: click.echo("\n".join(pages)), as_json, quiet)
 
 
-for command in (control, drive, tune, export, init, demo, workbench):
+for command in (control, drive, tune, export, fleet, init, demo, workbench):
     main.add_command(command)

@@ -32,6 +32,8 @@ class Progress:
     """The progress of the runs of a job, from its events."""
 
     budget: int = 0
+    what: str = "evaluations"
+    broken: int = 0
     unit: str = ""
     together: str = ""
     best: float = math.inf
@@ -45,6 +47,11 @@ class Progress:
             self.budget, self.unit, self.folder = event["budget"], event["unit"], event.get("folder", "")
             self.together = event["together"]
             self.evaluations = dict.fromkeys(event["runs"], 0)
+        elif event["event"] in ("devices", "pages"):
+            self.what, self.budget, self.folder = event["event"], event["of"], event["folder"]
+            self.broken = event.get("broken", 0)
+            self.evaluations = {"": event["done"] + self.broken}
+            self.first = self.first or (time.perf_counter(), self.done)
         elif event["event"] == "generation":
             self.evaluations[event["run"]] = event["evaluations"]
             self.best = min(self.best, event["best"])
@@ -70,8 +77,9 @@ class Progress:
             return self.activity or "finishing"
         left = self.seconds_left()
         time_left = "finishing" if self.done >= self.budget else "" if left is None else f"{duration(left)} left"
-        share = f"{100 * self.done / self.budget:.0f} %: {self.done} of {self.budget} evaluations"
-        text = f"{share}, best RMSE{self.together} {number(self.best)} {self.unit}"
+        share = f"{100 * self.done / self.budget:.0f} %: {self.done} of {self.budget} {self.what}"
+        best = f", best RMSE{self.together} {number(self.best)} {self.unit}" if self.what == "evaluations" else ""
+        text = f"{share}{best}{f', {self.broken} broken' if self.broken else ''}"
         return f"{text}, {time_left}" if time_left else text
 
 
@@ -141,6 +149,8 @@ def _message(event: Event) -> str:
         return str(event["said"])
     if event["event"] == "again":
         return f"{event['run']} is done again: {event['reason']}"
+    if event["event"] == "devices" and "failed" in event:
+        return f"{event['device']}: {event['failed']}"
     return failure_message(event) if event["event"] == "failed" else ""
 
 

@@ -67,7 +67,7 @@ def render(plate: Plate, width: float, forms: Sequence[str]) -> dict[str, bytes]
 
 def write_page_figures(results: Results, folder: Path) -> list[tuple[Plate, bytes]]:
     """Write the static figures of the page as `<name>-180mm.svg`; returns each with its content."""
-    return [(plate, _write(plate, PAGE, ("svg",), folder)["svg"]) for plate in plates(results) if plate.section]
+    return [(plate, write_plate(plate, PAGE, ("svg",), folder)["svg"]) for plate in plates(results) if plate.section]
 
 
 def write_paper_figures(results: Results, folder: Path) -> Iterator[Plate]:
@@ -83,11 +83,11 @@ def write_misfit_figures(results: Results, folder: Path) -> Iterator[Plate]:
 def _written(selection: Iterable[Plate], folder: Path) -> Iterator[Plate]:
     for plate in selection:
         for width in (COLUMN, PAGE):
-            _write(plate, width, ("svg", "pdf"), folder)
+            write_plate(plate, width, ("svg", "pdf"), folder)
         yield plate
 
 
-def _write(plate: Plate, width: int, forms: Sequence[str], folder: Path) -> dict[str, bytes]:
+def write_plate(plate: Plate, width: int, forms: Sequence[str], folder: Path) -> dict[str, bytes]:
     contents = render(plate, width, forms)
     for form, content in contents.items():
         with replaced(folder / f"{plate.name}-{width}mm.{form}") as temporary:

@@ -32,16 +32,17 @@ POINTS = (7000, 4000, 2000)  # samples of all records together, tried in this or
 MODULES = ("parts.js", "signals.js", "plane.js", "explorer.js", "staircase.js", "report.js")
 
 
-def write_report(folder: Path) -> Path:
+def write_report(folder: Path, static: bool = True) -> Path:
     """Write `report.html`, `tables/` and the SVG of each static figure in `figures/` for a finished run, diagnosis or
-    improvement.
+    improvement. static: whether there are static figures, which take twenty times as long as all else.
 
     Returns the path of the page, which is written last. Raises InputError if the folder holds no result.
     """
     results = read_folder(folder)
     tables = make_tables(results)
     write_tables(tables, results.folder / "tables")
-    variables = _template_variables(results, tables, _figures_by_section(results))
+    variables = _template_variables(results, tables, _figures_by_section(results) if static else {})
+    variables["static"] = static
     stairs = [staircase(results, "stairs")] if results.improvement else []
     content = {"floors": results.floors, "stairs": stairs}
     page = ""

@@ -23,8 +23,13 @@ from pzt_ident.search.league import rank
 from pzt_ident.search.problem import Problem
 
 
-def collect(statement: Statement, folder: Path, tasks: list[Task], failed: dict[str, str]) -> None:
-    """Tables and curves of all runs; `result.json` comes last. Raises RunError where every run failed."""
+def collect(
+    statement: Statement, folder: Path, tasks: list[Task], failed: dict[str, str], misfits: bool = True
+) -> dict[str, Any]:
+    """Tables and curves of all runs, with `residuals.json` if `misfits`; `result.json` comes last and is returned.
+
+    Raises RunError where every run failed.
+    """
     done = [task for task in tasks if task.run not in failed]
     if not done:
         raise RunError("every run failed: " + "; ".join(dict.fromkeys(failed.values())))
@@ -48,8 +53,10 @@ def collect(statement: Statement, folder: Path, tasks: list[Task], failed: dict[
         "runs": [{key: value for key, value in run.items() if key != "correlation"} for run in runs],
         "failed_runs": [{"run": name, "reason": reason} for name, reason in failed.items()],
     }
-    write_misfits(folder, result)
+    if misfits:
+        write_misfits(folder, result)
     write_json(folder / "result.json", result)
+    return result
 
 
 def facts_of(record: Record, problem: Problem, point: np.ndarray) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import platform
 import sys
 from collections.abc import Sequence
 from datetime import datetime
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -62,6 +63,7 @@ def environment(job: Job, records: Sequence[Record]) -> dict[str, Any]:
     }
 
 
+@cache
 def version_of(package: str) -> str:
     from importlib.metadata import PackageNotFoundError, version
 

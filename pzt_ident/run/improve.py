@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from pzt_ident.data.noise import units_and_floors
+from pzt_ident.data.record import Record
 from pzt_ident.data.signals import write_signals
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis import staircase as stairs
@@ -35,13 +36,17 @@ from pzt_ident.run.statement import Statement, loss_unit
 
 @contextmanager
 def opened_case(
-    job: Job, out: Path | None, listen: Listen = nobody, budget: float | None = None
+    job: Job,
+    out: Path | None,
+    listen: Listen = nobody,
+    budget: float | None = None,
+    records: Sequence[Record] | None = None,
 ) -> Iterator[tuple[Case, Path]]:
     """The case, and a folder that holds the job, what it runs on and, in `events.jsonl`, what happens as it does.
 
-    Raises InputError where job or data are wrong.
+    records: those of the job where they were read already. Raises InputError where job or data are wrong.
     """
-    statement, folder = Statement(job), results_folder(job, out)
+    statement, folder = Statement(job, records), results_folder(job, out)
     begin(folder, job, edited(job, job.effects, folder), statement.records)
     case = case_of(statement)
     with event_log(folder, listen) as tell, np.errstate(all="ignore"):
@@ -83,16 +88,22 @@ def diagnose(job: Job, out: Path | None = None, listen: Listen = nobody, budget:
     return folder
 
 
-def improve(job: Job, out: Path | None = None, listen: Listen = nobody, budget: float | None = None) -> Path:
+def improve(
+    job: Job,
+    out: Path | None = None,
+    listen: Listen = nobody,
+    budget: float | None = None,
+    records: Sequence[Record] | None = None,
+) -> Path:
     """Diagnose, add what is missing and diagnose again, until nothing is missing or nothing more is known.
 
     budget: CPU seconds, by default 60 or 1 ms a sample. After them the verdict is on what was found by then, and says
-    what was not tried.
+    what was not tried. records: those of the job where they were read already.
 
     Writes `improved.yaml`, `diagnosis.json` and `residuals.json` of the last model, `improvement.json`, and the signals
     of the model as given and of the last one.
     """
-    with opened_case(job, out, listen, budget) as (case, folder):
+    with opened_case(job, out, listen, budget, records) as (case, folder):
         staircase = stairs.improve(case, first_fit(case, job.seed), SoFar(job, case, folder))
         steps, diagnosis = staircase.steps, diagnosis_of(job, case, staircase.last, folder)
         for name, step in (("signals_as_given.nc", steps[0]), ("signals.nc", steps[-1])):
