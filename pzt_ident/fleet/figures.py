@@ -12,7 +12,7 @@ import numpy as np
 from pzt_ident.fleet.lot import Lot
 from pzt_ident.fleet.statistics import FAR, Quantity, Trend, groups, numeric
 from pzt_ident.report.figures import Plate
-from pzt_ident.report.style import MODEL, QUIET, SHADE, Frame, label, name_panel, panels, width_of
+from pzt_ident.report.style import MODEL, QUIET, SHADE, Frame, label, log_ticks, name_panel, panels, width_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -75,16 +75,23 @@ def _draw_spreads(figure: Figure, lot: Lot, shown: Sequence[Quantity]) -> None:
         values, far = item.values[item.usable], _far(lot, item)[item.usable]
         middle, half = item.median, FAR * item.spread
         low, high = np.min(values), np.max(values)
-        axes.axvspan(max(middle - half, low - 0.1 * half), min(middle + half, high + 0.1 * half), color=SHADE, lw=0)
+        count = min(40, max(8, round(2 * math.sqrt(values.size))))
+        wide = item.one_sided and low > 0 and high > 5 * middle
+        edges = np.geomspace(low, high, count) if wide else np.histogram_bin_edges(values, count)
+        below = max(middle - half, low) if item.one_sided else middle - half
+        axes.axvspan(max(below, edges[0]), min(middle + half, edges[-1]), color=SHADE, lw=0)
         axes.axvline(middle, color=QUIET, linewidth=0.6)
-        bins = np.histogram_bin_edges(values, min(40, max(8, round(2 * math.sqrt(values.size)))))
-        axes.hist(values[~far], bins=bins, color=USUAL)
+        axes.hist(values[~far], bins=edges.tolist(), color=USUAL)
         if far.any():
-            axes.hist(values[far], bins=bins, color=FAR_OFF)
+            axes.hist(values[far], bins=edges.tolist(), color=FAR_OFF)
             axes.plot(values[far], np.zeros(far.sum()), "^", color=FAR_OFF, markersize=3, clip_on=False)
         axes.set_ylabel("devices")
         axes.locator_params(axis="both", nbins=5)
-        label(axes.xaxis, "", item.unit, values)
+        if wide:
+            axes.set_xscale("log")
+            log_ticks(axes.xaxis, "", item.unit, (low, high))
+        else:
+            label(axes.xaxis, "", item.unit, values)
         name_panel(axes, item.name)
 
 

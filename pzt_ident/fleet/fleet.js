@@ -12,7 +12,7 @@ if (table) {
     document.querySelector("#shown").textContent = `${count} of ${rows.length}`;
   };
   const value = (row, column) => {
-    const text = row.cells[column].textContent.trim(), number = Number(text.replace("−", "-"));
+    const cell = row.cells[column], text = cell.dataset.value ?? cell.textContent.trim(), number = Number(text);
     return text === "" || Number.isNaN(number) ? text : number;
   };
   const order = (a, b) => (typeof a === typeof b ? (a < b ? -1 : a > b ? 1 : 0) : typeof a === "number" ? -1 : 1);

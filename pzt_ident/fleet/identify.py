@@ -107,6 +107,7 @@ class Identification:
         except (KeyboardInterrupt, LostError):
             write_table(self.folder, self.devices)
             raise
+        shutil.rmtree(self.folder / "devices" / ".new", ignore_errors=True)
         write_table(self.folder, self.devices)
         return self.folder
 

@@ -83,6 +83,17 @@ class Lot:
         return out_of_line([row["device"] for row in self.done], self.quantities, self.trends, self.columns)
 
     @property
+    def ill_fitted(self) -> list[str]:
+        """The devices that the model fits worse than usual, the worst first."""
+        return list(dict.fromkeys(finding.device for finding in self.findings if finding.of_fit))
+
+    @property
+    def odd(self) -> list[str]:
+        """The devices that the model fits and whose parameters are out of line, the furthest first."""
+        ill = set(self.ill_fitted)
+        return [name for name in dict.fromkeys(finding.device for finding in self.findings) if name not in ill]
+
+    @property
     def effects(self) -> dict[str, list[str]]:
         """The devices that miss each effect, the most frequent effect first."""
         count = Counter(effect for row in self.done for effect in row["effects"])
@@ -125,9 +136,12 @@ class Lot:
             )
         for effect, names in self.effects.items():
             lines.append(f"Missing in {len(names)}: {effect} ({_some(names)}).")
-        if self.findings:
-            names = list(dict.fromkeys(item.device for item in self.findings))
-            lines.append(f"Out of line: {len(names)} ({_some(names)}).")
+        for reason, names in (
+            ("The model fits worse than usual", self.ill_fitted),
+            ("Parameters out of line", self.odd),
+        ):
+            if names:
+                lines.append(f"{reason}: {len(names)} ({_some(names)}).")
         return lines
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import re
 from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib.resources import files
@@ -145,8 +146,9 @@ def lead(lot: Lot) -> str:
     if not done:
         return f"None of {total} devices could be identified."
     parts = [f"{done} of {total} devices identified: the model is adequate for {adequate or 'none'}"]
-    devices = {finding.device for finding in lot.findings}
-    parts += [f"{len(devices)} out of line"] * bool(devices) + [f"{len(lot.broken)} broken"] * bool(lot.broken)
+    parts += [f"{len(lot.ill_fitted)} fit worse than usual"] * bool(lot.ill_fitted)
+    parts += [f"{len(lot.odd)} have parameters out of line"] * bool(lot.odd)
+    parts += [f"{len(lot.broken)} are broken"] * bool(lot.broken)
     return listed(parts) + "."
 
 
@@ -155,13 +157,18 @@ def findings(lot: Lot) -> Iterator[str]:
     waiting = len(lot.rows) - len(lot.done) - len(lot.broken)
     if waiting:
         yield f"{waiting} devices are not done: `pzt-ident resume` goes on with them.".replace("`", "")
+    above = lot.verdicts.get("above the noise", 0)
+    if above and not lot.statement["improve"]:
+        yield f"{above} are above the noise: the same command with --improve says which effect they miss."
     for effect, names in lot.effects.items():
         yield f"{effect} is missing in {len(names)} of {len(lot.done)} devices ({percent(len(names) / len(lot.done))})."
     for trend in _distinct(lot.trends):
         item = next(item for item in lot.quantities if item.name == trend.quantity)
         sign = "grows" if trend.slope > 0 else "falls"
-        change = f" ({number(trend.slope / item.median * 100, 2)}\u00a0% per unit)" if item.median else ""
-        yield f"{trend.quantity} {sign} with {trend.column}{change}."
+        column = re.search(r"\[(.+)\]", trend.column)
+        per = unit(column[1]) if column else "unit"
+        change = f", by {number(abs(trend.slope / item.median) * 100, 2)}\u00a0% per {per}" if item.median else ""
+        yield f"{trend.quantity} {sign} with the {trend.column.partition(' [')[0]}{change}."
     for difference in lot.group_differences:
         if difference.clear:
             item = next(item for item in lot.quantities if item.name == difference.quantity)
@@ -185,12 +192,13 @@ def _distinct(trends: Iterable[Any]) -> list[Any]:
     return list(first.values())
 
 
-def far(lot: Lot) -> list[tuple[str, list[str]]]:
-    """Devices out of line, the furthest first, each with its sentences."""
-    by_device: dict[str, list[str]] = {}
+def far(lot: Lot) -> list[tuple[str, str, str]]:
+    """Devices out of line: first those whose parameters are, then those that the model does not fit; what and why."""
+    why: dict[str, list[str]] = {}
     for finding in lot.findings:
-        by_device.setdefault(finding.device, []).append(spelled(finding.sentence))
-    return list(by_device.items())
+        why.setdefault(finding.device, []).append(spelled(finding.sentence))
+    kinds = (("parameters", lot.odd), ("fits worse", lot.ill_fitted))
+    return [(name, kind, "; ".join(why[name])) for kind, names in kinds for name in names]
 
 
 def quantity_line(lot: Lot, item: Quantity) -> list[str]:
@@ -223,7 +231,12 @@ def device_lines(lot: Lot) -> Iterator[dict[str, Any]]:
             continue
         words = [row["verdict"], *([", ".join(row["effects"])] if lot.statement["improve"] else [])]
         values = [
-            (number(item.values[index]), (name, item.name) in outside, bool(item.usable[index]))
+            (
+                number(item.values[index]),
+                float(item.values[index]),
+                (name, item.name) in outside,
+                bool(item.usable[index]),
+            )
             for item in lot.quantities
         ]
         known = [_cell(row["columns"].get(column)) for column in columns]

@@ -76,8 +76,8 @@ class Trend:
 
 @dataclass(frozen=True)
 class Difference:
-    """A quantity by the groups of a column: the medians, the furthest of them in spreads of single devices, and how many
-    standard errors of a median that is."""
+    """A quantity by the groups of a column: the medians, the furthest of them in spreads of single devices, and in
+    standard errors of a median."""
 
     quantity: str
     column: str
@@ -93,12 +93,14 @@ class Difference:
 
 @dataclass(frozen=True)
 class Finding:
-    """A device out of line: in which quantity, how many spreads from the usual value, and that in a sentence."""
+    """A device out of line: in which quantity, how many spreads from the usual value, and that in a sentence. of_fit:
+    whether it is the model that does not fit the device."""
 
     device: str
     quantity: str
     distance: float
     sentence: str
+    of_fit: bool
 
 
 def spread(values: Array) -> float:
@@ -197,7 +199,7 @@ def out_of_line(
         far = distance > FAR if item.one_sided else np.abs(distance) > FAR
         for place in np.flatnonzero(far & item.usable).tolist():
             sentence = sentence_of(item, float(item.values[place]), float(usual[place]), float(distance[place]), beside)
-            found.append(Finding(devices[place], item.name, float(distance[place]), sentence))
+            found.append(Finding(devices[place], item.name, float(distance[place]), sentence, item.one_sided))
     return sorted(found, key=lambda finding: -abs(finding.distance))
 
 
@@ -213,9 +215,11 @@ def _usual(item: Quantity, known: Sequence[Trend], columns: Mapping[str, Array])
 
 def sentence_of(item: Quantity, value: float, usual: float, distance: float, beside: str) -> str:
     """Why a device is out of line."""
+    if item.one_sided:
+        return f"{item.name} {quantity(value, item.unit)}, {number(value / usual, 2)} times the usual"
     where = "above" if distance > 0 else "below"
     at = f" at its {beside.partition(' [')[0]}" if beside else ""
     return (
-        f"{item.name} is {quantity(value, item.unit)}, usual{at} is {quantity(usual, item.unit)}: "
+        f"{item.name} {quantity(value, item.unit)}, usual{at} {quantity(usual, item.unit)}: "
         f"{number(abs(distance), 2)} spreads {where}"
     )
