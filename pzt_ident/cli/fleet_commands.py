@@ -63,8 +63,8 @@ def identify(
 ) -> None:
     """Identify the model of a job file JOB on every device that the patterns or tables name."""
     from pzt_ident.cli.progress import listening
-    from pzt_ident.fleet.identify import fleet
     from pzt_ident.job.schema import load_job
+    from pzt_ident.lot.identify import fleet
 
     with listening(silent=as_json or quiet) as listen:
         loaded = load_job(job, plugins)
@@ -74,7 +74,7 @@ def identify(
 
 def resume_fleet(folder: Path, place: Place, plugins: bool, as_json: bool, quiet: bool) -> None:
     from pzt_ident.cli.progress import listening
-    from pzt_ident.fleet.identify import resume
+    from pzt_ident.lot.identify import resume
 
     with listening(silent=as_json or quiet) as listen:
         resume(folder, place=place, listen=listen, plugins=plugins)
@@ -86,7 +86,7 @@ def show_fleet(folder: Path, as_json: bool, quiet: bool) -> None:
     from shlex import quote
 
     from pzt_ident.errors import RunError
-    from pzt_ident.fleet.lot import read_lot
+    from pzt_ident.lot.outcome import read_lot
 
     lot = read_lot(folder)
     facts = {"folder": str(folder), "table": str(folder / "devices.csv"), **lot.summary()}
@@ -105,7 +105,7 @@ def show_fleet(folder: Path, as_json: bool, quiet: bool) -> None:
 def report(folder: Path, place: Place, as_json: bool, quiet: bool) -> None:
     """Draw the report on the devices in the folder DIR: spreads, devices out of line, what depends on what."""
     from pzt_ident.cli.progress import listening
-    from pzt_ident.fleet.report import write_fleet_report
+    from pzt_ident.lot.report import write_fleet_report
 
     with listening(silent=as_json or quiet) as listen:
         page = write_fleet_report(folder, place=place, listen=listen)

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from pzt_ident.errors import InputError
-from pzt_ident.fleet.identify import read_statement
-from pzt_ident.fleet.statistics import Difference, Finding, Quantity, Trend, differences, out_of_line, trends
-from pzt_ident.fleet.table import Row, in_unit, rows_of
+from pzt_ident.lot.identify import read_statement
+from pzt_ident.lot.statistics import Difference, Finding, Quantity, Trend, differences, out_of_line, trends
+from pzt_ident.lot.table import Row, in_unit, rows_of
 
 DETERMINED = "determined"
 
@@ -84,12 +84,14 @@ class Lot:
 
     @property
     def ill_fitted(self) -> list[str]:
-        """The devices that the model fits worse than usual, the worst first."""
-        return list(dict.fromkeys(finding.device for finding in self.findings if finding.of_fit))
+        """The devices that the model fits worse than usual and than the noise, the worst first."""
+        at_noise = {row["device"] for row in self.done if row["verdict"] == "adequate" and not row["effects"]}
+        names = dict.fromkeys(finding.device for finding in self.findings if finding.of_fit)
+        return [name for name in names if name not in at_noise]
 
     @property
     def odd(self) -> list[str]:
-        """The devices that the model fits and whose parameters are out of line, the furthest first."""
+        """The other devices out of line, the furthest first: the model fits them, but with unusual parameters."""
         ill = set(self.ill_fitted)
         return [name for name in dict.fromkeys(finding.device for finding in self.findings) if name not in ill]
 

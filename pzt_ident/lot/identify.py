@@ -14,11 +14,11 @@ from typing import Any
 
 from pzt_ident.errors import InputError, LostError
 from pzt_ident.files import write_json, write_text
-from pzt_ident.fleet.device import Given, Orders, identify_device
-from pzt_ident.fleet.devices import Device, devices_of
-from pzt_ident.fleet.table import folder_of, read_row, write_table
 from pzt_ident.job.files import Template
 from pzt_ident.job.schema import Job
+from pzt_ident.lot.device import Given, Orders, identify_device
+from pzt_ident.lot.devices import Device, devices_of
+from pzt_ident.lot.table import folder_of, read_row, write_table
 from pzt_ident.run.events import Listen, nobody
 from pzt_ident.run.folder import make_empty
 from pzt_ident.run.place import HERE, Place

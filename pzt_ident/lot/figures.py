@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from pzt_ident.fleet.lot import Lot
-from pzt_ident.fleet.statistics import FAR, Quantity, Trend, groups, numeric
+from pzt_ident.lot.outcome import Lot
+from pzt_ident.lot.statistics import FAR, Quantity, Trend, groups, numeric
 from pzt_ident.report.figures import Plate
 from pzt_ident.report.style import MODEL, QUIET, SHADE, Frame, label, log_ticks, name_panel, panels, width_of
 

@@ -12,7 +12,7 @@ from urllib.parse import quote
 
 from pzt_ident.data.units import factor, same_kind
 from pzt_ident.files import replaced, write_json
-from pzt_ident.fleet.devices import Device, Value
+from pzt_ident.lot.devices import Device, Value
 
 if TYPE_CHECKING:
     import pandas as pd

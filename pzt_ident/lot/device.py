@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -124,7 +123,7 @@ def _shown(text: str, paths: Mapping[str, Path], files: Mapping[str, Path]) -> s
 
 
 def identified(job: Job, records: list[Record], orders: Orders, folder: Path) -> dict[str, Any]:
-    """The run of the job on these records, in a folder as `pzt-ident run` leaves it, less what a search leaves."""
+    """The run of the job on these records, in a folder as `pzt-ident run` leaves it, less the losses."""
     statement = Statement(job, records)
     write_text(folder / "job.yaml", job.text)
     write_json(folder / "environment.json", environment(job, records) | {"command": orders.command})
@@ -135,7 +134,8 @@ def identified(job: Job, records: list[Record], orders: Orders, folder: Path) ->
         except RunError as error:
             failed[task.run] = str(error)
     result = collect(statement, folder, tasks, failed, misfits=False)
-    shutil.rmtree(folder / "runs")
+    for task in tasks:
+        task.losses.unlink(missing_ok=True)  # nine tenths of all bytes, and never needed again
     return result
 
 

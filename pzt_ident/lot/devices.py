@@ -32,7 +32,7 @@ def devices_of(patterns: Sequence[str], job: Job) -> list[Device]:
 
     Raises InputError where there is none, one is there twice, or the files of the job cannot be told apart.
     """
-    from pzt_ident.fleet.listed import is_table, listed_devices
+    from pzt_ident.lot.listed import is_table, listed_devices
 
     tables = [Path(pattern) for pattern in patterns if is_table(Path(pattern), job)]
     found = [device for table in tables for device in listed_devices(table, job)]
@@ -99,7 +99,7 @@ def device_at(path: Path, name: str, columns: Mapping[str, Value], job: Job) -> 
         files = dict.fromkeys(wanted, path)
         fault = "" if path.is_file() else f"{path}: no such file"
         if len(wanted) > 1:
-            remedy = f"put the files of a device into a folder, or list them in a table with a column for each. {HOW}"
+            remedy = "put the files of a device into a folder, or list them in a table with a column for each of them"
             problem = f"the job has records in {len(wanted)} files, {', '.join(wanted)}, the device is one file"
             raise InputError(problem, where=str(path), remedy=remedy)
     return Device(name, files | channels_beside(path if path.is_dir() else path.parent, job), columns, fault)
@@ -152,5 +152,7 @@ def _reject(patterns: Sequence[str], devices: Sequence[Device]) -> None:
     if not devices:
         raise InputError("no device", where=" ".join(map(repr, patterns)), remedy=HOW)
     remedy = "in the folder of a device, files have the names that they have in the job"
+    if inside := next((item for item in patterns if any(path.is_dir() for path in Path(item).glob("*"))), None):
+        remedy = f"did you mean {str(Path(inside) / '*')!r}? {remedy.capitalize()}"
     problem = f"no device has the files of the job. The first: {devices[0].fault}"
     raise InputError(problem, where=" ".join(map(repr, patterns)), remedy=remedy)

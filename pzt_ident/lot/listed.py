@@ -8,9 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from pzt_ident.errors import InputError
-from pzt_ident.fleet.devices import Device, Value, channels_beside, device_at, names_of
 from pzt_ident.job.files import record_files
 from pzt_ident.job.schema import Job
+from pzt_ident.lot.devices import Device, Value, channels_beside, device_at, names_of
 
 SUFFIXES = (".csv", ".tsv", ".txt")
 NAMES = ("device", "name")

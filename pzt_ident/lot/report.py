@@ -15,11 +15,11 @@ from urllib.parse import quote
 from pzt_ident.data.notation import listed, number, percent, spelled, unit
 from pzt_ident.errors import InputError
 from pzt_ident.files import write_text
-from pzt_ident.fleet.devices import Device
-from pzt_ident.fleet.figures import plates
-from pzt_ident.fleet.lot import Lot, read_lot
-from pzt_ident.fleet.statistics import Quantity
-from pzt_ident.fleet.table import folder_of, write_table
+from pzt_ident.lot.devices import Device
+from pzt_ident.lot.figures import plates
+from pzt_ident.lot.outcome import Lot, read_lot
+from pzt_ident.lot.statistics import Quantity
+from pzt_ident.lot.table import folder_of, write_table
 from pzt_ident.report.figures import Plate, write_plate
 from pzt_ident.report.inline import inline
 from pzt_ident.report.page import environment as page_environment
@@ -100,11 +100,11 @@ def draw_page(tell: Any, folder: Path) -> None:
 def page(lot: Lot, figures: dict[str | None, list[tuple[Plate, Markup]]]) -> str:
     from markupsafe import Markup
 
-    script = files("pzt_ident.fleet").joinpath("fleet.js").read_text(encoding="utf-8")
+    script = files("pzt_ident.lot").joinpath("lot.js").read_text(encoding="utf-8")
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return (
         environment()
-        .get_template("fleet.html")
+        .get_template("lot.html")
         .render(
             title=lot.statement["job_name"],
             content=Markup("{}"),
@@ -131,7 +131,7 @@ def environment() -> Environment:
 
     base = page_environment()
     assert base.loader
-    return base.overlay(loader=ChoiceLoader([base.loader, PackageLoader("pzt_ident", "fleet")]))
+    return base.overlay(loader=ChoiceLoader([base.loader, PackageLoader("pzt_ident", "lot")]))
 
 
 def page_of(lot: Lot, name: str, part: str = "") -> str:
@@ -145,11 +145,14 @@ def lead(lot: Lot) -> str:
     adequate, done, total = lot.verdicts.get("adequate", 0), len(lot.done), len(lot.rows)
     if not done:
         return f"None of {total} devices could be identified."
-    parts = [f"{done} of {total} devices identified: the model is adequate for {adequate or 'none'}"]
-    parts += [f"{len(lot.ill_fitted)} fit worse than usual"] * bool(lot.ill_fitted)
-    parts += [f"{len(lot.odd)} have parameters out of line"] * bool(lot.odd)
-    parts += [f"{len(lot.broken)} are broken"] * bool(lot.broken)
-    return listed(parts) + "."
+    fit = [f"is adequate for {adequate or 'none'} of {total} devices"]
+    fit += [f"fits {len(lot.ill_fitted)} worse than usual"] * bool(lot.ill_fitted)
+    text = f"The model {listed(fit)}."
+    if lot.odd:
+        text += f" {len(lot.odd)} more {'is' if len(lot.odd) == 1 else 'are'} out of line."
+    if lot.broken:
+        text += f" {len(lot.broken)} could not be identified."
+    return text
 
 
 def findings(lot: Lot) -> Iterator[str]:
