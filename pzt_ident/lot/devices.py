@@ -80,7 +80,7 @@ def _nearby(pattern: str) -> str:
 
 def names_of(paths: Sequence[Path]) -> list[str]:
     """The last parts of the paths, as many as make them distinct; of files without the suffix where that does."""
-    stems = [path.with_suffix("") if path.is_file() else path for path in paths]
+    stems = [path if path.is_dir() else path.with_suffix("") for path in paths]
     for parts in ([path.parts for path in stems], [path.resolve().parts for path in paths]):
         for count in range(1, max(map(len, parts), default=0) + 1):
             names = ["-".join(part for part in path[-count:] if part != "/") for path in parts]
@@ -153,6 +153,6 @@ def _reject(patterns: Sequence[str], devices: Sequence[Device]) -> None:
         raise InputError("no device", where=" ".join(map(repr, patterns)), remedy=HOW)
     remedy = "in the folder of a device, files have the names that they have in the job"
     if inside := next((item for item in patterns if any(path.is_dir() for path in Path(item).glob("*"))), None):
-        remedy = f"did you mean {str(Path(inside) / '*')!r}? {remedy.capitalize()}"
+        remedy = f"did you mean {f'{Path(inside)}/*/'!r}? {remedy.capitalize()}"
     problem = f"no device has the files of the job. The first: {devices[0].fault}"
     raise InputError(problem, where=" ".join(map(repr, patterns)), remedy=remedy)

@@ -16,6 +16,7 @@ Array = NDArray[np.float64]
 MAD = 1.4826  # times the median absolute deviation is the standard deviation of a normal distribution
 FAR = 3.5  # spreads from the median: Iglewicz and Hoaglin (1993), How to Detect and Handle Outliers
 FEWEST = 8  # devices that tell what is usual
+WORSE = 1.5  # times the usual error: less is of no consequence
 CLEAR = 0.5  # correlation of ranks from which a trend is followed
 CERTAIN = 3.0  # standard errors of a correlation of ranks
 
@@ -196,7 +197,7 @@ def out_of_line(
         off = item.values - usual
         size = max(spread(off[item.usable & np.isfinite(off)]), item.own_error, 1e-9 * abs(item.median))
         distance = off / size if size > 0 else np.zeros(off.size)
-        far = distance > FAR if item.one_sided else np.abs(distance) > FAR
+        far = (distance > FAR) & (item.values > WORSE * usual) if item.one_sided else np.abs(distance) > FAR
         for place in np.flatnonzero(far & item.usable).tolist():
             sentence = sentence_of(item, float(item.values[place]), float(usual[place]), float(distance[place]), beside)
             found.append(Finding(devices[place], item.name, float(distance[place]), sentence, item.one_sided))

@@ -62,7 +62,9 @@ def frame_of(rows: Iterator[Row]) -> pd.DataFrame:
     import pandas as pd
 
     units: dict[str, str] = {}
-    return pd.DataFrame([line_of(row, units) for row in rows])
+    lines = [line_of(row, units) for row in rows]
+    headings = dict.fromkeys(name for line in sorted(lines, key=len, reverse=True) for name in line)
+    return pd.DataFrame(lines, columns=list(headings))
 
 
 def line_of(row: Row, units: dict[str, str]) -> dict[str, Value]:

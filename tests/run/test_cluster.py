@@ -3,9 +3,6 @@
 import json
 import os
 import signal
-import socket
-import subprocess
-import sys
 import time
 from pathlib import Path
 from threading import Thread
@@ -13,6 +10,7 @@ from threading import Thread
 import numpy as np
 import pytest
 
+from dask_cluster import TCP
 from pzt_ident.errors import InputError, LostError
 from pzt_ident.job.schema import load_job
 from pzt_ident.run.identify import resume, run
@@ -45,45 +43,6 @@ def job(tmp_path_factory):
     np.savetxt(made / "identify.csv", table, delimiter=",", header="time [s],u_x [V],x [um]", comments="")
     (made / "job.yaml").write_text(JOB)
     return load_job(made / "job.yaml")
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
-class TCP:
-    """A scheduler and its workers, each a process."""
-
-    def __init__(self, workers: int) -> None:
-        port = free_port()
-        self.address = f"tcp://127.0.0.1:{port}"
-        self.scheduler = self.start("dask_scheduler", "--port", str(port), "--host", "127.0.0.1", "--no-dashboard")
-        self.workers = [self.worker() for _ in range(workers)]
-        while not self.answers(port):
-            assert self.scheduler.poll() is None
-            time.sleep(0.05)
-
-    def worker(self) -> subprocess.Popen:
-        return self.start("dask_worker", self.address, "--nthreads", "1", "--no-nanny", "--no-dashboard")
-
-    @staticmethod
-    def start(program: str, *options: str) -> subprocess.Popen:
-        line = [sys.executable, "-m", f"distributed.cli.{program}", *options]
-        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-        paths = os.pathsep.join(str(Path(place).resolve()) for place in (".", "tests"))
-        return subprocess.Popen(line, env=os.environ | {"PYTHONPATH": paths}, **quiet)
-
-    @staticmethod
-    def answers(port: int) -> bool:
-        with socket.socket() as probe:
-            return probe.connect_ex(("127.0.0.1", port)) == 0
-
-    def end(self) -> None:
-        for process in (*self.workers, self.scheduler):
-            process.kill()
-            process.wait()
 
 
 @pytest.fixture(scope="module")
