@@ -134,7 +134,7 @@ def test_a_fleet_killed_hard_goes_on_to_the_same_table(lot, identified, tmp_path
 
 def test_the_same_table_on_a_cluster_of_which_a_worker_is_killed(lot, identified, tmp_path):
     pytest.importorskip("distributed")
-    from dask_cluster import TCP
+    from experiments.fleet.cluster import TCP
 
     cluster = TCP(workers=2)
     try:

@@ -10,7 +10,7 @@ from threading import Thread
 import numpy as np
 import pytest
 
-from dask_cluster import TCP
+from experiments.fleet.cluster import TCP
 from pzt_ident.errors import InputError, LostError
 from pzt_ident.job.schema import load_job
 from pzt_ident.run.identify import resume, run

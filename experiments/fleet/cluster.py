@@ -5,7 +5,6 @@ import socket
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 
 def free_port() -> int:
@@ -32,8 +31,7 @@ class TCP:
     @staticmethod
     def start(program: str, *options: str) -> subprocess.Popen:
         line = [sys.executable, "-m", f"distributed.cli.{program}", *options]
-        paths = os.pathsep.join(str(Path(place).resolve()) for place in (".", "tests"))
-        environment = os.environ | {"PYTHONPATH": paths}
+        environment = os.environ | {"PYTHONPATH": os.pathsep.join(place for place in sys.path if place)}
         return subprocess.Popen(line, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     @staticmethod
