@@ -119,7 +119,7 @@ def measured(rng: np.random.Generator, u: Array, truth: Truth, kind: str) -> Arr
     if kind == "creep":
         x = x + 0.04 * lagged(x, 0.03) + 0.03 * lagged(x, 0.15)
     if kind == "quadratic_gain":
-        x = x * (1 + 0.0006 * u)
+        x = x + 0.0006 * truth["gain"] * u**2
     return x + NOISE * rng.standard_normal(u.size)
 
 

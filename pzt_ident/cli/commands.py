@@ -8,6 +8,7 @@ import os
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from threading import Thread
@@ -27,6 +28,7 @@ from pzt_ident.cli.options import (
     edit_options,
     no_report_flag,
     output_options,
+    place_option,
     plugins_flag,
     plugins_option,
     run_options,
@@ -78,6 +80,9 @@ def resume(folder: Path, place: Place, no_report: bool, plugins: bool, as_json: 
     if (folder / "fleet.json").is_file():
         resume_fleet(folder, place, plugins, as_json, quiet)
         return
+    if _is_diagnosis(folder):
+        _diagnose_again(folder, no_report, plugins, as_json, quiet)
+        return
 
     def start(listen: Listener) -> Path:
         from pzt_ident.run.identify import resume
@@ -85,6 +90,24 @@ def resume(folder: Path, place: Place, no_report: bool, plugins: bool, as_json: 
         return resume(folder, place=place, listen=listen, plugins=plugins)
 
     _identify(start, no_report, as_json, quiet)
+
+
+def _is_diagnosis(folder: Path) -> bool:
+    from pzt_ident.run.elsewhere import task_of
+
+    return (folder / "environment.json").is_file() and task_of(folder) in ("improve", "diagnose")
+
+
+def _diagnose_again(folder: Path, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
+    """From its beginning, unless it came to its end."""
+    from pzt_ident.cli import verdict_tables
+    from pzt_ident.run.elsewhere import begin_again, task_of
+
+    improves = task_of(folder) == "improve"
+    name, show = (
+        ("improvement", verdict_tables.show_improvement) if improves else ("diagnosis", verdict_tables.show_diagnosis)
+    )
+    _show_diagnosis(lambda listen: begin_again(folder, listen, plugins), name, show, no_report, as_json, quiet)
 
 
 def _identify(start: Callable[[Listener], Path], no_report: bool, as_json: bool, quiet: bool) -> None:
@@ -184,12 +207,13 @@ def model(**options: Any) -> None:
 
 @main.command()
 @diagnosis_options
-def improve(job: Path, **options: Any) -> None:
+@place_option
+def improve(job: Path, place: Place, **options: Any) -> None:
     """Add what the model of a job file JOB misses, effect by effect, and watch the error fall."""
     from pzt_ident.cli import verdict_tables
-    from pzt_ident.run.improve import improve
+    from pzt_ident.run.elsewhere import improve_at
 
-    _diagnose(improve, "improvement", verdict_tables.show_improvement, job, **options)
+    _diagnose(partial(improve_at, place), "improvement", verdict_tables.show_improvement, job, **options)
 
 
 def _diagnose(
@@ -204,11 +228,26 @@ def _diagnose(
     as_json: bool,
     quiet: bool,
 ) -> None:
-    from pzt_ident.cli.progress import listening
     from pzt_ident.job.schema import load_job
 
+    def start(listen: Listener) -> Path:
+        return function(load_job(job, plugins), out, listen, budget)
+
+    _show_diagnosis(start, name, show, no_report, as_json, quiet)
+
+
+def _show_diagnosis(
+    start: Callable[[Listener], Path],
+    name: str,
+    show: Callable[[dict[str, Any], Path], None],
+    no_report: bool,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    from pzt_ident.cli.progress import listening
+
     with listening(silent=as_json or quiet) as listen:
-        folder = function(load_job(job, plugins), out, listen, budget)
+        folder = start(listen)
         _report(folder, no_report)
     verdict = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
     answer({"folder": str(folder), name: verdict}, lambda: show(verdict, folder), as_json, quiet)

@@ -18,9 +18,10 @@ from pzt_ident.data.record import Record
 from pzt_ident.diagnosis.criteria import CLEAR, VALIDATION_FACTOR
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.files import read_files, write_bytes, write_json, write_text
-from pzt_ident.job.files import Template, moved, on_files
+from pzt_ident.job.files import Template, on_files
 from pzt_ident.job.schema import Job
 from pzt_ident.run.collect import collect
+from pzt_ident.run.elsewhere import move
 from pzt_ident.run.events import nobody
 from pzt_ident.run.folder import environment
 from pzt_ident.run.identify import tasks_of
@@ -141,8 +142,7 @@ def identified(job: Job, records: list[Record], orders: Orders, folder: Path) ->
 
 def improved(job: Job, records: list[Record], orders: Orders, given: Given, folder: Path) -> dict[str, Any]:
     improve(job, folder, budget=orders.budget, records=records)
-    for path in folder.glob("*.yaml"):
-        write_text(path, moved(path.read_text(encoding="utf-8"), folder, given.home / "improved"))
+    move(folder, given.home / "improved")
     return dict(json.loads((folder / "improvement.json").read_text(encoding="utf-8")))
 
 

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from uuid import uuid4
 
 from pzt_ident.errors import InputError, LostError
+from pzt_ident.files import plain
 from pzt_ident.run.computing import computing
 from pzt_ident.run.folder import version_of
 from pzt_ident.run.place import forget
@@ -229,7 +230,7 @@ def attempt_there(entry: Entry, common: bytes, arguments: bytes, topic: str) -> 
     worker = get_worker()
 
     def tell(event: Event) -> None:
-        worker.log_event(topic, event)
+        worker.log_event(topic, plain(event))
 
     with _alone, computing():
         return attempt(entry, (*pickle.loads(common), *pickle.loads(arguments)), thinned(tell))

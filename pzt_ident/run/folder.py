@@ -6,7 +6,7 @@ import json
 import os
 import platform
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import datetime
 from functools import cache
 from pathlib import Path
@@ -25,14 +25,15 @@ def results_folder(job: Job, out: Path | None) -> Path:
     return out or Path("results") / job.name / f"{datetime.now():%Y%m%d-%H%M%S}-{job.hash}"
 
 
-def begin(folder: Path, job: Job, text: str, records: Sequence[Record]) -> None:
-    """Make the folder of a run and put the job's text and the environment into it.
+def begin(folder: Path, job: Job, text: str, records: Sequence[Record], task: Mapping[str, Any] | None = None) -> None:
+    """Make the folder of a run and put the job's text and the environment into it. task: what was asked for beside a
+    run, to begin it again.
 
     Raises InputError where that cannot be, or something is in it.
     """
     make_empty(folder)
     write_text(folder / "job.yaml", text)
-    write_json(folder / "environment.json", environment(job, records))
+    write_json(folder / "environment.json", environment(job, records) | ({"task": dict(task)} if task else {}))
 
 
 def make_empty(folder: Path) -> None:

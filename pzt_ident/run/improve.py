@@ -41,13 +41,14 @@ def opened_case(
     listen: Listen = nobody,
     budget: float | None = None,
     records: Sequence[Record] | None = None,
+    task: str = "improve",
 ) -> Iterator[tuple[Case, Path]]:
     """The case, and a folder that holds the job, what it runs on and, in `events.jsonl`, what happens as it does.
 
     records: those of the job where they were read already. Raises InputError where job or data are wrong.
     """
     statement, folder = Statement(job, records), results_folder(job, out)
-    begin(folder, job, edited(job, job.effects, folder), statement.records)
+    begin(folder, job, edited(job, job.effects, folder), statement.records, {"name": task, "budget": budget})
     case = case_of(statement)
     with event_log(folder, listen) as tell, np.errstate(all="ignore"):
         case.on_event = lambda event: tell(worded(case, event))
@@ -77,7 +78,7 @@ def told(case: Case, step: stairs.Step) -> None:
 def diagnose(job: Job, out: Path | None = None, listen: Listen = nobody, budget: float | None = None) -> Path:
     """Fit the job's model, say where it fails and what it misses; writes `diagnosis.json`, `residuals.json` and
     `signals.nc` into the folder returned. budget: as of `improve`."""
-    with opened_case(job, out, listen, budget) as (case, folder):
+    with opened_case(job, out, listen, budget, task="diagnose") as (case, folder):
         first = first_fit(case, job.seed)
         told(case, stairs.Step(first))
         found = judge(case, first)
