@@ -22,6 +22,10 @@ class RunError(RuntimeError):
     1, without a traceback."""
 
 
+class DamagedError(InputError):
+    """A file of results that is not as it was written."""
+
+
 class LostError(RunError):
     """The place where a run's tasks ran is gone; what was done is on the disk, and the run can be resumed."""
 

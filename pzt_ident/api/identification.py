@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ from pzt_ident.api.record import Record
 from pzt_ident.api.simulation import load_simulation
 from pzt_ident.api.statement import job_text, named_apart, sections_of, statement_of
 from pzt_ident.errors import InputError
+from pzt_ident.files import read_sealed
 from pzt_ident.job.schema import Job
 from pzt_ident.run.checkpoint import Checkpoint
 from pzt_ident.run.computing import computing
@@ -99,7 +99,7 @@ def _read(folder: Path, plugins: bool) -> Fit:
         for use in ("identify", "validate")
     }
     tasks = {task.run: task for task in tasks_of(statement, folder)}
-    finished = [json.loads(tasks[run["run"]].result.read_text(encoding="utf-8")) for run in results.result["runs"]]
+    finished = [read_sealed(tasks[run["run"]].result) for run in results.result["runs"]]
     runs = [(run, Checkpoint(tasks[run["run"]].losses)) for run in finished]
     chain, sections = Model.of(job), sections_of(job)
     return Fit(statement_of(job_text(job.name, chain, records, sections), records), chain, records, sections, runs)

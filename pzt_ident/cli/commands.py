@@ -33,6 +33,7 @@ from pzt_ident.cli.options import (
     plugins_option,
     run_options,
 )
+from pzt_ident.errors import DamagedError
 
 if TYPE_CHECKING:
     from pzt_ident.cli.progress import Listener
@@ -165,6 +166,7 @@ def compare(source: Path, out: Path | None, no_report: bool, plugins: bool, as_j
     target = out or folder
     residuals = compare(folder, target)
     results = replace(read_folder(folder), misfit=residuals)
+    _say_damaged(results.damaged)
     figures = () if no_report else write_misfit_figures(results, target / "figures")
     for _ in tracked(figures, "figures", as_json or quiet):
         pass
@@ -293,6 +295,11 @@ def show(name: str, as_json: bool, quiet: bool) -> None:
     answer(description, lambda: show_word(description), as_json, quiet)
 
 
+def _say_damaged(sentences: tuple[str, ...]) -> None:
+    for sentence in sentences:
+        click.echo(f"left out: {sentence}", err=True)
+
+
 @main.command()
 @click.argument("folders", metavar="DIR...", nargs=-1, required=True, type=EXISTING)
 @click.option("-o", "--out", type=EXISTING, help="Page of several results; side-by-side.html if not given.")
@@ -308,13 +315,22 @@ def report(folders: tuple[Path, ...], out: Path | None, as_json: bool, quiet: bo
     from pzt_ident.report.side_by_side import write_side_by_side
     from pzt_ident.run.results import read_folder
 
-    pages = []
+    pages, readable = [], []
     for folder in folders:
+        try:
+            results = read_folder(folder)
+        except DamagedError as error:
+            if len(folders) == 1:
+                raise
+            click.echo(f"left out: {error}", err=True)
+            continue
+        _say_damaged(results.damaged)
+        readable.append(folder)
         pages.append(str(write_report(folder)))
-        for _ in tracked(write_paper_figures(read_folder(folder), folder / "figures"), "figures", as_json or quiet):
+        for _ in tracked(write_paper_figures(results, folder / "figures"), "figures", as_json or quiet):
             pass
-    if len(folders) > 1:
-        pages.append(str(write_side_by_side(folders, out or Path("side-by-side.html"))))
+    if len(readable) > 1:
+        pages.append(str(write_side_by_side(readable, out or Path("side-by-side.html"))))
     answer({"reports": pages}, lambda: click.echo("\n".join(pages)), as_json, quiet)
 
 

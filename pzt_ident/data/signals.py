@@ -101,7 +101,7 @@ def read_traces(path: Path, order: Sequence[str]) -> tuple[Trace, ...]:
     try:
         with h5py.File(path) as file:
             traces = [trace for group in _groups(file) for trace in _traces(group)]
-    except OSError as error:
+    except (OSError, KeyError, RuntimeError, ValueError) as error:  # HDF5 raises any of them on a damaged file
         raise InputError(f"not netCDF4: {error}", where=str(path), remedy="run the job again") from error
     places = {name: place for place, name in reversed(list(enumerate(order)))}
     return tuple(sorted(traces, key=lambda trace: (places.get(trace.record, len(order)), trace.axis)))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -17,7 +16,7 @@ from pzt_ident.data.readers import read_records
 from pzt_ident.data.record import Record
 from pzt_ident.diagnosis.criteria import CLEAR, VALIDATION_FACTOR
 from pzt_ident.errors import InputError, RunError
-from pzt_ident.files import read_files, write_bytes, write_json, write_text
+from pzt_ident.files import read_files, read_sealed, write_bytes, write_json, write_sealed, write_text
 from pzt_ident.job.files import Template, on_files
 from pzt_ident.job.schema import Job
 from pzt_ident.run.collect import collect
@@ -78,7 +77,7 @@ def identify_device(tell: Any, orders: Orders, given: Given) -> dict[str, bytes]
         result = identified(job, records, orders, folder)
         improvement = improved(job, records, orders, given, folder / "improved") if orders.improve else {}
         row = row_of(given, result, improvement) | {"cpu_seconds": time.process_time() - begun}
-        write_json(folder / "device.json", row)
+        write_sealed(folder / "device.json", row)
         return read_files(folder)
 
 
@@ -143,7 +142,7 @@ def identified(job: Job, records: list[Record], orders: Orders, folder: Path) ->
 def improved(job: Job, records: list[Record], orders: Orders, given: Given, folder: Path) -> dict[str, Any]:
     improve(job, folder, budget=orders.budget, records=records)
     move(folder, given.home / "improved")
-    return dict(json.loads((folder / "improvement.json").read_text(encoding="utf-8")))
+    return read_sealed(folder / "improvement.json")
 
 
 def row_of(given: Given, result: dict[str, Any], improvement: dict[str, Any]) -> dict[str, Any]:

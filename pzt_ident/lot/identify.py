@@ -12,15 +12,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pzt_ident.errors import InputError, LostError
-from pzt_ident.files import write_json, write_text
+from pzt_ident.errors import DamagedError, InputError, LostError
+from pzt_ident.files import read_sealed, write_sealed, write_text
 from pzt_ident.job.files import Template
 from pzt_ident.job.schema import Job
 from pzt_ident.lot.device import Given, Orders, identify_device
 from pzt_ident.lot.devices import Device, devices_of
 from pzt_ident.lot.table import folder_of, read_row, write_table
 from pzt_ident.run.events import Listen, nobody
-from pzt_ident.run.folder import make_empty
+from pzt_ident.run.folder import make_empty, read_job
 from pzt_ident.run.place import HERE, Place
 
 NOT_A_FLEET = "give the folder that `pzt-ident fleet` wrote"
@@ -57,7 +57,7 @@ def fleet(
         "command": " ".join(["pzt-ident", *sys.argv[1:]]),
     }
     write_text(folder / "job.yaml", job.text)
-    write_json(folder / "fleet.json", stated)
+    write_sealed(folder / "fleet.json", stated)
     orders = Orders(Template(job), job.folder.resolve(), stated["command"], improve, budget)
     return Identification(folder, devices, job, orders, listen).identify(place)
 
@@ -69,8 +69,7 @@ def is_fleet(folder: Path) -> bool:
 def resume(folder: Path, *, place: Place = HERE, listen: Listen = nobody, plugins: bool = False) -> Path:
     """Go on with a fleet that was stopped: devices that were not done, that failed, or whose data have changed."""
     stated = read_statement(folder)
-    text = (folder / "job.yaml").read_text(encoding="utf-8")
-    job = Job.from_text(text, Path(stated["job_folder"]), f"{stated['job_name']}.yaml", plugins)
+    job = Job.from_text(read_job(folder), Path(stated["job_folder"]), f"{stated['job_name']}.yaml", plugins)
     base = Path(os.path.relpath(stated["working_folder"]))
     patterns = [str(base / pattern) + "/" * pattern.endswith("/") for pattern in stated["patterns"]]
     return fleet(job, patterns, folder, improve=stated["improve"], budget=stated["budget"], place=place, listen=listen)
@@ -79,10 +78,11 @@ def resume(folder: Path, *, place: Place = HERE, listen: Listen = nobody, plugin
 def read_statement(folder: Path) -> dict[str, Any]:
     """What a fleet was asked for. Raises InputError where the folder holds none."""
     try:
-        stated = json.loads((folder / "fleet.json").read_text(encoding="utf-8"))
-        return dict(stated) | {"patterns": list(stated["patterns"]), "improve": bool(stated["improve"])}
-    except (OSError, ValueError, KeyError, TypeError):
-        raise InputError("holds no fleet", where=str(folder), remedy=NOT_A_FLEET) from None
+        stated = read_sealed(folder / "fleet.json")
+        return stated | {"patterns": list(stated["patterns"]), "improve": bool(stated["improve"])}
+    except (DamagedError, KeyError, TypeError):
+        problem = "its fleet.json is damaged" if is_fleet(folder) else "holds no fleet"
+        raise InputError(problem, where=str(folder), remedy=NOT_A_FLEET) from None
 
 
 @dataclass
@@ -154,7 +154,7 @@ class Identification:
         self.broken += 1
         home = folder_of(self.folder, name)
         shutil.rmtree(home, ignore_errors=True)
-        write_json(home / "device.json", {"device": name, "key": "", "state": "broken", "reason": reason})
+        write_sealed(home / "device.json", {"device": name, "key": "", "state": "broken", "reason": reason})
         self.tell({"device": name, "failed": reason})
 
     def note(self, event: dict[str, Any]) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from pzt_ident.errors import InputError
+from pzt_ident.errors import DamagedError, InputError
+from pzt_ident.files import read_sealed
 from pzt_ident.lot.identify import read_statement
 from pzt_ident.lot.statistics import Difference, Finding, Quantity, Trend, differences, out_of_line, trends
 from pzt_ident.lot.table import Row, in_unit, rows_of
@@ -166,9 +166,9 @@ def read_lot(folder: Path) -> Lot:
     """The fleet in a folder, finished or not. Raises InputError where there is none."""
     statement = read_statement(folder)
     try:
-        listed_devices = json.loads((folder / "devices.json").read_text(encoding="utf-8"))
-        known = {item["device"]: dict(item["columns"]) for item in listed_devices}
-    except (OSError, ValueError, KeyError, TypeError):
+        content = read_sealed(folder / "devices.json")
+        known = {item["device"]: dict(item["columns"]) for item in content["devices"]}
+    except (DamagedError, KeyError, TypeError, ValueError):
         remedy = f"`pzt-ident resume {folder}` goes on with it"
         raise InputError(
             "the fleet has not been begun, or its devices.json is damaged", where=str(folder), remedy=remedy

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from hashlib import sha256
 from importlib.util import find_spec
@@ -11,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from pzt_ident.data.units import factor, same_kind
-from pzt_ident.files import replaced, write_json
+from pzt_ident.errors import DamagedError
+from pzt_ident.files import read_sealed, replaced, write_sealed
 from pzt_ident.lot.devices import Device, Value
 
 if TYPE_CHECKING:
@@ -33,15 +33,16 @@ def folder_of(fleet: Path, name: str) -> Path:
 def read_row(folder: Path) -> Row | None:
     """The row of a device; None where its folder holds none that is whole."""
     try:
-        row = json.loads((folder / "device.json").read_text(encoding="utf-8"))
-        return row if {"device", "key", "state", "reason"} <= set(row) else None
-    except (OSError, ValueError, TypeError):
+        row = read_sealed(folder / "device.json")
+    except DamagedError:
         return None
+    return row if {"device", "key", "state", "reason"} <= set(row) else None
 
 
 def write_table(folder: Path, devices: Sequence[Device]) -> None:
     """Write `devices.json`, which devices there are and what is known of them, and the table as it is by now."""
-    write_json(folder / "devices.json", [{"device": item.name, "columns": dict(item.columns)} for item in devices])
+    listed = [{"device": item.name, "columns": dict(item.columns)} for item in devices]
+    write_sealed(folder / "devices.json", {"devices": listed})
     frame = frame_of(rows_of(folder, {item.name: item.columns for item in devices}))
     with replaced(folder / "devices.csv") as path:
         frame.to_csv(path, index=False, lineterminator="\n")

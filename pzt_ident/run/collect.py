@@ -13,7 +13,7 @@ from pzt_ident.data.record import Record
 from pzt_ident.data.signals import write_signals
 from pzt_ident.data.units import factor
 from pzt_ident.errors import RunError
-from pzt_ident.files import write_json, write_text
+from pzt_ident.files import digest_of, write_sealed, write_text
 from pzt_ident.run.checkpoint import read_losses
 from pzt_ident.run.folder import read_environment
 from pzt_ident.run.misfit import write_misfits
@@ -55,7 +55,8 @@ def collect(
     }
     if misfits:
         write_misfits(folder, result)
-    write_json(folder / "result.json", result)
+    result["files"] = {name: digest_of(folder / name) for name in ("history.csv", "signals.nc")}
+    write_sealed(folder / "result.json", result)
     return result
 
 

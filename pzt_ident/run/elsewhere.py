@@ -14,7 +14,7 @@ from pzt_ident.job.edit import edited
 from pzt_ident.job.files import moved
 from pzt_ident.job.schema import Job
 from pzt_ident.run.events import Listen, nobody
-from pzt_ident.run.folder import begin, read_environment, results_folder
+from pzt_ident.run.folder import begin, read_environment, read_job, results_folder
 from pzt_ident.run.improve import diagnose, improve
 from pzt_ident.run.place import Place
 from pzt_ident.run.pool import Tell
@@ -73,8 +73,7 @@ def begin_again(folder: Path, listen: Listen = nobody, plugins: bool = False) ->
     if (folder / "diagnosis.json").exists():
         listen({"event": "finished"})
         return folder
-    text = (folder / "job.yaml").read_text(encoding="utf-8")
-    job = Job.from_text(text, folder, str(folder / "job.yaml"), plugins)
+    job = Job.from_text(read_job(folder), folder, str(folder / "job.yaml"), plugins)
     new = folder.with_name(f".{folder.name}.again")
     shutil.rmtree(new, ignore_errors=True)
     again = {"improve": improve, "diagnose": diagnose}.get(task["name"])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import platform
 import sys
@@ -14,7 +13,7 @@ from typing import Any
 
 from pzt_ident.data.record import Record
 from pzt_ident.errors import InputError
-from pzt_ident.files import write_json, write_text
+from pzt_ident.files import damaged, read_sealed, write_json, write_text
 from pzt_ident.job.schema import Job
 
 PACKAGES = ("pzt-ident", "numpy", "scipy", "numba", "pandas", "pyswarms", "deap", "cma")
@@ -75,12 +74,27 @@ def version_of(package: str) -> str:
 
 
 def read_environment(folder: Path) -> dict[str, Any]:
-    """The environment of the run in a folder. Raises InputError where there is none."""
-    try:
-        return dict(json.loads((folder / "environment.json").read_text(encoding="utf-8")))
-    except (OSError, ValueError):
+    """The environment of the run in a folder. Raises InputError where there is none, DamagedError where it is not as it
+    was written."""
+    path = folder / "environment.json"
+    if not path.is_file():
         remedy = "give the folder that `pzt-ident run` wrote"
-        raise InputError("holds no run", where=str(folder), remedy=remedy) from None
+        raise InputError("holds no run", where=str(folder), remedy=remedy)
+    begun = read_sealed(path)
+    texts = all(isinstance(begun.get(key), str) for key in ("command", "job_hash", "job_name", "job_folder"))
+    if not texts or not isinstance(begun.get("data"), dict) or not isinstance(begun.get("task", {}), dict):
+        raise damaged(path, "does not say what this run began with")
+    return begun
+
+
+def read_job(folder: Path, name: str = "job.yaml") -> str:
+    """The text of the job that a folder was begun with. Raises InputError where it cannot be read."""
+    path = folder / name
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        remedy = "put the job in its place that the run began with, or start a new run"
+        raise InputError("cannot be read", where=str(path), remedy=remedy) from None
 
 
 def check_unchanged(job: Job, records: Sequence[Record], begun: dict[str, Any], folder: Path) -> None:
@@ -89,6 +103,6 @@ def check_unchanged(job: Job, records: Sequence[Record], begun: dict[str, Any], 
     if job.hash != begun["job_hash"]:
         raise InputError("is not the job that this run began with", where=str(folder / "job.yaml"), remedy=remedy)
     for record in records:
-        if record.sha256 != begun["data"][record.name]:
+        if record.sha256 != begun["data"].get(record.name):
             where = str(job.folder / record.file)
             raise InputError("has changed since this run began", where=where, remedy=remedy)

@@ -6,16 +6,17 @@ from pathlib import Path
 
 from pzt_ident.data.over_axes import together
 from pzt_ident.data.units import factor, same_kind
-from pzt_ident.errors import InputError
+from pzt_ident.errors import DamagedError, InputError
 from pzt_ident.files import write_files
 from pzt_ident.job.schema import Job
 from pzt_ident.model.registry import optimizers
 from pzt_ident.run.collect import collect
 from pzt_ident.run.events import Listen, event_log, nobody
-from pzt_ident.run.folder import begin, check_unchanged, read_environment, results_folder
+from pzt_ident.run.folder import begin, check_unchanged, read_environment, read_job, results_folder
 from pzt_ident.run.place import HERE, Place
+from pzt_ident.run.results import read_results
 from pzt_ident.run.statement import Statement
-from pzt_ident.run.task import Task, work, work_away
+from pzt_ident.run.task import Task, read_result, work, work_away
 
 
 def run(job: Job, out: Path | None = None, *, place: Place = HERE, listen: Listen = nobody) -> Path:
@@ -37,7 +38,7 @@ def resume(folder: Path, *, place: Place = HERE, listen: Listen = nobody, plugin
     Raises InputError where the folder holds no run, or its job or data have changed.
     """
     begun = read_environment(folder)
-    text = (folder / "job.yaml").read_text(encoding="utf-8")
+    text = read_job(folder)
     job = Job.from_text(text, Path(begun["job_folder"]), f"{begun['job_name']}.yaml", plugins)
     statement = Statement(job)
     check_unchanged(job, statement.records, begun, folder)
@@ -45,10 +46,10 @@ def resume(folder: Path, *, place: Place = HERE, listen: Listen = nobody, plugin
 
 
 def _search(statement: Statement, folder: Path, tasks: list[Task], place: Place, listen: Listen) -> Path:
-    """Run the tasks that have no result yet, and collect those of all."""
-    missing = [task for task in tasks if not task.result.exists()]
+    """Run the tasks that have no result yet, or a damaged one, and collect those of all."""
     with event_log(folder, listen) as tell:
-        if missing or not (folder / "result.json").exists():
+        missing = [task for task in tasks if not is_done(task, tell)]
+        if missing or not is_collected(folder, tell):
             runs, budget = [task.run for task in missing], sum(task.stop["evaluations"] for task in missing)
             size = {"budget": budget, "unit": statement.unit, "together": together(statement.records[0].units)}
             tell({"event": "start", "runs": runs, **size, "folder": str(folder)})
@@ -57,6 +58,28 @@ def _search(statement: Statement, folder: Path, tasks: list[Task], place: Place,
             tell({"event": "finished"})
         tell({"event": "done", "folder": str(folder)})
     return folder
+
+
+def is_done(task: Task, tell: Listen) -> bool:
+    """Whether a task has a result; one that is damaged is told."""
+    try:
+        return task.result.exists() and bool(read_result(task))
+    except DamagedError as error:
+        tell({"event": "damaged", "said": f"{error.where} {error.message}; its search is done again"})
+        return False
+
+
+def is_collected(folder: Path, tell: Listen) -> bool:
+    """Whether what all tasks came to is there; what is damaged of it is told."""
+    if not (folder / "result.json").exists():
+        return False
+    try:
+        said = list(read_results(folder).damaged)
+    except InputError as error:
+        said = [str(error).replace("\n ", ";")]
+    for sentence in said:
+        tell({"event": "damaged", "said": f"{sentence.partition(';')[0]}; it is made again"})
+    return not said
 
 
 def search_all(statement: Statement, folder: Path, tasks: list[Task], place: Place, tell: Listen) -> dict[str, str]:

@@ -21,7 +21,7 @@ from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.diagnosis.verdict import diagnose as judge
-from pzt_ident.files import write_json, write_text
+from pzt_ident.files import write_sealed, write_text
 from pzt_ident.job.edit import edited
 from pzt_ident.job.schema import Job
 from pzt_ident.model.description import headline
@@ -84,7 +84,7 @@ def diagnose(job: Job, out: Path | None = None, listen: Listen = nobody, budget:
         found = judge(case, first)
         content = diagnosis_of(job, case, found, folder)
         write_signals(folder / "signals.nc", first.problem.errors(first.point))
-        write_json(folder / "diagnosis.json", content)
+        write_sealed(folder / "diagnosis.json", content)
         compare(folder, folder)
     return folder
 
@@ -112,7 +112,7 @@ def improve(
         proposals = (separating(job, case, step.rivals, folder) for step in ties(steps))
         proposed = diagnosis["next_experiment"] or next(filter(None, proposals), None)
         content = improvement_of(job, case, staircase, diagnosis) | {"next_experiment": proposed}
-        write_json(folder / "diagnosis.json", diagnosis)
+        write_sealed(folder / "diagnosis.json", diagnosis)
         write_improvement(folder, content, improved(job, case, staircase, folder))
         compare(folder, folder)
     return folder
@@ -143,7 +143,7 @@ class SoFar:
 def write_improvement(folder: Path, content: dict[str, Any], job_text: str) -> None:
     """Write `improvement.json` and the job that goes with it."""
     write_text(folder / "improved.yaml", job_text)
-    write_json(folder / "improvement.json", content)
+    write_sealed(folder / "improvement.json", content)
 
 
 def improved(job: Job, case: Case, staircase: stairs.Staircase, folder: Path) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 import zlib
 from collections.abc import Callable, Sequence
@@ -16,10 +15,10 @@ import numpy as np
 from pzt_ident.data.record import Record
 from pzt_ident.data.units import factor
 from pzt_ident.errors import RunError
-from pzt_ident.files import read_files, write_bytes, write_json
+from pzt_ident.files import damaged, read_files, read_sealed, write_bytes, write_sealed
 from pzt_ident.model.optimizer import Optimizer
 from pzt_ident.model.registry import optimizers
-from pzt_ident.run.checkpoint import Checkpoint
+from pzt_ident.run.checkpoint import Checkpoint, read_losses
 from pzt_ident.run.statement import Statement
 from pzt_ident.search.loop import Outcome, State, Stop, optimize
 from pzt_ident.search.problem import Problem
@@ -72,7 +71,7 @@ def work_away(
 def search(task: Task, statement: Statement, tell: Tell) -> None:
     """Search, polish, judge the parameters, and write the result; continues from the losses on the disk."""
     result = identification(task, statement, Checkpoint(task.losses), tell)
-    write_json(task.result, result)
+    write_sealed(task.result, result)
     tell({"event": "run", "run": task.run, "rmse": result["rmse"], "stopped_by": result["stopped_by"]})
 
 
@@ -187,4 +186,9 @@ def generation_event(task: Task, evaluations: int, best: dict[str, float], secon
 
 
 def read_result(task: Task) -> dict[str, Any]:
-    return dict(json.loads(task.result.read_text()))
+    """Raises DamagedError where it is not whole, or not that of the losses beside it."""
+    result = read_sealed(task.result, "run", "rmse", "parameters", "point", "evaluations")
+    counted = sum(len(losses) for _, losses in read_losses(task.losses))
+    if task.losses.exists() and counted != result["evaluations"]:
+        raise damaged(task.losses, "does not hold the losses of its run")
+    return result

@@ -15,6 +15,7 @@ import pytest
 from experiments.fleet.lot import BROKEN, write_lot
 from lot.conftest import DEVICES
 from pzt_ident.errors import InputError
+from pzt_ident.files import read_sealed, write_sealed
 from pzt_ident.job.schema import load_job
 from pzt_ident.lot.identify import fleet, resume
 from pzt_ident.lot.outcome import read_lot
@@ -86,8 +87,7 @@ def test_a_device_is_as_if_identified_alone(identified, tmp_path):
 def copied(lot: Path, identified, tmp_path: Path) -> tuple[Path, Path]:
     """The lot and its fleet, as they would be there."""
     made, out = shutil.copytree(lot, tmp_path / "lot"), shutil.copytree(identified[0], tmp_path / "out")
-    stated = json.loads((out / "fleet.json").read_text())
-    (out / "fleet.json").write_text(json.dumps(stated | {"patterns": [str(made / "lot.csv")]}))
+    write_sealed(out / "fleet.json", read_sealed(out / "fleet.json") | {"patterns": [str(made / "lot.csv")]})
     return made, out
 
 

@@ -1,6 +1,5 @@
 """The report on a lot: one file, what it says, and the pages that it leads to."""
 
-import json
 import re
 import shutil
 from pathlib import Path
@@ -9,6 +8,7 @@ from urllib.parse import unquote
 import pytest
 
 from pzt_ident.errors import InputError
+from pzt_ident.files import read_sealed, write_sealed
 from pzt_ident.lot.outcome import read_lot
 from pzt_ident.lot.report import write_fleet_report
 from pzt_ident.run.place import Local
@@ -63,10 +63,10 @@ def test_an_unfinished_fleet_has_a_report(identified, tmp_path):
 
 def test_names_from_a_table_are_no_markup(identified, tmp_path):
     out = shutil.copytree(identified[0], tmp_path / "out")
-    listed = json.loads((out / "devices.json").read_text())
-    for place, item in enumerate(listed):
+    listed = read_sealed(out / "devices.json")
+    for place, item in enumerate(listed["devices"]):
         item["columns"] |= {EVIL: EVIL + str(place % 2)}
-    (out / "devices.json").write_text(json.dumps(listed))
+    write_sealed(out / "devices.json", listed)
     text = write_fleet_report(out, place=Local(1)).read_text(encoding="utf-8")
     assert EVIL not in text
     assert "&lt;script&gt;" in text
