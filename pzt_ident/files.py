@@ -40,7 +40,7 @@ def replaced(path: Path) -> Iterator[Path]:
 
 def write_text(path: Path, text: str) -> None:
     with replaced(path) as beside:
-        beside.write_text(text, encoding="utf-8")
+        beside.write_text(text, encoding="utf-8", errors="backslashreplace")  # a path need not be UTF-8
 
 
 def write_bytes(path: Path, content: bytes) -> None:

@@ -309,8 +309,8 @@ def report(folders: tuple[Path, ...], out: Path | None, as_json: bool, quiet: bo
 
     Several folders are put side by side, too, on a page of their own.
     """
-    from pzt_ident.cli.table import tracked
-    from pzt_ident.report.figures import write_paper_figures
+    from pzt_ident.cli.progress import listening
+    from pzt_ident.report.figures import write_all_figures
     from pzt_ident.report.page import write_report
     from pzt_ident.report.side_by_side import write_side_by_side
     from pzt_ident.run.results import read_folder
@@ -327,8 +327,8 @@ def report(folders: tuple[Path, ...], out: Path | None, as_json: bool, quiet: bo
         _say_damaged(results.damaged)
         readable.append(folder)
         pages.append(str(write_report(folder)))
-        for _ in tracked(write_paper_figures(results, folder / "figures"), "figures", as_json or quiet):
-            pass
+    with listening(silent=as_json or quiet) as listen:
+        write_all_figures(readable, listen=listen)
     if len(readable) > 1:
         pages.append(str(write_side_by_side(readable, out or Path("side-by-side.html"))))
     answer({"reports": pages}, lambda: click.echo("\n".join(pages)), as_json, quiet)

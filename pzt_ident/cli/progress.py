@@ -47,7 +47,7 @@ class Progress:
             self.budget, self.unit, self.folder = event["budget"], event["unit"], event.get("folder", "")
             self.together = event["together"]
             self.evaluations = dict.fromkeys(event["runs"], 0)
-        elif event["event"] in ("devices", "pages"):
+        elif event["event"] in ("devices", "pages", "figures"):
             self.what, self.budget, self.folder = event["event"], event["of"], event["folder"]
             self.broken = event.get("broken", 0)
             self.evaluations = {"": event["done"] + self.broken}

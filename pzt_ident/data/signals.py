@@ -64,7 +64,7 @@ def write_signals(path: Path, residuals: Iterable[tuple[Record, Array]]) -> None
 
 
 def _write_group(group: Any, record: Record, residuals: Array) -> None:
-    group.attrs.update(use=record.use, name=record.name, settle=record.settle * record.dt, file=record.file)
+    group.attrs.update(use=record.use, name=record.name, settle=record.settle * record.dt, file=_readable(record.file))
     group.dimensions = {"time": record.samples}
     _put(group, "time", record.time, "s", "time")
     for axis, name in enumerate(record.axes):
@@ -75,6 +75,11 @@ def _write_group(group: Any, record: Record, residuals: Array) -> None:
         _put(group, f"response_{name}", response / factor(unit), unit, f"measured {name}")
         _put(group, f"model_{name}", (response + residual) / factor(unit), unit, f"model of {name}")
         _put(group, f"residual_{name}", residual / factor(unit), unit, f"model minus measured {name}")
+
+
+def _readable(path: str) -> str:
+    """A path need not be UTF-8."""
+    return path.encode("utf-8", "backslashreplace").decode()
 
 
 def _put(group: Any, name: str, values: Array, unit: str, meaning: str) -> None:

@@ -94,7 +94,7 @@ def rendered(name: str, title: str, content: dict[str, Any], **variables: Any) -
     scripts = [web_file("uplot/uPlot.iife.min.js"), bundled_modules()]
     allowed = " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(s.encode()).digest()).decode()}'" for s in scripts)
     css = "\n".join(web_file(sheet) for sheet in ("page.css", "plots.css", "uplot/uPlot.min.css"))
-    return (
+    page = (
         environment()
         .get_template(name)
         .render(
@@ -106,6 +106,7 @@ def rendered(name: str, title: str, content: dict[str, Any], **variables: Any) -
             **variables,
         )
     )
+    return page.encode("utf-8", "backslashreplace").decode()  # a path need not be UTF-8
 
 
 def web_file(name: str) -> str:

@@ -115,7 +115,7 @@ def test_resume_does_again_what_is_damaged_and_says_so(whole, tmp_path, file, da
 @pytest.mark.parametrize("file", FILES)
 @pytest.mark.parametrize("command", ["report", "compare"])
 def test_report_and_compare_leave_out_what_is_damaged_and_say_so(whole, tmp_path, command, file, damage, monkeypatch):
-    monkeypatch.setattr("pzt_ident.report.figures.write_paper_figures", lambda results, folder: iter(()))
+    monkeypatch.setattr("pzt_ident.report.figures.write_all_figures", lambda folders, listen: None)
     monkeypatch.setattr("pzt_ident.report.figures.write_misfit_figures", lambda results, folder: iter(()))
     monkeypatch.setattr("pzt_ident.report.page._figures_by_section", lambda results: {})
     out, _ = hurt(whole, tmp_path, file, damage)
@@ -130,7 +130,7 @@ def test_report_and_compare_leave_out_what_is_damaged_and_say_so(whole, tmp_path
 
 
 def test_of_several_folders_the_damaged_one_is_left_out(whole, tmp_path, monkeypatch):
-    monkeypatch.setattr("pzt_ident.report.figures.write_paper_figures", lambda results, folder: iter(()))
+    monkeypatch.setattr("pzt_ident.report.figures.write_all_figures", lambda folders, listen: None)
     monkeypatch.setattr("pzt_ident.report.page._figures_by_section", lambda results: {})
     out, _ = hurt(whole, tmp_path, "result.json", "cut in half")
     others = [shutil.copytree(whole, tmp_path / name) for name in ("a", "b")]
