@@ -19,7 +19,7 @@ from pzt_ident.lot.devices import Device
 from pzt_ident.lot.figures import plates
 from pzt_ident.lot.outcome import Lot, read_lot
 from pzt_ident.lot.statistics import Quantity
-from pzt_ident.lot.table import folder_of, write_table
+from pzt_ident.lot.table import Row, folder_of, write_table
 from pzt_ident.report.figures import Plate, write_plate
 from pzt_ident.report.inline import inline
 from pzt_ident.report.page import environment as page_environment
@@ -142,10 +142,13 @@ def page_of(lot: Lot, name: str, part: str = "") -> str:
 
 def lead(lot: Lot) -> str:
     """The lot in a sentence."""
-    adequate, done, total = lot.verdicts.get("adequate", 0), len(lot.done), len(lot.rows)
+    done, total = len(lot.done), len(lot.rows)
+    adequate = [row for row in lot.done if row["verdict"] == "adequate"]
+    more = sum(bool(row["effects"]) for row in adequate)
     if not done:
         return f"None of {total} devices could be identified."
-    fit = [f"is adequate for {adequate or 'none'} of {total} devices"]
+    fit = [f"is adequate for {len(adequate) - more or 'none'} of {total} devices"]
+    fit += [f"with effects added for {more} more"] * bool(more)
     fit += [f"fits {len(lot.ill_fitted)} worse than usual"] * bool(lot.ill_fitted)
     text = f"The model {listed(fit)}."
     if lot.odd:
@@ -200,8 +203,16 @@ def far(lot: Lot) -> list[tuple[str, str, str]]:
     why: dict[str, list[str]] = {}
     for finding in lot.findings:
         why.setdefault(finding.device, []).append(spelled(finding.sentence))
-    kinds = (("parameters", lot.odd), ("fits worse", lot.ill_fitted))
-    return [(name, kind, "; ".join(why[name])) for kind, names in kinds for name in names]
+    rows = {row["device"]: row for row in lot.done}
+    kinds = [(name, "parameters") for name in lot.odd] + [(name, _misfit(rows[name])) for name in lot.ill_fitted]
+    return [(name, kind, "; ".join(why[name])) for name, kind in kinds]
+
+
+def _misfit(row: Row) -> str:
+    """What is known of a device that the model does not fit."""
+    if row["effects"]:
+        return f"misses {listed(row['effects'])}"
+    return f"may miss {listed(row['suspects'])}" if row["suspects"] else "fits worse"
 
 
 def quantity_line(lot: Lot, item: Quantity) -> list[str]:
