@@ -149,7 +149,8 @@ def lead(lot: Lot) -> str:
         return f"None of {total} devices could be identified."
     fit = [f"is adequate for {len(adequate) - more or 'none'} of {total} devices"]
     fit += [f"with effects added for {more} more"] * bool(more)
-    fit += [f"fits {len(lot.ill_fitted)} worse than usual"] * bool(lot.ill_fitted)
+    as_given = "as given " * bool(lot.statement["improve"])
+    fit += [f"{as_given}fits {len(lot.ill_fitted)} worse than usual"] * bool(lot.ill_fitted)
     text = f"The model {listed(fit)}."
     if lot.odd:
         text += f" {len(lot.odd)} more {'is' if len(lot.odd) == 1 else 'are'} out of line."
