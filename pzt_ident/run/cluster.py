@@ -204,7 +204,8 @@ def joined(client: Client, words: str) -> Event:
     shared = " of several threads, which wait for each other: start them with --nthreads 1" * (
         max(threads.values(), default=1) > 1
     )
-    said = f"{len(threads)} workers{shared} at {words}; Dask's dashboard: {client.dashboard_link}"
+    count = f"{len(threads)} workers" if threads else "jobs that wait for their turn"
+    said = f"{count}{shared} at {words}; Dask's dashboard: {client.dashboard_link}"
     return {"event": "cluster", "said": said, "workers": len(threads), "dashboard": client.dashboard_link}
 
 

@@ -7,6 +7,7 @@ import socket
 from collections.abc import Iterable
 from dataclasses import dataclass
 from importlib.util import find_spec
+from shutil import which
 from typing import Any, ClassVar, Protocol
 
 from pzt_ident.errors import InputError
@@ -74,6 +75,9 @@ def place_of(words: str) -> Place:
         return Scheduler(words)
     if found := re.fullmatch(r"slurm:([\w.,-]+):([1-9]\d*)", words):
         _check_dask(words, "dask_jobqueue")
+        if not which("sbatch"):
+            remedy = "run it on a machine that jobs are submitted from"
+            raise InputError("there is no SLURM here (no command sbatch)", where=f"--on {words}", remedy=remedy)
         from pzt_ident.run.cluster import Slurm
 
         return Slurm(words, found[1], int(found[2]))

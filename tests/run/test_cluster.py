@@ -115,8 +115,9 @@ def test_a_lost_scheduler_ends_in_a_folder_that_resume_goes_on_with(job, tmp_pat
     assert numbers(out) == numbers(run(job, tmp_path / "here", place=Local(1)))
 
 
-def test_slurm_is_asked_for_jobs_of_one_core():
+def test_slurm_is_asked_for_jobs_of_one_core(monkeypatch):
     pytest.importorskip("dask_jobqueue")
+    monkeypatch.setattr("pzt_ident.run.place.which", lambda name: f"/usr/bin/{name}")
     place = place_of("slurm:long.q:8")
     with place.cluster() as made:
         script = made.job_script()
@@ -132,11 +133,13 @@ def test_slurm_is_asked_for_jobs_of_one_core():
         ("local:0", "is no place to run at"),
         ("tcp://host", "is no place to run at"),
         ("slurm:long", "is no place to run at"),
+        ("slurm:long:8", "there is no SLURM here"),
         ("tcp://127.0.0.1:1", "no scheduler answers"),
         ("tcp://nowhere.invalid:8786", "no scheduler answers"),
     ],
 )
-def test_wrong_words_are_told_with_a_remedy(words, said):
+def test_wrong_words_are_told_with_a_remedy(words, said, monkeypatch):
+    monkeypatch.setattr("pzt_ident.run.place.which", lambda name: None)
     with pytest.raises(InputError, match=said) as caught:
         place_of(words)
     assert caught.value.where == f"--on {words}"
