@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from pzt_ident.api import (
         Diagnosis,
         Fit,
+        Fleet,
         Improvement,
         InputError,
         Model,
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
         Record,
         RunError,
         diagnose,
+        fleet,
         identify,
         improve,
         load,
@@ -26,6 +28,7 @@ __version__ = "0.1.0"
 __all__ = [
     "Diagnosis",
     "Fit",
+    "Fleet",
     "Improvement",
     "InputError",
     "Model",
@@ -34,6 +37,7 @@ __all__ = [
     "Record",
     "RunError",
     "diagnose",
+    "fleet",
     "identify",
     "improve",
     "load",

@@ -22,6 +22,14 @@ class RunError(RuntimeError):
     1, without a traceback."""
 
 
+class DamagedError(InputError):
+    """A file of results that is not as it was written."""
+
+
+class LostError(RunError):
+    """The place where a run's tasks ran is gone; what was done is on the disk, and the run can be resumed."""
+
+
 def nearest(word: str, words: Iterable[str]) -> str:
     """A remedy for an unknown word: the nearest known ones, else all of them."""
     known = sorted(set(words))

@@ -10,8 +10,11 @@ import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
+
+from pzt_ident.errors import DamagedError
 
 
 @contextmanager
@@ -37,7 +40,23 @@ def replaced(path: Path) -> Iterator[Path]:
 
 def write_text(path: Path, text: str) -> None:
     with replaced(path) as beside:
-        beside.write_text(text, encoding="utf-8")
+        beside.write_text(text, encoding="utf-8", errors="backslashreplace")  # a path need not be UTF-8
+
+
+def write_bytes(path: Path, content: bytes) -> None:
+    with replaced(path) as beside:
+        beside.write_bytes(content)
+
+
+def read_files(folder: Path) -> dict[str, bytes]:
+    """The files of a folder and its folders, by their paths in it."""
+    files = sorted(path for path in folder.rglob("*") if path.is_file())
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+
+
+def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
+    for name, content in files.items():
+        write_bytes(folder / name, content)
 
 
 def write_columns(path: Path, columns: Mapping[str, Any]) -> None:
@@ -50,6 +69,53 @@ def write_columns(path: Path, columns: Mapping[str, Any]) -> None:
 def write_json(path: Path, content: Any) -> None:
     """NaN and infinity become null: JSON has no words for them."""
     write_text(path, json.dumps(plain(content), indent=2, allow_nan=False) + "\n")
+
+
+DIGEST = "digest"
+
+
+def write_sealed(path: Path, content: Mapping[str, Any]) -> dict[str, Any]:
+    """Write a JSON object with the digest of what is in it, and return it: `read_sealed` finds every change of it."""
+    facts = plain(dict(content))
+    facts[DIGEST] = _digest(facts)
+    write_json(path, facts)
+    return dict(facts)
+
+
+def read_sealed(path: Path, *keys: str) -> dict[str, Any]:
+    """A JSON object, less its digest; one that was written without a digest is taken as it is.
+
+    keys: those that it must have. Raises DamagedError where it is not as it was written.
+    """
+    try:
+        content = json.loads(path.read_bytes().decode("utf-8"))
+    except (OSError, ValueError, RecursionError) as error:
+        raise damaged(path, "cannot be read" if isinstance(error, OSError) else "is no JSON") from None
+    if not isinstance(content, dict):
+        raise damaged(path, "is no JSON object")
+    written = content.pop(DIGEST, None)
+    if written is not None and written != _digest(content):
+        raise damaged(path, "is not as it was written")
+    if missing := [key for key in keys if key not in content]:
+        raise damaged(path, f"has no {missing[0]!r}")
+    return content
+
+
+def _digest(facts: Mapping[str, Any]) -> str:
+    return sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()
+
+
+def digest_of(path: Path) -> str:
+    """SHA-256 of a file. Raises DamagedError where it cannot be read."""
+    try:
+        return sha256(path.read_bytes()).hexdigest()
+    except OSError:
+        raise damaged(path, "cannot be read") from None
+
+
+def damaged(path: Path, how: str) -> DamagedError:
+    remedy = f"`pzt-ident resume {path.parent}` makes it again where it can"
+    return DamagedError(f"is damaged: it {how}", where=str(path), remedy=remedy)
 
 
 def plain(content: Any) -> Any:

@@ -6,6 +6,7 @@ In: arrays, frames or files, the words of a model. Out: fits, diagnoses and stai
 from pzt_ident.api.diagnosis import Diagnosis, Improvement, NextExperiment, diagnose, improve
 from pzt_ident.api.fit import Fit
 from pzt_ident.api.fitted import Parameter
+from pzt_ident.api.fleet import Fleet, fleet
 from pzt_ident.api.identification import identify, load
 from pzt_ident.api.model import Model
 from pzt_ident.api.record import Record
@@ -15,6 +16,7 @@ from pzt_ident.search.loop import minimize
 __all__ = [
     "Diagnosis",
     "Fit",
+    "Fleet",
     "Improvement",
     "InputError",
     "Model",
@@ -23,6 +25,7 @@ __all__ = [
     "Record",
     "RunError",
     "diagnose",
+    "fleet",
     "identify",
     "improve",
     "load",

@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.api.arguments import of_kind
-from pzt_ident.api.computing import computing
 from pzt_ident.api.fit import Fit
 from pzt_ident.api.printed import html, table_text
 from pzt_ident.api.refit import as_given, from_refit
@@ -24,6 +23,7 @@ from pzt_ident.diagnosis import verdict as verdicts
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.run import improve as results
+from pzt_ident.run.computing import computing
 from pzt_ident.run.events import step_name, verdict_line
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ from pzt_ident.api.statement import file_of, has_stamps, statement_of
 from pzt_ident.api.wording import as_arguments
 from pzt_ident.data.notation import listed, number, quantity, unit, with_error
 from pzt_ident.data.over_axes import together
-from pzt_ident.files import write_json
+from pzt_ident.files import write_json, write_sealed
 from pzt_ident.job.schema import Job
 from pzt_ident.run.collect import collect
 from pzt_ident.run.folder import begin, environment
@@ -65,7 +65,7 @@ class Fit(Fitted):
         tasks = tasks_of(statement, folder)
         for task, (run, checkpoint) in zip(tasks, self.runs, strict=True):
             checkpoint.save(task.losses)
-            write_json(task.result, run)
+            write_sealed(task.result, run)
         collect(statement, folder, tasks, {})
 
     def report(self, path: str | Path) -> Path:

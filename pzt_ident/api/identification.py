@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -10,15 +9,16 @@ from typing import Any
 import numpy as np
 
 from pzt_ident.api.arguments import of_kind, path_of
-from pzt_ident.api.computing import computing
 from pzt_ident.api.fit import Fit
 from pzt_ident.api.model import Model
 from pzt_ident.api.record import Record
 from pzt_ident.api.simulation import load_simulation
 from pzt_ident.api.statement import job_text, named_apart, sections_of, statement_of
 from pzt_ident.errors import InputError
+from pzt_ident.files import read_sealed
 from pzt_ident.job.schema import Job
 from pzt_ident.run.checkpoint import Checkpoint
+from pzt_ident.run.computing import computing
 from pzt_ident.run.events import nobody
 from pzt_ident.run.folder import check_unchanged, read_environment
 from pzt_ident.run.identify import tasks_of
@@ -90,6 +90,8 @@ def load(folder: str | Path, *, plugins: bool = False) -> Any:
 
 def _read(folder: Path, plugins: bool) -> Fit:
     results, begun = read_results(folder), read_environment(folder)
+    for sentence in results.damaged:
+        raise InputError(sentence.partition(";")[0], remedy=f"`pzt-ident resume {folder}` makes it again where it can")
     home = folder if (folder / "data").is_dir() else Path(begun["job_folder"])
     job = Job.from_text(results.job, home, str(folder / "job.yaml"), plugins)
     statement = Statement(job)
@@ -99,7 +101,7 @@ def _read(folder: Path, plugins: bool) -> Fit:
         for use in ("identify", "validate")
     }
     tasks = {task.run: task for task in tasks_of(statement, folder)}
-    finished = [json.loads(tasks[run["run"]].result.read_text(encoding="utf-8")) for run in results.result["runs"]]
+    finished = [read_sealed(tasks[run["run"]].result) for run in results.result["runs"]]
     runs = [(run, Checkpoint(tasks[run["run"]].losses)) for run in finished]
     chain, sections = Model.of(job), sections_of(job)
     return Fit(statement_of(job_text(job.name, chain, records, sections), records), chain, records, sections, runs)

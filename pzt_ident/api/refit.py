@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from pzt_ident.api.computing import computing
 from pzt_ident.api.fitted import Fitted, Parts
 from pzt_ident.api.record import Record
 from pzt_ident.api.statement import job_text, statement_of
@@ -17,6 +16,7 @@ from pzt_ident.diagnosis.score import Scorer
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.model.registry import blocks, word_of
 from pzt_ident.run.checkpoint import Checkpoint
+from pzt_ident.run.computing import computing
 from pzt_ident.run.improve import case_of, wider_bounds
 from pzt_ident.run.statement import Statement
 from pzt_ident.run.task import what_is_known

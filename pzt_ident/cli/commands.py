@@ -8,6 +8,7 @@ import os
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from threading import Thread
@@ -17,6 +18,7 @@ import click
 
 from pzt_ident.cli.control_commands import control, drive, export, tune
 from pzt_ident.cli.first_commands import demo, init, workbench
+from pzt_ident.cli.fleet_commands import fleet, resume_fleet
 from pzt_ident.cli.options import (
     EXISTING,
     Group,
@@ -26,13 +28,16 @@ from pzt_ident.cli.options import (
     edit_options,
     no_report_flag,
     output_options,
+    place_option,
     plugins_flag,
     plugins_option,
     run_options,
 )
+from pzt_ident.errors import DamagedError
 
 if TYPE_CHECKING:
     from pzt_ident.cli.progress import Listener
+    from pzt_ident.run.place import Place
 
 
 @click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -54,16 +59,14 @@ def main(debug: bool) -> None:
 @run_options
 @plugins_flag
 @output_options
-def run(
-    job: Path, out: Path | None, workers: int | None, no_report: bool, plugins: bool, as_json: bool, quiet: bool
-) -> None:
+def run(job: Path, out: Path | None, place: Place, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
     """Identify the model of a job file JOB."""
 
     def start(listen: Listener) -> Path:
         from pzt_ident.job.schema import load_job
         from pzt_ident.run.identify import run
 
-        return run(load_job(job, plugins), out, workers=workers, listen=listen)
+        return run(load_job(job, plugins), out, place=place, listen=listen)
 
     _identify(start, no_report, as_json, quiet)
 
@@ -73,15 +76,39 @@ def run(
 @run_options
 @plugins_flag
 @output_options
-def resume(folder: Path, workers: int | None, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
-    """Go on with the run in the folder DIR."""
+def resume(folder: Path, place: Place, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
+    """Go on with the run or the fleet in the folder DIR."""
+    if (folder / "fleet.json").is_file():
+        resume_fleet(folder, place, plugins, as_json, quiet)
+        return
+    if _is_diagnosis(folder):
+        _diagnose_again(folder, no_report, plugins, as_json, quiet)
+        return
 
     def start(listen: Listener) -> Path:
         from pzt_ident.run.identify import resume
 
-        return resume(folder, workers=workers, listen=listen, plugins=plugins)
+        return resume(folder, place=place, listen=listen, plugins=plugins)
 
     _identify(start, no_report, as_json, quiet)
+
+
+def _is_diagnosis(folder: Path) -> bool:
+    from pzt_ident.run.elsewhere import task_of
+
+    return (folder / "environment.json").is_file() and task_of(folder) in ("improve", "diagnose")
+
+
+def _diagnose_again(folder: Path, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
+    """From its beginning, unless it came to its end."""
+    from pzt_ident.cli import verdict_tables
+    from pzt_ident.run.elsewhere import begin_again, task_of
+
+    improves = task_of(folder) == "improve"
+    name, show = (
+        ("improvement", verdict_tables.show_improvement) if improves else ("diagnosis", verdict_tables.show_diagnosis)
+    )
+    _show_diagnosis(lambda listen: begin_again(folder, listen, plugins), name, show, no_report, as_json, quiet)
 
 
 def _identify(start: Callable[[Listener], Path], no_report: bool, as_json: bool, quiet: bool) -> None:
@@ -139,6 +166,7 @@ def compare(source: Path, out: Path | None, no_report: bool, plugins: bool, as_j
     target = out or folder
     residuals = compare(folder, target)
     results = replace(read_folder(folder), misfit=residuals)
+    _say_damaged(results.damaged)
     figures = () if no_report else write_misfit_figures(results, target / "figures")
     for _ in tracked(figures, "figures", as_json or quiet):
         pass
@@ -181,12 +209,13 @@ def model(**options: Any) -> None:
 
 @main.command()
 @diagnosis_options
-def improve(job: Path, **options: Any) -> None:
+@place_option
+def improve(job: Path, place: Place, **options: Any) -> None:
     """Add what the model of a job file JOB misses, effect by effect, and watch the error fall."""
     from pzt_ident.cli import verdict_tables
-    from pzt_ident.run.improve import improve
+    from pzt_ident.run.elsewhere import improve_at
 
-    _diagnose(improve, "improvement", verdict_tables.show_improvement, job, **options)
+    _diagnose(partial(improve_at, place), "improvement", verdict_tables.show_improvement, job, **options)
 
 
 def _diagnose(
@@ -201,11 +230,26 @@ def _diagnose(
     as_json: bool,
     quiet: bool,
 ) -> None:
-    from pzt_ident.cli.progress import listening
     from pzt_ident.job.schema import load_job
 
+    def start(listen: Listener) -> Path:
+        return function(load_job(job, plugins), out, listen, budget)
+
+    _show_diagnosis(start, name, show, no_report, as_json, quiet)
+
+
+def _show_diagnosis(
+    start: Callable[[Listener], Path],
+    name: str,
+    show: Callable[[dict[str, Any], Path], None],
+    no_report: bool,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    from pzt_ident.cli.progress import listening
+
     with listening(silent=as_json or quiet) as listen:
-        folder = function(load_job(job, plugins), out, listen, budget)
+        folder = start(listen)
         _report(folder, no_report)
     verdict = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
     answer({"folder": str(folder), name: verdict}, lambda: show(verdict, folder), as_json, quiet)
@@ -251,6 +295,11 @@ def show(name: str, as_json: bool, quiet: bool) -> None:
     answer(description, lambda: show_word(description), as_json, quiet)
 
 
+def _say_damaged(sentences: tuple[str, ...]) -> None:
+    for sentence in sentences:
+        click.echo(f"left out: {sentence}", err=True)
+
+
 @main.command()
 @click.option("-o", "--out", type=EXISTING, default=Path("atlas.html"), show_default=True, help="The page to write.")
 @plugins_option
@@ -279,21 +328,30 @@ def report(folders: tuple[Path, ...], out: Path | None, as_json: bool, quiet: bo
 
     Several folders are put side by side, too, on a page of their own.
     """
-    from pzt_ident.cli.table import tracked
-    from pzt_ident.report.figures import write_paper_figures
+    from pzt_ident.cli.progress import listening
+    from pzt_ident.report.figures import write_all_figures
     from pzt_ident.report.page import write_report
     from pzt_ident.report.side_by_side import write_side_by_side
     from pzt_ident.run.results import read_folder
 
-    pages = []
+    pages, readable = [], []
     for folder in folders:
+        try:
+            results = read_folder(folder)
+        except DamagedError as error:
+            if len(folders) == 1:
+                raise
+            click.echo(f"left out: {error}", err=True)
+            continue
+        _say_damaged(results.damaged)
+        readable.append(folder)
         pages.append(str(write_report(folder)))
-        for _ in tracked(write_paper_figures(read_folder(folder), folder / "figures"), "figures", as_json or quiet):
-            pass
-    if len(folders) > 1:
-        pages.append(str(write_side_by_side(folders, out or Path("side-by-side.html"))))
+    with listening(silent=as_json or quiet) as listen:
+        write_all_figures(readable, listen=listen)
+    if len(readable) > 1:
+        pages.append(str(write_side_by_side(readable, out or Path("side-by-side.html"))))
     answer({"reports": pages}, lambda: click.echo("\n".join(pages)), as_json, quiet)
 
 
-for command in (control, drive, tune, export, init, demo, workbench):
+for command in (control, drive, tune, export, fleet, init, demo, workbench):
     main.add_command(command)

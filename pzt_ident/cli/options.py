@@ -7,6 +7,7 @@ import json
 import re
 import warnings
 from collections.abc import Callable
+from functools import update_wrapper
 from pathlib import Path
 from shlex import quote
 from typing import Any
@@ -90,11 +91,37 @@ def plugins_option(command: Command) -> Command:
     return option(command)
 
 
+class At(click.ParamType):
+    """A place to run at: `local:4`, `tcp://scheduler:8786`, `slurm:PARTITION:8`."""
+
+    name = "place"
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        from pzt_ident.run.place import place_of
+
+        return place_of(value)
+
+
+def place_option(command: Command) -> Command:
+    """--on, and --workers N as its short form `local:N`."""
+
+    def place(on: Any, workers: int | None, **options: Any) -> None:
+        from pzt_ident.run.place import HERE, Local
+
+        if on and workers:
+            raise InputError("says where as well", where="--workers", remedy=f"write --on local:{workers} alone")
+        command(place=on or (Local(workers) if workers else HERE), **options)
+
+    update_wrapper(place, command)
+    text = "Where to run: local[:N], tcp://scheduler:8786 or slurm:PARTITION:N; all cores of this machine if not given."
+    on = click.option("--on", metavar="PLACE", type=At(), help=text)
+    workers = click.option("--workers", type=click.IntRange(min=1), help="N processes side by side: --on local:N.")
+    return on(workers(place))
+
+
 def run_options(command: Command) -> Command:
-    """--workers and --no-report."""
-    command = no_report_flag(command)
-    workers = click.IntRange(min=1)
-    return click.option("--workers", type=workers, help="Processes side by side; all cores if not given.")(command)
+    """--on, --workers and --no-report."""
+    return no_report_flag(place_option(command))
 
 
 def diagnosis_options(command: Command) -> Command:

@@ -15,6 +15,7 @@ from typing import Any, Protocol
 import click
 
 from pzt_ident.cli.table import is_terminal, number
+from pzt_ident.errors import LostError
 
 SECONDS_BETWEEN_LINES = 5.0
 
@@ -31,6 +32,8 @@ class Progress:
     """The progress of the runs of a job, from its events."""
 
     budget: int = 0
+    what: str = "evaluations"
+    broken: int = 0
     unit: str = ""
     together: str = ""
     best: float = math.inf
@@ -44,6 +47,11 @@ class Progress:
             self.budget, self.unit, self.folder = event["budget"], event["unit"], event.get("folder", "")
             self.together = event["together"]
             self.evaluations = dict.fromkeys(event["runs"], 0)
+        elif event["event"] in ("devices", "pages", "figures"):
+            self.what, self.budget, self.folder = event["event"], event["of"], event["folder"]
+            self.broken = event.get("broken", 0)
+            self.evaluations = {"": event["done"] + self.broken}
+            self.first = self.first or (time.perf_counter(), self.done)
         elif event["event"] == "generation":
             self.evaluations[event["run"]] = event["evaluations"]
             self.best = min(self.best, event["best"])
@@ -69,8 +77,9 @@ class Progress:
             return self.activity or "finishing"
         left = self.seconds_left()
         time_left = "finishing" if self.done >= self.budget else "" if left is None else f"{duration(left)} left"
-        share = f"{100 * self.done / self.budget:.0f} %: {self.done} of {self.budget} evaluations"
-        text = f"{share}, best RMSE{self.together} {number(self.best)} {self.unit}"
+        share = f"{100 * self.done / self.budget:.0f} %: {self.done} of {self.budget} {self.what}"
+        best = f", best RMSE{self.together} {number(self.best)} {self.unit}" if self.what == "evaluations" else ""
+        text = f"{share}{best}{f', {self.broken} broken' if self.broken else ''}"
         return f"{text}, {time_left}" if time_left else text
 
 
@@ -78,7 +87,8 @@ class Progress:
 def listening(silent: bool) -> Iterator[Listener]:
     """A listener for the events of a run: a live bar on a terminal, else a line every few seconds, on stderr.
 
-    After an interrupt, SIGTERM (sent by the scheduler of a cluster) or a full disk, it prints how to resume the run.
+    After an interrupt, SIGTERM (sent by the scheduler of a cluster), a full disk or the loss of a cluster, it prints
+    how to resume the run.
     """
     progress = Progress()
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)
@@ -90,7 +100,7 @@ def listening(silent: bool) -> Iterator[Listener]:
                 yield listener
         else:
             yield _lines(progress)
-    except (KeyboardInterrupt, OSError):
+    except (KeyboardInterrupt, OSError, LostError):
         if progress.folder and not silent:
             click.echo(f"`pzt-ident resume {quote(progress.folder)}` goes on from here", err=True)
         raise
@@ -135,8 +145,12 @@ def _message(event: Event) -> str:
     """The sentence that is printed for an event; empty for most events."""
     if event["event"] == "finished":
         return "every run is finished: nothing is searched again"
-    if event["event"] == "stair":
+    if event["event"] in ("stair", "cluster", "damaged"):
         return str(event["said"])
+    if event["event"] == "again":
+        return f"{event['run']} is done again: {event['reason']}"
+    if event["event"] == "devices" and "failed" in event:
+        return f"{event['device']}: {event['failed']}"
     return failure_message(event) if event["event"] == "failed" else ""
 
 

@@ -64,7 +64,7 @@ def write_signals(path: Path, residuals: Iterable[tuple[Record, Array]]) -> None
 
 
 def _write_group(group: Any, record: Record, residuals: Array) -> None:
-    group.attrs.update(use=record.use, name=record.name, settle=record.settle * record.dt, file=record.file)
+    group.attrs.update(use=record.use, name=record.name, settle=record.settle * record.dt, file=_readable(record.file))
     group.dimensions = {"time": record.samples}
     _put(group, "time", record.time, "s", "time")
     for axis, name in enumerate(record.axes):
@@ -75,6 +75,11 @@ def _write_group(group: Any, record: Record, residuals: Array) -> None:
         _put(group, f"response_{name}", response / factor(unit), unit, f"measured {name}")
         _put(group, f"model_{name}", (response + residual) / factor(unit), unit, f"model of {name}")
         _put(group, f"residual_{name}", residual / factor(unit), unit, f"model minus measured {name}")
+
+
+def _readable(path: str) -> str:
+    """A path need not be UTF-8."""
+    return path.encode("utf-8", "backslashreplace").decode()
 
 
 def _put(group: Any, name: str, values: Array, unit: str, meaning: str) -> None:
@@ -101,7 +106,7 @@ def read_traces(path: Path, order: Sequence[str]) -> tuple[Trace, ...]:
     try:
         with h5py.File(path) as file:
             traces = [trace for group in _groups(file) for trace in _traces(group)]
-    except OSError as error:
+    except (OSError, KeyError, RuntimeError, ValueError) as error:  # HDF5 raises any of them on a damaged file
         raise InputError(f"not netCDF4: {error}", where=str(path), remedy="run the job again") from error
     places = {name: place for place, name in reversed(list(enumerate(order)))}
     return tuple(sorted(traces, key=lambda trace: (places.get(trace.record, len(order)), trace.axis)))

@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pzt_ident.data.signals import Trace
+from pzt_ident.errors import RunError
 from pzt_ident.files import replaced
 from pzt_ident.report import density_figures
 from pzt_ident.report import misfit_figures as misfit
@@ -19,7 +20,9 @@ from pzt_ident.report import signal_figures as signal
 from pzt_ident.report import staircase_figures as staircase
 from pzt_ident.report.sentences import USE_NAMES, distributed_parameters
 from pzt_ident.report.style import COLUMN, PAGE, file_content, style
-from pzt_ident.run.results import Results
+from pzt_ident.run.events import Listen, nobody
+from pzt_ident.run.place import HERE, Place
+from pzt_ident.run.results import Results, read_folder
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -67,12 +70,38 @@ def render(plate: Plate, width: float, forms: Sequence[str]) -> dict[str, bytes]
 
 def write_page_figures(results: Results, folder: Path) -> list[tuple[Plate, bytes]]:
     """Write the static figures of the page as `<name>-180mm.svg`; returns each with its content."""
-    return [(plate, _write(plate, PAGE, ("svg",), folder)["svg"]) for plate in plates(results) if plate.section]
+    return [(plate, write_plate(plate, PAGE, ("svg",), folder)["svg"]) for plate in plates(results) if plate.section]
 
 
-def write_paper_figures(results: Results, folder: Path) -> Iterator[Plate]:
-    """Write all figures for print, SVG and PDF at 88 and 180 mm. Yields each one that is written."""
-    return _written(plates(results), folder)
+def write_all_figures(folders: Sequence[Path], place: Place = HERE, listen: Listen = nobody) -> None:
+    """Write all figures of several results for print, SVG and PDF at 88 and 180 mm, side by side; `listen` is told of
+    each. Raises RunError where one cannot be drawn."""
+    tasks = [
+        (f"{folder}: {number}", (folder, number))
+        for folder in folders
+        for number in range(len(plates(read_folder(folder))))
+    ]
+    done = 0
+
+    def note(name: str, result: object) -> None:
+        nonlocal done
+        done += 1
+        listen({"event": "figures", "of": len(tasks), "done": done, "folder": ""})
+
+    failed = place.run_all(draw_figure, (), tasks, nobody, note)
+    for name, reason in failed.items():
+        raise RunError(f"{name}: {reason}")
+
+
+@lru_cache(maxsize=1)
+def _results(folder: Path) -> Results:
+    return read_folder(folder)
+
+
+def draw_figure(tell: Listen, folder: Path, number: int) -> None:
+    """Entry of a worker: a figure of the results in a folder."""
+    for _ in _written([plates(_results(folder))[number]], folder / "figures"):
+        pass
 
 
 def write_misfit_figures(results: Results, folder: Path) -> Iterator[Plate]:
@@ -83,11 +112,11 @@ def write_misfit_figures(results: Results, folder: Path) -> Iterator[Plate]:
 def _written(selection: Iterable[Plate], folder: Path) -> Iterator[Plate]:
     for plate in selection:
         for width in (COLUMN, PAGE):
-            _write(plate, width, ("svg", "pdf"), folder)
+            write_plate(plate, width, ("svg", "pdf"), folder)
         yield plate
 
 
-def _write(plate: Plate, width: int, forms: Sequence[str], folder: Path) -> dict[str, bytes]:
+def write_plate(plate: Plate, width: int, forms: Sequence[str], folder: Path) -> dict[str, bytes]:
     contents = render(plate, width, forms)
     for form, content in contents.items():
         with replaced(folder / f"{plate.name}-{width}mm.{form}") as temporary:

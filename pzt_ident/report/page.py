@@ -32,16 +32,17 @@ POINTS = (7000, 4000, 2000)  # samples of all records together, tried in this or
 MODULES = ("parts.js", "signals.js", "plane.js", "explorer.js", "staircase.js", "report.js")
 
 
-def write_report(folder: Path) -> Path:
+def write_report(folder: Path, static: bool = True) -> Path:
     """Write `report.html`, `tables/` and the SVG of each static figure in `figures/` for a finished run, diagnosis or
-    improvement.
+    improvement. static: whether there are static figures, which take twenty times as long as all else.
 
     Returns the path of the page, which is written last. Raises InputError if the folder holds no result.
     """
     results = read_folder(folder)
     tables = make_tables(results)
     write_tables(tables, results.folder / "tables")
-    variables = _template_variables(results, tables, _figures_by_section(results))
+    variables = _template_variables(results, tables, _figures_by_section(results) if static else {})
+    variables["static"] = static
     stairs = [staircase(results, "stairs")] if results.improvement else []
     content = {"floors": results.floors, "stairs": stairs}
     page = ""
@@ -93,7 +94,7 @@ def rendered(name: str, title: str, content: dict[str, Any], **variables: Any) -
     scripts = [web_file("uplot/uPlot.iife.min.js"), bundled_modules()]
     allowed = " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(s.encode()).digest()).decode()}'" for s in scripts)
     css = "\n".join(web_file(sheet) for sheet in ("page.css", "plots.css", "uplot/uPlot.min.css"))
-    return (
+    page = (
         environment()
         .get_template(name)
         .render(
@@ -105,6 +106,7 @@ def rendered(name: str, title: str, content: dict[str, Any], **variables: Any) -
             **variables,
         )
     )
+    return page.encode("utf-8", "backslashreplace").decode()  # a path need not be UTF-8
 
 
 def web_file(name: str) -> str:

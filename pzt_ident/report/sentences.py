@@ -77,10 +77,11 @@ def remaining_error(results: Results) -> str:
 def findings(results: Results) -> list[str]:
     """Sentences on what a reader must know beside the verdict: what to measure next, parameters that are not
     determined, remarks on records, failed simulations and runs."""
+    lost = [f"Left out: {sentence}." for sentence in results.damaged]
     diagnosed = [*_advice(results)] if results.diagnosis else []
     diagnosed += weighed(results.units)
     run = [*_parameters(results), *_notes(results), *_failures(results)] if results.result else []
-    return [_prose(sentence) for sentence in diagnosed + run]
+    return [_prose(sentence) for sentence in lost + diagnosed + run]
 
 
 def _advice(results: Results) -> Iterator[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-HEAD = struct.Struct("<dq")
+HEAD = struct.Struct("<dqI")  # seconds, number of losses, CRC-32 of them and of the two
 
 
 class Generation(NamedTuple):
@@ -21,7 +22,8 @@ class Generation(NamedTuple):
 
     @property
     def raw(self) -> bytes:
-        return HEAD.pack(self.seconds, len(self.losses)) + self.losses.astype("<f8").tobytes()
+        losses = self.losses.astype("<f8").tobytes()
+        return HEAD.pack(self.seconds, len(self.losses), _check(self.seconds, losses)) + losses
 
 
 class Checkpoint:
@@ -66,12 +68,17 @@ class Checkpoint:
 
 
 def read_losses(path: Path) -> Iterator[Generation]:
-    """Each whole generation on the disk; a torn last one is left out."""
+    """Each whole generation on the disk, up to the first that is torn or damaged."""
     raw = path.read_bytes() if path.exists() else b""
     at = 0
     while at + HEAD.size <= len(raw):
-        seconds, count = HEAD.unpack_from(raw, at)
-        if count < 1 or at + HEAD.size + 8 * count > len(raw):
+        seconds, count, check = HEAD.unpack_from(raw, at)
+        start, end = at + HEAD.size, at + HEAD.size + 8 * count
+        if count < 1 or end > len(raw) or _check(seconds, raw[start:end]) != check:
             return
-        yield Generation(seconds, np.frombuffer(raw, "<f8", count, at + HEAD.size))
-        at += HEAD.size + 8 * count
+        yield Generation(seconds, np.frombuffer(raw, "<f8", count, start))
+        at = end
+
+
+def _check(seconds: float, losses: bytes) -> int:
+    return zlib.crc32(losses, zlib.crc32(struct.pack("<dq", seconds, len(losses) // 8)))

@@ -13,7 +13,7 @@ from pzt_ident.data.record import Record
 from pzt_ident.data.signals import write_signals
 from pzt_ident.data.units import factor
 from pzt_ident.errors import RunError
-from pzt_ident.files import write_json, write_text
+from pzt_ident.files import digest_of, write_sealed, write_text
 from pzt_ident.run.checkpoint import read_losses
 from pzt_ident.run.folder import read_environment
 from pzt_ident.run.misfit import write_misfits
@@ -23,8 +23,13 @@ from pzt_ident.search.league import rank
 from pzt_ident.search.problem import Problem
 
 
-def collect(statement: Statement, folder: Path, tasks: list[Task], failed: dict[str, str]) -> None:
-    """Tables and curves of all runs; `result.json` comes last. Raises RunError where every run failed."""
+def collect(
+    statement: Statement, folder: Path, tasks: list[Task], failed: dict[str, str], misfits: bool = True
+) -> dict[str, Any]:
+    """Tables and curves of all runs, with `residuals.json` if `misfits`; `result.json` comes last and is returned.
+
+    Raises RunError where every run failed.
+    """
     done = [task for task in tasks if task.run not in failed]
     if not done:
         raise RunError("every run failed: " + "; ".join(dict.fromkeys(failed.values())))
@@ -48,8 +53,11 @@ def collect(statement: Statement, folder: Path, tasks: list[Task], failed: dict[
         "runs": [{key: value for key, value in run.items() if key != "correlation"} for run in runs],
         "failed_runs": [{"run": name, "reason": reason} for name, reason in failed.items()],
     }
-    write_misfits(folder, result)
-    write_json(folder / "result.json", result)
+    if misfits:
+        write_misfits(folder, result)
+    result["files"] = {name: digest_of(folder / name) for name in ("history.csv", "signals.nc")}
+    write_sealed(folder / "result.json", result)
+    return result
 
 
 def facts_of(record: Record, problem: Problem, point: np.ndarray) -> dict[str, Any]:

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import json
 import os
 import platform
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import datetime
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 from pzt_ident.data.record import Record
 from pzt_ident.errors import InputError
-from pzt_ident.files import write_json, write_text
+from pzt_ident.files import damaged, read_sealed, write_json, write_text
 from pzt_ident.job.schema import Job
 
 PACKAGES = ("pzt-ident", "numpy", "scipy", "numba", "pandas", "pyswarms", "deap", "cma")
@@ -24,14 +24,15 @@ def results_folder(job: Job, out: Path | None) -> Path:
     return out or Path("results") / job.name / f"{datetime.now():%Y%m%d-%H%M%S}-{job.hash}"
 
 
-def begin(folder: Path, job: Job, text: str, records: Sequence[Record]) -> None:
-    """Make the folder of a run and put the job's text and the environment into it.
+def begin(folder: Path, job: Job, text: str, records: Sequence[Record], task: Mapping[str, Any] | None = None) -> None:
+    """Make the folder of a run and put the job's text and the environment into it. task: what was asked for beside a
+    run, to begin it again.
 
     Raises InputError where that cannot be, or something is in it.
     """
     make_empty(folder)
     write_text(folder / "job.yaml", text)
-    write_json(folder / "environment.json", environment(job, records))
+    write_json(folder / "environment.json", environment(job, records) | ({"task": dict(task)} if task else {}))
 
 
 def make_empty(folder: Path) -> None:
@@ -53,7 +54,7 @@ def environment(job: Job, records: Sequence[Record]) -> dict[str, Any]:
         "platform": platform.platform(),
         "cpu": platform.processor() or platform.machine(),
         "cores": os.cpu_count(),
-        "packages": {name: _version(name) for name in PACKAGES},
+        "packages": {name: version_of(name) for name in PACKAGES},
         "command": " ".join(["pzt-ident", *sys.argv[1:]]),
         "data": {record.name: record.sha256 for record in records},
         "job_hash": job.hash,
@@ -62,7 +63,8 @@ def environment(job: Job, records: Sequence[Record]) -> dict[str, Any]:
     }
 
 
-def _version(package: str) -> str:
+@cache
+def version_of(package: str) -> str:
     from importlib.metadata import PackageNotFoundError, version
 
     try:
@@ -72,12 +74,27 @@ def _version(package: str) -> str:
 
 
 def read_environment(folder: Path) -> dict[str, Any]:
-    """The environment of the run in a folder. Raises InputError where there is none."""
-    try:
-        return dict(json.loads((folder / "environment.json").read_text(encoding="utf-8")))
-    except (OSError, ValueError):
+    """The environment of the run in a folder. Raises InputError where there is none, DamagedError where it is not as it
+    was written."""
+    path = folder / "environment.json"
+    if not path.is_file():
         remedy = "give the folder that `pzt-ident run` wrote"
-        raise InputError("holds no run", where=str(folder), remedy=remedy) from None
+        raise InputError("holds no run", where=str(folder), remedy=remedy)
+    begun = read_sealed(path)
+    texts = all(isinstance(begun.get(key), str) for key in ("command", "job_hash", "job_name", "job_folder"))
+    if not texts or not isinstance(begun.get("data"), dict) or not isinstance(begun.get("task", {}), dict):
+        raise damaged(path, "does not say what this run began with")
+    return begun
+
+
+def read_job(folder: Path, name: str = "job.yaml") -> str:
+    """The text of the job that a folder was begun with. Raises InputError where it cannot be read."""
+    path = folder / name
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        remedy = "put the job in its place that the run began with, or start a new run"
+        raise InputError("cannot be read", where=str(path), remedy=remedy) from None
 
 
 def check_unchanged(job: Job, records: Sequence[Record], begun: dict[str, Any], folder: Path) -> None:
@@ -86,6 +103,6 @@ def check_unchanged(job: Job, records: Sequence[Record], begun: dict[str, Any], 
     if job.hash != begun["job_hash"]:
         raise InputError("is not the job that this run began with", where=str(folder / "job.yaml"), remedy=remedy)
     for record in records:
-        if record.sha256 != begun["data"][record.name]:
+        if record.sha256 != begun["data"].get(record.name):
             where = str(job.folder / record.file)
             raise InputError("has changed since this run began", where=where, remedy=remedy)

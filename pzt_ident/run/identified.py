@@ -15,10 +15,11 @@ from pzt_ident.control.identified import Identified
 from pzt_ident.control.notes import frequency
 from pzt_ident.data.units import factor
 from pzt_ident.errors import InputError
+from pzt_ident.files import read_sealed
 from pzt_ident.job.chain import ChainParts
 from pzt_ident.job.schema import Job
 from pzt_ident.job.sections import Choice
-from pzt_ident.run.folder import check_unchanged, read_environment
+from pzt_ident.run.folder import check_unchanged, read_environment, read_job
 from pzt_ident.run.statement import Statement
 
 Array = NDArray[np.float64]
@@ -41,7 +42,7 @@ def read_identified(path: Path, plugins: bool = False, as_given: bool = False) -
     begun = read_environment(path)
     beside = improved or (path / "data").is_dir()  # the data are named from where the job lies
     home = path if beside else Path(begun["job_folder"])
-    job = Job.from_text((path / name).read_text(encoding="utf-8"), home, str(path / name), plugins)
+    job = Job.from_text(read_job(path, name), home, str(path / name), plugins)
     statement = Statement(job)
     if not improved:
         check_unchanged(job, statement.records, begun, path)
@@ -53,12 +54,12 @@ Values = Mapping[str, Mapping[str, Any]]
 
 
 def _best(folder: Path) -> tuple[Values, Errors, str]:
-    best = json.loads((folder / "result.json").read_text(encoding="utf-8"))["best"]
+    best = read_sealed(folder / "result.json", "best")["best"]
     return best["parameters"] | best["fixed"], best["rmse"], "job.yaml"
 
 
 def _improved(folder: Path, as_given: bool) -> tuple[Values, Errors, str]:
-    steps = json.loads((folder / "improvement.json").read_text(encoding="utf-8"))["steps"]
+    steps = read_sealed(folder / "improvement.json", "steps")["steps"]
     step, name = (steps[0], "job.yaml") if as_given else (steps[-1], "improved.yaml")
     return step["parameters"], step["rmse"], name
 

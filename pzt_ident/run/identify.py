@@ -6,18 +6,20 @@ from pathlib import Path
 
 from pzt_ident.data.over_axes import together
 from pzt_ident.data.units import factor, same_kind
-from pzt_ident.errors import InputError
+from pzt_ident.errors import DamagedError, InputError
+from pzt_ident.files import write_files
 from pzt_ident.job.schema import Job
 from pzt_ident.model.registry import optimizers
 from pzt_ident.run.collect import collect
 from pzt_ident.run.events import Listen, event_log, nobody
-from pzt_ident.run.folder import begin, check_unchanged, read_environment, results_folder
-from pzt_ident.run.pool import run_all
+from pzt_ident.run.folder import begin, check_unchanged, read_environment, read_job, results_folder
+from pzt_ident.run.place import HERE, Place
+from pzt_ident.run.results import read_results
 from pzt_ident.run.statement import Statement
-from pzt_ident.run.task import Task, work
+from pzt_ident.run.task import Task, read_result, work, work_away
 
 
-def run(job: Job, out: Path | None = None, *, workers: int | None = None, listen: Listen = nobody) -> Path:
+def run(job: Job, out: Path | None = None, *, place: Place = HERE, listen: Listen = nobody) -> Path:
     """Identify what the job asks for; returns the folder of results. `listen` is told each event as it happens.
 
     Writes `job.yaml`, `environment.json`, `events.jsonl`, `history.csv`, `signals.nc`, `residuals.json` and, last,
@@ -27,37 +29,71 @@ def run(job: Job, out: Path | None = None, *, workers: int | None = None, listen
     folder = results_folder(job, out)
     tasks = tasks_of(statement, folder)
     begin(folder, job, job.text, statement.records)
-    return _search(statement, folder, tasks, workers, listen)
+    return _search(statement, folder, tasks, place, listen)
 
 
-def resume(folder: Path, *, workers: int | None = None, listen: Listen = nobody, plugins: bool = False) -> Path:
+def resume(folder: Path, *, place: Place = HERE, listen: Listen = nobody, plugins: bool = False) -> Path:
     """Go on where a killed run stopped, to the result that it would have had.
 
     Raises InputError where the folder holds no run, or its job or data have changed.
     """
     begun = read_environment(folder)
-    text = (folder / "job.yaml").read_text(encoding="utf-8")
+    text = read_job(folder)
     job = Job.from_text(text, Path(begun["job_folder"]), f"{begun['job_name']}.yaml", plugins)
     statement = Statement(job)
     check_unchanged(job, statement.records, begun, folder)
-    return _search(statement, folder, tasks_of(statement, folder), workers, listen)
+    return _search(statement, folder, tasks_of(statement, folder), place, listen)
 
 
-def _search(statement: Statement, folder: Path, tasks: list[Task], workers: int | None, listen: Listen) -> Path:
-    """Run the tasks that have no result yet, and collect those of all."""
-    missing = [task for task in tasks if not task.result.exists()]
+def _search(statement: Statement, folder: Path, tasks: list[Task], place: Place, listen: Listen) -> Path:
+    """Run the tasks that have no result yet, or a damaged one, and collect those of all."""
     with event_log(folder, listen) as tell:
-        if missing or not (folder / "result.json").exists():
+        missing = [task for task in tasks if not is_done(task, tell)]
+        if missing or not is_collected(folder, tell):
             runs, budget = [task.run for task in missing], sum(task.stop["evaluations"] for task in missing)
             size = {"budget": budget, "unit": statement.unit, "together": together(statement.records[0].units)}
             tell({"event": "start", "runs": runs, **size, "folder": str(folder)})
-            job = statement.job
-            arguments = [(task.run, (task, job.text, job.folder, statement.records)) for task in missing]
-            collect(statement, folder, tasks, run_all(work, arguments, workers, tell))
+            collect(statement, folder, tasks, search_all(statement, folder, missing, place, tell))
         else:
             tell({"event": "finished"})
         tell({"event": "done", "folder": str(folder)})
     return folder
+
+
+def is_done(task: Task, tell: Listen) -> bool:
+    """Whether a task has a result; one that is damaged is told."""
+    try:
+        return task.result.exists() and bool(read_result(task))
+    except DamagedError as error:
+        tell({"event": "damaged", "said": f"{error.where} {error.message}; its search is done again"})
+        return False
+
+
+def is_collected(folder: Path, tell: Listen) -> bool:
+    """Whether what all tasks came to is there; what is damaged of it is told."""
+    if not (folder / "result.json").exists():
+        return False
+    try:
+        said = list(read_results(folder).damaged)
+    except InputError as error:
+        said = [str(error).replace("\n ", ";")]
+    for sentence in said:
+        tell({"event": "damaged", "said": f"{sentence.partition(';')[0]}; it is made again"})
+    return not said
+
+
+def search_all(statement: Statement, folder: Path, tasks: list[Task], place: Place, tell: Listen) -> dict[str, str]:
+    """Run the tasks at a place, their files into the folder; returns the reason for each that failed."""
+    job = statement.job
+    common = job.text, job.folder.resolve(), statement.records
+    if place.shares_disk:
+        return place.run_all(work, common, [(task.run, (task,)) for task in tasks], tell)
+    begun = ((task.run, (task, told_so_far(task))) for task in tasks)
+    return place.run_all(work_away, common, begun, tell, lambda name, files: write_files(folder, files))
+
+
+def told_so_far(task: Task) -> bytes:
+    return task.losses.read_bytes() if task.losses.exists() else b""
 
 
 def stop_of(statement: Statement) -> dict[str, float | int | None]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from pzt_ident.data.noise import units_and_floors
+from pzt_ident.data.record import Record
 from pzt_ident.data.signals import write_signals
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis import staircase as stairs
@@ -20,7 +21,7 @@ from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.diagnosis.verdict import diagnose as judge
-from pzt_ident.files import write_json, write_text
+from pzt_ident.files import write_sealed, write_text
 from pzt_ident.job.edit import edited
 from pzt_ident.job.schema import Job
 from pzt_ident.model.description import headline
@@ -35,14 +36,19 @@ from pzt_ident.run.statement import Statement, loss_unit
 
 @contextmanager
 def opened_case(
-    job: Job, out: Path | None, listen: Listen = nobody, budget: float | None = None
+    job: Job,
+    out: Path | None,
+    listen: Listen = nobody,
+    budget: float | None = None,
+    records: Sequence[Record] | None = None,
+    task: str = "improve",
 ) -> Iterator[tuple[Case, Path]]:
     """The case, and a folder that holds the job, what it runs on and, in `events.jsonl`, what happens as it does.
 
-    Raises InputError where job or data are wrong.
+    records: those of the job where they were read already. Raises InputError where job or data are wrong.
     """
-    statement, folder = Statement(job), results_folder(job, out)
-    begin(folder, job, edited(job, job.effects, folder), statement.records)
+    statement, folder = Statement(job, records), results_folder(job, out)
+    begin(folder, job, edited(job, job.effects, folder), statement.records, {"name": task, "budget": budget})
     case = case_of(statement)
     with event_log(folder, listen) as tell, np.errstate(all="ignore"):
         case.on_event = lambda event: tell(worded(case, event))
@@ -72,27 +78,33 @@ def told(case: Case, step: stairs.Step) -> None:
 def diagnose(job: Job, out: Path | None = None, listen: Listen = nobody, budget: float | None = None) -> Path:
     """Fit the job's model, say where it fails and what it misses; writes `diagnosis.json`, `residuals.json` and
     `signals.nc` into the folder returned. budget: as of `improve`."""
-    with opened_case(job, out, listen, budget) as (case, folder):
+    with opened_case(job, out, listen, budget, task="diagnose") as (case, folder):
         first = first_fit(case, job.seed)
         told(case, stairs.Step(first))
         found = judge(case, first)
         content = diagnosis_of(job, case, found, folder)
         write_signals(folder / "signals.nc", first.problem.errors(first.point))
-        write_json(folder / "diagnosis.json", content)
+        write_sealed(folder / "diagnosis.json", content)
         compare(folder, folder)
     return folder
 
 
-def improve(job: Job, out: Path | None = None, listen: Listen = nobody, budget: float | None = None) -> Path:
+def improve(
+    job: Job,
+    out: Path | None = None,
+    listen: Listen = nobody,
+    budget: float | None = None,
+    records: Sequence[Record] | None = None,
+) -> Path:
     """Diagnose, add what is missing and diagnose again, until nothing is missing or nothing more is known.
 
     budget: CPU seconds, by default 60 or 1 ms a sample. After them the verdict is on what was found by then, and says
-    what was not tried.
+    what was not tried. records: those of the job where they were read already.
 
     Writes `improved.yaml`, `diagnosis.json` and `residuals.json` of the last model, `improvement.json`, and the signals
     of the model as given and of the last one.
     """
-    with opened_case(job, out, listen, budget) as (case, folder):
+    with opened_case(job, out, listen, budget, records) as (case, folder):
         staircase = stairs.improve(case, first_fit(case, job.seed), SoFar(job, case, folder))
         steps, diagnosis = staircase.steps, diagnosis_of(job, case, staircase.last, folder)
         for name, step in (("signals_as_given.nc", steps[0]), ("signals.nc", steps[-1])):
@@ -100,7 +112,7 @@ def improve(job: Job, out: Path | None = None, listen: Listen = nobody, budget: 
         proposals = (separating(job, case, step.rivals, folder) for step in ties(steps))
         proposed = diagnosis["next_experiment"] or next(filter(None, proposals), None)
         content = improvement_of(job, case, staircase, diagnosis) | {"next_experiment": proposed}
-        write_json(folder / "diagnosis.json", diagnosis)
+        write_sealed(folder / "diagnosis.json", diagnosis)
         write_improvement(folder, content, improved(job, case, staircase, folder))
         compare(folder, folder)
     return folder
@@ -131,7 +143,7 @@ class SoFar:
 def write_improvement(folder: Path, content: dict[str, Any], job_text: str) -> None:
     """Write `improvement.json` and the job that goes with it."""
     write_text(folder / "improved.yaml", job_text)
-    write_json(folder / "improvement.json", content)
+    write_sealed(folder / "improvement.json", content)
 
 
 def improved(job: Job, case: Case, staircase: stairs.Staircase, folder: Path) -> str:

@@ -12,7 +12,7 @@ from pzt_ident.data.record import Record
 from pzt_ident.data.signals import read_signals
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis.locate import locate
-from pzt_ident.files import write_json
+from pzt_ident.files import write_sealed
 from pzt_ident.run.results import read_folder
 
 
@@ -25,14 +25,13 @@ def compare(folder: Path, out: Path) -> dict[str, Any]:
     results = read_folder(folder)
     names = list(dict.fromkeys(trace.record for trace in results.traces))
     residuals = misfits(folder, results.name, results.result or results.diagnosis, names)
-    write_json(out / "residuals.json", residuals)
-    return residuals
+    return write_sealed(out / "residuals.json", residuals)
 
 
 def write_misfits(folder: Path, facts: dict[str, Any]) -> None:
     """`residuals.json` of the signals in a folder, from the facts of its `result.json` or `diagnosis.json`."""
     names = [record["name"] for record in facts["records"]]
-    write_json(folder / "residuals.json", misfits(folder, facts["name"], facts, names))
+    write_sealed(folder / "residuals.json", misfits(folder, facts["name"], facts, names))
 
 
 def misfits(folder: Path, job: str, facts: dict[str, Any], names: Sequence[str]) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Processes side by side, watched: one that dies is named, and the others finish."""
+"""Processes side by side, each for one task after another, watched: what one that dies was at is done again."""
 
 from __future__ import annotations
 
@@ -8,12 +8,21 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from itertools import chain
 from multiprocessing.connection import wait
 from typing import Any
 
+from pzt_ident.errors import InputError, RunError
+
 Event = dict[str, Any]
+Tell = Callable[[Event], None]
+Done = Callable[[str, Any], None]
+Entry = Callable[..., Any]
 SECONDS_DEAF = 0.1
+ATTEMPTS = 3
+"""How often a task is begun whose processes die."""
 
 
 def context() -> Any:
@@ -94,63 +103,138 @@ def interrupts_deferred() -> Iterator[Callable[[], None]]:
     check()
 
 
+@dataclass(eq=False)
+class Worker:
+    """A process, our end of its pipe, and the task that it is at: the name and the arguments."""
+
+    process: Any
+    pipe: Any
+    name: str = ""
+    arguments: tuple[Any, ...] = ()
+
+    def begin(self, name: str, arguments: tuple[Any, ...]) -> None:
+        self.name, self.arguments = name, arguments
+        with suppress(ConnectionError):  # it has died: its pipe will say so
+            self.pipe.send(arguments)
+
+    def end(self) -> None:
+        """Of a worker that has nothing to do; it ends by itself."""
+        self.pipe.close()
+        self.process.join()
+
+
+class Pool:
+    """The workers of one call of `run_all`: those that wait for a task, and those that are at one."""
+
+    def __init__(self, entry: Entry, common: tuple[Any, ...], most: int) -> None:
+        self.entry, self.common, self.most = entry, common, most
+        self.context = context()
+        self.idle: list[Worker] = []
+        self.busy: dict[Any, Worker] = {}
+
+    @property
+    def has_room(self) -> bool:
+        return len(self.busy) < self.most
+
+    def begin(self, name: str, arguments: tuple[Any, ...]) -> None:
+        worker = self.idle.pop() if self.idle else self._started()
+        self.busy[worker.pipe] = worker
+        worker.begin(name, arguments)
+
+    def _started(self) -> Worker:
+        ours, theirs = self.context.Pipe()
+        process = self.context.Process(target=serve, args=(self.entry, self.common, theirs), daemon=True)
+        with without_working_folder():
+            process.start()
+        theirs.close()
+        return Worker(process, ours)
+
+    def end(self) -> None:
+        """End idle workers by their pipes and busy ones at once."""
+        for worker in self.busy.values():
+            worker.process.terminate()
+        for worker in (*self.idle, *self.busy.values()):
+            worker.end()
+
+
 def run_all(
-    entry: Callable[..., None],
-    jobs: Iterable[tuple[str, tuple[Any, ...]]],
+    entry: Entry,
+    common: tuple[Any, ...],
+    tasks: Iterable[tuple[str, tuple[Any, ...]]],
     workers: int | None,
-    tell: Callable[[Event], None],
+    tell: Tell,
+    done: Done = lambda name, result: None,
 ) -> dict[str, str]:
-    """Run entry(*arguments, pipe) for each name, at most `workers` at once. What comes through a pipe is told on; a
-    process that ends without sending None has failed.
+    """Call entry(tell, *common, *arguments) for each name in processes, at most `workers` at once. What it tells is
+    told on, what it returns is given to done(name, result). `common` goes to a process once; the tasks are taken as
+    there is room for them. A task whose process dies is begun again, ATTEMPTS times in all.
 
     Returns the reason for each name that failed. Ends all processes when interrupted.
     """
-    waiting, failed = list(jobs), dict[str, str]()
-    running: dict[Any, tuple[str, Any]] = {}
+    waiting, failed, deaths = iter(tasks), dict[str, str](), dict[str, int]()
     with interrupts_deferred() as check:
-        made = context()
+        pool = Pool(entry, common, workers or os.cpu_count() or 1)
         try:
-            while waiting or running:
+            while True:
                 check()
-                while waiting and len(running) < (workers or os.cpu_count() or 1):
-                    name, arguments = waiting.pop(0)
-                    ours, process = started(made, entry, name, arguments)
-                    running[ours] = name, process
-                for ready in wait(list(running), SECONDS_DEAF):
-                    name, process = running[ready]
-                    event = said(ready, name, process)
-                    if event is None or event["event"] == "failed":
-                        del running[ready]
-                        process.join()
-                    if event is not None:
-                        tell(event)
-                        if event["event"] == "failed":
-                            failed[name] = event["reason"]
+                while pool.has_room and (task := next(waiting, None)):
+                    pool.begin(*task)
+                if not pool.busy:
+                    return failed
+                for ready in wait(list(pool.busy), SECONDS_DEAF):
+                    worker = pool.busy[ready]
+                    kind, content = said(worker)
+                    if kind == "event":
+                        tell(content)
+                        continue
+                    del pool.busy[ready]
+                    deaths[worker.name] = deaths.get(worker.name, 0) + (kind == "died")
+                    if kind == "died" and deaths[worker.name] < ATTEMPTS:
+                        tell({"event": "again", "run": worker.name, "reason": content})
+                        waiting = chain([(worker.name, worker.arguments)], waiting)
+                        continue
+                    if kind != "died":
+                        pool.idle.append(worker)
+                    del deaths[worker.name]
+                    if kind == "done":
+                        done(worker.name, content)
+                    else:
+                        failed[worker.name] = content
+                        tell({"event": "failed", "run": worker.name, "reason": content})
         finally:
-            for _, process in running.values():
-                process.terminate()
-            for _, process in running.values():
-                process.join()
-    return failed
+            pool.end()
 
 
-def started(made: Any, entry: Callable[..., None], name: str, arguments: tuple[Any, ...]) -> tuple[Any, Any]:
-    """Our end of its pipe, and the process."""
-    ours, theirs = made.Pipe(duplex=False)
-    process = made.Process(target=entry, args=(*arguments, theirs), name=name, daemon=True)
-    with without_working_folder():
-        process.start()
-    theirs.close()
-    return ours, process
+def serve(entry: Entry, common: tuple[Any, ...], pipe: Any) -> None:
+    """The life of a worker: one task after another, until nobody sends any or nobody listens."""
+    import numpy as np
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    np.seterr(all="ignore")  # a simulation that overflows is counted, not warned about
+    with suppress(ConnectionError, EOFError):
+        while True:
+            pipe.send(attempt(entry, (*common, *pipe.recv()), lambda event: pipe.send(("event", event))))
 
 
-def said(pipe: Any, name: str, process: Any) -> Event | None:
+def attempt(entry: Entry, arguments: tuple[Any, ...], tell: Tell) -> tuple[str, Any]:
+    """`done` with what the entry returns, or `failed` with the reason."""
+    try:
+        return "done", entry(tell, *arguments)
+    except ConnectionError:
+        raise
+    except (InputError, RunError) as error:
+        return "failed", str(error)
+    except Exception as error:
+        return "failed", f"{type(error).__name__}: {error}"
+
+
+def said(worker: Worker) -> tuple[str, Any]:
     """What came through the pipe; where it broke, why."""
     try:
-        event: Event | None = pipe.recv()
-    except EOFError:
-        event = {"event": "failed", "run": name, "reason": died(process)}
-    return event
+        message: tuple[str, Any] = worker.pipe.recv()
+    except (EOFError, ConnectionError):
+        message = "died", died(worker.process)
+    return message
 
 
 def died(process: Any) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,17 +9,28 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from pzt_ident.data.signals import Trace, read_traces
-from pzt_ident.errors import InputError
+from pzt_ident.errors import DamagedError, InputError
+from pzt_ident.files import damaged, digest_of, read_sealed
 
 if TYPE_CHECKING:
     import pandas as pd
+
+
+KEYS = {
+    "result.json": ("records", "runs", "league", "unit", "noise_floor"),
+    "residuals.json": ("axes",),
+    "diagnosis.json": ("verdict", "reason", "rmse", "candidates", "unit", "noise_floor"),
+    "improvement.json": ("verdict", "reason", "steps", "unit", "noise_floor"),
+}
+"""What each file must have."""
 
 
 @dataclass(frozen=True, eq=False)
 class Results:
     """What a run, a diagnosis or an improvement wrote, empty where it did not: `result`, `diagnosis` and `improvement`
     are the JSON files of these names, `misfit` is residuals.json. `history` has one row a generation, `job` is the
-    job's text, `before` are the traces of the model as given where that was improved."""
+    job's text, `before` are the traces of the model as given where that was improved. `damaged` says of each file that
+    could not be read why."""
 
     folder: Path
     result: dict[str, Any]
@@ -32,6 +42,7 @@ class Results:
     diagnosis: dict[str, Any] = field(default_factory=dict)
     improvement: dict[str, Any] = field(default_factory=dict)
     before: tuple[Trace, ...] = ()
+    damaged: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -39,7 +50,7 @@ class Results:
 
     @property
     def command(self) -> str:
-        return self.result.get("command") or self.environment["command"]
+        return self.result.get("command") or self.environment.get("command", "")
 
     @property
     def facts(self) -> dict[str, Any]:
@@ -128,47 +139,71 @@ def read_results(folder: Path) -> Results:
 
 
 def read_folder(folder: Path) -> Results:
-    """Read the folder of a finished run, diagnosis or improvement.
+    """Read the folder of a finished run, diagnosis or improvement. What is damaged of it is left out, and named in
+    `damaged`; without its signals, or what they are the model of, there is nothing to read.
 
     Raises InputError where a file is missing, cannot be read, or holds no finished run.
     """
     import pandas as pd
 
-    folder = Path(folder)
-    diagnosis = _json_if_there(folder / "diagnosis.json")
-    result = _json_if_there(folder / "result.json") if diagnosis else _json(folder / "result.json")
+    folder, lost = Path(folder), list[str]()
+
+    def content(name: str) -> dict[str, Any]:
+        """The content of a file that is there; nothing where it is damaged."""
+        try:
+            return read_sealed(folder / name, *KEYS.get(name, ())) if (folder / name).exists() else {}
+        except DamagedError as error:
+            lost.append(str(error).replace("\n ", ";"))
+            return {}
+
+    diagnosis = content("diagnosis.json")
+    result = content("result.json") if diagnosis else read_sealed(_there(folder / "result.json"), *KEYS["result.json"])
     if result and not result.get("best"):
         raise InputError("no run finished", where=str(folder / "result.json"), remedy="see `failed_runs` in it")
-    environment = _json(folder / "environment.json")
-    order = [record["name"] for record in result["records"]] if result else list(environment["data"])
+    _there(folder / "environment.json")
+    environment = content("environment.json")
+    order = [record["name"] for record in result["records"]] if result else list(environment.get("data", ()))
     before = folder / "signals_as_given.nc"
+    digests = result.get("files", {})
+    history = _history(folder, digests, lost) if result else pd.DataFrame()
+    try:
+        job = _there(folder / "job.yaml").read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        job = ""
+        lost.append(f"{folder / 'job.yaml'} is damaged: it is no text")
+    signals = _there(folder / "signals.nc")
+    if digests and digest_of(signals) != digests.get(signals.name):
+        raise damaged(signals, "is not as it was written")
     return Results(
         folder,
         result,
-        pd.read_csv(_there(folder / "history.csv")) if result else pd.DataFrame(),
-        read_traces(_there(folder / "signals.nc"), order),
+        history,
+        read_traces(signals, order),
         environment,
-        _there(folder / "job.yaml").read_text(encoding="utf-8"),
-        _json_if_there(folder / "residuals.json"),
+        job,
+        content("residuals.json"),
         diagnosis,
-        _json_if_there(folder / "improvement.json"),
+        content("improvement.json"),
         read_traces(before, order) if before.exists() else (),
+        tuple(lost),
     )
 
 
-def _json_if_there(path: Path) -> dict[str, Any]:
-    return _json(path) if path.exists() else {}
+def _history(folder: Path, digests: dict[str, str], lost: list[str]) -> pd.DataFrame:
+    """The losses generation by generation; none where the file is damaged, which is noted."""
+    import pandas as pd
+
+    path = _there(folder / "history.csv")
+    try:
+        if digests and digest_of(path) != digests.get(path.name):
+            raise damaged(path, "is not as it was written")
+        return pd.read_csv(path)
+    except ValueError as error:
+        lost.append(str(error).replace("\n ", ";") if isinstance(error, DamagedError) else f"{path} is damaged")
+        return pd.DataFrame()
 
 
 def _there(path: Path) -> Path:
     if not path.is_file():
         raise InputError("file is missing", where=str(path), remedy="give the folder of a finished run")
     return path
-
-
-def _json(path: Path) -> dict[str, Any]:
-    text = _there(path).read_text(encoding="utf-8")
-    try:
-        return json.loads(text)
-    except ValueError as error:
-        raise InputError(f"not JSON: {error}", where=str(path), remedy="run the job again") from error

@@ -1,25 +1,24 @@
-"""One optimizer, one repeat: what runs in a process of its own."""
+"""One optimizer, one repeat: what a worker does at a time."""
 
 from __future__ import annotations
 
-import json
 import time
 import zlib
 from collections.abc import Callable, Sequence
-from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 
 from pzt_ident.data.record import Record
 from pzt_ident.data.units import factor
-from pzt_ident.errors import InputError, RunError
-from pzt_ident.files import write_json
+from pzt_ident.errors import RunError
+from pzt_ident.files import damaged, read_files, read_sealed, write_bytes, write_sealed
 from pzt_ident.model.optimizer import Optimizer
 from pzt_ident.model.registry import optimizers
-from pzt_ident.run.checkpoint import Checkpoint
+from pzt_ident.run.checkpoint import Checkpoint, read_losses
 from pzt_ident.run.statement import Statement
 from pzt_ident.search.loop import Outcome, State, Stop, optimize
 from pzt_ident.search.problem import Problem
@@ -51,28 +50,28 @@ class Task:
         return self.folder / "runs" / f"{self.run}.json"
 
 
-def work(task: Task, job_text: str, folder: Path, records: Sequence[Record], pipe: Any) -> None:
-    """Entry of the process: results go to the disk, events and errors through the pipe, until nobody listens."""
-    import signal
-
+def work(tell: Tell, job_text: str, folder: Path, records: Sequence[Record], task: Task) -> None:
+    """Entry of a worker that shares the disk: results go to the task's folder."""
     from pzt_ident.job.schema import Job
 
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    np.seterr(all="ignore")  # a simulation that overflows is counted, not warned about
-    with suppress(ConnectionError):
-        try:
-            search(task, Statement(Job.from_text(job_text, folder, plugins=True), records), pipe.send)
-            pipe.send(None)
-        except (InputError, RunError) as error:
-            pipe.send({"event": "failed", "run": task.run, "reason": str(error)})
-        except Exception as error:
-            pipe.send({"event": "failed", "run": task.run, "reason": f"{type(error).__name__}: {error}"})
+    search(task, Statement(Job.from_text(job_text, folder, plugins=True), records), tell)
+
+
+def work_away(
+    tell: Tell, job_text: str, folder: Path, records: Sequence[Record], task: Task, told: bytes
+) -> dict[str, bytes]:
+    """Entry of a worker that may be anywhere; returns the files of its result. told: the losses so far, as a file."""
+    with TemporaryDirectory() as scratch:
+        there = replace(task, folder=Path(scratch))
+        write_bytes(there.losses, told)
+        work(tell, job_text, folder, records, there)
+        return read_files(there.folder)
 
 
 def search(task: Task, statement: Statement, tell: Tell) -> None:
     """Search, polish, judge the parameters, and write the result; continues from the losses on the disk."""
     result = identification(task, statement, Checkpoint(task.losses), tell)
-    write_json(task.result, result)
+    write_sealed(task.result, result)
     tell({"event": "run", "run": task.run, "rmse": result["rmse"], "stopped_by": result["stopped_by"]})
 
 
@@ -187,4 +186,9 @@ def generation_event(task: Task, evaluations: int, best: dict[str, float], secon
 
 
 def read_result(task: Task) -> dict[str, Any]:
-    return dict(json.loads(task.result.read_text()))
+    """Raises DamagedError where it is not whole, or not that of the losses beside it."""
+    result = read_sealed(task.result, "run", "rmse", "parameters", "point", "evaluations")
+    counted = sum(len(losses) for _, losses in read_losses(task.losses))
+    if task.losses.exists() and counted != result["evaluations"]:
+        raise damaged(task.losses, "does not hold the losses of its run")
+    return result

@@ -19,6 +19,7 @@ import pzt_ident.run.identify
 from pzt_ident.cli.commands import main
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.model.registry import blocks, optimizers
+from pzt_ident.run.place import Local
 
 JOB = """\
 name: small
@@ -130,7 +131,7 @@ class TestRun:
     def test_hands_its_options_on(self, folder, quick):
         call("run", "job.yaml", "--out", "there", "--workers", "3", "--no-report")
         ((job, out, options),) = quick
-        assert (job.name, out, options) == ("small", Path("there"), {"workers": 3})
+        assert (job.name, out, options) == ("small", Path("there"), {"place": Local(3)})
         assert not (Path("out") / "report.html").exists()
 
     def test_json_is_all_there_is(self, folder, quick):
@@ -145,7 +146,7 @@ class TestRun:
     def test_resume(self, folder, quick):
         result = call("resume", "out", "--workers", "1")
         assert result.exit_code == 0
-        assert quick == [(Path("out"), {"workers": 1, "plugins": False})]
+        assert quick == [(Path("out"), {"place": Local(1), "plugins": False})]
         assert (Path("out") / "report.html").exists()
 
     def test_resume_without_a_run(self, folder):

@@ -16,6 +16,7 @@ from pzt_ident.job.schema import Job
 from pzt_ident.model.chain import Chain
 from pzt_ident.report.page import write_report
 from pzt_ident.run.identify import run
+from pzt_ident.run.place import Local
 from pzt_ident.run.statement import read
 from pzt_ident.search.problem import Problem
 from rig import block_of, path, record, response
@@ -149,7 +150,7 @@ def test_a_job_says_that_its_walls_run_away(tmp_path):
     rows = np.column_stack([np.arange(field.size) / 1e3, field, 1e6 * displacement(field, **smith.DW1)])
     np.savetxt(tmp_path / "loop.csv", rows, "%.9g", ",", header="time [s],E [V/m],x [um]", comments="")
     job = Job.from_text(JOB, tmp_path)
-    folder = run(job, tmp_path / "out", workers=1)
+    folder = run(job, tmp_path / "out", place=Local(1))
     (note,) = json.loads((folder / "result.json").read_text())["records"][0]["notes"]
     assert "condition (9)" in note
     assert "Record loop: at" in write_report(folder).read_text()

@@ -7,10 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from pzt_ident.report.figures import plates, render, write_page_figures, write_paper_figures
+from pzt_ident.report.figures import draw_figure, plates, render, write_all_figures, write_page_figures
 from pzt_ident.report.residual_figures import branches, cell_means, quantile_band
 from pzt_ident.report.search_figures import convergence, within
 from pzt_ident.report.style import COLUMN, PAGE, decimate, decimate_curve, fit
+from pzt_ident.run.place import Local
 from pzt_ident.run.results import Trace, read_results
 
 NUMBER = st.floats(-1e6, 1e6) | st.just(np.nan)
@@ -119,7 +120,7 @@ def test_axes_carry_units_and_names_are_shown_as_they_are(weird):
 
 
 def test_paper_files_are_pdf_and_svg_at_both_widths(plain):
-    next(write_paper_figures(read_results(plain), plain / "figures"))
+    draw_figure(print, plain, 0)
     for width, points in ((COLUMN, b"249.4"), (PAGE, b"510.2")):
         pdf = next((plain / "figures").glob(f"time-1-*-{width}mm.pdf")).read_bytes()
         assert pdf.startswith(b"%PDF") and b"/MediaBox [ 0 0 " + points in pdf
@@ -142,3 +143,14 @@ def test_small_numbers_put_a_power_of_ten_to_the_unit(plain):
     metres = replace(trace, unit="m", **{kind: 1e-6 * getattr(trace, kind) for kind in kinds})
     plate = replace(plates(read_results(plain))[0], draw=partial(draw_time, trace=metres, noise=None, bins=200))
     assert "response [10⁻⁶ m]" in render(plate, COLUMN, ("svg",))["svg"].decode()
+
+
+def test_all_figures_of_several_results_are_drawn_side_by_side_and_told(plain, weird):
+    """Each in four files."""
+    events = []
+    write_all_figures([plain, weird], Local(2), events.append)
+    for folder in (plain, weird):
+        names = {plate.name for plate in plates(read_results(folder))}
+        files = {path.name for path in (folder / "figures").iterdir()}
+        assert files >= {f"{name}-{w}mm.{form}" for name in names for w in (88, 180) for form in ("svg", "pdf")}
+    assert [event["done"] for event in events] == list(range(1, events[0]["of"] + 1))

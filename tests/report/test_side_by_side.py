@@ -47,7 +47,7 @@ def test_other_units_are_not_ranked(pair, tmp_path):
 
 
 def test_the_command_writes_it(pair, tmp_path, monkeypatch):
-    monkeypatch.setattr("pzt_ident.report.figures.write_paper_figures", lambda results, folder: iter(()))
+    monkeypatch.setattr("pzt_ident.report.figures.write_all_figures", lambda folders, listen: None)
     answer = CliRunner().invoke(main, ["report", *map(str, pair), "-o", str(tmp_path / "both.html")])
     assert answer.exit_code == 0, answer.output
     assert answer.stdout.splitlines() == [

@@ -12,7 +12,7 @@ GENERATIONS = [
     Generation(1.25, np.array([5e-6])),
     Generation(2.0, np.array([np.inf, 1e-6])),
 ]
-ENDS = np.cumsum([16 + 8 * 3, 16 + 8, 16 + 8 * 2])  # bytes: seconds, count, losses
+ENDS = np.cumsum([20 + 8 * 3, 20 + 8, 20 + 8 * 2])  # bytes: seconds, count, check, losses
 
 
 @pytest.fixture
@@ -36,6 +36,13 @@ def test_wherever_a_file_is_torn_its_whole_generations_are_read(path):
     for length in range(len(raw) + 1):
         path.write_bytes(raw[:length])
         assert_same(read_losses(path), GENERATIONS[: np.searchsorted(ENDS, length, side="right")])
+
+
+def test_wherever_a_byte_is_changed_what_is_before_it_is_read(path):
+    raw = path.read_bytes()
+    for place in range(len(raw)):
+        path.write_bytes(raw[:place] + bytes([raw[place] ^ 0x55]) + raw[place + 1 :])
+        assert_same(read_losses(path), GENERATIONS[: np.searchsorted(ENDS, place, side="right")])
 
 
 def test_what_is_appended_takes_the_place_of_what_was_torn(path):

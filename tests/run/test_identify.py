@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import time
-from multiprocessing import Pipe
 from pathlib import Path
 
 import numpy as np
@@ -19,9 +18,9 @@ from pzt_ident.model.chain import Chain
 from pzt_ident.run.checkpoint import Checkpoint, Generation, read_losses
 from pzt_ident.run.identify import resume, run, tasks_of
 from pzt_ident.run.misfit import compare
-from pzt_ident.run.pool import run_all
+from pzt_ident.run.place import Local
 from pzt_ident.run.statement import Statement
-from pzt_ident.run.task import search, work
+from pzt_ident.run.task import search
 
 JOB = """\
 name: small
@@ -58,7 +57,7 @@ def folder(tmp_path_factory):
 @pytest.fixture(scope="module")
 def finished(folder):
     events = []
-    out = run(load_job(folder / "job.yaml"), folder / "out", workers=2, listen=events.append)
+    out = run(load_job(folder / "job.yaml"), folder / "out", place=Local(2), listen=events.append)
     return out, events
 
 
@@ -153,9 +152,11 @@ def test_events_tell_the_story_in_the_users_unit(finished):
 
 def test_a_run_killed_hard_goes_on_to_the_same_result(folder, finished, tmp_path):
     out = tmp_path / "killed"
+    job = f"load_job(Path({str(folder / 'job.yaml')!r}))"
     script = (
         "from pathlib import Path; from pzt_ident.job.schema import load_job; from pzt_ident.run.identify import run\n"
-        f"if __name__ == '__main__': run(load_job(Path({str(folder / 'job.yaml')!r})), Path({str(out)!r}), workers=1)"
+        "from pzt_ident.run.place import Local\n"
+        f"if __name__ == '__main__': run({job}, Path({str(out)!r}), place=Local(1))"
     )
     process = subprocess.Popen([sys.executable, "-c", script], start_new_session=True)
     deadline = time.monotonic() + 60
@@ -167,7 +168,7 @@ def test_a_run_killed_hard_goes_on_to_the_same_result(folder, finished, tmp_path
     assert not (out / "result.json").exists()
     with told.open("ab") as file:
         file.write(b"torn")
-    resume(out, workers=2)
+    resume(out, place=Local(2))
     assert numbers(out) == numbers(finished[0])
 
 
@@ -246,7 +247,7 @@ def test_resume_of_a_finished_run_searches_nothing(finished, tmp_path):
 def test_resume_counts_only_what_is_missing(finished, tmp_path):
     out, events = shutil.copytree(finished[0], tmp_path / "out"), []
     (out / "runs" / "pso-1.json").unlink()
-    resume(out, workers=1, listen=events.append)
+    resume(out, place=Local(1), listen=events.append)
     assert (events[0]["runs"], events[0]["budget"]) == (["pso-1"], 800)
     assert numbers(out) == numbers(finished[0])
 
@@ -274,7 +275,7 @@ def hopeless(folder: Path, polish: str) -> Job:
 
 @pytest.mark.parametrize("polish", ["true", "false"])
 def test_candidates_that_overflow_are_infinite_and_counted(folder, tmp_path, polish):
-    out = run(hopeless(folder, polish), tmp_path / "out", workers=1)
+    out = run(hopeless(folder, polish), tmp_path / "out", place=Local(1))
     result = json.loads((out / "result.json").read_text())
     assert result["failed_runs"] == []
     for item in result["runs"]:
@@ -290,39 +291,9 @@ def test_where_every_candidate_overflows_the_run_says_so(folder, tmp_path):
     bounds = "parameters:\n  bouc_wen.beta: {bounds: [-400, -300]}\n  bouc_wen.gamma: {bounds: [-1, 1]}\n"
     job = Job.from_text(JOB.replace("model: [bouc_wen]", "model: [bouc_wen]\n" + bounds), folder)
     with pytest.raises(RunError) as caught:
-        run(job, tmp_path / "out", workers=1)
+        run(job, tmp_path / "out", place=Local(1))
     said = "every run failed: the simulation of each of its 800 candidates failed: narrow the bounds"
     assert str(caught.value) == said
-
-
-def test_a_worker_ends_quietly_with_its_parent(folder, tmp_path, capfd):
-    listener, pipe = Pipe(duplex=False)
-    listener.close()
-    job = load_job(folder / "job.yaml")
-    statement = Statement(job)
-    task = tasks_of(statement, tmp_path)[0]
-    handler, errors = signal.getsignal(signal.SIGINT), np.geterr()
-    work(task, job.text, folder, statement.records, pipe)
-    signal.signal(signal.SIGINT, handler)
-    np.seterr(**errors)
-    assert capfd.readouterr().err == ""
-    assert not task.result.exists()
-
-
-def unlucky(number, pipe):
-    if number == 1:
-        os.kill(os.getpid(), signal.SIGKILL)
-    if number == 2:
-        sys.exit(3)
-    pipe.send({"event": "fine", "number": number})
-    pipe.send(None)
-
-
-def test_a_worker_that_dies_is_named_and_the_others_finish():
-    events = []
-    failed = run_all(unlucky, [(f"job-{i}", (i,)) for i in range(5)], 2, events.append)
-    assert failed == {"job-1": "its process was killed by signal 9", "job-2": "its process ended with exit code 3"}
-    assert {event["number"] for event in events if event["event"] == "fine"} == {0, 3, 4}
 
 
 def test_a_model_is_made_once_a_process(folder, tmp_path, monkeypatch):
@@ -331,7 +302,7 @@ def test_a_model_is_made_once_a_process(folder, tmp_path, monkeypatch):
     init = Chain.__init__
     monkeypatch.setattr(Chain, "__init__", lambda self, *parts: (made.append(parts), init(self, *parts))[1])
     job = load_job(folder / "job.yaml")
-    run(job, tmp_path / "out", workers=1)
+    run(job, tmp_path / "out", place=Local(1))
     assert len(made) == 1
     statement = Statement(Job.from_text(job.text, folder), Statement(job).records)
     search(tasks_of(statement, tmp_path / "worker")[0], statement, lambda event: None)

@@ -17,6 +17,7 @@ from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks
 from pzt_ident.report.page import write_report
 from pzt_ident.run.identify import run
+from pzt_ident.run.place import Local
 from pzt_ident.search.linear import Linear, solve
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.uncertainty import estimates
@@ -179,7 +180,7 @@ def test_from_a_job_to_the_report_and_back(measured, tmp_path):
     rows = np.column_stack([measured.time, FIELD, 1e6 * measured.response[0]])
     np.savetxt(tmp_path / "loops.csv", rows, delimiter=",", header="time [s],E [V/m],x [um]", comments="", fmt="%.9g")
     fixed = {"homogenized_energy.poled": {"value": 1e6}, "homogenized_energy.reach": {"value": REACH}}
-    folder = run(Job.from_text(JOB.format(parameters=json.dumps(fixed)), tmp_path), tmp_path / "out", workers=1)
+    folder = run(Job.from_text(JOB.format(parameters=json.dumps(fixed)), tmp_path), tmp_path / "out", place=Local(1))
     found = json.loads((folder / "result.json").read_text())["best"]
     assert found["parameters"]["homogenized_energy.interaction"]["value"] == pytest.approx(6120, rel=0.05)
     still = [name for name, entry in found["parameters"].items() if entry["verdict"] == "not moved"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import stat
 from pathlib import Path
 
 from pzt_ident.data.readers.registry import Parts, Reader, readers
@@ -49,6 +50,9 @@ def parts_of(path: Path) -> Parts:
 
 def _reader_of(path: Path) -> Reader:
     try:
+        if not stat.S_ISREG(path.stat().st_mode) and not path.is_dir():
+            remedy = "save what comes through it into a file first"
+            raise InputError("is no file but a pipe or a device", where=str(path), remedy=remedy)
         with path.open("rb") as file:
             is_empty = not file.read(1)
         if is_empty:

@@ -42,16 +42,20 @@ def read_records(
     records = _with_names([_record(SourceChannels(source, folder, tables), axes, time) for source in sources])
     _check_unit_kinds(records)
     records = [_in_units_of(records[0], record) for record in records]
-    identification = [record for record in records if record.use == "identify"]
-    return [_with_leakage_notes(record, identification) for record in records]
+    by_file: dict[str, list[Record]] = {}
+    for record in records:
+        if record.use == "identify":
+            by_file.setdefault(record.sha256, []).append(record)
+    return [_with_leakage_notes(record, by_file.get(record.sha256, ())) for record in records]
 
 
 def _with_names(records: Sequence[Record]) -> list[Record]:
     total = Counter(record.name for record in records)
     taken, renamed = set(total), []
+    numbers = {name: count(1) for name in total}
     for record in records:
         if total[record.name] > 1:
-            free = (f"{record.name}_{number}" for number in count(1))
+            free = (f"{record.name}_{number}" for number in numbers[record.name])
             record = replace(record, name=next(name for name in free if name not in taken))
             taken.add(record.name)
         renamed.append(record)
@@ -59,13 +63,14 @@ def _with_names(records: Sequence[Record]) -> list[Record]:
 
 
 def _with_leakage_notes(record: Record, identification: Sequence[Record]) -> Record:
-    """A validation record with a note for every identification record that holds some of the same scored samples."""
+    """A validation record with a note for every identification record of the same file that holds some of the same
+    scored samples."""
     if record.use != "validate":
         return record
     notes = list(record.notes)
     for other in identification:
         first, last = max(_first_scored_row(record), _first_scored_row(other)), min(record.rows[1], other.rows[1])
-        if record.sha256 == other.sha256 and first < last:
+        if first < last:
             mine, its = (item.response[:, first - item.rows[0] : last - item.rows[0]] for item in (record, other))
             if np.array_equal(mine, its, equal_nan=True):
                 notes.append(f"rows {first} to {last} are fitted in {other.name!r}, so they validate nothing")

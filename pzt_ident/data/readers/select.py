@@ -116,6 +116,8 @@ def _slice(item: int | str) -> int | slice:
 
 def _vector(column: Column, values: NDArray[Any], number: int | None, where: str) -> NDArray[Any]:
     values = np.squeeze(values)
+    if values.size == 0:
+        raise InputError("holds no values", where=where, remedy="was the recording stopped before it was saved?")
     if number is not None and values.ndim < 3:
         matrix = values.reshape(len(np.atleast_1d(values)), -1)
         if not 1 <= number <= matrix.shape[1]:

@@ -13,6 +13,9 @@ from pzt_ident.data.readers.table import Column
 from pzt_ident.data.units import factor
 from pzt_ident.errors import InputError
 
+LARGEST = 1e11
+"""In SI units: no rig measures as much, and squares of much more overflow."""
+
 
 @dataclass(frozen=True)
 class Signal:
@@ -40,6 +43,10 @@ class Signal:
             which = "infinite" if np.isinf(self.values[gaps]).all() else "missing"
             problem = f"{count} {which}: {', '.join(places)}{', ...' if len(runs) > 3 else ''}"
             raise InputError(problem, where=self.where, remedy="fill the gap, or leave it out with `rows`")
+        largest = int(np.abs(self.values).argmax())
+        if abs(self.values[largest]) > LARGEST:
+            problem = f"{self.place(largest)} holds {self.values[largest]:.4g} in SI units, beyond all measure"
+            raise InputError(problem, where=self.where, remedy="correct the value, or leave the row out with `rows`")
         return self
 
 

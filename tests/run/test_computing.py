@@ -3,7 +3,7 @@
 import numpy as np
 from threadpoolctl import threadpool_info
 
-from pzt_ident.api.computing import computing
+from pzt_ident.run.computing import computing
 
 
 def threads():

@@ -1,4 +1,4 @@
-"""How the library computes in a user's own process."""
+"""How this package computes in a process that is not its own: that of a user, or of a cluster."""
 
 from __future__ import annotations
 

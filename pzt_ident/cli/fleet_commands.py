@@ -1,0 +1,112 @@
+"""The commands on many devices: `fleet`, `fleet report`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from pzt_ident.cli.options import EXISTING, Seconds, answer, output_options, place_option, plugins_flag
+
+if TYPE_CHECKING:
+    from pzt_ident.run.place import Place
+
+
+class Fleet(click.Group):
+    """`fleet JOB PATTERN...` beside `fleet report DIR`: what is no command of it is a job."""
+
+    def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
+        return super().resolve_command(ctx, args if args[0] in self.commands else ["JOB", *args])
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Both, the options of the first below it."""
+        with formatter.section("Usage"):
+            formatter.write_text("pzt-ident fleet JOB PATTERN... [OPTIONS]\n\npzt-ident fleet report DIR [OPTIONS]")
+        self.commands["JOB"].format_options(ctx, formatter)
+
+
+@click.group(
+    cls=Fleet,
+    context_settings={"ignore_unknown_options": True, "allow_interspersed_args": False},
+    subcommand_metavar="JOB PATTERN... | report DIR",
+    no_args_is_help=True,
+)
+def fleet() -> None:
+    """Identify the model of a job file JOB on every device.
+
+    PATTERN: folders that hold the files of the job's records by name ('lot/*/'), files ('lot/*.csv'), or a table with a
+    column `file` or `folder`, and others such as temperature or serial number. Into a folder that holds the fleet
+    already, what was done is not done again. `fleet report DIR` draws the report on the devices in DIR.
+    """
+
+
+@fleet.command("JOB", hidden=True)
+@click.argument("job", type=EXISTING)
+@click.argument("patterns", metavar="PATTERN...", nargs=-1, required=True)
+@click.option("--out", type=EXISTING, help="Folder for the results; results/<name>/fleet if not given.")
+@click.option("--improve", is_flag=True, help="Diagnose each device, and add what its model misses.")
+@click.option("--budget", type=Seconds(), help="CPU time of each diagnosis, as of `pzt-ident improve`.")
+@place_option
+@plugins_flag
+@output_options
+def identify(
+    job: Path,
+    patterns: tuple[str, ...],
+    out: Path | None,
+    improve: bool,
+    budget: float | None,
+    place: Place,
+    plugins: bool,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Identify the model of a job file JOB on every device that the patterns or tables name."""
+    from pzt_ident.cli.progress import listening
+    from pzt_ident.job.schema import load_job
+    from pzt_ident.lot.identify import fleet
+
+    with listening(silent=as_json or quiet) as listen:
+        loaded = load_job(job, plugins)
+        folder = fleet(loaded, patterns, out, improve=improve, budget=budget, place=place, listen=listen)
+    show_fleet(folder, as_json, quiet)
+
+
+def resume_fleet(folder: Path, place: Place, plugins: bool, as_json: bool, quiet: bool) -> None:
+    from pzt_ident.cli.progress import listening
+    from pzt_ident.lot.identify import resume
+
+    with listening(silent=as_json or quiet) as listen:
+        resume(folder, place=place, listen=listen, plugins=plugins)
+    show_fleet(folder, as_json, quiet)
+
+
+def show_fleet(folder: Path, as_json: bool, quiet: bool) -> None:
+    """What a fleet came to. Ends with exit code 1 where no device could be identified."""
+    from shlex import quote
+
+    from pzt_ident.errors import RunError
+    from pzt_ident.lot.outcome import read_lot
+
+    lot = read_lot(folder)
+    facts = {"folder": str(folder), "table": str(folder / "devices.csv"), **lot.summary()}
+    text = "\n".join(
+        [*lot.sentences(), f"table: {folder / 'devices.csv'}", f"next: pzt-ident fleet report {quote(str(folder))}"]
+    )
+    answer(facts, lambda: click.echo(text), as_json, quiet)
+    if not lot.done:
+        raise RunError("no device could be identified")
+
+
+@fleet.command("report")
+@click.argument("folder", metavar="DIR", type=EXISTING)
+@place_option
+@output_options
+def report(folder: Path, place: Place, as_json: bool, quiet: bool) -> None:
+    """Draw the report on the devices in the folder DIR: spreads, devices out of line, what depends on what."""
+    from pzt_ident.cli.progress import listening
+    from pzt_ident.lot.report import write_fleet_report
+
+    with listening(silent=as_json or quiet) as listen:
+        page = write_fleet_report(folder, place=place, listen=listen)
+    answer({"report": str(page)}, lambda: click.echo(f"report: {page}"), as_json, quiet)

@@ -1,0 +1,182 @@
+"""The job on one device: what a worker does at a time."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from pzt_ident.data.readers import read_records
+from pzt_ident.data.record import Record
+from pzt_ident.diagnosis.criteria import CLEAR, VALIDATION_FACTOR
+from pzt_ident.errors import InputError, RunError
+from pzt_ident.files import read_files, read_sealed, write_bytes, write_json, write_sealed, write_text
+from pzt_ident.job.files import Template, on_files
+from pzt_ident.job.schema import Job
+from pzt_ident.run.collect import collect
+from pzt_ident.run.elsewhere import move
+from pzt_ident.run.events import nobody
+from pzt_ident.run.folder import environment
+from pzt_ident.run.identify import tasks_of
+from pzt_ident.run.improve import improve
+from pzt_ident.run.statement import Statement
+from pzt_ident.run.task import search
+
+WITHIN_95 = 1.96  # standard errors to either side hold the truth in 95 of 100 cases
+
+
+@dataclass(frozen=True)
+class Orders:
+    """What is the same for all devices. folder: that of the job."""
+
+    template: Template
+    folder: Path
+    command: str
+    improve: bool
+    budget: float | None
+
+
+@dataclass(frozen=True)
+class Given:
+    """A device as a worker gets it. key: of job and data. home: its folder of results. files: where each file of the
+    job is, as the user named it. contents: those of the files, where the worker does not share the disk."""
+
+    name: str
+    key: str
+    home: Path
+    files: Mapping[str, Path]
+    contents: Mapping[str, bytes] | None = None
+
+    def names(self) -> dict[str, str]:
+        """Each file as the job in the device's own folder names it."""
+        return {file: _relative(path, self.home) for file, path in self.files.items()}
+
+
+def _relative(path: Path, folder: Path) -> str:
+    import os
+
+    return os.path.relpath(path.resolve(), folder.resolve())
+
+
+def identify_device(tell: Any, orders: Orders, given: Given) -> dict[str, bytes]:
+    """Entry of a worker; returns the files of the device's folder. `device.json` among them is its row of the table.
+
+    Raises InputError where its data are wrong, RunError where no search came to anything.
+    """
+    begun, job = time.process_time(), _job(orders, given)
+    with TemporaryDirectory(prefix="pzt-ident-") as scratch:
+        there = Path(scratch)
+        records = read(job, orders, given, there)
+        folder = there / "device"
+        result = identified(job, records, orders, folder)
+        improvement = improved(job, records, orders, given, folder / "improved") if orders.improve else {}
+        row = row_of(given, result, improvement) | {"cpu_seconds": time.process_time() - begun}
+        write_sealed(folder / "device.json", row)
+        return read_files(folder)
+
+
+@lru_cache(maxsize=4)
+def _stated(text: str, folder: Path) -> Job:
+    return Job.from_text(text, folder, plugins=True)
+
+
+def _job(orders: Orders, given: Given) -> Job:
+    """The job of the device, in its folder; all that does not hang on the files is made once a worker."""
+    stated = _stated(orders.template.on({}), orders.folder)
+    names = given.names()
+    job = on_files(stated, lambda file: names[file])
+    job._text, job._folder = orders.template.on(names), given.home.resolve()
+    return job
+
+
+def read(job: Job, orders: Orders, given: Given, scratch: Path) -> list[Record]:
+    """The records of the device. Errors name its files as the user did."""
+    stated = _stated(orders.template.on({}), orders.folder)
+    paths = {file: path.resolve() for file, path in given.files.items()}
+    if given.contents is not None:
+        paths = {file: scratch / f"{place}-{path.name}" for place, (file, path) in enumerate(paths.items())}
+        for file, content in given.contents.items():
+            write_bytes(paths[file], content)
+    here = on_files(stated, lambda file: str(paths[file]))
+    sources = [
+        replace(source, name=source.name or Path(file.file).stem)
+        for source, file in zip(here.records, stated.records, strict=True)
+    ]
+    try:
+        records = read_records(sources, here.channels.axes, here.channels.time, Path())
+    except InputError as error:
+        shown = [_shown(text, paths, given.files) for text in (error.message, error.where, error.remedy)]
+        raise InputError(shown[0], where=shown[1], remedy=shown[2]) from None
+    return [replace(record, file=source.file) for record, source in zip(records, job.records, strict=True)]
+
+
+def _shown(text: str, paths: Mapping[str, Path], files: Mapping[str, Path]) -> str:
+    for file, path in paths.items():
+        text = text.replace(str(path), str(files[file]))
+    return text
+
+
+def identified(job: Job, records: list[Record], orders: Orders, folder: Path) -> dict[str, Any]:
+    """The run of the job on these records, in a folder as `pzt-ident run` leaves it, less the losses."""
+    statement = Statement(job, records)
+    write_text(folder / "job.yaml", job.text)
+    write_json(folder / "environment.json", environment(job, records) | {"command": orders.command})
+    tasks, failed = tasks_of(statement, folder), dict[str, str]()
+    for task in tasks:
+        try:
+            search(task, statement, nobody)
+        except RunError as error:
+            failed[task.run] = str(error)
+    result = collect(statement, folder, tasks, failed, misfits=False)
+    for task in tasks:
+        task.losses.unlink(missing_ok=True)  # nine tenths of all bytes, and never needed again
+    return result
+
+
+def improved(job: Job, records: list[Record], orders: Orders, given: Given, folder: Path) -> dict[str, Any]:
+    improve(job, folder, budget=orders.budget, records=records)
+    move(folder, given.home / "improved")
+    return read_sealed(folder / "improvement.json")
+
+
+def row_of(given: Given, result: dict[str, Any], improvement: dict[str, Any]) -> dict[str, Any]:
+    best, floor = result["best"], result["floor"]
+    last = improvement["steps"][-1] if improvement else best
+    return {
+        "device": given.name,
+        "key": given.key,
+        "state": "done",
+        "reason": improvement.get("reason", ""),
+        "verdict": improvement["verdict"] if improvement else verdict_of(best["rmse"], floor),
+        "effects": improvement.get("effects", []),
+        "suspects": [item["effect"] for item in improvement.get("suspects", [])],
+        "unit": result["unit"],
+        "rmse": best["rmse"],
+        "rmse_improved": last["rmse"] if improvement else None,
+        "noise_floor": floor,
+        "parameters": {name: _interval(item) for name, item in best["parameters"].items()},
+        "files": {file: str(path) for file, path in given.files.items()},
+        "sha256": result["records"][0]["sha256"],
+    }
+
+
+def _interval(item: Mapping[str, Any]) -> dict[str, Any]:
+    """A parameter with the ends of its interval of 95 %; none where the data do not determine it."""
+    value, error = item["value"], item["standard_error"]
+    ends = (None, None) if error is None else (value - WITHIN_95 * error, value + WITHIN_95 * error)
+    return {"value": value, "unit": item["unit"], "low": ends[0], "high": ends[1], "verdict": item["verdict"]}
+
+
+def verdict_of(rmse: Mapping[str, float | None], floor: float | None) -> str:
+    """Whether a model is at the noise, as a diagnosis would see it; what is missing only an improvement says."""
+    if not floor or rmse["identify"] is None:
+        return "noise not known"
+    most = floor * np.hypot(1, CLEAR), floor * np.hypot(1, VALIDATION_FACTOR * CLEAR)
+    at_noise = rmse["identify"] <= most[0] and (rmse["validate"] is None or rmse["validate"] <= most[1])
+    return "adequate" if at_noise else "above the noise"

@@ -1,0 +1,176 @@
+"""A job on a lot of devices, in a folder that can be gone on with: what was done is not done again."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shutil
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pzt_ident.errors import DamagedError, InputError, LostError
+from pzt_ident.files import read_sealed, write_sealed, write_text
+from pzt_ident.job.files import Template
+from pzt_ident.job.schema import Job
+from pzt_ident.lot.device import Given, Orders, identify_device
+from pzt_ident.lot.devices import Device, devices_of
+from pzt_ident.lot.table import folder_of, read_row, write_table
+from pzt_ident.run.events import Listen, nobody
+from pzt_ident.run.folder import make_empty, read_job
+from pzt_ident.run.place import HERE, Place
+
+NOT_A_FLEET = "give the folder that `pzt-ident fleet` wrote"
+
+
+def fleet(
+    job: Job,
+    patterns: Sequence[str],
+    out: Path | None = None,
+    *,
+    improve: bool = False,
+    budget: float | None = None,
+    place: Place = HERE,
+    listen: Listen = nobody,
+) -> Path:
+    """Identify the job's model on every device, and diagnose each if `improve`; returns the folder of results.
+
+    A folder a device, `devices.parquet` and `devices.csv` of all. In a folder that holds a fleet, what was done with
+    the same job on the same data stays. patterns: of folders, of files, or tables with a column `file` or `folder`.
+    Raises InputError where job or patterns are wrong, LostError where the place is gone.
+    """
+    folder = out or Path("results") / job.name / "fleet"
+    devices = devices_of(patterns, job)
+    if not (folder / "fleet.json").is_file():
+        make_empty(folder)
+    stated: dict[str, Any] = {
+        "job_name": job.name,
+        "job_folder": str(job.folder.resolve()),
+        "job_hash": job.hash,
+        "patterns": list(patterns),
+        "working_folder": os.getcwd(),
+        "improve": improve,
+        "budget": budget,
+        "command": " ".join(["pzt-ident", *sys.argv[1:]]),
+    }
+    write_text(folder / "job.yaml", job.text)
+    write_sealed(folder / "fleet.json", stated)
+    orders = Orders(Template(job), job.folder.resolve(), stated["command"], improve, budget)
+    return Identification(folder, devices, job, orders, listen).identify(place)
+
+
+def is_fleet(folder: Path) -> bool:
+    return (folder / "fleet.json").is_file()
+
+
+def resume(folder: Path, *, place: Place = HERE, listen: Listen = nobody, plugins: bool = False) -> Path:
+    """Go on with a fleet that was stopped: devices that were not done, that failed, or whose data have changed."""
+    stated = read_statement(folder)
+    job = Job.from_text(read_job(folder), Path(stated["job_folder"]), f"{stated['job_name']}.yaml", plugins)
+    base = Path(os.path.relpath(stated["working_folder"]))
+    patterns = [str(base / pattern) + "/" * pattern.endswith("/") for pattern in stated["patterns"]]
+    return fleet(job, patterns, folder, improve=stated["improve"], budget=stated["budget"], place=place, listen=listen)
+
+
+def read_statement(folder: Path) -> dict[str, Any]:
+    """What a fleet was asked for. Raises InputError where the folder holds none."""
+    try:
+        stated = read_sealed(folder / "fleet.json")
+        return stated | {"patterns": list(stated["patterns"]), "improve": bool(stated["improve"])}
+    except (DamagedError, KeyError, TypeError):
+        problem = "its fleet.json is damaged" if is_fleet(folder) else "holds no fleet"
+        raise InputError(problem, where=str(folder), remedy=NOT_A_FLEET) from None
+
+
+@dataclass
+class Identification:
+    """The devices of a fleet on their way to its folder."""
+
+    folder: Path
+    devices: list[Device]
+    job: Job
+    orders: Orders
+    listen: Listen
+    by_name: dict[str, Device] = field(init=False)
+    done: int = 0
+    broken: int = 0
+
+    def identify(self, place: Place) -> Path:
+        self.by_name = {device.name: device for device in self.devices}
+        shutil.rmtree(self.folder / "devices" / ".new", ignore_errors=True)
+        self.tell({})
+        try:
+            place.run_all(identify_device, (self.orders,), self.tasks(place), self.note, self.keep)
+        except (KeyboardInterrupt, LostError):
+            write_table(self.folder, self.devices)
+            raise
+        shutil.rmtree(self.folder / "devices" / ".new", ignore_errors=True)
+        write_table(self.folder, self.devices)
+        return self.folder
+
+    def tasks(self, place: Place) -> Iterator[tuple[str, tuple[Any, ...]]]:
+        """The devices that are not done, read one by one as there is room for them."""
+        for device in self.devices:
+            try:
+                if device.fault:
+                    raise InputError(device.fault)
+                contents = {file: read(path) for file, path in device.files.items()}
+            except InputError as error:
+                self.break_(device.name, str(error))
+                continue
+            key = self.key(contents)
+            home = folder_of(self.folder, device.name)
+            if (row := read_row(home)) and row["key"] == key and row["state"] == "done":
+                self.done += 1
+                continue
+            given = Given(device.name, key, home.absolute(), device.files, None if place.shares_disk else contents)
+            yield device.name, (given,)
+
+    def key(self, contents: dict[str, bytes]) -> str:
+        """What the result of a device is a function of: what was asked, and its data."""
+        asked = [self.job.hash, self.orders.improve, self.orders.budget if self.orders.improve else None]
+        hashes = [hashlib.sha256(content).hexdigest() for content in contents.values()]
+        return hashlib.sha256(json.dumps([asked, hashes]).encode()).hexdigest()
+
+    def keep(self, name: str, files: dict[str, bytes]) -> None:
+        """Put a device's files into its folder, all of them or none."""
+        self.done += 1
+        home = folder_of(self.folder, name)
+        new = self.folder / "devices" / ".new" / home.name
+        for file, content in files.items():
+            (new / file).parent.mkdir(parents=True, exist_ok=True)
+            (new / file).write_bytes(content)
+        shutil.rmtree(home, ignore_errors=True)
+        home.parent.mkdir(parents=True, exist_ok=True)
+        new.rename(home)
+        self.tell({"device": name})
+
+    def break_(self, name: str, reason: str) -> None:
+        """Write down why a device could not be identified."""
+        reason = reason.replace("\n  ", "; ")
+        self.broken += 1
+        home = folder_of(self.folder, name)
+        shutil.rmtree(home, ignore_errors=True)
+        write_sealed(home / "device.json", {"device": name, "key": "", "state": "broken", "reason": reason})
+        self.tell({"device": name, "failed": reason})
+
+    def note(self, event: dict[str, Any]) -> None:
+        """Events of the workers; those of single searches are not told on."""
+        if event["event"] == "failed":
+            self.break_(event["run"], event["reason"])
+        elif event["event"] in ("again", "cluster"):
+            self.listen(event)
+
+    def tell(self, more: dict[str, Any]) -> None:
+        counts = {"of": len(self.devices), "done": self.done, "broken": self.broken, "folder": str(self.folder)}
+        self.listen({"event": "devices", **counts, **more})
+
+
+def read(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise InputError(error.strerror or "cannot be read", where=str(path)) from None

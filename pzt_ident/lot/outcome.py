@@ -1,0 +1,176 @@
+"""What a fleet came to, read from its folder: the rows of its devices, and what stands out among them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pzt_ident.errors import DamagedError, InputError
+from pzt_ident.files import read_sealed
+from pzt_ident.lot.identify import read_statement
+from pzt_ident.lot.statistics import Difference, Finding, Quantity, Trend, differences, out_of_line, trends
+from pzt_ident.lot.table import Row, in_unit, rows_of
+
+DETERMINED = "determined"
+
+
+@dataclass(frozen=True)
+class Lot:
+    """statement: what was asked for. rows: one a device, in the order of the names."""
+
+    folder: Path
+    statement: dict[str, Any]
+    rows: list[Row]
+
+    @cached_property
+    def done(self) -> list[Row]:
+        return [row for row in self.rows if row["state"] == "done"]
+
+    @cached_property
+    def broken(self) -> list[Row]:
+        return [row for row in self.rows if row["state"] == "broken"]
+
+    @cached_property
+    def quantities(self) -> list[Quantity]:
+        """What is compared between devices: the parameters, and what the model leaves."""
+        names = list(dict.fromkeys(name for row in self.done for name in row["parameters"]))
+        return [*(self._parameter(name) for name in names), *self._errors()]
+
+    def _parameter(self, name: str) -> Quantity:
+        items = [row["parameters"].get(name) for row in self.done]
+        shown = next(item["unit"] for item in items if item)
+
+        def column(key: str) -> np.ndarray:
+            return np.array([_number(item and in_unit(item[key], item["unit"], shown)) for item in items])
+
+        known = np.array([bool(item) and item["verdict"] == DETERMINED for item in items])
+        return Quantity(name, shown, column("value"), column("low"), column("high"), known)
+
+    def _errors(self) -> list[Quantity]:
+        """Errors and noise are out of line where they are large, not where they are small."""
+        shown = next((row["unit"] for row in self.done), "")
+        found = []
+        for name, get in ERRORS.items():
+            values = np.array([_number(in_unit(get(row), row["unit"], shown)) for row in self.done])
+            if np.isfinite(values).any():
+                none = np.full(values.size, np.nan)
+                found.append(Quantity(name, shown, values, none, none, np.isfinite(values), one_sided=True))
+        return found
+
+    @cached_property
+    def columns(self) -> dict[str, list[Any]]:
+        """What is known of each device that was done, by column; columns that say nothing are left out."""
+        names = dict.fromkeys(name for row in self.done for name in row["columns"])
+        found = {name: [row["columns"].get(name) for row in self.done] for name in names}
+        return {name: values for name, values in found.items() if len(set(values) - {None}) > 1}
+
+    @cached_property
+    def trends(self) -> list[Trend]:
+        return trends(self.quantities, self.columns)
+
+    @cached_property
+    def group_differences(self) -> list[Difference]:
+        return differences(self.quantities, self.columns, len(self.done))
+
+    @cached_property
+    def findings(self) -> list[Finding]:
+        """Devices out of line, the furthest first."""
+        return out_of_line([row["device"] for row in self.done], self.quantities, self.trends, self.columns)
+
+    @property
+    def ill_fitted(self) -> list[str]:
+        """The devices that the model fits worse than usual and than the noise, the worst first."""
+        at_noise = {row["device"] for row in self.done if row["verdict"] == "adequate" and not row["effects"]}
+        names = dict.fromkeys(finding.device for finding in self.findings if finding.of_fit)
+        return [name for name in names if name not in at_noise]
+
+    @property
+    def odd(self) -> list[str]:
+        """The other devices out of line, the furthest first: the model fits them, but with unusual parameters."""
+        ill = set(self.ill_fitted)
+        return [name for name in dict.fromkeys(finding.device for finding in self.findings) if name not in ill]
+
+    @property
+    def effects(self) -> dict[str, list[str]]:
+        """The devices that miss each effect, the most frequent effect first."""
+        count = Counter(effect for row in self.done for effect in row["effects"])
+        return {
+            effect: [row["device"] for row in self.done if effect in row["effects"]]
+            for effect, _ in count.most_common()
+        }
+
+    @property
+    def verdicts(self) -> dict[str, int]:
+        return dict(Counter(row["verdict"] for row in self.done).most_common())
+
+    @property
+    def same_data(self) -> list[list[str]]:
+        """Devices whose files are the same to the last byte."""
+        by_key: dict[str, list[str]] = {}
+        for row in self.done:
+            by_key.setdefault(row["key"], []).append(row["device"])
+        return [names for names in by_key.values() if len(names) > 1]
+
+    def summary(self) -> dict[str, Any]:
+        return {
+            "devices": len(self.rows),
+            "done": len(self.done),
+            "broken": [{"device": row["device"], "reason": row["reason"]} for row in self.broken],
+            "verdicts": self.verdicts,
+            "effects": {effect: len(names) for effect, names in self.effects.items()},
+            "out_of_line": [{"device": item.device, "reason": item.sentence} for item in self.findings],
+        }
+
+    def sentences(self) -> list[str]:
+        """What the lot came to, in a few lines."""
+        waiting = len(self.rows) - len(self.done) - len(self.broken)
+        counts = [f"{len(self.done)} of {len(self.rows)} devices identified"]
+        counts += [f"{len(self.broken)} broken"] * bool(self.broken) + [f"{waiting} not done"] * bool(waiting)
+        lines = [", ".join(counts) + "."]
+        if self.verdicts:
+            lines.append(
+                "Verdicts: " + ", ".join(f"{count} {verdict}" for verdict, count in self.verdicts.items()) + "."
+            )
+        for effect, names in self.effects.items():
+            lines.append(f"Missing in {len(names)}: {effect} ({_some(names)}).")
+        for reason, names in (
+            ("The model fits worse than usual", self.ill_fitted),
+            ("Parameters out of line", self.odd),
+        ):
+            if names:
+                lines.append(f"{reason}: {len(names)} ({_some(names)}).")
+        return lines
+
+
+ERRORS = {
+    "identification RMSE": lambda row: row["rmse"]["identify"],
+    "validation RMSE": lambda row: row["rmse"]["validate"],
+    "noise floor": lambda row: row["noise_floor"],
+}
+
+
+def _number(value: Any) -> float:
+    return float("nan") if value is None else float(value)
+
+
+def _some(names: list[str], most: int = 5) -> str:
+    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
+
+
+def read_lot(folder: Path) -> Lot:
+    """The fleet in a folder, finished or not. Raises InputError where there is none."""
+    statement = read_statement(folder)
+    try:
+        content = read_sealed(folder / "devices.json")
+        known = {item["device"]: dict(item["columns"]) for item in content["devices"]}
+    except (DamagedError, KeyError, TypeError, ValueError):
+        remedy = f"`pzt-ident resume {folder}` goes on with it"
+        raise InputError(
+            "the fleet has not been begun, or its devices.json is damaged", where=str(folder), remedy=remedy
+        ) from None
+    return Lot(folder, statement, list(rows_of(folder, known)))

@@ -1,0 +1,263 @@
+"""The report on a lot as one self-contained HTML file, and a page a device that it leads to."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import re
+from collections.abc import Iterable, Iterator
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
+
+from pzt_ident.data.notation import listed, number, percent, spelled, unit
+from pzt_ident.errors import InputError
+from pzt_ident.files import write_text
+from pzt_ident.lot.devices import Device
+from pzt_ident.lot.figures import plates
+from pzt_ident.lot.outcome import Lot, read_lot
+from pzt_ident.lot.statistics import Quantity
+from pzt_ident.lot.table import Row, folder_of, write_table
+from pzt_ident.report.figures import Plate, write_plate
+from pzt_ident.report.inline import inline
+from pzt_ident.report.page import environment as page_environment
+from pzt_ident.report.page import web_file
+from pzt_ident.report.style import COLUMN, PAGE
+from pzt_ident.run.events import Listen, nobody
+from pzt_ident.run.place import HERE, Place
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+    from markupsafe import Markup
+
+MOST_PAGES = 500
+MOST_LINES = 2000
+"""Devices in the table of the page; above that it shows those that stand out alone."""
+
+
+def write_fleet_report(folder: Path, *, place: Place = HERE, listen: Listen = nobody) -> Path:
+    """Write `report.html`, `figures/`, and the page of each device that has none, or of those that stand out where
+    there are many; of a fleet that is not finished, too. Returns the page.
+
+    Raises InputError where the folder holds no fleet.
+    """
+    if not place.shares_disk:
+        raise InputError("draws on this machine", where="fleet report", remedy="write --on local:N")
+    lot = read_lot(folder)
+    write_table(folder, [Device(row["device"], {}, row["columns"]) for row in lot.rows])
+    draw_pages(lot, place, listen)
+    figures: dict[str | None, list[tuple[Plate, Markup]]] = {}
+    for plate in plates(lot):
+        write_plate(plate, COLUMN, ("svg", "pdf"), folder / "figures")
+        svg = write_plate(plate, PAGE, ("svg", "pdf"), folder / "figures")["svg"]
+        figures.setdefault(plate.section, []).append((plate, inline(svg, plate.name)))
+    write_text(folder / "report.html", page(lot, figures))
+    return folder / "report.html"
+
+
+def draw_pages(lot: Lot, place: Place, listen: Listen) -> None:
+    """The page of each device that needs one; a device whose results cannot be drawn has none."""
+    shown = [row["device"] for row in lot.done]
+    if len(shown) > MOST_PAGES:
+        outside = {finding.device for finding in lot.findings}
+        shown = [row["device"] for row in lot.done if row["device"] in outside or row["verdict"] != "adequate"]
+        shown = shown[:MOST_PAGES]
+    folders = [folder_of(lot.folder, name) for name in shown]
+    stale = [item for item in folders if not is_drawn(item)]
+    drawn = 0
+
+    def tell(done: int) -> None:
+        listen({"event": "pages", "of": len(stale), "done": done, "folder": ""})
+
+    def note(name: str, result: Any) -> None:
+        nonlocal drawn
+        drawn += 1
+        tell(drawn)
+
+    if stale:
+        place.run_all(draw_page, (), ((str(item), (item,)) for item in stale), nobody, note)
+
+
+def is_drawn(folder: Path) -> bool:
+    """Whether the page of a device is there and newer than its results."""
+    page, row = folder / "report.html", folder / "device.json"
+    return page.exists() and page.stat().st_mtime >= row.stat().st_mtime
+
+
+def draw_page(tell: Any, folder: Path) -> None:
+    """Entry of a worker: the page of a device, without the figures that take long."""
+    from pzt_ident.report.page import write_report
+    from pzt_ident.run.misfit import compare
+
+    for results in (folder, folder / "improved"):
+        if results.is_dir():
+            compare(results, results)
+            write_report(results, static=False)
+
+
+def page(lot: Lot, figures: dict[str | None, list[tuple[Plate, Markup]]]) -> str:
+    from markupsafe import Markup
+
+    script = files("pzt_ident.lot").joinpath("lot.js").read_text(encoding="utf-8")
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
+    return (
+        environment()
+        .get_template("lot.html")
+        .render(
+            title=lot.statement["job_name"],
+            content=Markup("{}"),
+            scripts=[Markup(script)],
+            allowed=Markup(f"'sha256-{digest}'"),
+            css=Markup(web_file("page.css")),
+            lot=lot,
+            lead=lead(lot),
+            findings=list(findings(lot)),
+            far=far(lot),
+            effects=lot.effects,
+            figures=figures,
+            quantities=[quantity_line(lot, item) for item in lot.quantities],
+            header=header(lot),
+            lines=list(device_lines(lot)),
+            page_of={row["device"]: page_of(lot, row["device"]) for row in lot.rows},
+        )
+    )
+
+
+@cache
+def environment() -> Environment:
+    from jinja2 import ChoiceLoader, PackageLoader
+
+    base = page_environment()
+    assert base.loader
+    return base.overlay(loader=ChoiceLoader([base.loader, PackageLoader("pzt_ident", "lot")]))
+
+
+def page_of(lot: Lot, name: str, part: str = "") -> str:
+    """Where the page of a device is, as a link; empty where there is none."""
+    path = folder_of(lot.folder, name) / part / "report.html"
+    return quote(path.relative_to(lot.folder).as_posix()) if path.exists() else ""
+
+
+def lead(lot: Lot) -> str:
+    """The lot in a sentence."""
+    done, total = len(lot.done), len(lot.rows)
+    adequate = [row for row in lot.done if row["verdict"] == "adequate"]
+    more = sum(bool(row["effects"]) for row in adequate)
+    if not done:
+        return f"None of {total} devices could be identified."
+    fit = [f"is adequate for {len(adequate) - more or 'none'} of {total} devices"]
+    fit += [f"with effects added for {more} more"] * bool(more)
+    as_given = "as given " * bool(lot.statement["improve"])
+    fit += [f"{as_given}fits {len(lot.ill_fitted)} worse than usual"] * bool(lot.ill_fitted)
+    text = f"The model {listed(fit)}."
+    if lot.odd:
+        text += f" {len(lot.odd)} more {'is' if len(lot.odd) == 1 else 'are'} out of line."
+    if lot.broken:
+        text += f" {len(lot.broken)} could not be identified."
+    return text
+
+
+def findings(lot: Lot) -> Iterator[str]:
+    """What a reader must know beside that."""
+    waiting = len(lot.rows) - len(lot.done) - len(lot.broken)
+    if waiting:
+        yield f"{waiting} devices are not done: `pzt-ident resume` goes on with them.".replace("`", "")
+    above = lot.verdicts.get("above the noise", 0)
+    if above and not lot.statement["improve"]:
+        yield f"{above} are above the noise: the same command with --improve says which effect they miss."
+    for effect, names in lot.effects.items():
+        yield f"{effect} is missing in {len(names)} of {len(lot.done)} devices ({percent(len(names) / len(lot.done))})."
+    for trend in _distinct(lot.trends):
+        item = next(item for item in lot.quantities if item.name == trend.quantity)
+        sign = "grows" if trend.slope > 0 else "falls"
+        column = re.search(r"\[(.+)\]", trend.column)
+        per = unit(column[1]) if column else "unit"
+        change = f", by {number(abs(trend.slope / item.median) * 100, 2)}\u00a0% per {per}" if item.median else ""
+        yield f"{trend.quantity} {sign} with the {trend.column.partition(' [')[0]}{change}."
+    for difference in lot.group_differences:
+        if difference.clear:
+            item = next(item for item in lot.quantities if item.name == difference.quantity)
+            medians = [f"{word} {number(value)}" for word, value in difference.medians.items()]
+            yield f"{item.name} differs by {difference.column}: {', '.join(medians)} {unit(item.unit)}."
+    for names in lot.same_data:
+        yield f"{listed(names)} have the same data: is one of them a copy?"
+    undetermined = [
+        item.name for item in lot.quantities if not item.one_sided and item.usable.sum() < len(lot.done) / 2
+    ]
+    if undetermined:
+        yield f"The data of most devices do not determine {listed(undetermined)}."
+
+
+def _distinct(trends: Iterable[Any]) -> list[Any]:
+    """The clear trends, of each quantity the clearest."""
+    first: dict[str, Any] = {}
+    for trend in trends:
+        if trend.clear:
+            first.setdefault(trend.quantity, trend)
+    return list(first.values())
+
+
+def far(lot: Lot) -> list[tuple[str, str, str]]:
+    """Devices out of line: first those whose parameters are, then those that the model does not fit; what and why."""
+    why: dict[str, list[str]] = {}
+    for finding in lot.findings:
+        why.setdefault(finding.device, []).append(spelled(finding.sentence))
+    rows = {row["device"]: row for row in lot.done}
+    kinds = [(name, "parameters") for name in lot.odd] + [(name, _misfit(rows[name])) for name in lot.ill_fitted]
+    return [(name, kind, "; ".join(why[name])) for name, kind in kinds]
+
+
+def _misfit(row: Row) -> str:
+    """What is known of a device that the model does not fit."""
+    if row["effects"]:
+        return f"misses {listed(row['effects'])}"
+    return f"may miss {listed(row['suspects'])}" if row["suspects"] else "fits worse"
+
+
+def quantity_line(lot: Lot, item: Quantity) -> list[str]:
+    """Name, unit, median, spread, its share of the median, extremes, error of a single device, and of how many."""
+    values = item.values[item.usable]
+    relative = percent(item.spread / abs(item.median), 1) if item.usable.any() and item.median else "–"
+    ends = [number(values.min()), number(values.max())] if values.size else ["–", "–"]
+    own = number(item.own_error, 2) if item.own_error else "–"
+    cells = [number(item.median), number(item.spread, 2), relative, *ends, own]
+    return [item.name, unit(item.unit) or "1", *cells, f"{values.size} of {len(lot.done)}"]
+
+
+def header(lot: Lot) -> list[str]:
+    """The headings of the table of devices."""
+    columns = dict.fromkeys(name for row in lot.rows for name in row["columns"])
+    shown = [f"{item.name} [{unit(item.unit) or '1'}]" for item in lot.quantities]
+    return ["device", *columns, "verdict", *(["effects"] if lot.statement["improve"] else []), *shown]
+
+
+def device_lines(lot: Lot) -> Iterator[dict[str, Any]]:
+    """A line a device: its cells, and which of them are out of line."""
+    columns = dict.fromkeys(name for row in lot.rows for name in row["columns"])
+    outside = {(finding.device, finding.quantity) for finding in lot.findings}
+    many = len(lot.rows) > MOST_LINES
+    stands_out = {device for device, _ in outside}
+    place = {row["device"]: index for index, row in enumerate(lot.done)}
+    for row in lot.rows:
+        name, index = row["device"], place.get(row["device"])
+        if index is None or (many and name not in stands_out):
+            continue
+        words = [row["verdict"], *([", ".join(row["effects"])] if lot.statement["improve"] else [])]
+        values = [
+            (
+                number(item.values[index]),
+                float(item.values[index]),
+                (name, item.name) in outside,
+                bool(item.usable[index]),
+            )
+            for item in lot.quantities
+        ]
+        known = [_cell(row["columns"].get(column)) for column in columns]
+        improved = page_of(lot, name, "improved")
+        yield {"device": name, "known": known, "words": words, "values": values, "improved": improved}
+
+
+def _cell(value: Any) -> str:
+    return "" if value is None else number(value) if isinstance(value, float) else str(value)

@@ -1,0 +1,226 @@
+"""What stands out in a lot: robust spreads, devices out of line, what a quantity depends on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pzt_ident.data.notation import number, quantity
+
+Array = NDArray[np.float64]
+
+MAD = 1.4826  # times the median absolute deviation is the standard deviation of a normal distribution
+FAR = 3.5  # spreads from the median: Iglewicz and Hoaglin (1993), How to Detect and Handle Outliers
+FEWEST = 8  # devices that tell what is usual
+WORSE = 1.5  # times the usual error: less is of no consequence
+CLEAR = 0.5  # correlation of ranks from which a trend is followed
+CERTAIN = 3.0  # standard errors of a correlation of ranks
+
+
+@dataclass(frozen=True, eq=False)
+class Quantity:
+    """One number of each device, with the ends of its interval; known: whether the data of the device determine it.
+    one_sided: only large values are out of line."""
+
+    name: str
+    unit: str
+    values: Array
+    low: Array
+    high: Array
+    known: NDArray[np.bool_]
+    one_sided: bool = False
+
+    @property
+    def usable(self) -> NDArray[np.bool_]:
+        return self.known & np.isfinite(self.values)
+
+    @property
+    def median(self) -> float:
+        return float(np.median(self.values[self.usable])) if self.usable.any() else float("nan")
+
+    @property
+    def spread(self) -> float:
+        return spread(self.values[self.usable])
+
+    @property
+    def own_error(self) -> float:
+        """The median standard error of a single device, 0 where none is known."""
+        half = (self.high - self.low)[self.usable] / (2 * 1.96)
+        half = half[np.isfinite(half)]
+        return float(np.median(half)) if half.size else 0.0
+
+
+@dataclass(frozen=True)
+class Trend:
+    """A quantity against a column of numbers: a line by the medians of slopes (Theil-Sen), and Spearman's correlation
+    of ranks."""
+
+    quantity: str
+    column: str
+    slope: float
+    level: float
+    correlation: float
+    devices: int
+
+    def at(self, x: Array) -> Array:
+        return self.level + self.slope * x
+
+    @property
+    def clear(self) -> bool:
+        """Whether chance would hardly give it."""
+        return abs(self.correlation) > max(CLEAR, CERTAIN / np.sqrt(max(self.devices - 1, 1)))
+
+
+@dataclass(frozen=True)
+class Difference:
+    """A quantity by the groups of a column: the medians, the furthest of them in spreads of single devices, and in
+    standard errors of a median."""
+
+    quantity: str
+    column: str
+    medians: Mapping[str, float]
+    distance: float
+    certainty: float
+
+    @property
+    def clear(self) -> bool:
+        """Whether chance would hardly give it, and it matters beside the spread of single devices."""
+        return self.certainty > CERTAIN + 1 and self.distance > 0.5
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A device out of line: in which quantity, how many spreads from the usual value, and that in a sentence. of_fit:
+    whether it is the model that does not fit the device."""
+
+    device: str
+    quantity: str
+    distance: float
+    sentence: str
+    of_fit: bool
+
+
+def spread(values: Array) -> float:
+    """The median absolute deviation, as a standard deviation."""
+    return float(MAD * np.median(np.abs(values - np.median(values)))) if values.size else float("nan")
+
+
+def trends(quantities: Sequence[Quantity], columns: Mapping[str, Sequence[Any]]) -> list[Trend]:
+    """Each quantity against each column of numbers, the clearest first."""
+    found = []
+    for item in quantities:
+        for name, x in numeric(columns).items():
+            both = item.usable & np.isfinite(x)
+            if both.sum() >= FEWEST and np.ptp(x[both]) > 0 and np.ptp(item.values[both]) > 0:
+                found.append(_trend(item, name, x[both], item.values[both]))
+    return sorted(found, key=lambda trend: -abs(trend.correlation))
+
+
+def _trend(item: Quantity, column: str, x: Array, y: Array) -> Trend:
+    from scipy.stats import spearmanr, theilslopes
+
+    few = np.random.default_rng(0).permutation(x.size)[:1000]  # slopes are taken of all pairs
+    slope = float(theilslopes(y[few], x[few])[0])
+    level = float(np.median(y - slope * x))
+    return Trend(item.name, column, slope, level, float(spearmanr(x, y)[0]), x.size)
+
+
+def numeric(columns: Mapping[str, Sequence[Any]]) -> dict[str, Array]:
+    """The columns of numbers and of dates; dates as days since the first."""
+    found = {}
+    for name, values in columns.items():
+        given = [value for value in values if value is not None]
+        if all(isinstance(value, int | float) for value in given):
+            found[name] = np.array([np.nan if value is None else float(value) for value in values])
+        elif (days := _days(values)) is not None:
+            found[f"{name} [days]"] = days
+    return found
+
+
+def _days(values: Sequence[Any]) -> Array | None:
+    """Days since the first of dates such as 2026-03-02; None where a value is none."""
+    try:
+        dates = np.array(["NaT" if value is None else str(value) for value in values], dtype="datetime64[s]")
+    except ValueError:
+        return None
+    seconds = (dates - np.nanmin(dates)).astype("timedelta64[s]").astype(float)
+    return np.where(np.isnat(dates), np.nan, seconds / 86400)
+
+
+def groups(columns: Mapping[str, Sequence[Any]], devices: int) -> dict[str, dict[str, NDArray[np.bool_]]]:
+    """Which devices are in each group of a column of words; of columns that sort them into a few."""
+    found = {}
+    numbers = {name.removesuffix(" [days]") for name in numeric(columns)}
+    for name, values in columns.items():
+        words = sorted({str(value) for value in values if value is not None})
+        if name not in numbers and 1 < len(words) <= min(12, devices / 3):
+            found[name] = {word: np.array([str(value) == word for value in values]) for word in words}
+    return found
+
+
+def differences(quantities: Sequence[Quantity], columns: Mapping[str, Sequence[Any]], devices: int) -> list[Difference]:
+    """Each quantity by each column that sorts the devices into groups, the most certain first."""
+    found = []
+    for item in quantities:
+        for name, members in groups(columns, devices).items():
+            inside = {word: item.values[item.usable & group] for word, group in members.items()}
+            inside = {word: values for word, values in inside.items() if values.size >= 3}
+            within = (
+                np.concatenate([values - np.median(values) for values in inside.values()]) if inside else np.empty(0)
+            )
+            if len(inside) > 1 and (size := spread(within)) > 0:
+                far = {word: np.median(values) - item.median for word, values in inside.items()}
+                word = max(far, key=lambda key: abs(far[key]) * np.sqrt(inside[key].size))
+                error = 1.25 * size / np.sqrt(inside[word].size)  # of a median
+                medians = {key: float(np.median(values)) for key, values in inside.items()}
+                found.append(Difference(item.name, name, medians, abs(far[word]) / size, abs(far[word]) / error))
+    return sorted(found, key=lambda difference: -difference.certainty)
+
+
+def out_of_line(
+    devices: Sequence[str],
+    quantities: Sequence[Quantity],
+    known: Sequence[Trend],
+    columns: Mapping[str, Sequence[Any]] | None = None,
+) -> list[Finding]:
+    """Devices further from the median than FAR spreads, the furthest first. Where a quantity clearly depends on a
+    column, the median is that of devices with the same value in it."""
+    found = []
+    for item in quantities:
+        if item.usable.sum() < FEWEST:
+            continue
+        usual, beside = _usual(item, known, numeric(columns or {}))
+        off = item.values - usual
+        size = max(spread(off[item.usable & np.isfinite(off)]), item.own_error, 1e-9 * abs(item.median))
+        distance = off / size if size > 0 else np.zeros(off.size)
+        far = (distance > FAR) & (item.values > WORSE * usual) if item.one_sided else np.abs(distance) > FAR
+        for place in np.flatnonzero(far & item.usable).tolist():
+            sentence = sentence_of(item, float(item.values[place]), float(usual[place]), float(distance[place]), beside)
+            found.append(Finding(devices[place], item.name, float(distance[place]), sentence, item.one_sided))
+    return sorted(found, key=lambda finding: -abs(finding.distance))
+
+
+def _usual(item: Quantity, known: Sequence[Trend], columns: Mapping[str, Array]) -> tuple[Array, str]:
+    """What is usual for each device, and the column that it depends on."""
+    usual = np.full(item.values.size, item.median)
+    for trend in known:
+        if trend.quantity == item.name and trend.clear and trend.column in columns:
+            line = trend.at(columns[trend.column])
+            return np.where(np.isfinite(line), line, usual), trend.column
+    return usual, ""
+
+
+def sentence_of(item: Quantity, value: float, usual: float, distance: float, beside: str) -> str:
+    """Why a device is out of line."""
+    if item.one_sided:
+        return f"{item.name} {quantity(value, item.unit)}, {number(value / usual, 2)} times the usual"
+    where = "above" if distance > 0 else "below"
+    at = f" at its {beside.partition(' [')[0]}" if beside else ""
+    return (
+        f"{item.name} {quantity(value, item.unit)}, usual{at} {quantity(usual, item.unit)}: "
+        f"{number(abs(distance), 2)} spreads {where}"
+    )

@@ -1,0 +1,100 @@
+"""The table of all devices: a row each, as Parquet and as CSV."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from hashlib import sha256
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
+
+from pzt_ident.data.units import factor, same_kind
+from pzt_ident.errors import DamagedError
+from pzt_ident.files import read_sealed, replaced, write_sealed
+from pzt_ident.lot.devices import Device, Value
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Row = dict[str, Any]
+LONGEST = 120  # characters of a folder's name
+RMSE = {"rmse": "{} RMSE", "rmse_improved": "improved {} RMSE"}
+
+
+def folder_of(fleet: Path, name: str) -> Path:
+    """Where the results of a device are; a name that no file system would take is put into letters that all take."""
+    safe = quote(name, safe=" +,=@()[]")
+    if len(safe) > LONGEST:
+        safe = f"{safe[:LONGEST]}~{sha256(name.encode()).hexdigest()[:8]}"
+    return fleet / "devices" / (f"%2E{safe[1:]}" if safe.startswith(".") else safe)
+
+
+def read_row(folder: Path) -> Row | None:
+    """The row of a device; None where its folder holds none that is whole."""
+    try:
+        row = read_sealed(folder / "device.json")
+    except DamagedError:
+        return None
+    return row if {"device", "key", "state", "reason"} <= set(row) else None
+
+
+def write_table(folder: Path, devices: Sequence[Device]) -> None:
+    """Write `devices.json`, which devices there are and what is known of them, and the table as it is by now."""
+    listed = [{"device": item.name, "columns": dict(item.columns)} for item in devices]
+    write_sealed(folder / "devices.json", {"devices": listed})
+    frame = frame_of(rows_of(folder, {item.name: item.columns for item in devices}))
+    with replaced(folder / "devices.csv") as path:
+        frame.to_csv(path, index=False, lineterminator="\n")
+    if find_spec("pyarrow"):
+        with replaced(folder / "devices.parquet") as path:
+            frame.to_parquet(path, index=False, engine="pyarrow")
+
+
+def rows_of(folder: Path, known: dict[str, Any]) -> Iterator[Row]:
+    """The row of each device with its columns; one that was not begun is `not done`."""
+    for name, columns in known.items():
+        row = read_row(folder_of(folder, name)) or {"device": name, "state": "not done", "reason": ""}
+        yield row | {"columns": columns}
+
+
+def frame_of(rows: Iterator[Row]) -> pd.DataFrame:
+    """A line a device; numbers of all devices in the unit of the first, which stands in the heading."""
+    import pandas as pd
+
+    units: dict[str, str] = {}
+    lines = [line_of(row, units) for row in rows]
+    headings = dict.fromkeys(name for line in sorted(lines, key=len, reverse=True) for name in line)
+    return pd.DataFrame(lines, columns=list(headings))
+
+
+def line_of(row: Row, units: dict[str, str]) -> dict[str, Value]:
+    """The cells of a row under their headings. units: that of each quantity so far, which the row adds to."""
+    own = {"device", "state", "verdict", "effects", "suspects", "folder", "reason", "sha256"}
+    columns = {f"{name} (given)" if name in own else name: value for name, value in row["columns"].items()}
+    line: dict[str, Value] = {"device": row["device"], **columns, "state": row["state"]}
+    if row["state"] != "done":
+        return line | {"reason": row["reason"]}
+    line |= {"verdict": row["verdict"], "effects": ", ".join(row["effects"]), "suspects": ", ".join(row["suspects"])}
+    for key, heading in RMSE.items():
+        for use, value in (row[key] or {}).items():
+            line |= _cell(heading.format(use), "", value, row["unit"], units)
+    line |= _cell("noise floor", "", row["noise_floor"], row["unit"], units)
+    for name, item in row["parameters"].items():
+        for end in ("value", "low", "high"):
+            line |= _cell(name, "" if end == "value" else f" {end}", item[end], item["unit"], units)
+        line[f"{name} verdict"] = item["verdict"]
+    folder = folder_of(Path(), row["device"]).as_posix()
+    return line | {"cpu [s]": row["cpu_seconds"], "sha256": row["sha256"], "folder": folder, "reason": row["reason"]}
+
+
+def _cell(name: str, end: str, value: float | None, unit: str, units: dict[str, str]) -> dict[str, Value]:
+    shown = units.setdefault(name, unit)
+    return {f"{name}{end} [{shown or '1'}]": in_unit(value, unit, shown)}
+
+
+def in_unit(value: float | None, unit: str, shown: str) -> float | None:
+    """A value in another unit; as it is where the two are of different kinds."""
+    if value is None or unit == shown or not same_kind(unit, shown):
+        return value
+    return value * factor(unit) / factor(shown)

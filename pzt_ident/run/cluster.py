@@ -1,0 +1,272 @@
+"""A cluster of Dask's as the place where tasks run."""
+
+from __future__ import annotations
+
+import pickle
+import platform
+import time
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import islice
+from queue import Empty, SimpleQueue
+from threading import Lock
+from typing import TYPE_CHECKING, Any, ClassVar
+from uuid import uuid4
+
+from pzt_ident.errors import InputError, LostError
+from pzt_ident.files import plain
+from pzt_ident.run.computing import computing
+from pzt_ident.run.folder import version_of
+from pzt_ident.run.place import forget
+from pzt_ident.run.pool import SECONDS_DEAF, Done, Entry, Event, Tell, attempt, interrupts_deferred
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+    from distributed.deploy import Cluster as DaskCluster
+
+AHEAD = 2
+"""Tasks that are on their way to each thread of the cluster."""
+SECONDS_TO_JOIN = 30.0
+SECONDS_WITHOUT_WORKERS = 60.0
+SECONDS_BETWEEN_EVENTS = 1.0
+FREQUENT = ("generation", "fitted", "scored", "refitted")
+"""Events of which the last one says it all."""
+
+
+class Cluster:
+    """Runs tasks on the workers of a Dask scheduler; `words` name it."""
+
+    shares_disk: ClassVar[bool] = False
+    words: str
+
+    @contextmanager
+    def client(self) -> Iterator[Client]:
+        raise NotImplementedError
+
+    def run_all(
+        self,
+        entry: Entry,
+        common: tuple[Any, ...],
+        tasks: Iterable[tuple[str, tuple[Any, ...]]],
+        tell: Tell,
+        done: Done = forget,
+    ) -> dict[str, str]:
+        """As of `Place`. The data of a task stand in Dask's graph, so that they are sent again where they were lost."""
+        with quiet_dask(), self.client() as client, interrupts_deferred() as check:
+            tell(joined(client, self.words))
+            return Session(client, self.words, entry, common, tell, done).run(iter(tasks), check)
+
+
+@dataclass(frozen=True)
+class Scheduler(Cluster):
+    """A scheduler that runs already, by its address."""
+
+    words: str
+
+    @contextmanager
+    def client(self) -> Iterator[Client]:
+        from distributed import Client
+
+        try:
+            client = Client(self.words, timeout=SECONDS_TO_JOIN, set_as_default=False)
+        except (OSError, ValueError) as error:
+            remedy = "is it a scheduler of Dask's, of the same version?"
+            raise InputError("does not answer as a scheduler", where=f"--on {self.words}", remedy=remedy) from error
+        try:
+            yield client
+        finally:
+            client.close(timeout=2)
+
+
+@dataclass(frozen=True)
+class Slurm(Cluster):
+    """Jobs of one core each in a partition of SLURM; account, memory and time are those of Dask's `jobqueue.yaml`."""
+
+    words: str
+    partition: str
+    jobs: int
+
+    def cluster(self) -> DaskCluster:
+        import dask
+        from dask_jobqueue import SLURMCluster
+
+        memory = dask.config.get("jobqueue.slurm.memory", None) or "2 GB"
+        return SLURMCluster(queue=self.partition, cores=1, processes=1, memory=memory)
+
+    @contextmanager
+    def client(self) -> Iterator[Client]:
+        from distributed import Client
+
+        with self.cluster() as cluster, Client(cluster, set_as_default=False) as client:
+            cluster.scale(self.jobs)
+            yield client
+
+
+class Session:
+    """One call of `run_all` on a client."""
+
+    def __init__(
+        self, client: Client, words: str, entry: Entry, common: tuple[Any, ...], tell: Tell, done: Done
+    ) -> None:
+        self.client, self.words, self.entry, self.tell, self.done = client, words, entry, tell, done
+        self.arrived: SimpleQueue[Event | tuple[str, Future]] = SimpleQueue()
+        self.topic = f"pzt-ident-{uuid4().hex}"
+        self.client.subscribe_topic(self.topic, lambda event: self.arrived.put(event[1]))
+        self.common = client.submit(bytes, pickle.dumps(common), key=f"{self.topic}-common")
+        self.running: dict[str, Future] = {}
+        self.failed: dict[str, str] = {}
+        self.threads, self.counted, self.seen = 0, 0.0, time.monotonic()
+
+    def run(self, tasks: Iterator[tuple[str, tuple[Any, ...]]], check: Callable[[], None]) -> dict[str, str]:
+        try:
+            while True:
+                check()
+                for name, arguments in islice(tasks, max(self.room(), 0)):
+                    self.begin(name, arguments)
+                if not self.running:
+                    return self.failed
+                self.take(SECONDS_DEAF)
+        finally:
+            self.client.unsubscribe_topic(self.topic)
+            if self.client.status == "running":
+                self.client.cancel([*self.running.values(), self.common])
+
+    def room(self) -> int:
+        """How many tasks may be sent. Raises LostError where the scheduler is gone, or every worker for long."""
+        if self.client.status != "running":
+            raise self.lost()
+        now = time.monotonic()
+        if now - self.counted > 1:
+            self.threads, self.counted = sum(self.client.nthreads().values()), now
+        if self.threads:
+            self.seen = now
+        elif now - self.seen > SECONDS_WITHOUT_WORKERS and self.client.cluster is None:
+            raise LostError(f"every worker of {self.words} is gone")
+        return AHEAD * max(self.threads, 1) - len(self.running)
+
+    def lost(self) -> LostError:
+        return LostError(f"the scheduler {self.words} is gone")
+
+    def begin(self, name: str, arguments: tuple[Any, ...]) -> None:
+        key, raw = f"{self.topic}-{name}", pickle.dumps(arguments)
+        future = self.client.submit(attempt_there, self.entry, self.common, raw, self.topic, key=key, pure=False)
+        self.running[name] = future
+        future.add_done_callback(lambda future: self.arrived.put((name, future)))
+
+    def take(self, seconds: float) -> None:
+        """Deal with what has arrived, and wait for it if nothing has."""
+        try:
+            item = self.arrived.get(timeout=seconds)
+            while True:
+                if isinstance(item, dict):
+                    self.tell(item)
+                else:
+                    self.end(*item)
+                item = self.arrived.get_nowait()
+        except Empty:
+            return
+
+    def end(self, name: str, future: Future) -> None:
+        if future.status == "finished":
+            kind, content = future.result()
+        elif future.status == "error":
+            kind, content = "failed", reason_of(future.exception())
+        else:
+            raise self.lost()
+        del self.running[name]
+        if kind == "done":
+            self.done(name, content)
+        else:
+            self.failed[name] = content
+            self.tell({"event": "failed", "run": name, "reason": content})
+
+
+def reason_of(error: BaseException | None) -> str:
+    from distributed.scheduler import KilledWorker
+
+    if isinstance(error, KilledWorker):
+        return f"each of the {error.allowed_failures + 1} workers that were at it ended"
+    return f"it could not be run there: {error}"
+
+
+def joined(client: Client, words: str) -> Event:
+    """The event that names the workers and the dashboard. Raises InputError where there is no worker, or one without
+    this version of the package."""
+    if client.cluster is None:  # the jobs of a queue come when there is room for them
+        try:
+            client.wait_for_workers(1, timeout=SECONDS_TO_JOIN)
+        except TimeoutError:
+            remedy = f"start some: `dask worker {words} --nworkers auto --nthreads 1`"
+            raise InputError("has no worker", where=f"--on {words}", remedy=remedy) from None
+    threads = client.nthreads()
+    check_versions(client, words)
+    shared = " of several threads, which wait for each other: start them with --nthreads 1" * (
+        max(threads.values(), default=1) > 1
+    )
+    count = f"{len(threads)} workers" if threads else "jobs that wait for their turn"
+    said = f"{count}{shared} at {words}; Dask's dashboard: {client.dashboard_link}"
+    return {"event": "cluster", "said": said, "workers": len(threads), "dashboard": client.dashboard_link}
+
+
+def check_versions(client: Client, words: str) -> None:
+    mine, remedy = version(), "install the same there: pip install 'pzt-ident[cluster]'"
+    for address, theirs in client.run(version, on_error="return").items():
+        if theirs != mine:
+            problem = f"{theirs} there, {mine} here" if isinstance(theirs, str) else "pzt-ident is not installed there"
+            raise InputError(f"worker {address}: {problem}", where=f"--on {words}", remedy=remedy)
+
+
+def version() -> str:
+    return f"pzt-ident {version_of('pzt-ident')} on Python {'.'.join(platform.python_version_tuple()[:2])}"
+
+
+_alone = Lock()
+
+
+def attempt_there(entry: Entry, common: bytes, arguments: bytes, topic: str) -> tuple[str, Any]:
+    """What a thread of a Dask worker does. One at a time in a process: optimizers borrow the random state of theirs."""
+    from distributed import get_worker
+
+    worker = get_worker()
+
+    def tell(event: Event) -> None:
+        worker.log_event(topic, plain(event))
+
+    with _alone, computing():
+        return attempt(entry, (*pickle.loads(common), *pickle.loads(arguments)), thinned(tell))
+
+
+def thinned(tell: Tell) -> Tell:
+    """Tells on; of frequent events one a second."""
+    told = 0.0
+
+    def tell_some(event: Event) -> None:
+        nonlocal told
+        now = time.monotonic()
+        if event["event"] in FREQUENT:
+            if now - told < SECONDS_BETWEEN_EVENTS:
+                return
+            told = now
+        tell(event)
+
+    return tell_some
+
+
+@contextmanager
+def quiet_dask() -> Iterator[None]:
+    """Dask's logs and warnings are not for a user of this package: what matters is told."""
+    import logging
+    import warnings
+
+    log = logging.getLogger("distributed")
+    level, disabled = log.level, logging.root.manager.disable
+    log.setLevel(logging.CRITICAL)
+    logging.disable(logging.ERROR)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        logging.disable(disabled)
+        log.setLevel(level)

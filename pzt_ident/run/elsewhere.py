@@ -1,0 +1,85 @@
+"""An improvement at a place that may share no disk with this process, and one that was killed, begun again."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from pzt_ident.data.record import Record
+from pzt_ident.errors import InputError, RunError
+from pzt_ident.files import read_files, write_files, write_text
+from pzt_ident.job.edit import edited
+from pzt_ident.job.files import moved
+from pzt_ident.job.schema import Job
+from pzt_ident.run.events import Listen, nobody
+from pzt_ident.run.folder import begin, read_environment, read_job, results_folder
+from pzt_ident.run.improve import diagnose, improve
+from pzt_ident.run.place import Place
+from pzt_ident.run.pool import Tell
+from pzt_ident.run.statement import Statement
+
+OF_THIS_PROCESS = ("job.yaml", "environment.json")
+
+
+def improve_at(
+    place: Place, job: Job, out: Path | None = None, listen: Listen = nobody, budget: float | None = None
+) -> Path:
+    """As `improve`, at a place. Raises RunError where it came to nothing there, LostError where the place is gone."""
+    if place.shares_disk:
+        return improve(job, out, listen, budget)
+    statement, folder = Statement(job), results_folder(job, out)
+    begin(folder, job, edited(job, job.effects, folder), statement.records, {"name": "improve", "budget": budget})
+    task = (job.text, job.folder.resolve(), statement.records, folder.resolve(), budget)
+
+    def keep(name: str, files: dict[str, bytes]) -> None:
+        write_files(folder, {file: content for file, content in files.items() if file not in OF_THIS_PROCESS})
+
+    listen({"event": "start", "runs": [], "budget": 0, "unit": statement.unit, "together": "", "folder": str(folder)})
+    failed = place.run_all(improve_there, (), [(job.name, task)], listen, keep)
+    for reason in failed.values():
+        raise RunError(reason)
+    return folder
+
+
+def improve_there(
+    tell: Tell, text: str, job_folder: Path, records: Sequence[Record], folder: Path, budget: float | None
+) -> dict[str, bytes]:
+    """Entry of a worker; returns the files of the improvement."""
+    with TemporaryDirectory(prefix="pzt-ident-") as scratch:
+        there = improve(
+            Job.from_text(text, job_folder, plugins=True), Path(scratch) / "improved", tell, budget, records
+        )
+        move(there, folder)
+        return read_files(there)
+
+
+def move(results: Path, folder: Path) -> None:
+    """Let the paths of the jobs in a folder of results be those from another one, which it is to become."""
+    for path in results.glob("*.yaml"):
+        write_text(path, moved(path.read_text(encoding="utf-8"), results, folder))
+
+
+def task_of(folder: Path) -> str:
+    """What the folder was begun with: `run`, `improve` or `diagnose`. Raises InputError where it holds none."""
+    return str(read_environment(folder).get("task", {}).get("name", "run"))
+
+
+def begin_again(folder: Path, listen: Listen = nobody, plugins: bool = False) -> Path:
+    """An improvement or a diagnosis that did not come to its end, from its beginning, beside what is there until it is
+    done. Raises InputError where the folder holds none."""
+    task = read_environment(folder)["task"]
+    if (folder / "diagnosis.json").exists():
+        listen({"event": "finished"})
+        return folder
+    job = Job.from_text(read_job(folder), folder, str(folder / "job.yaml"), plugins)
+    new = folder.with_name(f".{folder.name}.again")
+    shutil.rmtree(new, ignore_errors=True)
+    again = {"improve": improve, "diagnose": diagnose}.get(task["name"])
+    if again is None:
+        raise InputError(f"was begun with {task['name']!r}", where=str(folder), remedy="start it anew")
+    again(job, new, listen, task.get("budget"))
+    shutil.rmtree(folder)
+    new.rename(folder)
+    return folder

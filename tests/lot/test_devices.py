@@ -1,0 +1,125 @@
+"""Which files are whose, by folders, files and tables, and what is told where that cannot be."""
+
+from pathlib import Path
+
+import pytest
+
+from pzt_ident.errors import InputError
+from pzt_ident.job.schema import Job
+from pzt_ident.lot.devices import devices_of
+
+ONE = """\
+records:
+  - {file: loops.csv, rows: [0, 10]}
+  - {file: loops.csv, rows: [10, 20], use: validate}
+channels: {time: "time [s]", axes: {x: {drive: "u [V]", response: "x [um]"}}}
+model: [bouc_wen]
+"""
+TWO = ONE.replace("{file: loops.csv, rows: [10, 20], use: validate}", "{file: data/slow.csv, name: slow}")
+
+
+def job(text: str, folder: Path) -> Job:
+    return Job.from_text(text, folder)
+
+
+def touch(*paths: Path) -> None:
+    for path in paths:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("time [s],u [V],x [um]\n0,0,0\n")
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_folders_hold_the_files_of_the_records_by_path_or_name(here):
+    touch(here / "lot/a/loops.csv", here / "lot/a/data/slow.csv", here / "lot/b/loops.csv", here / "lot/b/slow.csv")
+    touch(here / "lot/c/loops.csv", here / "lot/readme.txt")
+    a, b, c = devices_of(["lot/*/"], job(TWO, here))
+    assert (a.name, a.files) == (
+        "a",
+        {"loops.csv": Path("lot/a/loops.csv"), "data/slow.csv": Path("lot/a/data/slow.csv")},
+    )
+    assert b.files["data/slow.csv"] == Path("lot/b/slow.csv")
+    assert "holds no slow.csv: it holds loops.csv" in c.fault
+
+
+def test_files_are_devices_where_the_job_has_one(here):
+    touch(here / "lot/a.csv", here / "lot/b.csv")
+    assert [(item.name, item.files) for item in devices_of(["lot/*.csv"], job(ONE, here))] == [
+        ("a", {"loops.csv": Path("lot/a.csv")}),
+        ("b", {"loops.csv": Path("lot/b.csv")}),
+    ]
+
+
+def test_names_have_as_many_parts_as_make_them_distinct(here):
+    touch(here / "may/d1/loops.csv", here / "june/d1/loops.csv")
+    assert [item.name for item in devices_of(["may/*/", "june/*/"], job(ONE, here))] == ["june-d1", "may-d1"]
+
+
+def test_a_file_of_a_single_channel_is_the_jobs_own_where_a_device_has_none(here):
+    text = ONE.replace('drive: "u [V]"', "drive: {file: drive.npy, dataset: u, unit: V}")
+    touch(here / "lot/a/loops.csv", here / "lot/b/loops.csv", here / "lot/b/drive.npy")
+    a, b = devices_of(["lot/*/"], job(text, here))
+    assert (a.files["drive.npy"], b.files["drive.npy"]) == (here / "drive.npy", Path("lot/b/drive.npy"))
+
+
+@pytest.mark.parametrize(
+    ("text", "table"),
+    [
+        (ONE, "Device,file,temperature [K],batch\nd1,lot/a.csv,295,A\nd2,lot/b.csv,,B\n"),
+        (ONE, "\ufeffdevice;loops;temperature [K];batch\nd1;lot/a.csv;295;A\n\nd2;lot/b.csv;;B\n"),
+        (
+            TWO,
+            "device\tloops\tslow\ttemperature [K]\tbatch\nd1\tlot/a.csv\tlot/b.csv\t295\tA\n"
+            "d2\tlot/b.csv\tlot/a.csv\t\tB\n",
+        ),
+    ],
+)
+def test_a_table_says_which_file_is_whose_and_what_else_is_known(here, text, table):
+    touch(here / "sub/lot/a.csv", here / "sub/lot/b.csv")
+    (here / "sub/lot.csv").write_text(table, encoding="utf-8")
+    first, second = devices_of(["sub/lot.csv"], job(text, here))
+    assert (first.name, first.columns) == ("d1", {"temperature [K]": 295.0, "batch": "A"})
+    assert first.files["loops.csv"] == Path("sub/lot/a.csv")
+    assert (second.name, second.columns) == ("d2", {"temperature [K]": None, "batch": "B"})
+
+
+def test_a_row_without_its_file_is_a_device_with_a_fault(here):
+    touch(here / "a.csv")
+    (here / "lot.csv").write_text("file,serial\na.csv,1\nb.csv,2\n")
+    a, b = devices_of(["lot.csv"], job(ONE, here))
+    assert (a.name, a.fault, b.name, b.fault) == ("a", "", "b", "b.csv: no such file")
+
+
+@pytest.mark.parametrize(
+    ("text", "patterns", "table", "said"),
+    [
+        (ONE, ["lto/*/"], "", r"'lto/\*/': matches nothing\n  there is no lto"),
+        (ONE, ["lot/x*/"], "", r"matches nothing\n  in lot there is a, b"),
+        (ONE, ["lot/a/", "lot/*/"], "", r"lot/a is there twice: by 'lot/a/' and by 'lot/\*/'"),
+        (ONE, ["lot/*"], "", "2 folders and 1 files are matched"),
+        (ONE, ["lot/"], "", r"holds no loops.csv: it holds a, b, readme.txt\n  did you mean 'lot/\*/'"),
+        (TWO, ["lot/a/loops.csv"], "", "the job has records in 2 files, loops.csv, data/slow.csv, the device is one"),
+        (TWO.replace("data/slow.csv", "data/loops.csv"), ["lot/*/"], "", "are the same file lot/a/loops.csv"),
+        (ONE, ["t.csv"], "file\n", "t.csv: lists no device"),
+        (ONE, ["t.csv"], "device,file\nd,lot/a/loops.csv\nd,lot/b/loops.csv\n", "t.csv:3: the device 'd' is in line 2"),
+        (
+            ONE,
+            ["t.csv"],
+            "device,file\nc,lot/a/loops.csv\nd,lot/a/loops.csv\n",
+            "t.csv:3: names the same data as line 2",
+        ),
+        (ONE, ["t.csv"], "device,file\nd,\n", "t.csv:2: names no file"),
+        (ONE, ["t.csv"], "device,file\nd,lot/a/loops.csv,7\n", "t.csv:2: has 3 cells, the header 2"),
+        (ONE, ["t.csv"], "device,file\nd,no.csv\n", "no device has the files of the job. The first: no.csv: no such"),
+    ],
+)
+def test_clumsy_use_is_told_with_a_remedy(here, text, patterns, table, said):
+    touch(here / "lot/a/loops.csv", here / "lot/b/loops.csv", here / "lot/readme.txt")
+    (here / "t.csv").write_text(table)
+    with pytest.raises(InputError, match=said) as caught:
+        devices_of(patterns, job(text, here))
+    assert caught.value.remedy

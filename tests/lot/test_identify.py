@@ -1,0 +1,197 @@
+"""A job on a lot: broken devices are named and the others are as if identified alone; killed, gone on with, again."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from experiments.fleet.lot import BROKEN, write_lot
+from lot.conftest import DEVICES
+from pzt_ident.errors import InputError
+from pzt_ident.files import read_sealed, write_sealed
+from pzt_ident.job.schema import load_job
+from pzt_ident.lot.identify import fleet, resume
+from pzt_ident.lot.outcome import read_lot
+from pzt_ident.model.registry import blocks
+from pzt_ident.run.identify import run
+from pzt_ident.run.place import Local, place_of
+
+CLOCK = ["cpu [s]"]
+SAID = {
+    "empty": "the file is empty",
+    "short": "the record has 2 samples",
+    "text": "row 149 (line 151) holds 'ERROR' instead of a number",
+    "gap": "1 value is missing: row 149 (line 151)",
+    "missing": "holds no loops.csv: it holds tones.csv",
+    "constant": "the response is constant",
+    "not text": "is not a text file",
+}
+
+
+def table(out: Path) -> pd.DataFrame:
+    return pd.read_csv(out / "devices.csv").drop(columns=CLOCK)
+
+
+def kinds(lot: Path) -> dict[str, str]:
+    return {name: facts["kind"] for name, facts in json.loads((lot / "truth.json").read_text()).items()}
+
+
+def test_a_broken_device_is_named_with_the_reason_and_the_others_finish(lot, identified):
+    out, events = identified
+    frame = table(out).set_index("device")
+    assert set(kinds(lot).values()) >= set(BROKEN)
+    for name, kind in kinds(lot).items():
+        row = frame.loc[name]
+        assert row["state"] == ("broken" if kind in BROKEN else "done")
+        if kind in BROKEN:
+            assert SAID[kind] in row["reason"]
+            assert f"lot/{name}" in row["reason"]
+            assert not any(word in row["reason"] for word in ("Error:", "/tmp/pzt-ident-", "\n"))
+    last = events[-1]
+    assert (last["of"], last["done"], last["broken"]) == (DEVICES, DEVICES - len(BROKEN), len(BROKEN))
+
+
+def test_the_table_has_what_is_known_and_what_was_found(lot, identified):
+    frame = table(identified[0])
+    first = frame[frame.state == "done"].iloc[0]
+    assert first["bouc_wen.gain low [um/V]"] < first["bouc_wen.gain [um/V]"] < first["bouc_wen.gain high [um/V]"]
+    assert first["identify RMSE [um]"] == pytest.approx(0.01, rel=0.5)
+    assert first["noise floor [um]"] > 0
+    assert len(first["sha256"]) == 64
+    assert (identified[0] / first["folder"] / "result.json").is_file()
+    parquet = pd.read_parquet(identified[0] / "devices.parquet")
+    assert list(parquet.columns) == list(pd.read_csv(identified[0] / "devices.csv").columns)
+    assert set(frame.columns) >= {"serial", "temperature [K]", "date", "batch"}
+    assert parquet["temperature [K]"].tolist() == pd.read_csv(lot / "lot.csv")["temperature [K]"].tolist()
+
+
+def test_a_device_is_as_if_identified_alone(identified, tmp_path):
+    """The job in its folder leads to its data, too."""
+    out = identified[0]
+    row = next(row for row in read_lot(out).rows if row["state"] == "done")
+    home = out / "devices" / row["device"]
+    alone = json.loads((run(load_job(home / "job.yaml"), tmp_path / "alone") / "result.json").read_text())
+    there = json.loads((home / "result.json").read_text())
+    assert alone["best"]["parameters"] == there["best"]["parameters"]
+    assert [item["rmse"] for item in alone["records"]] == [item["rmse"] for item in there["records"]]
+    assert not list(out.rglob("*.losses")) and not list(out.rglob("*.tmp"))
+
+
+def copied(lot: Path, identified, tmp_path: Path) -> tuple[Path, Path]:
+    """The lot and its fleet, as they would be there."""
+    made, out = shutil.copytree(lot, tmp_path / "lot"), shutil.copytree(identified[0], tmp_path / "out")
+    write_sealed(out / "fleet.json", read_sealed(out / "fleet.json") | {"patterns": [str(made / "lot.csv")]})
+    return made, out
+
+
+def done_again(out: Path, act) -> set[str]:
+    """The devices whose results were written anew."""
+    before = {path: path.stat().st_mtime_ns for path in out.glob("devices/*/result.json")}
+    act()
+    return {p.parent.name for p in out.glob("devices/*/result.json") if before.get(p) != p.stat().st_mtime_ns}
+
+
+def test_what_was_done_is_not_done_again_unless_data_or_job_changed(lot, identified, tmp_path):
+    made, out = copied(lot, identified, tmp_path)
+    done = [name for name, kind in kinds(lot).items() if kind not in BROKEN]
+    before = table(out).drop(columns="reason")  # which names the files
+    assert done_again(out, lambda: resume(out, place=Local(1))) == set()
+    pd.testing.assert_frame_equal(table(out).drop(columns="reason"), before)
+    data = made / "lot" / done[0] / "tones.csv"
+    data.write_text(data.read_text().replace("\n0.00100,", "\n0.001001,"))
+    mended = next(name for name, kind in kinds(lot).items() if kind == "missing")
+    shutil.copy(made / "lot" / done[1] / "loops.csv", made / "lot" / mended)
+    damaged = out / "devices" / done[2] / "device.json"
+    damaged.write_text(damaged.read_text()[:100])
+    assert done_again(out, lambda: resume(out, place=Local(1))) == {done[0], mended, done[2]}
+    (made / "job.yaml").write_text((made / "job.yaml").read_text().replace("seed: 1", "seed: 2"))
+    job = load_job(made / "job.yaml")
+    again = done_again(out, lambda: fleet(job, [str(made / "lot.csv")], out, place=Local(1)))
+    assert again == {*done, mended}
+
+
+def test_a_fleet_killed_hard_goes_on_to_the_same_table(lot, identified, tmp_path):
+    out = tmp_path / "out"
+    command = ["fleet", str(lot / "job.yaml"), str(lot / "lot.csv"), "--out", str(out), "--on", "local:1", "--quiet"]
+    process = subprocess.Popen([sys.executable, "-m", "pzt_ident", *command], start_new_session=True)
+    while len(list(out.glob("devices/*/device.json"))) < 4:
+        assert process.poll() is None
+        time.sleep(0.005)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    assert not (out / "devices.csv").exists()
+    resume(out, place=Local(2))
+    pd.testing.assert_frame_equal(table(out), table(identified[0]))
+    assert not list(out.rglob(".new"))
+
+
+def test_the_same_table_on_a_cluster_of_which_a_worker_is_killed(lot, identified, tmp_path):
+    pytest.importorskip("distributed")
+    from experiments.fleet.cluster import TCP
+
+    cluster = TCP(workers=2)
+    try:
+
+        def kill_one(event):
+            if event["event"] == "devices" and event["done"] == 2:
+                cluster.workers[0].kill()
+
+        job, out = load_job(lot / "job.yaml"), tmp_path / "out"
+        fleet(job, [str(lot / "lot.csv")], out, place=place_of(cluster.address), listen=kill_one)
+    finally:
+        cluster.end()
+    pd.testing.assert_frame_equal(table(out), table(identified[0]))
+
+
+def test_names_that_no_file_system_takes(lot, tmp_path):
+    words = ["a/b c", "..", "é" * 200, "<b>&\"'"]
+    source = next(name for name, kind in kinds(lot).items() if kind == "plain")
+    rows = []
+    for place, _ in enumerate(words):
+        home = shutil.copytree(lot / "lot" / source, tmp_path / f"{place}")
+        with (home / "tones.csv").open("a") as file:
+            file.write("\n" * (place + 1))
+        rows.append(f"{place}")
+    quoted = ['"' + word.replace('"', '""') + '"' for word in words]
+    lines = [f"{word},{row}" for word, row in zip(quoted, rows, strict=True)]
+    (tmp_path / "lot.csv").write_text("\n".join(["device,folder", *lines]))
+    out = fleet(load_job(lot / "job.yaml"), [str(tmp_path / "lot.csv")], tmp_path / "out", place=Local(1))
+    frame = table(out)
+    assert sorted(frame.device) == sorted(words)
+    assert set(frame.state) == {"done"}
+    assert all((out / folder / "result.json").is_file() for folder in frame.folder)
+    assert {path.name for path in tmp_path.iterdir()} == {"0", "1", "2", "3", "lot.csv", "out"}
+
+
+def test_a_folder_with_something_else_is_not_written_into(lot, tmp_path):
+    (tmp_path / "mine.txt").touch()
+    with pytest.raises(InputError, match="not empty"):
+        fleet(load_job(lot / "job.yaml"), [str(lot / "lot.csv")], tmp_path)
+    with pytest.raises(InputError, match="holds no fleet"):
+        resume(tmp_path)
+
+
+def test_each_device_is_diagnosed_where_that_is_asked(tmp_path):
+    """One device with a quadratic gain, one without; every path that is left leads to the data."""
+    write_lot(tmp_path, 2, 3, hidden=0.5, samples=600, swarm=(20, 40))
+    job = (tmp_path / "job.yaml").read_text().replace("model: [bouc_wen, lumped]", "model: [bouc_wen, lumped]\n")
+    keep = "creep, quadratic_gain"
+    rule_out = [word for word in blocks.effects() if word not in keep]
+    (tmp_path / "job.yaml").write_text(f"{job}rule_out: [{', '.join(rule_out)}]\n")
+    out = fleet(
+        load_job(tmp_path / "job.yaml"), [str(tmp_path / "lot.csv")], tmp_path / "out", improve=True, place=Local(2)
+    )
+    frame = table(out).set_index("device")
+    for name, kind in kinds(tmp_path).items():
+        row = frame.loc[name]
+        assert (row["effects"] if isinstance(row["effects"], str) else "") == kind.replace("plain", "")
+        improved = load_job(out / row["folder"] / "improved" / "improved.yaml")
+        assert all((improved.folder / source.file).is_file() for source in improved.records)
+        assert row["improved identify RMSE [um]"] <= row["identify RMSE [um]"] * 1.01

@@ -1,0 +1,89 @@
+"""The report on a lot: one file, what it says, and the pages that it leads to."""
+
+import re
+import shutil
+from pathlib import Path
+from urllib.parse import unquote
+
+import pytest
+
+from pzt_ident.errors import InputError
+from pzt_ident.files import read_sealed, write_sealed
+from pzt_ident.lot.outcome import read_lot
+from pzt_ident.lot.report import write_fleet_report
+from pzt_ident.run.place import Local
+
+EVIL = "<script>alert('x')</script>"
+
+
+@pytest.fixture(scope="module")
+def page(identified, tmp_path_factory):
+    out = shutil.copytree(identified[0], tmp_path_factory.mktemp("report") / "out")
+    return write_fleet_report(out, place=Local(2))
+
+
+def test_it_is_one_file_without_a_network_and_leads_to_a_page_a_device(page):
+    text = page.read_text(encoding="utf-8")
+    assert not re.search(r'(src|href)="(https?:)?//', text)
+    links = {unquote(link) for link in re.findall(r'<a href="([^"#]+)"', text)}
+    assert links >= {"devices.csv", "devices.parquet", "job.yaml"}
+    assert all((page.parent / link).is_file() for link in links)
+    done = [row["device"] for row in read_lot(page.parent).done]
+    assert {f"devices/{name}/report.html" for name in done} <= links
+    for name in ("spreads", "columns"):
+        if (page.parent / "figures" / f"{name}-180mm.svg").exists():
+            assert f'id="{name}-caption"' in text
+
+
+def test_it_names_what_is_broken_and_what_is_out_of_line(page):
+    text, lot = page.read_text(encoding="utf-8"), read_lot(page.parent)
+    for row in lot.broken:
+        assert row["device"] in text
+    assert "the file is empty" in text
+    assert f"of {len(lot.rows)} devices" in text
+    for finding in lot.findings:
+        assert finding.device in text
+
+
+def test_pages_are_drawn_once(page):
+    drawn = {path: path.stat().st_mtime_ns for path in page.parent.glob("devices/*/report.html")}
+    assert drawn
+    write_fleet_report(page.parent, place=Local(1))
+    assert {path: path.stat().st_mtime_ns for path in drawn} == drawn
+
+
+def test_an_unfinished_fleet_has_a_report(identified, tmp_path):
+    out = shutil.copytree(identified[0], tmp_path / "out")
+    lot = read_lot(out)
+    for row in lot.done[1:]:
+        shutil.rmtree(out / "devices" / row["device"])
+    text = write_fleet_report(out, place=Local(1)).read_text(encoding="utf-8")
+    assert f"{len(lot.done) - 1} devices are not done" in text
+
+
+def test_names_from_a_table_are_no_markup(identified, tmp_path):
+    out = shutil.copytree(identified[0], tmp_path / "out")
+    listed = read_sealed(out / "devices.json")
+    for place, item in enumerate(listed["devices"]):
+        item["columns"] |= {EVIL: EVIL + str(place % 2)}
+    write_sealed(out / "devices.json", listed)
+    text = write_fleet_report(out, place=Local(1)).read_text(encoding="utf-8")
+    assert EVIL not in text
+    assert "&lt;script&gt;" in text
+
+
+@pytest.mark.parametrize("file", ["fleet.json", "devices.json"])
+@pytest.mark.parametrize("content", ["", "{", "[]", "7", '{"patterns": 3}', "[1, 2]", '[{"device": 1}]'])
+def test_a_damaged_fleet_is_told_in_a_sentence(identified, tmp_path, file, content):
+    out = shutil.copytree(identified[0], tmp_path / "out")
+    (out / file).write_text(content)
+    try:
+        write_fleet_report(out, place=Local(1))
+    except InputError as error:
+        assert str(out) in str(error)
+        assert error.remedy
+
+
+def test_there_is_no_report_on_something_else(tmp_path):
+    with pytest.raises(InputError, match="holds no fleet"):
+        write_fleet_report(Path(tmp_path))

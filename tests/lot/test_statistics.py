@@ -1,0 +1,98 @@
+"""Robust spreads: planted outliers are found and no others, with and without a dependence on a column."""
+
+import numpy as np
+import pytest
+
+from pzt_ident.lot.statistics import Quantity, differences, groups, numeric, out_of_line, spread, trends
+
+RNG = np.random.default_rng(0)
+N = 200
+NORMAL = RNG.standard_normal(N)
+NAMES = [f"d{i}" for i in range(N)]
+
+
+def quantity(values, *, name="gain", known=None, error=0.0, one_sided=False):
+    half = np.full(values.size, 1.96 * error)
+    known = np.ones(values.size, bool) if known is None else known
+    return Quantity(name, "um", values, values - half, values + half, known, one_sided)
+
+
+def test_the_spread_is_the_standard_deviation_of_a_normal_distribution():
+    values = 3 + 0.2 * np.random.default_rng(1).standard_normal(100_000)
+    assert spread(values) == pytest.approx(0.2, rel=0.01)
+    assert spread(np.append(values[:1000], np.full(300, 1e9))) < 0.4
+
+
+def test_a_planted_device_is_out_of_line_and_no_other():
+    values = 1 + 0.01 * np.clip(NORMAL, -3, 3)
+    values[7] = 1.08
+    (finding,) = out_of_line(NAMES, [quantity(values)], [], {})
+    assert (finding.device, finding.quantity) == ("d7", "gain")
+    assert finding.sentence.startswith("gain 1.080\u00a0µm, usual 1.000\u00a0µm: ")
+    assert finding.sentence.endswith("spreads above")
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])
+def test_what_is_out_of_line_does_not_hang_on_the_unit(scale):
+    values = scale * (1 + 0.01 * np.clip(NORMAL, -3, 3))
+    values[3], values[5] = 1.07 * scale, 0.9 * scale
+    assert [item.device for item in out_of_line(NAMES, [quantity(values)], [], {})] == ["d5", "d3"]
+
+
+def test_a_device_within_its_own_error_or_not_determined_is_in_line():
+    values = np.full(N, 1.0)
+    values[2] = 1.2
+    assert out_of_line(NAMES, [quantity(values, error=0.1)], [], {}) == []
+    assert len(out_of_line(NAMES, [quantity(values, error=0.01)], [], {})) == 1
+    assert out_of_line(NAMES, [quantity(values, known=np.arange(N) != 2)], [], {}) == []
+
+
+def test_few_devices_do_not_tell_what_is_usual():
+    assert out_of_line(NAMES[:7], [quantity(np.array([1, 1, 1, 1, 1, 1, 9.0]))], [], {}) == []
+
+
+def test_of_an_error_only_large_values_are_out_of_line():
+    values = 1 + 0.01 * np.clip(NORMAL, -3, 3)
+    values[1], values[2], values[3] = 0.1, 5.0, 1.2
+    (finding,) = out_of_line(NAMES, [quantity(values, one_sided=True)], [], {})
+    assert (finding.device, finding.of_fit) == ("d2", True)
+    assert "5.0 times the usual" in finding.sentence
+
+
+def test_a_trend_is_found_with_its_slope_and_devices_are_judged_beside_it():
+    kelvin = np.repeat([280.0, 300.0, 320.0, 340.0], N // 4)
+    values = 1 + 0.002 * (kelvin - 300) + 0.005 * np.clip(NORMAL, -3, 3)
+    values[0] = 1.0  # usual in the middle of the lot, not at 280 K
+    item, columns = quantity(values), {"temperature [K]": kelvin.tolist(), "serial": NAMES}
+    (trend,) = trends([item], columns)
+    assert (trend.column, trend.slope) == ("temperature [K]", pytest.approx(0.002, rel=0.05))
+    assert trend.clear and trend.correlation > 0.9
+    assert out_of_line(NAMES, [item], [], columns) == []
+    (finding,) = out_of_line(NAMES, [item], [trend], columns)
+    assert finding.device == "d0"
+    assert "usual at its temperature 0.96" in finding.sentence
+
+
+def test_chance_is_no_trend_and_no_difference():
+    """Of 200 columns by chance."""
+    item, rng = quantity(NORMAL), np.random.default_rng(2)
+    columns = {f"c{i}": rng.standard_normal(N).tolist() for i in range(100)}
+    words = {f"w{i}": rng.choice(["A", "B", "C"], N).tolist() for i in range(100)}
+    assert not any(trend.clear for trend in trends([item], columns))
+    assert not any(difference.clear for difference in differences([item], words, N))
+
+
+def test_groups_that_differ_are_found():
+    batch = ["A", "B"] * (N // 2)
+    values = 1 + 0.01 * NORMAL + 0.02 * (np.array(batch) == "B")
+    (found,) = differences([quantity(values)], {"batch": batch, "serial": NAMES}, N)
+    assert found.clear
+    assert found.medians == {"A": pytest.approx(1.0, abs=0.003), "B": pytest.approx(1.02, abs=0.003)}
+
+
+def test_dates_are_days_and_words_are_groups():
+    columns = {"date": ["2026-03-02", None, "2026-03-05"], "batch": ["A", "B", "A"], "K": [1.0, None, 2.0]}
+    found = numeric(columns)
+    np.testing.assert_array_equal(found["date [days]"], [0, np.nan, 3])
+    np.testing.assert_array_equal(found["K"], [1, np.nan, 2])
+    assert list(groups(columns | {"batch": ["A", "B", "A"]}, 6)) == ["batch"]

@@ -1,0 +1,60 @@
+"""An improvement on a cluster, and one that was killed."""
+
+import json
+import shutil
+
+import pytest
+
+from experiments.fleet.lot import write_lot
+from pzt_ident.job.schema import load_job
+from pzt_ident.model.registry import blocks
+from pzt_ident.run.elsewhere import begin_again, improve_at, task_of
+from pzt_ident.run.place import HERE, place_of
+
+
+@pytest.fixture(scope="module")
+def job(tmp_path_factory):
+    """A stage whose gain grows with the voltage, and few effects to choose from."""
+    made = tmp_path_factory.mktemp("job")
+    write_lot(made, 2, 3, hidden=1.0, samples=600)
+    truth = json.loads((made / "truth.json").read_text())
+    home = made / "lot" / next(name for name, facts in truth.items() if facts["kind"] == "quadratic_gain")
+    others = [word for word in blocks.effects() if word not in ("creep", "quadratic_gain")]
+    text = (made / "job.yaml").read_text()
+    (home / "job.yaml").write_text(f"{text}rule_out: [{', '.join(others)}]\n")
+    return load_job(home / "job.yaml")
+
+
+@pytest.fixture(scope="module")
+def here(job, tmp_path_factory):
+    return improve_at(HERE, job, tmp_path_factory.mktemp("here") / "out")
+
+
+def test_the_same_improvement_on_a_cluster(job, here, tmp_path):
+    pytest.importorskip("distributed")
+    from experiments.fleet.cluster import TCP
+
+    cluster, events = TCP(workers=1), []
+    try:
+        there = improve_at(place_of(cluster.address), job, tmp_path / "out", events.append)
+    finally:
+        cluster.end()
+    assert (there / "improvement.json").read_bytes() == (here / "improvement.json").read_bytes()
+    assert load_job(there / "improved.yaml").hash != job.hash
+    for source in load_job(there / "improved.yaml").records:
+        assert (there / source.file).is_file()
+    assert "quadratic_gain" in [event["added"] for event in events if event["event"] == "stair"]
+    assert task_of(there) == "improve"
+
+
+def test_an_improvement_that_was_killed_is_begun_again(here, tmp_path):
+    out = shutil.copytree(here, here.with_name("killed"))
+    for name in ("diagnosis.json", "residuals.json", "signals.nc"):
+        (out / name).unlink()
+    content = json.loads((out / "improvement.json").read_text()) | {"verdict": "unfinished"}
+    (out / "improvement.json").write_text(json.dumps(content))
+    begin_again(out)
+    assert (out / "improvement.json").read_bytes() == (here / "improvement.json").read_bytes()
+    events = []
+    begin_again(out, events.append)
+    assert events == [{"event": "finished"}]
