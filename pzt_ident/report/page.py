@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 LARGEST = 295_000  # bytes of the page; above that its signals are thinned further
 POINTS = (7000, 4000, 2000)  # samples of all records together, tried in this order
-MODULES = ("parts.js", "signals.js", "plane.js", "explorer.js", "staircase.js", "report.js")
+MODULES = ("parts", "signals", "plot", "gestures", "legend", "figure", "scenes", "explorer", "staircase", "report")
 
 
 def write_report(folder: Path) -> Path:
@@ -42,12 +42,12 @@ def write_report(folder: Path) -> Path:
     tables = make_tables(results)
     write_tables(tables, results.folder / "tables")
     variables = _template_variables(results, tables, _figures_by_section(results))
-    stairs = [staircase(results, "stairs")] if results.improvement else []
+    stairs = [staircase(results, "stairs")] if results.improvement or results.result else []
     content = {"floors": results.floors, "stairs": stairs}
     page = ""
     for points in POINTS:
         content["records"] = packed(results.models, points)
-        page = rendered("report.html", results.name, content, **variables)
+        page = rendered("report.html", results.name, content, stairs=bool(stairs), **variables)
         if len(page.encode()) < LARGEST:
             break
     write_text(results.folder / "report.html", page)
@@ -78,11 +78,15 @@ def _template_variables(results: Results, tables: dict[str, Table], figures: dic
 
 
 def staircase(results: Results, place: str) -> dict[str, Any]:
-    """What the page's script draws of an improvement into the element with the id `place`."""
-    improvement = results.improvement
-    steps = [{"name": step_name(step), **step["rmse"]} for step in improvement["steps"]]
-    axis = {"unit": numbers.unit(improvement["unit"]) or "1", "together": together(results.units)}
-    return {"place": place, "steps": steps, "floor": improvement["floor"], **axis}
+    """What the page's script draws of the steps of an improvement, or of a single run, into the element with the id
+    `place`."""
+    if improvement := results.improvement:
+        steps = [{"name": step_name(step), **step["rmse"]} for step in improvement["steps"]]
+        unit, floor = improvement["unit"], improvement["floor"]
+    else:
+        steps, unit, floor = [{"name": "as given", **results.rmse}], results.unit, results.floor
+    axis = {"unit": numbers.unit(unit) or "1", "together": together(results.units)}
+    return {"place": place, "steps": steps, "floor": floor, **axis}
 
 
 def rendered(name: str, title: str, content: dict[str, Any], **variables: Any) -> str:
@@ -90,16 +94,16 @@ def rendered(name: str, title: str, content: dict[str, Any], **variables: Any) -
     from markupsafe import Markup
 
     data = json.dumps(plain(content), separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-    scripts = [web_file("uplot/uPlot.iife.min.js"), bundled_modules()]
-    allowed = " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(s.encode()).digest()).decode()}'" for s in scripts)
-    css = "\n".join(web_file(sheet) for sheet in ("page.css", "plots.css", "uplot/uPlot.min.css"))
+    script = bundled_modules()
+    allowed = f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
+    css = "\n".join(web_file(sheet) for sheet in ("page.css", "plots.css", "report.css"))
     return (
         environment()
         .get_template(name)
         .render(
             title=title,
             content=Markup(data),
-            scripts=[Markup(script) for script in scripts],
+            script=Markup(script),
             allowed=Markup(allowed),
             css=Markup(css),
             **variables,
@@ -113,7 +117,7 @@ def web_file(name: str) -> str:
 
 def bundled_modules() -> str:
     """The page's JavaScript modules as one, without imports, exports, comments and indentation."""
-    source = "\n".join(web_file(name) for name in MODULES)
+    source = "\n".join(web_file(f"{name}.js") for name in MODULES)
     return re.sub(
         r"^import .*;\n|^export (?=async|function|class|const)|^ *(//.*|/\*\*[^/]*\*/)\n|^ +",
         "",

@@ -18,11 +18,13 @@ from pzt_ident.run.results import read_results
 from run_folders import WEIRD, make_run
 
 SECTIONS = [
+    "staircase",
     "model",
+    "parameters",
     "residuals",
     "convergence",
     "league",
-    "parameters",
+    "intervals",
     "correlations",
     "noise",
     "records",
@@ -81,7 +83,7 @@ def test_only_the_scripts_of_the_package_may_run(weird, weird_page):
     policy = re.search(r'Content-Security-Policy" content="([^"]*)"', text)[1]
     assert policy.startswith("default-src 'none'; ")
     assert policy.endswith("script-src " + " ".join(f"'sha256-{value}'" for value in hashes))
-    assert "import " not in found[1].partition("\n")[0] and not re.search(r"^(import|export) ", found[1], re.M)
+    assert "import " not in found[0].partition("\n")[0] and not re.search(r"^(import|export) ", found[0], re.M)
 
 
 def test_a_script_cannot_be_ended_by_a_name(weird, weird_page):
