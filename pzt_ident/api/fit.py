@@ -26,6 +26,7 @@ from pzt_ident.job.schema import Job
 from pzt_ident.run.collect import collect
 from pzt_ident.run.folder import begin, environment
 from pzt_ident.run.identify import tasks_of
+from pzt_ident.run.start import starts_of
 from pzt_ident.run.statement import Statement
 
 if TYPE_CHECKING:
@@ -62,7 +63,9 @@ class Fit(Fitted):
             record.write_csv(folder / file_of(record), stamps)
         statement = Statement(job)
         write_json(folder / "environment.json", environment(job, statement.records))
-        tasks = tasks_of(statement, folder)
+        starts = starts_of([run for run, _ in self.runs])
+        starts.keep(folder)
+        tasks = tasks_of(statement, folder, starts)
         for task, (run, checkpoint) in zip(tasks, self.runs, strict=True):
             checkpoint.save(task.losses)
             write_json(task.result, run)

@@ -29,6 +29,7 @@ from pzt_ident.cli.options import (
     plugins_flag,
     plugins_option,
     run_options,
+    start_option,
 )
 
 if TYPE_CHECKING:
@@ -51,37 +52,59 @@ def main(debug: bool) -> None:
 @main.command()
 @click.argument("job", type=EXISTING)
 @click.option("--out", type=EXISTING, help="Folder for the results; results/<name>/<time>-<hash> if not given.")
+@start_option
+@click.option("--no-search", is_flag=True, help="Polish the fit of --from, and let no optimizer search.")
 @run_options
 @plugins_flag
 @output_options
 def run(
-    job: Path, out: Path | None, workers: int | None, no_report: bool, plugins: bool, as_json: bool, quiet: bool
+    job: Path,
+    out: Path | None,
+    start: Path | None,
+    no_search: bool,
+    workers: int | None,
+    no_report: bool,
+    plugins: bool,
+    as_json: bool,
+    quiet: bool,
 ) -> None:
     """Identify the model of a job file JOB."""
 
-    def start(listen: Listener) -> Path:
+    def begin(listen: Listener) -> Path:
         from pzt_ident.job.schema import load_job
         from pzt_ident.run.identify import run
 
-        return run(load_job(job, plugins), out, workers=workers, listen=listen)
+        job_ = load_job(job, plugins)
+        return run(job_, out, workers=workers, listen=listen, start=start, search=not no_search)
 
-    _identify(start, no_report, as_json, quiet)
+    if no_search and start is None:
+        raise click.UsageError("--no-search needs a fit to start from: give --from RESULT")
+    _identify(begin, no_report, as_json, quiet)
 
 
 @main.command()
 @click.argument("folder", metavar="DIR", type=EXISTING)
+@start_option
 @run_options
 @plugins_flag
 @output_options
-def resume(folder: Path, workers: int | None, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
-    """Go on with the run in the folder DIR."""
+def resume(
+    folder: Path,
+    start: Path | None,
+    workers: int | None,
+    no_report: bool,
+    plugins: bool,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Go on with the run in the folder DIR, with --from from another fit as well."""
 
-    def start(listen: Listener) -> Path:
+    def begin(listen: Listener) -> Path:
         from pzt_ident.run.identify import resume
 
-        return resume(folder, workers=workers, listen=listen, plugins=plugins)
+        return resume(folder, workers=workers, listen=listen, plugins=plugins, start=start)
 
-    _identify(start, no_report, as_json, quiet)
+    _identify(begin, no_report, as_json, quiet)
 
 
 def _identify(start: Callable[[Listener], Path], no_report: bool, as_json: bool, quiet: bool) -> None:
@@ -195,6 +218,7 @@ def _diagnose(
     show: Callable[[dict[str, Any], Path], None],
     job: Path,
     out: Path | None,
+    start: Path | None,
     no_report: bool,
     plugins: bool,
     budget: float | None,
@@ -205,7 +229,7 @@ def _diagnose(
     from pzt_ident.job.schema import load_job
 
     with listening(silent=as_json or quiet) as listen:
-        folder = function(load_job(job, plugins), out, listen, budget)
+        folder = function(load_job(job, plugins), out, listen, budget, start)
         _report(folder, no_report)
     verdict = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
     answer({"folder": str(folder), name: verdict}, lambda: show(verdict, folder), as_json, quiet)

@@ -90,6 +90,12 @@ def plugins_option(command: Command) -> Command:
     return option(command)
 
 
+def start_option(command: Command) -> Command:
+    """--from, as `start`."""
+    text = "Start from the fit in this folder of a run, diagnosis or improvement, or in a JSON file of values."
+    return click.option("--from", "start", metavar="RESULT", type=EXISTING, help=text)(command)
+
+
 def run_options(command: Command) -> Command:
     """--workers and --no-report."""
     command = no_report_flag(command)
@@ -100,7 +106,7 @@ def run_options(command: Command) -> Command:
 def diagnosis_options(command: Command) -> Command:
     """JOB, --out and the options of a command that looks for what a model misses."""
     text = "Folder for the results; results/<name>/<time>-<hash> if not given."
-    command = no_report_flag(plugins_flag(output_options(command)))
+    command = start_option(no_report_flag(plugins_flag(output_options(command))))
     more = "CPU time to spend, such as 60s or 5 min; 60 s or 1 ms a sample if not given."
     command = click.option("--budget", type=Seconds(), help=more)(command)
     return click.argument("job", type=EXISTING)(click.option("--out", type=EXISTING, help=text)(command))

@@ -107,6 +107,11 @@ def are_look_alikes(one: str, other: str) -> bool:
     return word_of(one) in blocks[other].look_alikes or word_of(other) in blocks[one].look_alikes
 
 
+def differ(one: float, other: float, floor: float) -> bool:
+    """Whether two errors differ by more than the noise leaves open."""
+    return abs(one**2 - other**2) ** 0.5 > TIE * floor
+
+
 def is_tied(case: Case, effect: str, fit: Fit, rival: Fit) -> bool:
     """Whether a fit with a look-alike in the place of an effect is hardly worse."""
     close = removed_rms(rival.total, fit.total) < 2 * TIE * case.floor

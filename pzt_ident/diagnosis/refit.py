@@ -19,6 +19,7 @@ from pzt_ident.model.block import Coupling
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import Choice, blocks, word_of
 from pzt_ident.search.problem import FixedValue, ParameterSpec, Problem
+from pzt_ident.search.uncertainty import Estimate, estimates
 
 Array = NDArray[np.float64]
 Listener = Callable[[dict[str, Any]], None]
@@ -142,6 +143,11 @@ class Fit:
     def values(self) -> dict[str, float]:
         """The free parameters by name, in the user's units."""
         return dict(zip(self.problem.names, self.problem.physical(self.point)[0].tolist(), strict=True))
+
+    @cached_property
+    def estimates(self) -> list[Estimate]:
+        """What the data determine of the parameters."""
+        return estimates(self.problem, self.point)[0]
 
 
 def fit_at(

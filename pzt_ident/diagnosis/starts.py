@@ -18,24 +18,31 @@ AGREEMENT = 0.01  # of the loss, between the two best minima
 RESTARTS = 2  # random points of one block that are refined
 
 
-def first_fit(case: Case, seed: int) -> Fit:
-    """The job's own model, fitted from random points; not converged where the two best minima differ."""
+def first_fit(case: Case, seed: int, known: Array | None = None) -> Fit:
+    """The job's own model, fitted from random points; not converged where the two best minima differ. known: the point
+    of a fit that was searched for, beside which one batch of random points is enough."""
     problem = case.problem(case.effects)
-    rng = np.random.default_rng(seed)
-    starts = rng.uniform(size=(STARTS, problem.dimensions))
-    order = np.argsort(problem.loss(starts), kind="stable")[:MOST_REFINED]
-    minima, agreed = np.empty((0, problem.dimensions)), False
-    while len(minima) < MOST_REFINED and not agreed:
-        batch = starts[order[len(minima) : len(minima) + REFINED]]
+    minima = np.empty((0, problem.dimensions)) if known is None else descend(problem, known)[None]
+    order, agreed = ranked_points(problem, seed), False
+    most = MOST_REFINED if known is None else REFINED
+    for number in range(0, most, REFINED):
         with ThreadPoolExecutor(2) as pool:
-            for minimum in pool.map(lambda start: descend(problem, start), batch):
+            for minimum in pool.map(lambda start: descend(problem, start), order[number : number + REFINED]):
                 minima = np.vstack([minima, minimum])
-                case.on_event({"event": "fitted", "done": len(minima), "of": len(order)})
+                case.on_event({"event": "fitted", "done": len(minima), "of": most + (known is not None)})
         losses = problem.loss(minima)
         best, second = np.sort(losses)[:2]
         agreed = bool(second <= (1 + AGREEMENT) * best + 0.1 * case.floor and np.isfinite(best))
+        if agreed:
+            break
     point = min((minima[np.argmin(losses)], best_of_each_axis(problem, minima)), key=lambda p: problem.loss(p)[0])
-    return refine_steps(case, fit_at(case.effects, problem, point, agreed))
+    return refine_steps(case, fit_at(case.effects, problem, point, agreed or known is not None))
+
+
+def ranked_points(problem: Problem, seed: int) -> Array:
+    """(STARTS, dimensions) random points, the best first."""
+    points = np.random.default_rng(seed).uniform(size=(STARTS, problem.dimensions))
+    return points[np.argsort(problem.loss(points), kind="stable")]
 
 
 def best_of_each_axis(problem: Problem, minima: Array) -> Array:

@@ -71,11 +71,14 @@ def edited(
     steps: Sequence[int] = (),
     values: Mapping[str, float] | None = None,
     bounds: Mapping[str, tuple[float, float]] | None = None,
+    parameters: Mapping[str, Mapping[str, Any]] | None = None,
+    sections: Mapping[str, Any] | None = None,
 ) -> str:
     """The job's text with these effects, and with paths relative to another folder.
 
     words: the blocks of the model, where it changes. steps: of the simulation in a sample, for every record.
     values: of parameters that are fixed from now on. bounds: of parameters that the job has, where they change.
+    parameters: what the job says of some from now on, `bounds` or `value`. sections: other sections, whole.
     """
     from ruamel.yaml import YAML
 
@@ -91,8 +94,10 @@ def edited(
             record["steps"] = count
     for name, (low, high) in (bounds or {}).items():
         document["parameters"][name]["bounds"][:] = [float(f"{low:.6g}"), float(f"{high:.6g}")]
-    if values:
-        _fix_parameters(document, values)
+    if given := {name: {"value": value} for name, value in (values or {}).items()} | dict(parameters or {}):
+        _set_parameters(document, given)
+    for name, content in (sections or {}).items():
+        document[name] = _flow(content)
     if job.folder.resolve() != folder.resolve():
         _rebase_files(document, job.folder, folder)
         for i, file in enumerate(document.get("plugins", ())):
@@ -116,15 +121,29 @@ def _set_effects(document: Any, effects: Sequence[str]) -> None:
     listed.extend(word for word in effects if word not in listed)
 
 
-def _fix_parameters(document: Any, values: Mapping[str, float]) -> None:
+def _set_parameters(document: Any, given: Mapping[str, Mapping[str, Any]]) -> None:
     from ruamel.yaml.comments import CommentedMap
 
     if not document.get("parameters"):
         document.pop("parameters", None)
         document.insert(list(document).index("effects") + 1, "parameters", CommentedMap())
-    for name, value in values.items():
-        document["parameters"][name] = CommentedMap(value=value)
-        document["parameters"][name].fa.set_flow_style()
+    for name, content in given.items():
+        document["parameters"][name] = _flow(content)
+
+
+def _flow(content: Any) -> Any:
+    """Mappings and lists as they are written on one line; a list of mappings has a line for each."""
+    from ruamel.yaml.comments import CommentedMap, CommentedSeq
+
+    if isinstance(content, Mapping):
+        node: Any = CommentedMap({key: _flow(value) for key, value in content.items()})
+    elif isinstance(content, list | tuple):
+        node = CommentedSeq([_flow(value) for value in content])
+    else:
+        return content
+    if not any(isinstance(value, Mapping) for value in content):
+        node.fa.set_flow_style()
+    return node
 
 
 def _items(items: Sequence[Any], words: Sequence[str]) -> list[Any]:

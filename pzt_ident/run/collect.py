@@ -17,6 +17,7 @@ from pzt_ident.files import write_json, write_text
 from pzt_ident.run.checkpoint import read_losses
 from pzt_ident.run.folder import read_environment
 from pzt_ident.run.misfit import write_misfits
+from pzt_ident.run.start import START
 from pzt_ident.run.statement import Statement
 from pzt_ident.run.task import Task, read_result
 from pzt_ident.search.league import rank
@@ -30,11 +31,12 @@ def collect(statement: Statement, folder: Path, tasks: list[Task], failed: dict[
         raise RunError("every run failed: " + "; ".join(dict.fromkeys(failed.values())))
     job, records, problem = statement.job, statement.records, statement.problem
     runs = [read_result(task) for task in done]
-    histories = {task.run: history_of(task, factor(statement.unit)) for task in done}
+    searches = [task for task in done if task.optimizer != START]
+    histories = {task.run: history_of(task, factor(statement.unit)) for task in searches}
     league = rank(runs, histories)
     best = min(runs, key=lambda run: run["rmse"]["identify"])
     point = np.array(best["point"])
-    write_text(folder / "history.csv", history_text(done, histories))
+    write_text(folder / "history.csv", history_text(searches, histories))
     write_signals(folder / "signals.nc", problem.errors(point))
     result = {
         "name": job.name,

@@ -34,7 +34,7 @@ def read_identified(path: Path, plugins: bool = False, as_given: bool = False) -
     """
     if path.is_file():
         return of_json(path)
-    improved = (path / "improvement.json").is_file()
+    improved = (path / "improved.yaml").is_file()
     if not improved and not (path / "result.json").is_file():
         raise InputError("holds no result", where=str(path), remedy=A_RESULT)
     values, rmse, name = _improved(path, as_given) if improved else _best(path)

@@ -13,25 +13,45 @@ from pzt_ident.run.collect import collect
 from pzt_ident.run.events import Listen, event_log, nobody
 from pzt_ident.run.folder import begin, check_unchanged, read_environment, results_folder
 from pzt_ident.run.pool import run_all
+from pzt_ident.run.start import START, Starts
 from pzt_ident.run.statement import Statement
 from pzt_ident.run.task import Task, work
 
 
-def run(job: Job, out: Path | None = None, *, workers: int | None = None, listen: Listen = nobody) -> Path:
-    """Identify what the job asks for; returns the folder of results. `listen` is told each event as it happens.
+def run(
+    job: Job,
+    out: Path | None = None,
+    *,
+    workers: int | None = None,
+    listen: Listen = nobody,
+    start: Path | None = None,
+    search: bool = True,
+) -> Path:
+    """Identify what the job asks for; returns the folder of results. `listen` is told each event as it happens. start:
+    a folder of results, or a file of values, whose fit is polished as a row of its own beside the searches, or instead
+    of them where `search` is False; the better one is the result.
 
     Writes `job.yaml`, `environment.json`, `events.jsonl`, `history.csv`, `signals.nc`, `residuals.json` and, last,
     `result.json`. Raises InputError before anything is written where the job or its data are wrong.
     """
     statement = Statement(job)
     folder = results_folder(job, out)
-    tasks = tasks_of(statement, folder)
+    starts = Starts(search=search or start is None).and_(start, job)
+    tasks = tasks_of(statement, folder, starts)
     begin(folder, job, job.text, statement.records)
+    starts.keep(folder)
     return _search(statement, folder, tasks, workers, listen)
 
 
-def resume(folder: Path, *, workers: int | None = None, listen: Listen = nobody, plugins: bool = False) -> Path:
-    """Go on where a killed run stopped, to the result that it would have had.
+def resume(
+    folder: Path,
+    *,
+    workers: int | None = None,
+    listen: Listen = nobody,
+    plugins: bool = False,
+    start: Path | None = None,
+) -> Path:
+    """Go on where a killed run stopped, to the result that it would have had. start: as of `run`, one more.
 
     Raises InputError where the folder holds no run, or its job or data have changed.
     """
@@ -40,7 +60,9 @@ def resume(folder: Path, *, workers: int | None = None, listen: Listen = nobody,
     job = Job.from_text(text, Path(begun["job_folder"]), f"{begun['job_name']}.yaml", plugins)
     statement = Statement(job)
     check_unchanged(job, statement.records, begun, folder)
-    return _search(statement, folder, tasks_of(statement, folder), workers, listen)
+    starts = Starts.kept(folder).and_(start, job)
+    starts.keep(folder)
+    return _search(statement, folder, tasks_of(statement, folder, starts), workers, listen)
 
 
 def _search(statement: Statement, folder: Path, tasks: list[Task], workers: int | None, listen: Listen) -> Path:
@@ -78,11 +100,16 @@ def stop_of(statement: Statement) -> dict[str, float | int | None]:
     }
 
 
-def tasks_of(statement: Statement, folder: Path) -> list[Task]:
-    """Optimizers times repeats. Raises InputError as `stop_of` does."""
+def tasks_of(statement: Statement, folder: Path, starts: Starts = Starts()) -> list[Task]:  # noqa: B008
+    """Optimizers times repeats, then the fits to start from. Raises InputError as `stop_of` does."""
     job, stop = statement.job, stop_of(statement)
-    return [
+    searches = [
         Task(f"{choice.name}-{repeat}", choice.name, choice.settings, repeat, job.seed, stop, job.polish, folder)
         for choice in job.optimizers
         for repeat in range(job.repeats)
+    ]
+    alone = {"evaluations": 1}
+    return searches * starts.search + [
+        Task(f"{START}-{number}", START, {"start": start}, number, job.seed, alone, True, folder)
+        for number, (_, start) in enumerate(starts.given)
     ]
