@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -10,20 +12,29 @@ from pzt_ident.data.notation import spelled, unit
 from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.data.readers.registry import readers
 from pzt_ident.data.signals import Trace
-from pzt_ident.model.description import headline
+from pzt_ident.diagnosis.candidates import differ
+from pzt_ident.errors import InputError
+from pzt_ident.model.description import headline as first_sentence
+from pzt_ident.model.description import words
 from pzt_ident.model.registry import blocks, word_of
 from pzt_ident.report.sentences import printed_reason
+from pzt_ident.report.style import decimate
 from pzt_ident.report.tables import expected
 from pzt_ident.report.traces import packed
 from pzt_ident.run.results import read_results
+from pzt_ident.workbench import downloads
 from pzt_ident.workbench.guard import LARGEST_UPLOAD
+from pzt_ident.workbench.headline import headline as headline
+from pzt_ident.workbench.measurement import WHOLE, encoded
 from pzt_ident.workbench.session import Session
+from pzt_ident.workbench.step_model import model_of
 
 PRINTERS = {"unit": unit} | dict.fromkeys(("reason", "why", "said", "sentences"), spelled)
 
 
 def state(session: Session) -> dict[str, Any]:
     """The whole state except the signals; parts without results are None or empty."""
+    session.settle()
     chain = session.chain()
     step = session.step() if chain else None
     job = job_of(session) if step else None  # read first: its plugins may register blocks
@@ -33,26 +44,69 @@ def state(session: Session) -> dict[str, Any]:
         "largest": LARGEST_UPLOAD,
         "blocks": model_blocks(),
         "effects": effects(),
+        "optimizer_words": [{"name": word, "doc": doc} for word, doc in words("optimizers").items()],
         "files": [*files_in(session.root), *(session.relative(session.data / name) for name in files_in(session.data))],
         "steps": [step_state(session, entry) for entry in chain],
         "others": [step_state(session, entry) for entry in session.steps if entry not in chain],
-        "stage": session.stage,
-        "since": session.since,
-        "failure": session.failure,
+        "at": session.at,
+        "warning": session.warning,
+        "draft": session.draft,
         **over_axes(session),
         "job": job,
         "result": read(step / "run" / "result.json") if step else None,
         "misfit": read(step / "run" / "residuals.json") if step else None,
         "diagnosis": diagnosis_of(step) if step else None,
+        "parameters": printed(model_of(step, session.plugins).parameters) if step else [],
+        "optimizers": optimizers(session),
+        "improving": improving(step) if step else None,
+        "control": read(step / "control" / "control.json") if step else None,
+        "downloads": downloads.names(session),
+        "limits": job["limits"] if job else None,
         "commands": session.logged_commands(),
     }
 
 
 def step_state(session: Session, entry: dict[str, Any]) -> dict[str, Any]:
-    """A step and the RMSE of its model by use, None if it was not run."""
+    """A step, the RMSE of its model by use, None if it was not run, that of the identification records in noise
+    floors, and what the diagnosis before promised."""
     result = read(session.step(entry["number"]) / "run" / "result.json")
     rmse = result["best"]["rmse"] if result and result.get("best") else {"identify": None, "validate": None}
-    return entry | rmse
+    floors = rmse["identify"] / result["floor"] if rmse["identify"] is not None and result.get("floor") else None
+    return {"promised": None, "note": ""} | entry | rmse | {"floors": floors}
+
+
+def optimizers(session: Session) -> list[dict[str, Any]]:
+    """The comparison of the optimizers in the newest run of the chain in which some searched, the best first. `equal`:
+    whether the best polished fit is as good as the best of all, within the noise."""
+    for entry in reversed(session.chain()):
+        result = read(session.step(entry["number"]) / "run" / "result.json")
+        if result and result.get("league"):
+            least = min(row["rmse_best"] for row in result["league"])
+            return [row | {"equal": not differ(row["rmse_best"], least, result["floor"])} for row in result["league"]]
+    return []
+
+
+def improving(step: Path) -> dict[str, Any] | None:
+    """The steps that an improvement of this step has taken so far, None where none was asked for."""
+    path = step / "improved" / "events.jsonl"
+    if not path.exists():
+        return None
+    lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line.endswith("}")]
+    stairs = [item for line in lines if (item := json.loads(line))["event"] == "stair"]
+    return {"steps": [printed(item) for item in stairs]}
+
+
+def tracking(path: Path) -> dict[str, Any]:
+    """The columns of a comparison of ways to follow a reference, by heading, as 32-bit floats, of long ones the
+    extremes. Raises InputError where there is none."""
+    import pandas as pd
+
+    if not path.exists():
+        raise InputError("nothing follows a reference yet", remedy="drop a reference")
+    frame = pd.read_csv(path)
+    kept = decimate(frame.iloc[:, 1].to_numpy(float), WHOLE // 2)
+    columns = {name: encoded(frame[name].to_numpy("<f4")[kept]) for name in frame}
+    return {"samples": len(frame), "columns": columns}
 
 
 def over_axes(session: Session) -> dict[str, str]:
@@ -71,7 +125,7 @@ def diagnosis_of(step: Path) -> dict[str, Any] | None:
         return None
     diagnosis = json.loads(path.read_text(encoding="utf-8"))
     for item in diagnosis["candidates"]:
-        item["would_be"] = expected(item["expected"], item["units"])
+        item["estimate"] = item["would_be"] = expected(item["expected"], item["units"])
     return printed(diagnosis) | {"reason": printed_reason(diagnosis["reason"], read_results(step / "run"))}
 
 
@@ -84,14 +138,22 @@ def job_of(session: Session) -> dict[str, Any]:
         "effects": job.effects,
         "folder": folder,
         "text": job.text,
+        "limits": asdict(job.limits),
+        "search": {
+            "optimizers": [{"name": item.name, **item.settings} for item in job.optimizers],
+            "repeats": job.repeats,
+            "seed": job.seed,
+        },
     }
 
 
-def signals(session: Session) -> dict[str, Any]:
-    """All samples of the records with the models of the current step and of the one before."""
+def signals(session: Session, numbers: Sequence[int] = ()) -> dict[str, Any]:
+    """All samples of the records with the models of the current step and of the one before, or of the steps of these
+    numbers."""
     models: dict[str, tuple[Trace, ...]] = {}
-    for entry, name in zip(reversed(session.chain()), ("now", "before"), strict=False):
-        run = session.step(entry["number"]) / "run"
+    shown = numbers or [entry["number"] for entry in reversed(session.chain())]
+    for number, name in zip(shown, ("now", "before"), strict=False):
+        run = session.step(number) / "run"
         if (run / "result.json").exists():
             models[name] = read_results(run).traces
     result = read(session.step() / "run" / "result.json") or {"noise_floor": {}}
@@ -99,10 +161,11 @@ def signals(session: Session) -> dict[str, Any]:
 
 
 def read(path: Path) -> Any:
-    """The content of a JSON file with printed units; None if there is no file."""
-    if not path.exists():
+    """The content of a JSON file with printed units; None if there is no file, or a damaged one."""
+    try:
+        return printed(json.loads(path.read_text(encoding="utf-8"))) if path.exists() else None
+    except ValueError:
         return None
-    return printed(json.loads(path.read_text(encoding="utf-8")))
 
 
 def printed(content: Any, key: str = "") -> Any:
@@ -134,7 +197,7 @@ def description(word: str) -> dict[str, Any]:
     place = getattr(blocks[word], "place", None)
     return {
         "name": word,
-        "doc": headline(blocks[word]),
+        "doc": first_sentence(blocks[word]),
         "place": None if place is None else int(place),
         "kind": blocks.kind_of(word),
     }

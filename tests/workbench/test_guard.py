@@ -8,13 +8,15 @@ import pytest
 from starlette.testclient import TestClient
 
 from pzt_ident.errors import InputError
-from pzt_ident.workbench import app as server
+from pzt_ident.workbench import uploads
+from pzt_ident.workbench.gets import GETS as GETS_
 from pzt_ident.workbench.guard import inside
+from pzt_ident.workbench.posts import CHANGES
 
 from .conftest import GOOD, HOST, TOKEN, form, measured
 
-POSTS = ["upload?name=a.csv", "look", "job", "run", "stop", "model", "report", "add", "remove", "undo"]
-GETS = ["state", "signals", "job", "drive", "events"]
+POSTS = [*CHANGES, "upload?name=a.csv", "reference?name=a.csv", "look", "measurement", "simulate", "report", "export"]
+GETS = [*GETS_, "events"]
 
 
 @pytest.mark.parametrize("name", POSTS)
@@ -50,7 +52,7 @@ def test_a_page_from_elsewhere_is_refused_even_with_the_token(client, origin):
 
 def test_the_page_itself_is_served(client):
     assert client.get("/api/state", headers={"origin": f"http://{HOST}"}).status_code == 200
-    for path in ("/", "/web/workbench.js", "/web/uplot/uPlot.min.css"):
+    for path in ("/", "/web/workbench.js", "/web/workbench.css"):
         answer = client.get(path)
         assert answer.status_code == 200
         assert answer.headers["content-security-policy"].startswith("default-src 'self';")
@@ -145,7 +147,7 @@ def test_an_upload_of_2_gb_is_refused_before_it_is_read(client, session):
 
 
 def test_an_upload_that_lies_about_its_size_is_cut_off(client, session, monkeypatch):
-    monkeypatch.setattr(server, "LARGEST_UPLOAD", 1000)
+    monkeypatch.setattr(uploads, "LARGEST_UPLOAD", 1000)
     answer = client.post("/api/upload?name=a.csv", content=itertools.repeat(b"1,2\n3,4\n" * 20, 50))
     assert answer.status_code == 413
     assert not [path for path in session.folder.rglob("*") if path.is_file()]
