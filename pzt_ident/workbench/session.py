@@ -6,6 +6,7 @@ import json
 import os
 import re
 from collections.abc import Callable, Mapping, Sequence
+from copy import deepcopy
 from pathlib import Path
 from shlex import join
 from typing import Any
@@ -110,6 +111,7 @@ class Session:
 
     def begin(self, form: dict[str, Any]) -> None:
         """Make a first step from the form that was confirmed on the page. Raises InputError that lists every fault."""
+        form = deepcopy(form)
         for source in file_sources(form["records"]):
             source["file"] = os.path.relpath(self.root / source["file"], self.folder / "steps" / str(self._next))
         self.make(job_text(form), parent=0, change="as given")
