@@ -113,9 +113,12 @@ def parameters(results: Results) -> Table:
         {"parameter": name, **{key: entry.get(key) for key in keys}}
         for name, entry in results.best["parameters"].items()
     ]
+    for row in rows:
+        row["low"], row["high"] = interval_of(results.best["parameters"][row["parameter"]]) or (None, None)
     cells: dict[str, Cell] = {
         "parameter": lambda row: row["parameter"],
         "value": lambda row: with_error(row["value"], row["standard_error"]),
+        "95 % interval": lambda row: "" if row["low"] is None else f"{number(row['low'])} to {number(row['high'])}",
         "unit": lambda row: unit(row["unit"]),
         "bounds": lambda row: bounds(row["lower"], row["upper"]),
         "verdict": lambda row: row["verdict"],
@@ -123,6 +126,14 @@ def parameters(results: Results) -> Table:
     if any(row["note"] for row in rows):
         cells["note"] = lambda row: row["note"] or ""
     return table("parameters", rows, cells, {"parameter", "unit", "verdict", "note"}, {})
+
+
+def interval_of(entry: Mapping[str, Any]) -> tuple[float, float] | None:
+    """The 95 % interval of a parameter: as stated, else from its standard error; None if it has none."""
+    if stated := entry.get("interval"):
+        return stated[0], stated[1]
+    error = entry.get("standard_error")
+    return (entry["value"] - 1.96 * error, entry["value"] + 1.96 * error) if error else None
 
 
 def records(results: Results) -> Table:
@@ -229,13 +240,14 @@ def changes(results: Results) -> Table:
             "unit": item["unit"],
             "as_given": first.get(name, {}).get("value"),
             "improved": item["value"],
+            "standard_error": item.get("standard_error"),
         }
         for name, item in last.items()
     ]
     cells: dict[str, Cell] = {
         "parameter": lambda row: row["parameter"],
         "as given": lambda row: number(row["as_given"], 5),
-        "improved": lambda row: number(row["improved"], 5),
+        "improved": lambda row: with_error(row["improved"], row["standard_error"]),
         "unit": lambda row: unit(row["unit"]),
     }
     return table("changes", rows, cells, {"parameter", "unit"}, {})

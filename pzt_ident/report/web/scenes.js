@@ -91,25 +91,25 @@ function rateOf({ drive, time }) {
   return drive.map((_, i) => (i ? (drive[i] - drive[i - 1]) / (time[i] - time[i - 1] || 1) : 0));
 }
 
-/** Amplitude of the residual over frequency; `spectrum` as the server sends it for one record and axis. */
-export function spectrumScene({ frequency, residual, floor }, unit) {
-  const shown = frequency.map((value, i) => [value, residual[i]]).filter(([x, y]) => x > 0 && y > 0);
-  const series = [{ label: "residual", xs: shown.map(([x]) => x), ys: shown.map(([, y]) => y), colour: "--model", over: true }];
-  if (floor) series.unshift({ label: "noise floor", xs: series[0].xs, ys: series[0].xs.map(() => floor), colour: "--floor", dash: [6, 3] });
-  return logScene(series, `amplitude of the residual [${unit}]`);
+/** Amplitude density of the residual over frequency; `spectrum` as the server sends it for one record and axis. */
+export function spectrumScene({ frequency, residual }, unit) {
+  return logScene([curve("residual", frequency, residual, "--model", false)], `amplitude density of the residual [${unit}/√Hz]`);
 }
 
 /** Amplitude, and phase, of the response over frequency: measured as dots, model as a line. */
 export function bodeScenes({ frequency, measured, model }, unit) {
-  const pick = (key) => [["measured", measured, "--measured", true], ["model", model, "--model", false]]
-    .filter(([, part]) => part?.[key])
-    .map(([label, part, colour, dots]) => ({ label, xs: frequency, ys: part[key], colour, dots, over: !dots }));
+  const pick = (key) => [curve("measured", frequency, measured[key], "--measured", true), curve("model", frequency, model[key], "--model", false)];
   const phases = logScene(pick("phase"), "phase [°]");
   phases.y.log = false;
   return [logScene(pick("amplitude"), `amplitude ratio [${unit}]`), phases];
 }
 
+function curve(label, frequency, values, colour, dots) {
+  const shown = frequency.map((x, i) => [x, values[i]]).filter(([x, y]) => x > 0 && Number.isFinite(y));
+  return { label, xs: shown.map(([x]) => x), ys: shown.map(([, y]) => y), colour, dots, over: !dots };
+}
+
 function logScene(series, label) {
-  const range = (key) => extent(series.flatMap((line) => [...line[key]]).filter((value) => Number.isFinite(value) && (key === "ys" || value > 0)));
+  const range = (key) => extent(series.flatMap((line) => line[key]));
   return { series, x: { label: "frequency [Hz]", range: range("xs"), log: true }, y: { label, range: range("ys"), log: true }, track: null };
 }

@@ -72,7 +72,7 @@ export class Candidates {
         values[parameter.name] = parameter.value;
         const entry = element(root, "div", { class: "parameter", role: "group", "aria-label": parameter.name });
         const head = element(entry, "div", { class: "parameter-head" });
-        element(head, "strong", { title: parameter.physics ?? "" }, parameter.name);
+        element(head, "strong", { title: parameter.physics ?? "" }, parameter.name.slice(parameter.name.indexOf(".") + 1));
         slider(entry, head, parameter, (value) => { values[parameter.name] = value; this.page.move({ ...values }, effect); });
       }
     } catch (error) { this.page.fail(error); }

@@ -28,17 +28,16 @@ export class Optimizers {
     this.league.replaceChildren();
     if (!rows.length) return;
     element(this.league, "h2", {}, "The last search");
-    element(this.league, "p", { class: "quiet" }, `Best RMSE [${unit}] on the identification records: of the optimizer itself, and after the local polish that ends a run.`);
+    element(this.league, "p", { class: "quiet" }, `RMSE [${unit}] on the identification records after ${rows[0].evaluations} evaluations a run: the best of the optimizer itself, and the median after the local polish that ends a run. CPU time of a run.`);
     const table = element(this.league, "table", { id: "league" });
     const head = element(element(table, "thead"), "tr");
-    for (const text of ["optimizer", "own", "polished", "evaluations", "CPU"]) element(head, "th", { scope: "col" }, text);
+    for (const [text, style] of [["optimizer", "word"], ["own", "number"], ["polished", "number"], ["runs", "number"], ["CPU", "number"]]) element(head, "th", { scope: "col", class: style }, text);
     const body = element(table, "tbody");
     for (const row of rows) {
       const line = element(body, "tr");
       const name = element(line, "th", { scope: "row" }, row.optimizer);
       if (row.equal) element(name, "span", { class: "tag good" }, "within the noise of the best");
-      const own = row.rmse_search_best ?? row.rmse_own_best ?? row.rmse_searched ?? row.rmse_median;
-      for (const text of [number(own), number(row.rmse_best), String(row.evaluations ?? "–"), row.cpu === undefined && row.seconds === undefined ? "–" : `${number(row.cpu ?? row.seconds, 2)} s`]) element(line, "td", { class: "number" }, text);
+      for (const text of [number(row.rmse_best), number(row.polished_rmse_median), String(row.runs), `${number(row.cpu_seconds_median, 2)} s`]) element(line, "td", { class: "number" }, text);
     }
   }
 
@@ -52,7 +51,7 @@ export class Optimizers {
     element(line, "button", { type: "button", "data-acts": "" }, "Improve").addEventListener("click", () => this.page.improve(budget.value.replace(/\s+/g, "")));
     element(this.forms, "h2", {}, "Search with other optimizers");
     this.rows = element(this.forms, "div", { class: "rows" });
-    const choices = words.map(({ name, doc }) => [name, `${name}: ${doc}`.slice(0, 80)]);
+    const choices = words.map(({ name }) => [name, name]);
     for (const item of search?.optimizers ?? [{ name: words[0]?.name }]) this.optimizerRow(choices, item);
     const bar = element(this.forms, "p", { class: "bar" });
     element(bar, "button", { type: "button" }, "One more").addEventListener("click", () => this.optimizerRow(choices, { name: words[0]?.name }));

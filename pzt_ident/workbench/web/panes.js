@@ -64,7 +64,7 @@ export class Panes {
 }
 
 /** The steps that an improvement took so far, after the one that it started from. */
-function grown(steps, last) {
-  const entries = steps.map(({ change, name, rmse, identify, validate }) => ({ name: change ?? name, ...(rmse ?? { identify, validate }), live: true, note: "so far" }));
-  return entries.filter(({ name, identify }) => name !== "as given" && identify !== last.identify);
+function grown(steps, { identify }) {
+  return steps.filter(({ added, removed, change, rmse }) => (added || removed || change) && rmse.identify !== identify)
+    .map(({ added, removed, change, rmse }) => ({ name: added ? `+ ${added}` : removed ? `− ${removed}` : change, ...rmse, live: true, note: "so far" }));
 }

@@ -28,7 +28,7 @@ const parameters = new Parameters(sheets.parameters, {
   settle: (body, undo) => act("settings", body).then((done) => done || undo()),
 });
 const candidates = new Candidates(sheets.candidates, { ...page, add: (effect) => act("add", { effect }) });
-const steps = new Steps(sheets.steps, { ...page, back: (step) => act("back", { step }), compare: (chosen) => chosen.length === 2 && panes.showSignals(state, chosen).catch(showError) });
+const steps = new Steps(sheets.steps, { ...page, back: (step) => act("back", { step }), compare: (chosen) => chosen.length === 2 && panes.showSignals(state, chosen.toSorted((a, b) => b - a)).catch(showError) });
 const optimizers = new Optimizers(sheets.optimizers, { search: (form) => act("search", form), improve: (budget) => act("improve", { budget }) });
 const control = new Control(sheets.control, page);
 const commands = new Commands(sheets.commands, showError);
@@ -155,7 +155,7 @@ function showStatus() {
   const seconds = Math.max(0, Math.round(Date.now() / 1000 - since));
   const { best, done, budget, together } = convergence;
   const searched = stage === "run" && Number.isFinite(best) ? `, ${Math.min(100, Math.round((100 * done) / budget))} %, best RMSE${together} ${number(best)}` : "";
-  const said = stage !== "run" && progress.sentence ? `; ${progress.sentence}` : "";
+  const said = ["diagnose", "improve"].includes(stage) && progress.sentence ? `; ${progress.sentence}` : "";
   byId("status").textContent = `${STAGES[stage] ?? stage}: ${seconds} s${searched}${said}`;
 }
 
