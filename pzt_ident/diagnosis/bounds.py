@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pzt_ident.diagnosis.criteria import removes_enough
-from pzt_ident.diagnosis.refit import Case, Fit, descend, fit_at, refine_steps
+from pzt_ident.diagnosis.refit import Case, Fit, fit_at, refine_steps
+from pzt_ident.search.descent import descend
 
 SLIP = 0.15  # of a bound, by which a data sheet may be beside the truth
 

@@ -18,6 +18,7 @@ from pzt_ident.engine.simulator import Simulator
 from pzt_ident.model.block import Coupling
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import Choice, blocks, word_of
+from pzt_ident.search.descent import descend
 from pzt_ident.search.problem import FixedValue, ParameterSpec, Problem
 from pzt_ident.search.uncertainty import Estimate, estimates
 
@@ -27,7 +28,6 @@ Listener = Callable[[dict[str, Any]], None]
 EDGE = 1e-4  # of a parameter's range: as near to its end it is on the bound
 STEP_TOLERANCE = 0.05  # noise floors: where halving the step changes more of a record, the step is halved
 FINEST = 8  # steps per sample
-DAMPINGS = 10.0 ** np.arange(-5, 4)
 
 
 class Case:
@@ -219,35 +219,3 @@ def step_errors(case: Case, fit: Fit) -> Array:
         change = (fine - coarse)[:, record.settle :] / problem.sizes[:, None]
         errors.append(np.sqrt(np.mean(np.var(change, axis=1))))
     return np.array(errors)
-
-
-def descend(problem: Problem, point: Array, most: int = 30) -> Array:
-    """The point that Levenberg-Marquardt on the normal equations reaches in the unit cube, all dampings in one
-    batch."""
-    point = np.clip(point, 0, 1)
-    loss, slow = problem.loss(point)[0], 0
-    for _ in range(most if np.isfinite(loss) else 0):
-        jacobian, residual = problem.jacobian(point), problem.residuals(point)[0]
-        gradient, curvature = jacobian.T @ residual, jacobian.T @ jacobian
-        free = ~(((point <= 0) & (gradient > 0)) | ((point >= 1) & (gradient < 0)))
-        trials = np.array([damped_step(point, gradient, curvature, free, damping) for damping in DAMPINGS])
-        losses = problem.loss(trials)
-        best = int(np.argmin(losses))
-        if not losses[best] < loss:
-            break
-        slow = slow + 1 if losses[best] > (1 - 1e-4) * loss else 0
-        point, loss = trials[best], losses[best]
-        if slow == 3:
-            break
-    return point
-
-
-def damped_step(point: Array, gradient: Array, curvature: Array, free: NDArray[np.bool_], damping: float) -> Array:
-    """The point after one Levenberg-Marquardt step of the free parameters, inside the unit cube."""
-    if not free.any():
-        return point
-    block = curvature[np.ix_(free, free)]
-    scale = np.maximum(np.diag(block), 1e-12 * max(np.diag(block).max(), 1e-300))
-    step = np.zeros(point.size)
-    step[free] = -np.linalg.lstsq(block + damping * np.diag(scale), gradient[free], rcond=None)[0]
-    return np.clip(point + np.clip(step, -0.3, 0.3), 0, 1)

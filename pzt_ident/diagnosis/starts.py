@@ -7,7 +7,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.diagnosis.refit import Case, Fit, descend, fit_at, refine_steps
+from pzt_ident.diagnosis.refit import Case, Fit, fit_at, refine_steps
+from pzt_ident.search.descent import descend
 from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]

@@ -22,6 +22,7 @@ from pzt_ident.run.statement import Statement
 from pzt_ident.run.task import Task, read_result
 from pzt_ident.search.league import rank
 from pzt_ident.search.problem import Problem
+from pzt_ident.search.uncertainty import judged
 
 
 def collect(statement: Statement, folder: Path, tasks: list[Task], failed: dict[str, str]) -> None:
@@ -34,7 +35,7 @@ def collect(statement: Statement, folder: Path, tasks: list[Task], failed: dict[
     searches = [task for task in done if task.optimizer != START]
     histories = {task.run: history_of(task, factor(statement.unit)) for task in searches}
     league = rank(runs, histories)
-    best = min(runs, key=lambda run: run["rmse"]["identify"])
+    best = judged(min(runs, key=lambda run: run["rmse"]["identify"]), runs)
     point = np.array(best["point"])
     write_text(folder / "history.csv", history_text(searches, histories))
     write_signals(folder / "signals.nc", problem.errors(point))
