@@ -183,6 +183,7 @@ def diagnose(job: Path, **options: Any) -> None:
 
 @main.command()
 @edit_options("EFFECT")
+@start_option
 def add(**options: Any) -> None:
     """Write a new job file: JOB with one EFFECT more, comments kept."""
     edit_job("add", **options)

@@ -142,12 +142,14 @@ def edit_options(metavar: str, **attributes: Any) -> Callable[[Command], Command
     return decorate
 
 
-def edit_job(name: str, job: Path, words: Any, out: Path, plugins: bool, as_json: bool, quiet: bool) -> None:
+def edit_job(
+    name: str, job: Path, words: Any, out: Path, plugins: bool, as_json: bool, quiet: bool, **more: Any
+) -> None:
     """Write another job file by the function `name` of pzt_ident.job.edit, and print what is in it."""
     from pzt_ident.job import edit
     from pzt_ident.model.registry import word_of
 
-    new_job = getattr(edit, name)(job, words, out, plugins)
+    new_job = getattr(edit, name)(job, words, out, plugins, **more)
     facts = {"model": [word_of(item) for item in new_job.model], "effects": list(new_job.effects)}
     contents = "; ".join(f"{key} {', '.join(words) or 'none'}" for key, words in facts.items())
     text = f"wrote {out}: {contents}\nnext: pzt-ident run {quote(str(out))}"

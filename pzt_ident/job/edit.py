@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Mapping, Sequence
 from io import StringIO
@@ -13,8 +14,9 @@ from pzt_ident.job.schema import Job, load_job
 from pzt_ident.model.registry import blocks, word_of
 
 
-def add(job: Path, effect: str, out: Path, plugins: bool = False) -> Job:
-    """Write the job with one more effect into the new file `out`; returns the new job.
+def add(job: Path, effect: str, out: Path, plugins: bool = False, start: Path | None = None) -> Job:
+    """Write the job with one more effect into the new file `out`; returns the new job. start: the folder of a diagnosis
+    that tried it; the job then has the steps of the simulation, and the axes without the effect, of that fit.
 
     Raises InputError where the effect is unknown, in the job already or does not fit the model, and where `out` exists.
     """
@@ -23,7 +25,21 @@ def add(job: Path, effect: str, out: Path, plugins: bool = False) -> Job:
         raise InputError(f"{word_of(effect)!r} is in its effects already", where=str(job), remedy="add another effect")
     if word_of(effect) not in blocks:
         raise InputError(f"unknown effect {effect!r}", remedy=nearest(effect, blocks.effects()))
-    return _write(before, (*before.effects, effect), None, out, plugins)
+    return _write(before, (*before.effects, effect), None, out, plugins, **(tried(start, effect) if start else {}))
+
+
+def tried(folder: Path, effect: str) -> dict[str, Any]:
+    """What the fit in which a diagnosis tried an effect has beside it, as `edited` takes it; empty where it did not."""
+    path = folder / "diagnosis.json"
+    try:
+        candidates = json.loads(path.read_text(encoding="utf-8"))["candidates"] if path.is_file() else []
+    except (ValueError, KeyError):
+        remedy = "run `pzt-ident diagnose` again"
+        raise InputError("is not as `pzt-ident diagnose` writes it", where=str(path), remedy=remedy) from None
+    for item in candidates:
+        if item.get("parameters") and effect in (item["effect"], item["item"]):
+            return {key: item[key] for key in ("steps", "values") if item.get(key)}
+    return {}
 
 
 def remove(job: Path, effect: str, out: Path, plugins: bool = False) -> Job:
@@ -52,12 +68,14 @@ def _effects_there(effects: Sequence[str]) -> str:
     return f"it has {', '.join(effects)}" if effects else "it has none"
 
 
-def _write(before: Job, effects: Sequence[str], words: Sequence[str] | None, out: Path, plugins: bool) -> Job:
+def _write(
+    before: Job, effects: Sequence[str], words: Sequence[str] | None, out: Path, plugins: bool, **more: Any
+) -> Job:
     from pzt_ident.files import write_text
 
     if out.exists():
         raise InputError("exists already", where=str(out), remedy="give another file with -o")
-    text = edited(before, effects, out.parent, words)
+    text = edited(before, effects, out.parent, words, **more)
     new_job = Job.from_text(text, out.parent, str(out), plugins)
     write_text(out, text)
     return new_job

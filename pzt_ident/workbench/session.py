@@ -13,7 +13,7 @@ from typing import Any
 
 from pzt_ident.errors import InputError
 from pzt_ident.files import write_json, write_text
-from pzt_ident.job.edit import edited
+from pzt_ident.job.edit import edited, tried
 from pzt_ident.job.schema import Job, load_job
 from pzt_ident.model.registry import word_of
 from pzt_ident.workbench.job_form import file_sources, job_text
@@ -134,8 +134,8 @@ class Session:
         if word_of(effect) in map(word_of, job.effects):
             raise InputError(f"{effect!r} is in the model already")
         found = self.candidate(effect)
-        text = edited(job, (*job.effects, effect), self.folder / "steps" / str(self._next), **edits_of(found))
         diagnosis = self.step() / "diagnosis"
+        text = edited(job, (*job.effects, effect), self.next_folder, **tried(diagnosis, effect))
         source = diagnosis if found else self.step() / "run"
         self._derive("add", [effect], f"+ {effect}", text, source, promised=found.get("rmse"))
 
@@ -151,13 +151,13 @@ class Session:
         if effect not in job.effects:
             raise InputError(f"{effect!r} is not in the model")
         effects = tuple(word for word in job.effects if word != effect)
-        text = edited(job, effects, self.folder / "steps" / str(self._next))
+        text = edited(job, effects, self.next_folder)
         self._derive("remove", [effect], f"− {effect}", text, self.step() / "run")
 
     def set_model(self, words: Sequence[str]) -> None:
         """Make a step with another chain of blocks."""
         job = self.job()
-        text = edited(job, job.effects, self.folder / "steps" / str(self._next), words)
+        text = edited(job, job.effects, self.next_folder, words)
         self._derive("model", list(words), " → ".join(words), text)
 
     def _derive(
@@ -290,7 +290,3 @@ class Session:
         path = self.folder / "commands.txt"
         return path.read_text(encoding="utf-8").splitlines() if path.exists() else []
 
-
-def edits_of(candidate: Mapping[str, Any]) -> dict[str, Any]:
-    """What the job of a refit has beside its effect: steps of the simulation, parameters off on unmeasured axes."""
-    return {key: candidate[key] for key in ("steps", "values") if candidate.get(key)}
