@@ -20,7 +20,7 @@ from pzt_ident.api.refit import with_effect
 from pzt_ident.api.statement import file_of, has_stamps, statement_of
 from pzt_ident.api.wording import as_arguments
 from pzt_ident.data.notation import listed, number, quantity, unit, with_error
-from pzt_ident.data.over_axes import together
+from pzt_ident.data.over_axes import over_uses, together
 from pzt_ident.files import write_json
 from pzt_ident.job.schema import Job
 from pzt_ident.run.collect import collect
@@ -108,7 +108,7 @@ class Fit(Fitted):
         floors = [f"{quantity(floor, self.noise['units'][axis])} ({axis})" for axis, floor in self.noise_floor.items()]
         over = self.noise["floor"]
         ratio = f", {number(self.rmse['identify'] / over, 3)} noise floors" if over and self.rmse["identify"] else ""
-        errors = f"RMSE{together(self.noise['units'])}: " + ", ".join(f"{error} {use}" for use, error in rmse.items())
+        errors = f"RMSE{together(self.noise['units'])}: " + over_uses(rmse)
         return f"{self.model}\n{errors}{ratio}\nnoise floor: {listed(floors)}"
 
     def _table(self) -> tuple[list[str], list[list[str]]]:

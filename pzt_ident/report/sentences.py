@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from pzt_ident.data.notation import count, listed, number, quantity, ranges, spelled
+from pzt_ident.data.over_axes import USE_NAMES as USE_NAMES
 from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.run.results import Results
 
-USE_NAMES = {"identify": "identification", "validate": "validation"}
 BETTER_FIT = 0.95  # of the run's RMSE: a refit below that is reported
 NOISELESS = 1e-6  # of the span of a response: no sensor has less noise
 FLOORS = re.compile(r"(?:([\d.]+) to )?([\d.]+) noise floors")

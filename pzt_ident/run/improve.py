@@ -262,7 +262,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
     return {
         "verdict": found.verdict,
         "reason": reason
-        + (caveats(case, found.best.fit) if found.best and found.best.fit else "")
+        + caveats(case, found.best.fit if found.best and found.best.fit else found.before)
         + broken_conditions(found.before),
         **units_and_floors(list(case.records)),
         "rmse": errors_of(case, found.before),
