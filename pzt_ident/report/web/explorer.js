@@ -155,7 +155,7 @@ export class Explorer {
 
   follow(plot) {
     if (this.timeView !== "time" || !plot.along) return;
-    for (const { plot: other } of [this.response, this.lower]) if (other !== plot) other.look(plot.view.x, null);
+    for (const { plot: other } of [this.response, this.lower]) if (other !== plot) other.look(plot.view.x, other.view.y);
   }
 
   showAll() {

@@ -1,9 +1,10 @@
 // Zooming, panning and marking of a plot with wheel, mouse, fingers and keys.
 
 const STEP = 1.25; // of a zoom by key
+const FLAT = 15; // px: a box of less height zooms in time only
 
 /** Let `plot` be zoomed and panned. `mode()` is what a drag does: "pan", "zoom" or "mark"; with Shift it draws a box.
- * `moved(plot)` follows a new view, `point(i)` the cursor, `mark(xs, ys)` a box (null, null: none), `reset()` a double
+ * The wheel over a plot along time zooms in time, with Ctrl or Alt in height. `moved(plot)` follows a new view, `point(i)` the cursor, `mark(xs, ys)` a box (null, null: none), `reset()` a double
  * click. `wheel`: "focused" leaves the wheel to the page unless the plot has the focus. */
 export function listen(plot, { mode = () => "pan", moved = () => {}, point = () => {}, mark = () => {}, reset = () => {}, wheel = "always" }) {
   const { root } = plot;
@@ -20,8 +21,9 @@ export function listen(plot, { mode = () => "pan", moved = () => {}, point = () 
   root.addEventListener("wheel", (event) => {
     if (!plot.scene || (wheel === "focused" && document.activeElement !== root)) return;
     event.preventDefault();
-    const [px, py] = place(event);
-    zoom(plot, Math.exp(0.0015 * Math.max(-300, Math.min(300, event.deltaY * (event.deltaMode ? 30 : 1)))), px, py, go);
+    const factor = Math.exp(0.0015 * Math.max(-300, Math.min(300, event.deltaY * (event.deltaMode ? 30 : 1))));
+    if (plot.along && (event.ctrlKey || event.altKey)) go(plot.view.x, around(plot.y, place(event)[1], factor));
+    else zoom(plot, factor, ...place(event), go);
   }, { passive: false });
 
   root.addEventListener("pointerdown", (event) => {
@@ -44,7 +46,7 @@ export function listen(plot, { mode = () => "pan", moved = () => {}, point = () 
       pan(plot, px - last[0], py - last[1], go);
       last = [px, py];
     } else {
-      plot.boxAcross = plot.along;
+      plot.boxAcross = plot.along && (boxMode(event) === "mark" || Math.abs(py - start[1]) < FLAT);
       plot.box = [...start, px, py];
       plot.drawTop();
     }
@@ -57,7 +59,7 @@ export function listen(plot, { mode = () => "pan", moved = () => {}, point = () 
     const sorted = (a, b) => (a < b ? [a, b] : [b, a]);
     const dragged = Math.hypot(box[2] - box[0], box[3] - box[1]) > 4;
     const xs = sorted(plot.x.value(box[0]), plot.x.value(box[2])), ys = sorted(plot.y.value(box[1]), plot.y.value(box[3]));
-    if (boxMode(event) === "zoom") dragged ? go(xs, plot.along ? null : ys) : plot.drawTop();
+    if (boxMode(event) === "zoom") dragged ? go(xs, plot.boxAcross ? plot.view.y : ys) : plot.drawTop();
     else dragged ? mark(xs, ys) : mark(null, null);
   };
   root.addEventListener("pointerup", end);
@@ -72,20 +74,24 @@ function apart(fingers) {
   return Math.max(10, Math.hypot(x1 - x0, y1 - y0));
 }
 
+/** The ends of a scale after a zoom about a pixel. */
+function around(scale, at, factor) {
+  return [scale.value(at + (scale.from - at) * factor), scale.value(at + (scale.to - at) * factor)];
+}
+
 function zoom(plot, factor, px, py, go) {
-  const around = (scale, at) => [scale.value(at + (scale.from - at) * factor), scale.value(at + (scale.to - at) * factor)];
-  const full = plot.scene.x.range, [low, high] = around(plot.x, px);
-  if (!plot.along) return go([low, high], around(plot.y, py));
+  const full = plot.scene.x.range, [low, high] = around(plot.x, px, factor);
+  if (!plot.along) return go([low, high], around(plot.y, py, factor));
   const within = [Math.max(low, full[0]), Math.min(high, full[1])];
-  go(within[0] <= full[0] && within[1] >= full[1] ? null : within, null);
+  go(within[0] <= full[0] && within[1] >= full[1] ? null : within, plot.view.y);
 }
 
 function pan(plot, dx, dy, go) {
   const shifted = (scale, by) => [scale.value(scale.from - by), scale.value(scale.to - by)];
   if (!plot.along) return go(shifted(plot.x, dx), shifted(plot.y, dy));
-  if (!plot.view.x) return;
   const [low, high] = shifted(plot.x, dx), full = plot.scene.x.range;
-  if (low >= full[0] && high <= full[1]) go([low, high], null);
+  const x = plot.view.x && low >= full[0] && high <= full[1] ? [low, high] : plot.view.x;
+  if (x || plot.view.y) go(x, plot.view.y && shifted(plot.y, dy));
 }
 
 /** Plus and minus zoom, Page Up and Down and Alt with an arrow pan, 0 shows all. */

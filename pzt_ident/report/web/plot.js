@@ -106,6 +106,7 @@ export class Plot {
     this.x.set(this.view.x ?? (this.along ? x.range : padded(x.range, x.log)), left, this.width - right, x.log);
     const range = this.view.y ?? (this.along && this.scene.fit ? this.scene.fit(this.x.low, this.x.high) : y.range);
     this.y.set(this.view.y ?? padded(range, y.log), this.height - bottom, top, y.log);
+    this.root.dataset.span = `${this.x.low} ${this.x.high}`;
   }
 
   fontSize() { return Math.max(11, 0.74 * parseFloat(getComputedStyle(document.documentElement).fontSize)); }

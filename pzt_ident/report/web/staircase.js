@@ -30,7 +30,7 @@ export class Staircase {
     const turned = pitch < NARROW * size;
     const area = { left: 4.2 * size, right: width - 0.8 * size, top: 2.4 * size, bottom: height - (turned ? 5.4 : 3) * size, size, turned };
     this.scale(content);
-    this.axis(area);
+    if (this.range) this.axis(area);
     for (const use of USES.toReversed()) this.stairs(use, area, pitch);
     content.steps.forEach((step, place) => this.name(step, place, area, pitch));
   }
@@ -38,7 +38,7 @@ export class Staircase {
   scale({ steps, floor }) {
     const values = steps.flatMap((step) => USES.flatMap((use) => [step[use], step.promised?.[use]])).filter((value) => value > 0);
     const low = Math.min(...values, floor || Infinity), high = Math.max(...values, floor || 0);
-    this.range = values.length || floor ? [low / 1.6, Math.max(high * 1.5, low * 2)] : [0.1, 1];
+    this.range = values.length || floor ? [low / 1.6, Math.max(high * 1.5, low * 2)] : null;
   }
 
   toY(value, { top, bottom }) {

@@ -16,6 +16,7 @@ export class Measurement {
       inspect: (files) => this.inspect(files), put: (record, place) => this.add(record, place), join: (place) => this.joinAbove(place),
       changed: (redraw = true) => this.changed(redraw), upload: (files) => this.page.upload(files), confirm: () => this.confirm(),
     });
+    addEventListener("pagehide", () => this.waiting && this.store());
   }
 
   get empty() { return this.records.list.length === 0; }
@@ -99,6 +100,8 @@ export class Measurement {
   }
 
   store() {
+    clearTimeout(this.waiting);
+    this.waiting = null;
     requestJson("draft", { ...this.records.draft(), model: this.page.draftModel() }).catch((error) => this.page.fail(error));
   }
 

@@ -79,6 +79,7 @@ export class Parameters {
   /** The error of the model, or of what the sliders make of it. */
   showError(moved = null) {
     const text = (rmse) => ["validate", "identify"].filter((use) => rmse?.[use] !== null && rmse?.[use] !== undefined).map((use) => `${number(rmse[use])} ${this.unit} ${use === "validate" ? "validation" : "identification"}`).join(", ");
-    this.error.textContent = `RMSE ${text(moved ?? this.rmse)}`;
+    const rmse = moved ?? this.rmse;
+    this.error.textContent = rmse ? `RMSE ${text(rmse)}` : "Not fitted yet";
   }
 }

@@ -17,7 +17,7 @@ export function slider(parent, head, { name, symbol, value, unit, bounds: [low, 
     range.value = toNotch(x);
     range.setAttribute("aria-valuetext", `${number(x, 4)} ${unit ?? ""}`);
   };
-  set(value);
+  if (value !== null) set(value);
   const moved = (x, own) => {
     if (own !== field) field.value = plain(x);
     if (own !== range) range.value = toNotch(x);
@@ -30,7 +30,8 @@ export function slider(parent, head, { name, symbol, value, unit, bounds: [low, 
     if (Number.isFinite(x) && field.value.trim()) moved(Math.min(Math.max(x, low), high), null);
     else set(value);
   });
-  range.disabled = fixed;
+  range.disabled = fixed || value === null;
+  field.disabled = value === null;
   return { set, field, range };
 }
 
