@@ -30,14 +30,16 @@ def arguments() -> list[str]:
     return list(json.loads(line))
 
 
-def main() -> None:
+def main(searching: bool) -> None:
+    """searching: have the server of the searches there too."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy comes
     from pzt_ident.cli.commands import main
     from pzt_ident.run.pool import context
 
     for name in WARM:
         import_module(name)
-    context()
+    if searching:
+        context()
     sys.argv[1:] = arguments()
     Thread(target=end_with_parent, daemon=True).start()
     main(prog_name="pzt-ident")

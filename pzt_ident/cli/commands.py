@@ -75,7 +75,7 @@ def run(
         from pzt_ident.run.identify import run
 
         job_ = load_job(job, plugins)
-        return run(job_, out, workers=workers, listen=listen, start=start, search=not no_search)
+        return run(job_, out, workers=workers, listen=listen, start=start, only_start=no_search)
 
     if no_search and start is None:
         raise click.UsageError("--no-search needs a fit to start from: give --from RESULT")

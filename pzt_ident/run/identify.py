@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
 from pzt_ident.data.over_axes import together
 from pzt_ident.data.units import factor, same_kind
-from pzt_ident.errors import InputError
+from pzt_ident.errors import InputError, RunError
 from pzt_ident.job.schema import Job
 from pzt_ident.model.registry import optimizers
 from pzt_ident.run.collect import collect
@@ -15,7 +17,7 @@ from pzt_ident.run.folder import begin, check_unchanged, read_environment, resul
 from pzt_ident.run.pool import run_all
 from pzt_ident.run.start import START, Starts
 from pzt_ident.run.statement import Statement
-from pzt_ident.run.task import Task, work
+from pzt_ident.run.task import Task, search, work
 
 
 def run(
@@ -25,18 +27,18 @@ def run(
     workers: int | None = None,
     listen: Listen = nobody,
     start: Path | None = None,
-    search: bool = True,
+    only_start: bool = False,
 ) -> Path:
     """Identify what the job asks for; returns the folder of results. `listen` is told each event as it happens. start:
     a folder of results, or a file of values, whose fit is polished as a row of its own beside the searches, or instead
-    of them where `search` is False; the better one is the result.
+    of them if `only_start`; the better one is the result.
 
     Writes `job.yaml`, `environment.json`, `events.jsonl`, `history.csv`, `signals.nc`, `residuals.json` and, last,
     `result.json`. Raises InputError before anything is written where the job or its data are wrong.
     """
     statement = Statement(job)
     folder = results_folder(job, out)
-    starts = Starts(search=search or start is None).and_(start, job)
+    starts = Starts(search=not only_start or start is None).and_(start, job)
     tasks = tasks_of(statement, folder, starts)
     begin(folder, job, job.text, statement.records)
     starts.keep(folder)
@@ -73,13 +75,28 @@ def _search(statement: Statement, folder: Path, tasks: list[Task], workers: int 
             runs, budget = [task.run for task in missing], sum(task.stop["evaluations"] for task in missing)
             size = {"budget": budget, "unit": statement.unit, "together": together(statement.records[0].units)}
             tell({"event": "start", "runs": runs, **size, "folder": str(folder)})
-            job = statement.job
-            arguments = [(task.run, (task, job.text, job.folder, statement.records)) for task in missing]
-            collect(statement, folder, tasks, run_all(work, arguments, workers, tell))
+            collect(statement, folder, tasks, _worked(statement, missing, workers, tell))
         else:
             tell({"event": "finished"})
         tell({"event": "done", "folder": str(folder)})
     return folder
+
+
+def _worked(statement: Statement, tasks: list[Task], workers: int | None, tell: Listen) -> dict[str, str]:
+    """Run searches in processes, and polish fits from elsewhere here; the reason for each run that failed."""
+    job, failed = statement.job, dict[str, str]()
+    searches = [task for task in tasks if task.optimizer != START]
+    if searches:
+        arguments = [(task.run, (task, job.text, job.folder, statement.records)) for task in searches]
+        failed = run_all(work, arguments, workers, tell)
+    for task in (task for task in tasks if task.optimizer == START):
+        try:
+            with np.errstate(all="ignore"):
+                search(task, statement, tell)
+        except RunError as error:
+            failed[task.run] = str(error)
+            tell({"event": "failed", "run": task.run, "reason": str(error)})
+    return failed
 
 
 def stop_of(statement: Statement) -> dict[str, float | int | None]:

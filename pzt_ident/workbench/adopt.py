@@ -23,8 +23,8 @@ def improvement(session: Session, step: Path) -> list[int]:
         write_json(folder / "start.json", {"parameters": stair["parameters"]})
         change = step_name(stair).replace("- ", "− ")
         source = session.start_of(folder)
-        promised = stair["rmse"]
-        session.make(text, session.at, change, promised=promised, **{"from": source})
+        tied = {"tied": stair["class"]} if len(stair["class"]) > 1 else {}
+        session.make(text, session.at, change, promised=stair["rmse"], **{"from": source}, **tied)
         numbers.append(session.at)
     return numbers
 

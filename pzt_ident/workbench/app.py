@@ -39,7 +39,7 @@ def make_app(session: Session, hosts: set[str], token: str) -> Guard:
 
     @asynccontextmanager
     async def lifespan(app: Starlette) -> AsyncIterator[None]:
-        bench.runner.warm()
+        bench.runner.warm(searching=True)
         yield
         await bench.close()
 

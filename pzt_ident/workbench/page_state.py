@@ -16,7 +16,7 @@ from pzt_ident.diagnosis.candidates import differ
 from pzt_ident.errors import InputError
 from pzt_ident.model.description import headline as first_sentence
 from pzt_ident.model.description import words
-from pzt_ident.model.registry import blocks, word_of
+from pzt_ident.model.registry import blocks, phrase_of, word_of
 from pzt_ident.report.sentences import printed_reason
 from pzt_ident.report.style import decimate
 from pzt_ident.report.tables import expected
@@ -55,7 +55,7 @@ def state(session: Session) -> dict[str, Any]:
         "job": job,
         "result": read(step / "run" / "result.json") if step else None,
         "misfit": read(step / "run" / "residuals.json") if step else None,
-        "diagnosis": diagnosis_of(step) if step else None,
+        "diagnosis": diagnosis_of(session, step) if step else None,
         "parameters": printed(model_of(step, session.plugins).parameters) if step else [],
         "optimizers": optimizers(session),
         "improving": improving(step) if step else None,
@@ -118,7 +118,7 @@ def over_axes(session: Session) -> dict[str, str]:
     return {"unit": unit, "together": together(units), "weighed": " ".join(weighed(units))}
 
 
-def diagnosis_of(step: Path) -> dict[str, Any] | None:
+def diagnosis_of(session: Session, step: Path) -> dict[str, Any] | None:
     """The diagnosis with the estimated parameters of each effect as printed text."""
     path = step / "diagnosis" / "diagnosis.json"
     if not path.exists():
@@ -126,7 +126,15 @@ def diagnosis_of(step: Path) -> dict[str, Any] | None:
     diagnosis = json.loads(path.read_text(encoding="utf-8"))
     for item in diagnosis["candidates"]:
         item["estimate"] = item["would_be"] = expected(item["expected"], item["units"])
-    return printed(diagnosis) | {"reason": printed_reason(diagnosis["reason"], read_results(step / "run"))}
+    reason = diagnosis["reason"] + tied_sentences(session)
+    return printed(diagnosis) | {"reason": printed_reason(reason, read_results(step / "run"))}
+
+
+def tied_sentences(session: Session) -> str:
+    """What stays undecided of effects that were added where others would have fitted as well."""
+    effects = list(map(word_of, session.job().effects))
+    tied = [entry["tied"] for entry in session.chain() if set(entry.get("tied", ())) & set(effects)]
+    return "".join(f" These data cannot tell {' from '.join(map(phrase_of, words))}." for words in tied)
 
 
 def job_of(session: Session) -> dict[str, Any]:

@@ -54,10 +54,11 @@ class Runner:
             self.stage, self.process = "", None
             self.changed()
 
-    def warm(self) -> None:
-        """Have a process there that has everything imported and waits for its arguments."""
+    def warm(self, searching: bool = False) -> None:
+        """Have a process there that has everything imported and waits for its arguments; `searching`: with the server
+        from which searches are forked."""
         if self.waiting is None:
-            self.waiting = asyncio.create_task(self._spawned())
+            self.waiting = asyncio.create_task(self._spawned(searching))
 
     async def run(self, name: str, arguments: Sequence[str]) -> None:
         """Run a command to its end. Raises RunError with its last lines if it fails."""
@@ -87,9 +88,9 @@ class Runner:
         await process.stdin.drain()
         return process
 
-    async def _spawned(self) -> Process:
+    async def _spawned(self, searching: bool = False) -> Process:
         return await asyncio.create_subprocess_exec(
-            *command_line(),
+            *command_line(searching),
             cwd=self.root,
             stdin=asyncio.subprocess.PIPE,  # closed with this process, which ends the command
             stdout=asyncio.subprocess.DEVNULL,
@@ -120,7 +121,7 @@ class Runner:
                 await process.wait()
 
 
-def command_line() -> list[str]:
+def command_line(searching: bool = False) -> list[str]:
     """A process of `pzt-ident` with this process' module search path, which reads its arguments from its input."""
-    code = f"import sys; sys.path[:] = {search_path()}; from pzt_ident.cli.child_process import main; main()"
+    code = f"import sys; sys.path[:] = {search_path()}; from pzt_ident.cli.child_process import main; main({searching})"
     return [sys.executable, "-P", "-c", code]

@@ -137,7 +137,7 @@ class Session:
         diagnosis = self.step() / "diagnosis"
         text = edited(job, (*job.effects, effect), self.next_folder, **tried(diagnosis, effect))
         source = diagnosis if found else self.step() / "run"
-        self._derive("add", [effect], f"+ {effect}", text, source, promised=found.get("rmse"))
+        self._derive("add", [effect], f"+ {effect}", text, source, promised=found.get("rmse"), tied=found.get("class"))
 
     def candidate(self, effect: str) -> dict[str, Any]:
         """What the diagnosis of the current step says of an effect; empty where it was not refitted."""
@@ -168,12 +168,14 @@ class Session:
         text: str,
         source: Path | None = None,
         promised: Mapping[str, Any] | None = None,
+        tied: Sequence[str] | None = None,
     ) -> None:
         """Make a step from the current one, which starts from the fit in the folder `source`, and log the command that
         does the same."""
         parent, known = self.step(), source is not None and source.exists()
         facts: dict[str, Any] = {"from": os.path.relpath(source, self.folder)} if known and source else {}
         facts |= {"promised": dict(promised)} if promised else {}
+        facts |= {"tied": list(tied)} if tied and len(tied) > 1 else {}
         self.make(text, self.at, change, command=command, **facts)
         given = ["--from", self.again(source)] if command == "add" and promised and source else []
         paths = [self.again(step / "job.yaml") for step in (parent, self.step())]
@@ -289,4 +291,3 @@ class Session:
     def logged_commands(self) -> list[str]:
         path = self.folder / "commands.txt"
         return path.read_text(encoding="utf-8").splitlines() if path.exists() else []
-

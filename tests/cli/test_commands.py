@@ -130,7 +130,7 @@ class TestRun:
     def test_hands_its_options_on(self, folder, quick):
         call("run", "job.yaml", "--out", "there", "--workers", "3", "--no-report")
         ((job, out, options),) = quick
-        assert (job.name, out, options) == ("small", Path("there"), {"workers": 3, "start": None, "search": True})
+        assert (job.name, out, options) == ("small", Path("there"), {"workers": 3, "start": None, "only_start": False})
         assert not (Path("out") / "report.html").exists()
 
     def test_json_is_all_there_is(self, folder, quick):

@@ -58,7 +58,7 @@ def test_the_diagnosis_has_the_fit_of_the_run_or_a_better_one(place):
 def test_and_gives_a_better_one_back(place, tmp_path):
     poor = tmp_path / "poor.json"
     poor.write_text(json.dumps({"parameters": {"bouc_wen.alpha": {"value": 0.9, "unit": "1"}}}))
-    folder = run(load_job(place / "job.yaml"), tmp_path / "run", workers=1, start=poor, search=False)
+    folder = run(load_job(place / "job.yaml"), tmp_path / "run", workers=1, start=poor, only_start=True)
     before = read(folder / "result.json")
     assert (before["league"], [item["run"] for item in before["runs"]]) == ([], ["start-0"])
     resume(folder, workers=1, start=place / "diagnosis")
@@ -73,7 +73,7 @@ def test_a_step_gives_what_the_diagnosis_promised(place, tmp_path):
     fitted = next(item for item in candidates if item.get("parameters"))
     out = tmp_path / "job.yaml"
     edit.add(place / "job.yaml", fitted["item"], out, start=place / "diagnosis")
-    folder = run(load_job(out), tmp_path / "run", workers=1, start=place / "diagnosis", search=False)
+    folder = run(load_job(out), tmp_path / "run", workers=1, start=place / "diagnosis", only_start=True)
     gave = read(folder / "result.json")["best"]["rmse"]
     assert gave["identify"] <= fitted["rmse"]["identify"] * (1 + 1e-9)
 
@@ -92,7 +92,7 @@ def test_no_optimizer_is_given_it(place, tmp_path):
 
 def test_it_is_the_same_each_time(place, tmp_path):
     folders = [
-        run(load_job(place / "job.yaml"), tmp_path / name, workers=1, start=place / "diagnosis", search=False)
+        run(load_job(place / "job.yaml"), tmp_path / name, workers=1, start=place / "diagnosis", only_start=True)
         for name in "ab"
     ]
     one, other = (read(folder / "result.json")["best"] for folder in folders)

@@ -29,7 +29,7 @@ def bench(session):
 def idle(bench):
     """Steps are made, and nothing is run."""
     bench.runner.start = lambda commands: commands.close()
-    bench.runner.warm = lambda: None
+    bench.runner.warm = lambda searching=False: None
     return bench
 
 
@@ -43,6 +43,7 @@ def post(bench, *changes):
             return error
 
     async def story():
+        bench.lock = asyncio.Lock()  # that of this loop
         return await asyncio.gather(*(ask(name, body) for name, body in changes))
 
     return alone(story())
