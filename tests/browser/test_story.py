@@ -237,4 +237,4 @@ def test_signals_in_files_of_their_own_and_a_block_drawn_onto_the_chain(workbenc
         page.drag_and_drop(f".chip:text-is('{word}')", "#blocks")
     expect(page.locator("#blocks li")).to_have_text(["drive", "prandtl_ishlinskii×", "lumped×", "response"])
     page.click("#confirm")
-    expect(page.locator("#error p")).to_have_text("Which column is the time? Or give the sample rate.")
+    expect(page.locator("#error p")).to_have_text("Which column is the time? Or give the sample rate, such as 5 kHz.")

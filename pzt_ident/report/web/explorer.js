@@ -201,7 +201,7 @@ export class Explorer {
 
   markedSpan() {
     const { time } = this.record;
-    if (!this.marks.length) return `Whole record, ${number(time.at(-1) - time[0])} s`;
+    if (!this.marks.length) return `Whole record, ${this.record.timeLabel === "sample" ? `${this.record.samples} samples` : `${number(time.at(-1) - time[0])} s`}`;
     const [from, to] = [time[this.marks[0][0]], time[this.marks.at(-1)[1] - 1]];
     return `Marked ${this.marks.length > 1 ? `${this.marks.length} segments ` : ""}from ${tick(from)} s to ${tick(to)} s`;
   }

@@ -105,6 +105,7 @@ export class Plot {
     const { left, right, top, bottom } = this.edge;
     this.x.set(this.view.x ?? (this.along ? x.range : padded(x.range, x.log)), left, this.width - right, x.log);
     const range = this.view.y ?? (this.along && this.scene.fit ? this.scene.fit(this.x.low, this.x.high) : y.range);
+    this.clipped = !this.view.y && range.cut;
     this.y.set(this.view.y ?? padded(range, y.log), this.height - bottom, top, y.log);
     this.root.dataset.span = `${this.x.low} ${this.x.high}`;
   }
@@ -121,7 +122,7 @@ export class Plot {
     return pen;
   }
 
-  clipped(pen, paint) {
+  within(pen, paint) {
     const { left, right, top, bottom } = this.edge;
     pen.save();
     pen.beginPath();
@@ -133,9 +134,9 @@ export class Plot {
 
   drawUnder() {
     const pen = this.pen(0);
-    this.clipped(pen, () => this.backdrop(pen));
+    this.within(pen, () => this.backdrop(pen));
     this.axes(pen);
-    this.clipped(pen, () => {
+    this.within(pen, () => {
       if (this.scene.cells) this.cells(pen);
       for (const series of this.scene.series) if (!series.over) this.line(pen, series);
     });
@@ -143,7 +144,7 @@ export class Plot {
 
   drawMoving() {
     const pen = this.pen(1);
-    this.clipped(pen, () => { for (const series of this.scene.series) if (series.over) this.line(pen, series); });
+    this.within(pen, () => { for (const series of this.scene.series) if (series.over) this.line(pen, series); });
   }
 
   backdrop(pen) {
@@ -177,7 +178,7 @@ export class Plot {
       pen.fillText(tick(value), left - 0.5 * size, y + 0.35 * size);
     }
     pen.textAlign = "left";
-    pen.fillText(this.scene.y.label, 2, 0.95 * size);
+    pen.fillText(`${this.scene.y.label}${this.clipped ? ", peaks cut off" : ""}`, 2, 0.95 * size);
   }
 
   line(pen, series) {
@@ -276,7 +277,7 @@ export class Plot {
   drawTop() {
     const pen = this.pen(2);
     const { marks = [], track } = this.scene;
-    this.clipped(pen, () => {
+    this.within(pen, () => {
       if (track) for (const mark of marks) this.marked(pen, track, mark);
       if (track && this.point !== null && this.point !== undefined && this.point < track.xs.length && !isPrinting()) this.cursor(pen, track);
     });

@@ -5,6 +5,7 @@ import { extent, lowerBound, number } from "./signals.js";
 
 const MODELS = ["--model", "--before", "--third", "--fourth"];
 export const NAMES = { now: "model", before: "model before" };
+const PEAKED = 5; // times the range of nearly all values, above which peaks are cut off
 const DASHES = [[], [6, 3], [2, 2], [8, 2, 2, 2]];
 
 export const LOOP_VIEWS = { loop: "Loop", deviation: "Loop without its slope", map: "Map of the residual" };
@@ -30,7 +31,22 @@ export function responseScene(record, live) {
 
 export function residualScene(record, live, floor) {
   const series = models(record, live && { label: "with these values", xs: live.time, ys: live.residual, places: live.places }, (model) => model.residual);
-  return timeScene(record, series, `model minus measurement [${record.unit}]`, record.models[0].residual, floor);
+  const scene = timeScene(record, series, `model minus measurement [${record.unit}]`, record.models[0].residual, floor);
+  return { ...scene, fit: (from, to) => withoutPeaks(scene.fit(from, to), series, from, to) };
+}
+
+/** A range, narrowed (`cut`) to what nearly all values in view need where a few peaks would make the rest a line. */
+function withoutPeaks([low, high], series, from, to) {
+  const usual = series.map(({ xs, ys }) => {
+    const [first, end] = [lowerBound(xs, from), lowerBound(xs, to)];
+    const step = Math.max(1, Math.floor((end - first) / 1000));
+    const sorted = Float64Array.from({ length: Math.floor((end - first) / step) }, (_, i) => ys[first + i * step]).sort();
+    return sorted.length > 100 ? [sorted[Math.floor(0.01 * sorted.length)], sorted[Math.floor(0.99 * sorted.length)]] : [low, high];
+  });
+  const [least, most] = [Math.min(...usual.map(([a]) => a)), Math.max(...usual.map(([, b]) => b))];
+  const room = 0.8 * (most - least);
+  if (!(high - low > PEAKED * (most - least) && most > least)) return [low, high];
+  return Object.assign([Math.max(low, least - room), Math.min(high, most + room)], { cut: true });
 }
 
 export function driveScene(record) {
@@ -51,7 +67,7 @@ function timeScene(record, series, label, track, floor = 0) {
   return {
     series, fit, floor, track: { xs: time, ys: track },
     strips: record.strips?.() ?? (settle ? [{ from: start, to: start + settle * dt, colour: "--unscored" }] : []),
-    x: { label: "time [s]", range: [time[0], time.at(-1)] }, y: { label, range: [0, 1] },
+    x: { label: record.timeLabel ?? "time [s]", range: [time[0], time.at(-1)] }, y: { label, range: [0, 1] },
   };
 }
 

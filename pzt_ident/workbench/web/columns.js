@@ -50,8 +50,8 @@ export class Columns {
 
   seconds(parent, record, text, read, write) {
     const label = element(parent, "label", {}, text);
-    const field = element(label, "input", { type: "number", step: "any", min: 0, value: Number(read().toPrecision(5)), "aria-label": `${recordName(record)}: ${text}, in seconds`, class: "seconds" });
-    label.append("s");
+    const field = element(label, "input", { type: "number", step: "any", min: 0, value: Number(read().toPrecision(5)), "aria-label": `${recordName(record)}: ${text}, in ${this.records.timed ? "seconds" : "samples"}`, class: "seconds" });
+    label.append(this.records.clock);
     field.addEventListener("change", () => { write(Number(field.value)); this.actions.changed(); });
   }
 
@@ -95,7 +95,7 @@ export class Columns {
 
   field(bar, text, key, attributes) {
     const input = element(element(bar, "label", {}, text), "input", { value: this.records[key], size: 12, ...attributes });
-    input.addEventListener("change", () => { this.records[key] = input.value; this.actions.changed(false); });
+    input.addEventListener("change", () => this.actions.changed(key === "rate"));
     input.addEventListener("input", () => { this.records[key] = input.value; });
   }
 }

@@ -48,7 +48,7 @@ export class Handles {
       node.classList.toggle("end", px > 0.7 * plot.width);
       const [low, high] = plot.scene.x.range;
       for (const [key, value] of [["aria-valuemin", low], ["aria-valuemax", high], ["aria-valuenow", read()]]) node.setAttribute(key, Number(value.toPrecision(6)));
-      node.setAttribute("aria-valuetext", `${number(read(), 4)} s`);
+      node.setAttribute("aria-valuetext", number(read(), 4));
     }
   }
 }

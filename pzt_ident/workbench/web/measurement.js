@@ -59,7 +59,8 @@ export class Measurement {
       records: this.records.list.map(({ files }) => ({ files: files.map(({ file, part }) => ({ file, part })) })),
       columns: Object.fromEntries(this.records.columns.filter(({ role }) => role).map(({ role, number: place, of, unit }) => [role, { number: place, of, unit }])),
     });
-    if (asked === this.asked || this.empty) return;
+    if (this.empty) return;
+    if (asked === this.asked) return this.time();
     this.asked = asked;
     try {
       const { records, guess } = await requestJson("measurement", JSON.parse(asked));
@@ -75,7 +76,13 @@ export class Measurement {
   take(record, { t0, dt, positions, channels }) {
     const values = Object.fromEntries(Object.entries(channels).map(([role, { data }]) => [role, decoded(data)]));
     this.measured.set(keyOf(record), { values, places: positions && new Int32Array(bytesOf(positions).buffer) });
-    Object.assign(record, { dt, t0: t0 ?? 0 });
+    const own = this.records.columnOf("time");
+    Object.assign(record, { dt: own ? dt : 1 / (this.records.hertz ?? 1), t0: own ? t0 : 0 });
+  }
+
+  /** Records without a column of time follow the rate that is typed. */
+  time() {
+    if (!this.records.columnOf("time")) for (const record of this.records.list) Object.assign(record, { dt: 1 / (this.records.hertz ?? 1), t0: 0 });
   }
 
   /** Bring back the choices that a reload interrupted. */
@@ -133,7 +140,7 @@ export class Measurement {
     const index = Float64Array.from(signals.places ?? u.keys());
     return {
       source: record, name: recordName(record), use: record.use === "split" ? "" : record.use, axis, unit: printed(response.unit || "1"), driveUnit: printed(drive.unit || "1"), start: record.t0, dt: record.dt,
-      samples: record.rows, settle: 0, index, time: index.map((i) => record.t0 + i * record.dt), drive: u, response: y, models: [], counts: index,
+      samples: record.rows, settle: 0, index, timeLabel: this.records.timed ? "time [s]" : "sample", time: index.map((i) => record.t0 + i * record.dt), drive: u, response: y, models: [], counts: index,
       strips: () => strips(record),
     };
   }
@@ -169,13 +176,14 @@ export class Measurement {
         const column = this.records.columnOf(`${axis}.${role}`);
         fact(`${role} of ${axis}`, `${this.records.columnName(column)}, ${number(column.low, 4)} to ${number(column.high, 4)} ${printed(column.unit)}`);
       }
-    fact("samples", `${this.records.list.map(({ rows }) => rows).join(", ")}${record.dt ? `, ${number(record.rows * record.dt, 3)} s` : ""}`);
+    const { clock, timed } = this.records;
+    fact("samples", `${this.records.list.map(({ rows }) => rows).join(", ")}${record.dt && timed ? `, ${number(record.rows * record.dt, 3)} s` : ""}`);
     if (!guess) return;
-    fact("sample rate", guess.rate ? `${number(guess.rate, 4)} Hz` : "");
+    fact("sample rate", timed ? `${number(1 / record.dt, 4)} Hz` : "not known: give it below the columns");
     for (const [axis, { value, unit }] of Object.entries(guess.amplitude)) fact(`span of the drive of ${axis}`, `${number(value, 4)} ${unit}`);
-    for (const [axis, value] of Object.entries(guess.frequency)) fact(`main frequency of ${axis}`, value ? `${number(value, 3)} Hz` : "");
+    for (const [axis, value] of Object.entries(guess.frequency)) fact(`main frequency of ${axis}`, value && timed ? `${number(guess.rate ? value / guess.rate / record.dt : value, 3)} Hz` : "");
     const rests = guess.rests.flat();
-    fact("rests", rests.length ? rests.slice(0, 3).map(([a, b]) => `${number(a, 3)} to ${number(b, 3)} s`).join("; ") + (rests.length > 3 ? ` and ${rests.length - 3} more` : "") : "none");
+    fact("rests", rests.length ? rests.slice(0, 3).map(([a, b]) => `${number(a, 3)} to ${number(b, 3)} ${clock}`).join("; ") + (rests.length > 3 ? ` and ${rests.length - 3} more` : "") : "none");
     for (const [axis, floor] of Object.entries(guess.noise_floor)) fact(`noise floor of ${axis}`, floor?.value ? `${number(floor.value, 2)} ${floor.unit}, from ${floor.source}` : "not known");
   }
 

@@ -64,9 +64,9 @@ export class Optimizers {
   optimizerRow(choices, { name, population, generations }) {
     const line = element(this.rows, "div", { class: "card bar" });
     select(line, choices, name, "Optimizer");
+    element(line, "button", { type: "button", class: "push", "aria-label": "Remove this optimizer" }, "×").addEventListener("click", () => line.remove());
     for (const [key, text, value] of [["population", "Population", population], ["generations", "Generations", generations]])
       element(element(line, "label", {}, `${text} `), "input", { type: "number", min: 1, value: value ?? "", placeholder: "own", class: "small", "data-key": key });
-    element(line, "button", { type: "button", class: "push", "aria-label": "Remove this optimizer" }, "×").addEventListener("click", () => line.remove());
   }
 
   chosen() {

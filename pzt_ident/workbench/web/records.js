@@ -28,6 +28,9 @@ export class Records {
     Object.assign(this, { list: [], columns: [], name: "my-stage", rate: "", first: null });
   }
 
+  /** The unit of what stands for time. */
+  get clock() { return this.timed ? "s" : "samples"; }
+
   get files() { return this.list.flatMap(({ files }) => files.map(({ file }) => file)); }
 
   /** Put in a record in the place of another, or at the end. */
@@ -56,19 +59,30 @@ export class Records {
     this.list.forEach((record, place) => { record.use = record.chosen ?? (place ? "validate" : first); });
     if (this.first === this.list[0]) return;
     this.first = this.list[0];
-    this.columns = this.first?.columns.map((column) => ({ ...column, unit: column.unit ?? usualUnit(column.role) })) ?? [];
+    this.columns = this.first?.columns.map((column) => ({ ...column, stated: column.unit, unit: column.unit ?? usualUnit(column.role) })) ?? [];
     this.rate = this.first?.rate || this.rate;
   }
 
   columnOf(role) { return this.columns.find((column) => column.role === role); }
 
+  /** The sample rate in Hz of records without a column of time, as it is typed; null if it is not given. */
+  get hertz() {
+    const [, value, prefix] = /^\s*([\d.]+(?:e[+-]?\d+)?)\s*([kM]?)Hz\s*$/i.exec(this.rate) ?? [];
+    return Number(value) > 0 ? Number(value) * ({ k: 1e3, M: 1e6 }[prefix] ?? 1) : null;
+  }
+
+  /** Whether it is known how much time lies between two samples. */
+  get timed() { return Boolean(this.columnOf("time") || this.hertz); }
+
   /** The axes that have a drive and a response. */
   axes() { return AXES.filter((axis) => this.columnOf(`${axis}.drive`) && this.columnOf(`${axis}.response`)); }
 
-  /** Give a column a role; the column that had it loses it. */
+  /** Give a column a role, and the usual unit where neither its heading nor the user states one; the column that had
+   * the role loses it. */
   setRole(column, role) {
     for (const other of this.columns) if (role && other.role === role) other.role = "";
-    Object.assign(column, { role, unit: column.unit || usualUnit(role) });
+    const unit = column.stated || (column.unit === usualUnit(column.role) ? "" : column.unit);
+    Object.assign(column, { role, unit: unit || usualUnit(role) });
   }
 
   columnName(column) {
@@ -119,7 +133,7 @@ export class Records {
     }
     if (!Object.values(axes).some(({ response }) => response)) throw new Error("Which columns are the drive and the response? At least one axis needs both. If they are in separate files, drop these too.");
     const time = this.columnOf("time");
-    if (!time && !this.rate) throw new Error("Which column is the time? Or give the sample rate.");
+    if (!this.timed) throw new Error("Which column is the time? Or give the sample rate, such as 5 kHz.");
     if (this.list.every(({ use }) => use === "validate")) throw new Error("There is no identification record: choose one.");
     return {
       name: this.name || "my-stage",
