@@ -177,9 +177,11 @@ def _shape(values: np.ndarray) -> list[float]:
 
 
 def _roughness(values: np.ndarray) -> float:
-    """Median absolute third difference over the span, large for a noisy sensor."""
-    span = np.nanmax(values) - np.nanmin(values)
-    return float(np.nanmedian(np.abs(np.diff(values, 3))) / (span or 1)) if values.size > 3 else 0.0
+    """Median absolute third difference over the span, large for a noisy sensor; NaN where too few values follow each
+    other."""
+    span, third = np.nanmax(values) - np.nanmin(values), np.abs(np.diff(values, 3))
+    known = third[np.isfinite(third)]
+    return float(np.median(known) / (span or 1)) if known.size else float("nan")
 
 
 def _guess(columns: list[dict[str, Any]]) -> None:

@@ -55,39 +55,43 @@ def signals_of(files: Files, facts: dict[str, Any], roles: Roles) -> tuple[str, 
 
 
 def record_of(name: str, channels: dict[str, Array], roles: Roles, facts: dict[str, Any]) -> Record | None:
+    """The record of channels, gaps bridged by lines; None without a drive, or with hardly any samples."""
     axes = [role.partition(".")[0] for role in channels if role.endswith(".drive")]
-    dt = sample_time(channels.get("time"), roles.get("time", {}).get("unit"), facts["rate"])
-    if not axes or not dt or len(next(iter(channels.values()))) < SHORTEST:
+    samples = next((values.size for values in channels.values()), 0)
+    if not axes or samples < SHORTEST:
         return None
-    units = {role: roles[role].get("unit") or ("V" if role.endswith("drive") else "um") for role in channels}
-    drive, response = (
-        [
-            np.nan_to_num(channels[role]) * factor(units[role]) if (role := f"{axis}.{side}") in channels else None
-            for axis in axes
-        ]
-        for side in ("drive", "response")
-    )
-    samples = len(drive[0]) if drive[0] is not None else 0
-    rows = [np.full(samples, np.nan) if row is None else row for row in response]
+    units = {role: roles[role].get("unit") or ("um" if role.endswith("response") else "V") for role in channels}
+    unmeasured = np.full(samples, np.nan)
+
+    def rows(side: str) -> Array:
+        names = [f"{axis}.{side}" for axis in axes]
+        return np.array([bridged(channels[n]) * factor(units[n]) if n in channels else unmeasured for n in names])
+
+    time, time_unit = channels.get("time"), roles.get("time", {}).get("unit") or "s"
     return Record(
         name,
         "identify",
-        dt,
-        np.array(drive),
-        np.array(rows),
-        start=float(channels["time"][0]) * factor(units["time"])
-        if "time" in channels and roles["time"].get("unit")
-        else 0.0,
+        sample_time(time, time_unit, facts["rate"]),
+        rows("drive"),
+        rows("response"),
+        start=float(bridged(time)[0]) * factor(time_unit) if time is not None else 0.0,
         axes=tuple(axes),
         drive_units=tuple(units[f"{axis}.drive"] for axis in axes),
         response_units=tuple(units.get(f"{axis}.response") for axis in axes),
     )
 
 
-def sample_time(time: Array | None, unit: str | None, rate: str) -> float:
+def bridged(values: Array) -> Array:
+    """A signal with its missing values on lines between their neighbours."""
+    known = np.isfinite(values)
+    at = np.arange(values.size)
+    return values if known.all() else np.interp(at, at[known], values[known])
+
+
+def sample_time(time: Array | None, unit: str, rate: str) -> float:
     """s; 1 where neither a column of time nor a rate is there."""
     if time is not None:
-        return float(np.nanmax(time) - np.nanmin(time)) / max(1, time.size - 1) * factor(unit or "s")
+        return float(np.nanmax(time) - np.nanmin(time)) / max(1, time.size - 1) * factor(unit) or 1.0
     return 1 / hertz(rate) if rate else 1.0
 
 
@@ -116,31 +120,30 @@ def encoded(values: NDArray[Any]) -> str:
 
 
 def guess_of(records: Sequence[Record | None], roles: Roles) -> dict[str, Any]:
-    """What the page says of the measurement at the drop."""
+    """What the page says of the measurement at the drop: by axis the largest amplitude and frequency of the drive and
+    the noise floor; of each record its rests."""
     whole = [record for record in records if record is not None]
     columns = {role: {key: item.get(key) for key in ("number", "of", "name", "unit")} for role, item in roles.items()}
-    guess: dict[str, Any] = {"columns": columns, "rate": None, "rests": [], "noise_floor": {}, "amplitude": {}}
-    guess |= {"frequency": {}, "period": {}}
-    if not whole:
-        return guess
-    first = whole[0]
-    guess["rate"] = 1 / first.dt
-    guess["rests"] = [rests(record) for record in records if record is not None]
-    for number, axis in enumerate(first.axes):
-        size, drive_unit = factor(first.drive_units[number]), printed_unit(first.drive_units[number])
-        span = max(float(np.ptp(record.drive[number])) for record in whole if number < len(record.axes)) / size
-        guess["amplitude"][axis] = {"value": span, "unit": drive_unit}
-        rates = [frequency(record.drive[number], record.dt) for record in whole if number < len(record.axes)]
-        guess["frequency"][axis] = max(rates)
-        if number in first.measured:
-            unit = str(first.response_units[number])
-            floor = noise_floor(whole, number)
-            guess["noise_floor"][axis] = {
-                "value": floor.value / factor(unit),
-                "unit": printed_unit(unit),
-                "source": floor.source,
-            }
+    guess: dict[str, Any] = {"columns": columns, "rate": 1 / whole[0].dt if whole else None}
+    guess["rests"] = [rests(record) if record else [] for record in records]
+    axes = list(enumerate(whole[0].axes)) if whole and len({record.axes for record in whole}) == 1 else []
+    guess["amplitude"] = {axis: amplitude_of(whole, number) for number, axis in axes}
+    guess["frequency"] = {axis: max(frequency(r.drive[number], r.dt) for r in whole) for number, axis in axes}
+    measured_axes = [(number, axis) for number, axis in axes if number in whole[0].measured]
+    guess["noise_floor"] = {axis: floor_of(whole, number) for number, axis in measured_axes}
     return guess
+
+
+def amplitude_of(records: Sequence[Record], axis: int) -> dict[str, Any]:
+    """The largest span of a drive."""
+    unit = records[0].drive_units[axis]
+    span = max(float(np.ptp(record.drive[axis])) for record in records)
+    return {"value": span / factor(unit), "unit": printed_unit(unit)}
+
+
+def floor_of(records: Sequence[Record], axis: int) -> dict[str, Any]:
+    unit, floor = str(records[0].response_units[axis]), noise_floor(list(records), axis)
+    return {"value": floor.value / factor(unit), "unit": printed_unit(unit), "source": floor.source}
 
 
 def rests(record: Record) -> list[list[float]]:

@@ -65,15 +65,17 @@ async def reference(bench: Bench, request: Request) -> Response:
 
 
 def reference_facts(bench: Bench, path: Path, rate: str | None) -> dict[str, Any]:
-    """Axes, samples and rate of a reference for the model of the current step."""
+    """Axes, samples and rate of a reference for the model of the current step. Raises InputError where it is none."""
+    from pzt_ident.api.drive import reference_of
     from pzt_ident.api.reference import read_reference
     from pzt_ident.run.identified import read_identified
 
     session = bench.session
-    record = read_reference(path, read_identified(session.step() / "run", session.plugins), rate)
-    hertz = record.rate if record.t is None else (record.t.size - 1) / float(record.t[-1] - record.t[0])
+    identified = read_identified(session.step() / "run", session.plugins)
+    record = read_reference(path, identified, rate)
+    wanted, dt, _ = reference_of(identified, record, None)
     axes = {axis: {"unit": record.drive[axis]} for axis in record.axes}
-    return {"file": session.relative(path), "axes": axes, "samples": record.samples, "rate": hertz}
+    return {"file": session.relative(path), "axes": axes, "samples": wanted.shape[1], "rate": 1 / dt}
 
 
 async def stored(folder: Path, request: Request) -> tuple[Path, bool]:
