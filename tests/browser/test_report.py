@@ -70,7 +70,9 @@ def test_a_drag_in_time_marks_the_loop_too(opened, folder):
     opened.mouse.up()
     opened.mouse.move(1, 1)
     expect(opened.locator(".readout")).to_contain_text("Marked from")
-    start, end = (float(word) for word in re.search(r"from ([\d.]+) s to ([\d.]+) s", opened.text_content(".readout")).groups())
+    start, end = (
+        float(word) for word in re.search(r"from ([\d.]+) s to ([\d.]+) s", opened.text_content(".readout")).groups()
+    )
     assert (start, end) == pytest.approx((10.5, 19), abs=1)
     assert rmse_shown(opened) == pytest.approx(rmse_of(folder, start, end), rel=0.02)
     assert opened.evaluate("document.querySelector('.loop canvas.pointed').toDataURL()") != before

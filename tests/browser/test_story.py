@@ -10,9 +10,9 @@ from importlib.resources import files
 from pathlib import Path
 
 import pytest
-from browser.conftest import faults_of
 from playwright.sync_api import expect
 
+from browser.conftest import faults_of
 from pzt_ident.job.schema import load_job
 from sheets import write_sheets
 
@@ -161,6 +161,20 @@ def test_a_reload_a_killed_worker_and_a_killed_workbench_lose_nothing(workbench,
     assert {depth(pid, running(tmp_path)) for pid in running(tmp_path)} <= {0, 1}  # one waits to be asked
 
 
+def test_a_session_whose_last_step_is_gone_opens_at_the_one_before(workbench, page, tmp_path):
+    for name in ("identify.csv", "validate.csv"):
+        (tmp_path / name).write_text(thinned(text(name)), encoding="utf-8")
+    (tmp_path / "job.yaml").write_text(LONG, encoding="utf-8")
+    workbench("job.yaml")
+    state = state_of(tmp_path)
+    state["steps"].append({"number": 2, "parent": 1, "change": "+ creep"})
+    (tmp_path / "workbench" / "state.json").write_text(json.dumps(state | {"at": 2}))
+    page.goto(workbench("job.yaml"))
+    expect(page.locator("#error p")).to_contain_text("Step 2 cannot be opened")
+    expect(page.locator("#action")).to_be_enabled()
+    expect(page.locator(".stairs text.name")).to_have_text("as given")
+
+
 def running(folder):
     """The processes in a folder, and the parent of each."""
     parents = {}
@@ -220,8 +234,10 @@ def test_sheets_axes_and_what_is_left_open(workbench, page, tmp_path):
     job = load_job(tmp_path / "workbench/steps/1/job.yaml")
     assert [(record.sheet, record.use) for record in job.records] == [("Loops", "identify"), ("Check", "validate")]
     assert (list(job.channels.axes), job.model) == (["x"], ("bouc_wen", "lumped"))
+    page.reload()
     page.click("#undo")
     expect(page.locator("#confirm")).to_be_visible()
+    assert roles(page) == ["time", "x.drive", "", "x.response", ""]
 
 
 def test_signals_in_files_of_their_own_and_a_block_drawn_onto_the_chain(workbench, page):

@@ -3,6 +3,8 @@ import { Legend } from "./legend.js";
 import { element } from "./parts.js";
 import { Plot, tick } from "./plot.js";
 
+let count = 0;
+
 /** A plot with its controls, its legend and, for those who do not see it, a sentence on what it shows. */
 export class Figure {
   constructor(parent, { label, along = false, gestures = {}, lower = false }) {
@@ -11,7 +13,8 @@ export class Figure {
     this.bar = element(head, "span", { class: "figure-bar" });
     this.legend = new Legend(head);
     this.plot = new Plot(this.element, { label, along });
-    this.summary = element(this.element, "p", { class: "unseen" });
+    this.summary = element(this.element, "p", { class: "unseen", id: `figure-${(count += 1)}` });
+    this.plot.root.setAttribute("aria-describedby", this.summary.id);
     this.message = element(this.element, "p", { class: "quiet", hidden: "" });
     listen(this.plot, gestures);
   }

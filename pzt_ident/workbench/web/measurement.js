@@ -85,9 +85,12 @@ export class Measurement {
     if (!this.records.columnOf("time")) for (const record of this.records.list) Object.assign(record, { dt: 1 / (this.records.hertz ?? 1), t0: 0 });
   }
 
-  /** Bring back the choices that a reload interrupted. */
-  async restore(draft) {
-    if (!draft?.records?.length) return;
+  /** Bring back, once, the choices that a reload interrupted. */
+  restore(draft) {
+    if (this.empty && !this.restored && draft?.records?.length) this.restored = this.restoreNow(draft);
+  }
+
+  async restoreNow(draft) {
     for (const { files } of draft.records)
       try {
         this.records.put(await this.inspect(files));
@@ -96,6 +99,7 @@ export class Measurement {
     if (draft.model) this.page.setDraftModel(draft.model);
     await this.measure();
     this.show();
+    this.page.changed();
   }
 
   changed(redraw = true) {

@@ -49,12 +49,12 @@ export class Parameters {
   }
 
   bound(line, { name, bounds, unit }, [side, value], place) {
-    const field = element(line, "input", { type: "text", inputmode: "decimal", value: plain(value), "aria-label": `${name}, ${side} bound${unit ? ` in ${unit}` : ""}` });
+    const field = element(line, "input", { type: "text", inputmode: "decimal", value: plain(value, 4), "aria-label": `${name}, ${side} bound${unit ? ` in ${unit}` : ""}` });
     field.addEventListener("change", () => {
       const changed = [...bounds];
       changed[place] = Number(field.value.replace("−", "-"));
-      if (Number.isFinite(changed[place]) && changed[0] < changed[1]) this.page.settle({ parameter: name, bounds: changed }, () => { field.value = plain(value); });
-      else field.value = plain(value);
+      if (Number.isFinite(changed[place]) && changed[0] < changed[1]) this.page.settle({ parameter: name, bounds: changed }, () => { field.value = plain(value, 4); });
+      else field.value = plain(value, 4);
     });
   }
 

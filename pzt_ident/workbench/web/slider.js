@@ -36,6 +36,6 @@ export function slider(parent, head, { name, symbol, value, unit, bounds: [low, 
 }
 
 /** A number as it is typed. */
-export function plain(value) {
-  return value === null || value === undefined ? "" : String(Number(value.toPrecision(5)));
+export function plain(value, digits = 5) {
+  return value === null || value === undefined ? "" : String(Number(value.toPrecision(digits)));
 }

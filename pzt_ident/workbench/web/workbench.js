@@ -95,7 +95,7 @@ function draw() {
   showChain();
   commands.show(state);
   if (begun) showResults();
-  else { showHere(); measurement.show(); }
+  else { showHere(); measurement.show(); measurement.restore(state.draft); }
   showBusy();
 }
 
@@ -128,13 +128,13 @@ function showHeader() {
   byId("name").textContent = begun ? state.job.name : "pzt-ident workbench";
   byId("name").title = begun ? state.job.folder : state.folder;
   const [verdict, next, action] = begun
-    ? [headline.verdict, headline.next, headline.action]
+    ? [headline.verdict, headline.next, headline.action ?? (state.result && !isBusy() ? { name: "", label: "Follow a reference" } : null)]
     : measurement.empty ? ["Drop a measurement with voltage and displacement.", "Or choose a file of this folder.", null] : ["Check what was read from the measurement.", "Then identify a model of it.", { label: "Confirm and identify" }];
   byId("verdict").textContent = byId("verdict").title = verdict;
   byId("next").textContent = next;
   byId("action").hidden = !action || action.name === "stop";
   byId("action").textContent = action?.label ?? "";
-  byId("action").onclick = () => (begun ? act(action.name, action.body) : measurement.confirm());
+  byId("action").onclick = () => (!begun ? measurement.confirm() : action.name ? act(action.name, action.body) : tabs.open("control"));
   const idle = begun && Boolean(state.result);
   for (const [id, shown] of Object.entries({ improve: idle && action?.name !== "improve", report: idle, undo: begun })) byId(id).hidden = !shown;
   byId("undo").textContent = state.steps.length > 1 ? "Undo" : "Change the measurement";
@@ -219,7 +219,7 @@ addEventListener("drop", (event) => {
 setInterval(showStatus, 500);
 
 await refresh();
-if (state && !state.steps.length) await measurement.restore(state.draft);
+await measurement.restored;
 if (initialFile && !state?.steps.length && measurement.empty) await addFile(initialFile);
 follow((event) => {
   if (disconnected) { disconnected = false; hideError(); }
@@ -229,6 +229,6 @@ follow((event) => {
     convergence.update(event);
     progress.update(event);
     if (state?.stage === "run" && event.event === "generation") { panes.showStaircase(state, convergence); optimizers.show(state); }
-    if (state?.stage === "improve" && !asking && event.event !== "generation") refresh();
+    if (event.event === "stair" && !asking) refresh();
   }
 }, (error) => { disconnected = true; showError(error); });
