@@ -11,7 +11,6 @@ from pzt_ident.data.over_axes import USE_NAMES as USE_NAMES
 from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.run.results import Results
 
-BETTER_FIT = 0.95  # of the run's RMSE: a refit below that is reported
 NOISELESS = 1e-6  # of the span of a response: no sensor has less noise
 FLOORS = re.compile(r"(?:([\d.]+) to )?([\d.]+) noise floors")
 
@@ -35,26 +34,12 @@ def printed_reason(text: str, results: Results) -> str:
     if results.share_of_noise < NOISELESS and len(results.floors) == 1:
         (floor,) = results.floors.values()
         text = FLOORS.sub(lambda match: _in_unit(match, floor or 0.0, results.unit), text)
-    return _prose(text + _better_refit(results))
+    return _prose(text)
 
 
 def _prose(text: str) -> str:
     """A sentence with printed units and without the backticks of terminal messages."""
     return spelled(text).replace("`", "")
-
-
-def _better_refit(results: Results) -> str:
-    """A sentence where the diagnosis, which refits the model from several starting points, found a better fit."""
-    if not (results.result and results.diagnosis):
-        return ""
-    refit, run = results.diagnosis["rmse"]["identify"], results.best["rmse"]["identify"]
-    if refit > BETTER_FIT * run:
-        return ""
-    refit_size, run_size = (quantity(value, results.unit, 3) for value in (refit, run))
-    return (
-        f" A refit from other starting points has an RMSE of {refit_size}{together(results.units)} instead of the "
-        f"run's {run_size}: search longer."
-    )
 
 
 def _in_unit(match: re.Match[str], floor: float, unit: str) -> str:

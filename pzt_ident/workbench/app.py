@@ -8,6 +8,7 @@ import secrets
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager, suppress
 from functools import partial
+from importlib import import_module
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -40,7 +41,9 @@ def make_app(session: Session, hosts: set[str], token: str) -> Guard:
     @asynccontextmanager
     async def lifespan(app: Starlette) -> AsyncIterator[None]:
         bench.runner.warm(searching=True)
+        ready = asyncio.create_task(asyncio.to_thread(prepare, bench))
         yield
+        await ready
         await bench.close()
 
     posts: dict[str, Handler] = {name: partial(change, name) for name in CHANGES}
@@ -54,6 +57,13 @@ def make_app(session: Session, hosts: set[str], token: str) -> Guard:
     app = Starlette(routes=routes, lifespan=lifespan)
     app.state.bench = bench
     return Guard(app, hosts, token)
+
+
+def prepare(bench: Bench) -> None:
+    """Have the compiled kernels, and the model of the current step, in this process before the page asks for them."""
+    import_module("pzt_ident.engine.kernel")
+    with suppress(InputError):
+        bench.state()
 
 
 def route(bench: Bench, path: str, handler: Handler, method: str = "GET") -> Route:

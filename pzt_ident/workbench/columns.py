@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -42,10 +42,10 @@ def columns_of(*files: tuple[Path, str | None]) -> dict[str, Any]:
     """
     sources, columns, rate = list[dict[str, Any]](), list[dict[str, Any]](), ""
     for path, part in files:
-        source, table = _of_file(path, part)
+        source, table, _ = _opened(path, part)
         columns += [item | {"of": len(sources)} for item in _columns(table)]
         rate = rate or _rate(table)
-        sources.append(source)
+        sources.append(dict(source))
     rows = {item["rows"] for item in columns}
     if len(rows) > 1:
         lengths = ", ".join(
@@ -59,14 +59,26 @@ def columns_of(*files: tuple[Path, str | None]) -> dict[str, Any]:
 
 def values_of(*files: tuple[Path, str | None]) -> dict[tuple[int, int], NDArray[np.float64]]:
     """The numeric columns of the files of one record by index of the file and number of the column."""
-    found = {}
+    found = dict[tuple[int, int], NDArray[np.float64]]()
     for index, (path, part) in enumerate(files):
-        _, table = _of_file(path, part)
-        for number, column in enumerate(_split_array(table.columns), 1):
-            values = _numbers(column)
-            if values is not None:
-                found[index, number] = values
+        found |= {(index, number): values for number, values in _opened(path, part)[2].items()}
     return found
+
+
+def _opened(path: Path, part: str | None) -> tuple[dict[str, Any], Table, dict[int, NDArray[np.float64]]]:
+    """A file as `_of_file`, with its numeric columns; read again when it changes."""
+    try:
+        stamp = path.stat().st_mtime_ns
+    except OSError:
+        stamp = 0
+    return _read(path, part, stamp)
+
+
+@lru_cache(4)
+def _read(path: Path, part: str | None, stamp: int) -> tuple[dict[str, Any], Table, dict[int, NDArray[np.float64]]]:
+    source, table = _of_file(path, part)
+    numbered = enumerate(_split_array(table.columns), 1)
+    return source, table, {number: values for number, c in numbered if (values := _numbers(c)) is not None}
 
 
 def hertz(rate: str) -> float:

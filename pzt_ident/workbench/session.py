@@ -18,6 +18,7 @@ from pzt_ident.job.schema import Job, load_job
 from pzt_ident.model.registry import word_of
 from pzt_ident.workbench.job_form import file_sources, job_text
 from pzt_ident.workbench.step_commands import Command, commands_of
+from pzt_ident.workbench.step_model import job_in, stated
 
 INTERRUPTED = "The run was interrupted before it finished. Resume continues from here."
 Step = dict[str, Any]
@@ -77,7 +78,7 @@ class Session:
             except (OSError, ValueError):
                 return f"{self.relative(folder / name)} is damaged."
         try:
-            load_job(folder / "job.yaml", self.plugins)
+            job_in(folder, self.plugins)
         except InputError as error:
             return f"{self.readable(str(error)).rstrip('.')}."
         return ""
@@ -98,7 +99,7 @@ class Session:
         return self.steps[(number or self.at) - 1]
 
     def job(self, number: int | None = None) -> Job:
-        return load_job(self.step(number) / "job.yaml", self.plugins)
+        return job_in(self.step(number), self.plugins)
 
     def chain(self) -> list[Step]:
         """The steps from the first to the current one."""
@@ -224,8 +225,6 @@ class Session:
 
     def make(self, text: str, parent: int, change: str, **facts: Any) -> None:
         """Check a job with its data and add it as a new step. Raises InputError."""
-        from pzt_ident.workbench.step_model import stated
-
         folder = self.next_folder
         folder.mkdir(parents=True, exist_ok=True)  # the job's paths are relative to it
         job = Job.from_text(text, folder, "job.yaml", self.plugins)

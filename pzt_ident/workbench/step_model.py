@@ -43,12 +43,23 @@ def stated(path: Path, job: Job) -> Statement:
 def model_of(step: Path, plugins: bool) -> StepModel:
     """The model of a step; made anew when its result changes."""
     result = step / "run" / "result.json"
-    return _model(step, plugins, result.stat().st_mtime_ns if result.exists() else 0)
+    return _model(step, job_in(step, plugins), result.stat().st_mtime_ns if result.exists() else 0)
+
+
+def job_in(step: Path, plugins: bool) -> Job:
+    """The job of a step, read again when it changes. Raises InputError where it is missing or damaged."""
+    path = step / "job.yaml"
+    return _job(path, plugins, path.stat().st_mtime_ns if path.exists() else 0)
+
+
+@lru_cache(16)
+def _job(path: Path, plugins: bool, stamp: int) -> Job:
+    return load_job(path, plugins)
 
 
 @lru_cache(KEPT)
-def _model(step: Path, plugins: bool, stamp: int) -> StepModel:
-    return StepModel(step, stated(step / "job.yaml", load_job(step / "job.yaml", plugins)))
+def _model(step: Path, job: Job, stamp: int) -> StepModel:
+    return StepModel(step, stated(step / "job.yaml", job))
 
 
 class StepModel:

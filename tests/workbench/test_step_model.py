@@ -16,6 +16,7 @@ from pzt_ident.run.improve import diagnose
 from pzt_ident.run.results import read_results
 from pzt_ident.workbench.app import make_app
 from pzt_ident.workbench.session import Session
+from pzt_ident.workbench.step_commands import better_fit
 from pzt_ident.workbench.step_model import POINTS, interval_of, kept_samples, model_of
 
 from .conftest import GOOD, HOST, TOKEN, form
@@ -189,3 +190,15 @@ def test_an_added_effect_starts_where_it_was_tried(filled, tmp_path):
     assert entry["promised"] == tried["rmse"] and entry["from"] == "steps/1/diagnosis"
     (command, _) = session.commands(session.step())
     assert command.arguments[4:7] == ["--from", "workbench/steps/1/diagnosis", "--no-search"]
+
+
+@pytest.mark.parametrize(("found", "better"), [(0.9, True), (0.9995, False), (None, False)])
+def test_a_better_fit_of_the_diagnosis_goes_back_to_the_run(tmp_path, found, better):
+    contents = {
+        "run/result.json": {"best": {"rmse": {"identify": 1.0}}},
+        "diagnosis/diagnosis.json": {"rmse": {"identify": found}, "parameters": {"a": {}}},
+    }
+    for name, content in contents.items():
+        (tmp_path / name).parent.mkdir()
+        (tmp_path / name).write_text(json.dumps(content))
+    assert better_fit(tmp_path) == better
