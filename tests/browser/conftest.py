@@ -14,7 +14,7 @@ import pytest
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 AXE = Path(__file__).with_name("axe.min.js")
-SECONDS = 60
+SECONDS = 120
 
 if CHROMIUM is None and os.environ.get("CI"):
     raise RuntimeError("no chromium: `apt-get install chromium`")

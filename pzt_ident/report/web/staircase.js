@@ -97,7 +97,7 @@ export class Staircase {
     const { size, turned } = area;
     const x = area.left + (place + 0.5) * pitch, y = area.bottom + 1.3 * size;
     const group = svgElement(this.svg, "g", { class: `step${step.current ? " current" : ""}` });
-    const room = turned ? 15 : Math.floor(pitch / (0.56 * size));
+    const room = turned ? 12 : Math.floor(pitch / (0.56 * size));
     svgElement(group, "text", { x, y, class: turned ? "name turned" : "name", ...(turned && { transform: `rotate(-35 ${x} ${y})` }) }, shortened(step.name, room));
     if (step.note && !turned) svgElement(group, "text", { x, y: y + 1.2 * size, class: "note" }, shortened(step.note, room));
     svgElement(group, "title", {}, `${step.name}${step.note ? `: ${step.note}` : ""}`);

@@ -20,10 +20,11 @@ export class Candidates {
     if (!diagnosis) return this.showProgress(progress);
     const { candidates, next_experiment: drive } = diagnosis;
     if (!candidates.length) element(this.root, "p", {}, "No effect was scored: what is left is not attributed to the model.");
+    if (drive) this.showDrive(drive);
+    if (drive) element(this.root, "h2", {}, "Effects");
     const order = { missing: 0, equivalent: 1 };
     const list = element(this.root, "div", { class: "rows" });
     for (const item of candidates.toSorted((a, b) => (order[a.decision] ?? 2) - (order[b.decision] ?? 2) || b.explained - a.explained)) this.card(list, item);
-    if (drive) this.showDrive(drive);
   }
 
   showProgress({ scored }) {

@@ -31,7 +31,7 @@ export class Convergence {
   }
 
   draw() {
-    const series = [...this.runs].map(([label, points], place) => ({
+    const series = [...this.runs].filter(([, points]) => points.length > 1).map(([label, points], place) => ({
       label, colour: COLOURS[place % 5], dash: DASHES[Math.floor(place / 5) % 5], ...stairs(points.filter(([, best]) => best > 0)),
     })).filter(({ xs }) => xs.length);
     if (!series.length) return;

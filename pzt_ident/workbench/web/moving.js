@@ -48,7 +48,7 @@ export class Moving {
     const floats = new Float32Array(buffer.slice(end + 1)), found = new Map();
     let first = 0;
     records.forEach(({ name, axis, use, points }, place) => {
-      found.set([name, axis, use].filter(Boolean).join("|"), { places: this.places[place], values: Float64Array.from(floats.subarray(first, first + points)) });
+      found.set([name, axis, use].filter(Boolean).join("|"), { places: this.places[place], values: floats.subarray(first, first + points) });
       first += points;
     });
     return { records: found, rmse };

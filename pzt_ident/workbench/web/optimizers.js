@@ -2,6 +2,8 @@ import { Convergence } from "./convergence.js";
 import { element, select } from "./parts.js";
 import { number } from "./signals.js";
 
+const BUDGET = { population: "Population", generations: "Generations", budget: "Evaluations" };
+
 /** The optimizers of the last search beside each other, the search as it goes, and the form for another one. `page` has
  * search(form) and improve(budget). */
 export class Optimizers {
@@ -16,7 +18,7 @@ export class Optimizers {
   }
 
   show({ optimizers, optimizer_words: words, job, unit, together }) {
-    this.live.hidden = !this.convergence.runs.size;
+    this.live.hidden = ![...this.convergence.runs.values()].some((points) => points.length > 1);
     const key = JSON.stringify([optimizers, job?.search, unit]);
     if (key === this.key) return;
     this.key = key;
@@ -51,22 +53,30 @@ export class Optimizers {
     element(line, "button", { type: "button", "data-acts": "" }, "Improve").addEventListener("click", () => this.page.improve(budget.value.replace(/\s+/g, "")));
     element(this.forms, "h2", {}, "Search with other optimizers");
     this.rows = element(this.forms, "div", { class: "rows" });
-    const choices = words.map(({ name }) => [name, name]);
-    for (const item of search?.optimizers ?? [{ name: words[0]?.name }]) this.optimizerRow(choices, item);
+    this.words = words;
+    for (const item of search?.optimizers ?? [{ name: words[0]?.name }]) this.optimizerRow(item);
     const bar = element(this.forms, "p", { class: "bar" });
-    element(bar, "button", { type: "button" }, "One more").addEventListener("click", () => this.optimizerRow(choices, { name: words[0]?.name }));
+    element(bar, "button", { type: "button" }, "One more").addEventListener("click", () => this.optimizerRow({ name: words[0]?.name }));
     const repeats = element(element(bar, "label", {}, "Repeats "), "input", { type: "number", min: 1, value: search?.repeats ?? 1, class: "small" });
     const seed = element(element(bar, "label", {}, "Seed "), "input", { type: "number", value: search?.seed ?? 7, class: "small" });
     const start = element(bar, "button", { type: "button", class: "strong", "data-acts": "", id: "search" }, "Search");
     start.addEventListener("click", () => this.page.search({ optimizers: this.chosen(), repeats: Number(repeats.value), seed: Number(seed.value) }));
   }
 
-  optimizerRow(choices, { name, population, generations }) {
+  /** An optimizer and its budget, as far as it has such settings; empty fields keep its own. */
+  optimizerRow(chosen) {
     const line = element(this.rows, "div", { class: "card bar" });
-    select(line, choices, name, "Optimizer");
+    const list = select(line, this.words.map(({ name }) => [name, name]), chosen.name, "Optimizer");
     element(line, "button", { type: "button", class: "push", "aria-label": "Remove this optimizer" }, "×").addEventListener("click", () => line.remove());
-    for (const [key, text, value] of [["population", "Population", population], ["generations", "Generations", generations]])
-      element(element(line, "label", {}, `${text} `), "input", { type: "number", min: 1, value: value ?? "", placeholder: "own", class: "small", "data-key": key });
+    const fields = element(line, "span", { class: "bar" });
+    const showFields = (values) => {
+      fields.replaceChildren();
+      const { settings = {} } = this.words.find(({ name }) => name === list.value) ?? {};
+      for (const [key, text] of Object.entries(BUDGET).filter(([name]) => name in settings))
+        element(element(fields, "label", {}, `${text} `), "input", { type: "number", min: 1, value: values[key] ?? "", placeholder: settings[key], class: "small", "data-key": key });
+    };
+    list.addEventListener("change", () => showFields({}));
+    showFields(chosen);
   }
 
   chosen() {
