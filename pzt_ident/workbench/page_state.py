@@ -125,7 +125,7 @@ def diagnosis_of(session: Session, step: Path) -> dict[str, Any] | None:
         return None
     diagnosis = json.loads(path.read_text(encoding="utf-8"))
     for item in diagnosis["candidates"]:
-        item["estimate"] = item["would_be"] = expected(item["expected"], item["units"])
+        item["estimate"] = expected(item["expected"], item["units"])
     reason = diagnosis["reason"] + tied_sentences(session)
     return printed(diagnosis) | {"reason": printed_reason(reason, read_results(step / "run"))}
 

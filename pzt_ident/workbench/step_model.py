@@ -202,10 +202,13 @@ def kept_samples(simulator: Simulator) -> NDArray[np.intp]:
 
 
 def bounds_of(problem: Problem, column: int) -> tuple[float, float]:
-    """Of a parameter in the user's units; those declared of a fixed one."""
+    """Of a parameter in the user's units; those declared of a fixed one, NaN where a drive that rests gives none."""
     if column in problem.free:
         return problem.range_of(column)
-    return problem.declared_bounds(column)
+    try:
+        return problem.declared_bounds(column)
+    except InputError:
+        return float("nan"), float("nan")
 
 
 def interval_of(found: Mapping[str, Any]) -> list[float] | None:
@@ -215,9 +218,11 @@ def interval_of(found: Mapping[str, Any]) -> list[float] | None:
 
 
 def determined(found: Mapping[str, Any]) -> str:
-    """`yes`, `no`, another verdict, or nothing where there is none."""
+    """`yes`, `no`, another verdict or a reservation, or nothing where there is none."""
     verdict = found.get("verdict", "")
-    return {"determined": "yes", "not determined": "no"}.get(verdict, verdict)
+    if verdict == "determined":
+        return str(found.get("note") or "yes")
+    return "no" if verdict == "not determined" else str(verdict)
 
 
 def described(entry: Entry) -> str:

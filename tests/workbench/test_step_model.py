@@ -17,7 +17,7 @@ from pzt_ident.run.results import read_results
 from pzt_ident.workbench.app import make_app
 from pzt_ident.workbench.session import Session
 from pzt_ident.workbench.step_commands import better_fit
-from pzt_ident.workbench.step_model import POINTS, interval_of, kept_samples, model_of
+from pzt_ident.workbench.step_model import POINTS, determined, interval_of, kept_samples, model_of
 
 from .conftest import GOOD, HOST, TOKEN, form
 
@@ -63,7 +63,7 @@ def test_every_parameter_has_value_interval_bounds_and_verdict(client):
     gain = found["bouc_wen.gain"]
     assert (gain["axis"], gain["block"], gain["symbol"], gain["unit"]) == ("x", "bouc_wen", "gain", "µm/V")
     assert gain["bounds"][0] <= gain["low"] < gain["value"] < gain["high"] <= gain["bounds"][1]
-    assert gain["determined"] in ("yes", "no") and gain["physics"] and not gain["fixed"]
+    assert gain["determined"] and gain["physics"] and not gain["fixed"]
 
 
 def test_before_a_run_parameters_have_bounds_and_no_value(filled, tmp_path):
@@ -202,3 +202,20 @@ def test_a_better_fit_of_the_diagnosis_goes_back_to_the_run(tmp_path, found, bet
         (tmp_path / name).parent.mkdir()
         (tmp_path / name).write_text(json.dumps(content))
     assert better_fit(tmp_path) == better
+
+
+@pytest.mark.parametrize(
+    ("found", "said"),
+    [
+        ({"verdict": "determined", "note": ""}, "yes"),
+        (
+            {"verdict": "determined", "note": "zero lies within two standard errors"},
+            "zero lies within two standard errors",
+        ),
+        ({"verdict": "not determined", "note": "runs of the same RMSE put it elsewhere"}, "no"),
+        ({"verdict": "on its upper bound", "note": "widen the bounds"}, "on its upper bound"),
+        ({}, ""),
+    ],
+)
+def test_a_reservation_is_not_a_yes(found, said):
+    assert determined(found) == said
