@@ -17,7 +17,7 @@ from pzt_ident.data.over_axes import together
 from pzt_ident.files import plain, write_text
 from pzt_ident.report.figures import Plate, write_page_figures
 from pzt_ident.report.inline import inline
-from pzt_ident.report.sentences import findings, verdict
+from pzt_ident.report.sentences import findings, next_step, verdict
 from pzt_ident.report.tables import Table, make_tables, write_tables
 from pzt_ident.report.traces import packed
 from pzt_ident.run.events import step_name
@@ -72,6 +72,7 @@ def _template_variables(results: Results, tables: dict[str, Table], figures: dic
         "verdict": verdict(results),
         "misfits": list(results.misfit.get("axes", {}).values()),
         "findings": findings(results),
+        "next_step": next_step(results),
         "failed_simulations": sum(run["failed_simulations"] for run in results.result.get("runs", ())),
         "optimizers": listed(row["optimizer"] for row in results.result["league"]) if results.result else "",
     }

@@ -68,6 +68,21 @@ def findings(results: Results) -> list[str]:
     return [_prose(sentence) for sentence in diagnosed + run]
 
 
+def next_step(results: Results) -> str:
+    """What to do next, in one sentence."""
+    if not results.diagnosis:
+        return "Diagnose the model: it is not known yet whether an effect is missing."
+    verdict = results.diagnosis["verdict"]
+    best = next((item for item in results.diagnosis["candidates"] if item["decision"] == "missing"), None)
+    if best and verdict == "inconclusive" and (proposal := results.next_experiment):
+        return f"Measure again with the drive in {proposal['file']}: it tells {listed(proposal['splits'])} apart."
+    if best:
+        return f"Add {best.get('item', best['effect'])} to the model and identify it again."
+    if verdict == "adequate":
+        return "Put the model to work: compute the drive for a reference, or export it for a controller."
+    return "See below where the model fails, and which effects come near to an explanation."
+
+
 def _advice(results: Results) -> Iterator[str]:
     """The remaining error, a remedy for the missing effect, and the experiment that distinguishes the candidates."""
     yield remaining_error(results)
