@@ -112,6 +112,7 @@ def edited(
             record["steps"] = count
     for name, (low, high) in (bounds or {}).items():
         document["parameters"][name]["bounds"][:] = [float(f"{low:.6g}"), float(f"{high:.6g}")]
+    _drop_parameters(document, job, effects, words)
     if given := {name: {"value": value} for name, value in (values or {}).items()} | dict(parameters or {}):
         _set_parameters(document, given)
     for name, content in (sections or {}).items():
@@ -137,6 +138,20 @@ def _set_effects(document: Any, effects: Sequence[str]) -> None:
     for word in [word for word in listed if word not in effects]:
         listed.remove(word)
     listed.extend(word for word in effects if word not in listed)
+
+
+def _drop_parameters(document: Any, job: Job, effects: Sequence[str], words: Sequence[str] | None) -> None:
+    """Take out what the job says of parameters of blocks and effects that it no longer has."""
+    before = {*map(word_of, job.model), *map(word_of, job.effects)}
+    gone = before - {*map(word_of, job.model if words is None else words), *map(word_of, effects)}
+    for name in list(document.get("parameters") or {}):
+        block, _, word = name.rpartition(".")
+        owner = block.rpartition(".")[2]
+        parameter = blocks[owner].parameters().get(word) if owner in blocks else None
+        if owner in gone or (parameter and word_of(parameter.effect or "") in gone):
+            del document["parameters"][name]
+    if "parameters" in document and not document["parameters"]:
+        del document["parameters"]
 
 
 def _set_parameters(document: Any, given: Mapping[str, Mapping[str, Any]]) -> None:

@@ -14,8 +14,8 @@ from pzt_ident.data.readers.registry import readers
 from pzt_ident.data.signals import Trace
 from pzt_ident.diagnosis.candidates import differ
 from pzt_ident.errors import InputError
+from pzt_ident.model.description import description_of, words
 from pzt_ident.model.description import headline as first_sentence
-from pzt_ident.model.description import words
 from pzt_ident.model.registry import blocks, phrase_of, word_of
 from pzt_ident.report.sentences import printed_reason
 from pzt_ident.report.style import decimate
@@ -44,7 +44,7 @@ def state(session: Session) -> dict[str, Any]:
         "largest": LARGEST_UPLOAD,
         "blocks": model_blocks(),
         "effects": effects(),
-        "optimizer_words": [{"name": word, "doc": doc} for word, doc in words("optimizers").items()],
+        "optimizer_words": optimizer_words(),
         "files": [*files_in(session.root), *(session.relative(session.data / name) for name in files_in(session.data))],
         "steps": [step_state(session, entry) for entry in chain],
         "others": [step_state(session, entry) for entry in session.steps if entry not in chain],
@@ -199,6 +199,15 @@ def model_blocks() -> list[dict[str, Any]]:
 
 def effects() -> list[dict[str, Any]]:
     return [description(word) for word in blocks.effects()]
+
+
+def optimizer_words() -> list[dict[str, Any]]:
+    """The optimizers with the defaults of their settings."""
+    settings = {word: description_of(word)["settings"] for word in words("optimizers")}
+    return [
+        {"name": word, "doc": doc, "settings": {item["name"]: item["default"] for item in settings[word]}}
+        for word, doc in words("optimizers").items()
+    ]
 
 
 def description(word: str) -> dict[str, Any]:
