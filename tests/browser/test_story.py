@@ -93,9 +93,10 @@ def test_from_the_file_drop_to_the_fallen_error(workbench, page, tmp_path):
         page.click("text=job.yaml")
     saved = Path(download.value.path()).read_text(encoding="utf-8")
     assert saved.startswith("# Made in the workbench.") and "effects: [quadratic_gain]" in saved
-    page.click("#undo")
+    page.locator("#undo").dblclick()
     expect(page.locator(".stairs text.name")).to_have_text(["as given"])
     expect(page.locator("#action")).to_have_text("Add quadratic_gain")
+    idle(page)
     assert state_of(tmp_path)["at"] == 1
     page.click("#tab-steps")
     expect(page.locator("#step-2")).to_contain_text(re.compile(r"2: \+ quadratic_gain.*RMSE 0\.0\d+ µm"))

@@ -40,6 +40,7 @@ const measurement = new Measurement(sheets.measurement, byId("guess"), {
 });
 const chain = new Chain(byId("blocks"), byId("more"), { setModel, add: (effect) => act("add", { effect }), remove: (effect) => act("remove", { effect }) });
 
+const ACTS = "#action, #improve, #undo, #report, [data-acts]";
 const isBusy = () => asking || Boolean(state?.busy ?? state?.stage);
 
 /** Request a change, then perhaps another, and show the new state or the error. Nothing happens while one is under way.
@@ -79,7 +80,7 @@ function hideError() { byId("error").hidden = true; }
 
 function show(newState) {
   state = newState;
-  keepingFocus(draw, () => byId("action"));
+  keepingFocus(draw, () => [byId("action"), byId("stop"), tabs.tabs[tabs.current]].find((item) => item.offsetParent !== null));
 }
 
 function draw() {
@@ -144,13 +145,15 @@ function showHeader() {
 function showBusy() {
   const busy = isBusy();
   document.body.classList.toggle("busy", busy);
-  for (const button of document.querySelectorAll("#action, #improve, #undo, [data-acts]")) button.setAttribute("aria-disabled", String(busy));
+  for (const button of document.querySelectorAll(ACTS)) if (button.id !== "report") button.setAttribute("aria-disabled", String(busy));
   byId("stop").hidden = !state?.stage;
   showStatus();
 }
 
 function showStatus() {
   const { stage, since } = state ?? {};
+  const doing = STAGES[stage] ?? "";
+  if (byId("announced").textContent !== doing) byId("announced").textContent = doing;
   if (!stage) return void (byId("status").textContent = asking ? "Working …" : "");
   const seconds = Math.max(0, Math.round(Date.now() / 1000 - since));
   const { best, done, budget, together } = convergence;
@@ -200,6 +203,10 @@ async function openReport() {
   } catch (error) { showError(error); }
 }
 
+// The second click of a double-click is no wish of its own, however fast the answer to the first one is.
+document.addEventListener("click", (event) => {
+  if (event.detail > 1 && event.target.closest(ACTS)) event.stopPropagation();
+}, true);
 byId("improve").addEventListener("click", () => act("improve", {}));
 byId("stop").addEventListener("click", () => act("stop"));
 byId("undo").addEventListener("click", () => act("undo"));
