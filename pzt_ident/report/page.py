@@ -18,6 +18,7 @@ from pzt_ident.files import plain, write_text
 from pzt_ident.report.figures import Plate, write_page_figures
 from pzt_ident.report.inline import inline
 from pzt_ident.report.sentences import findings, next_step, verdict
+from pzt_ident.report.spectra import printed_spectra
 from pzt_ident.report.tables import Table, make_tables, write_tables
 from pzt_ident.report.traces import packed
 from pzt_ident.run.events import step_name
@@ -43,7 +44,7 @@ def write_report(folder: Path) -> Path:
     write_tables(tables, results.folder / "tables")
     variables = _template_variables(results, tables, _figures_by_section(results))
     stairs = [staircase(results, "stairs")] if results.improvement or results.result else []
-    content = {"floors": results.floors, "stairs": stairs}
+    content = {"floors": results.floors, "stairs": stairs, "spectra": printed_spectra(results.traces)}
     page = ""
     for points in POINTS:
         content["records"] = packed(results.models, points)

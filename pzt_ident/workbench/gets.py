@@ -13,9 +13,9 @@ from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, R
 from pzt_ident.errors import InputError
 from pzt_ident.files import plain
 from pzt_ident.job.edit import edited
+from pzt_ident.report.spectra import spectra
 from pzt_ident.workbench import downloads, page_state
 from pzt_ident.workbench.bench import Bench
-from pzt_ident.workbench.spectra import spectra
 from pzt_ident.workbench.step_model import model_of
 
 Get = Callable[[Bench, Request], Awaitable[Response]]

@@ -102,6 +102,13 @@ def test_the_wheel_scrolls_the_page_unless_a_plot_has_the_focus(opened):
     assert opened.evaluate(span) != whole
 
 
+def test_spectrum_and_frequency_response_are_in_the_file(opened):
+    for view, legend in (("spectrum", "residual"), ("bode", "measured")):
+        opened.select_option("[aria-label='View over time or frequency']", view)
+        expect(opened.locator(".time .legend").first).to_contain_text(legend)
+    opened.select_option("[aria-label='View over time or frequency']", "time")
+
+
 def test_the_keyboard_reaches_the_mark(opened):
     opened.locator(".time .plot").first.focus()
     for key in ("ArrowRight", "Shift+ArrowRight", "Shift+ArrowRight"):

@@ -129,7 +129,7 @@ export class Explorer {
     const { record, timeView } = this;
     const spectra = await this.spectra(record);
     if (record !== this.record || timeView !== this.timeView) return;
-    const found = timeView === "spectrum" ? spectra && [spectrumScene(spectra, record.unit)] : spectra?.measured?.amplitude.filter(Number.isFinite).length > 2 && bodeScenes(spectra, `${record.unit}/${record.driveUnit}`);
+    const found = timeView === "spectrum" ? spectra?.residual.some((value) => value > 0) && [spectrumScene(spectra, record.unit)] : spectra?.measured?.amplitude.filter(Number.isFinite).length > 2 && bodeScenes(spectra, `${record.unit}/${record.driveUnit}`);
     if (!found) return this.response.say(timeView === "spectrum" ? "There is no spectrum of this record." : "The drive of this record has too few frequencies for a frequency response.");
     this.response.plot.along = this.lower.plot.along = false;
     this.lower.element.hidden = found.length < 2;

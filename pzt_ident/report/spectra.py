@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ Array = NDArray[np.float64]
 SEGMENTS = 8  # of a record, half overlapping
 MOVED = 1e-6  # of the largest power of the drive: below it says nothing of a response
 MOST = 2000  # points of a spectrum
+ON_PAPER = 600  # points of all spectra of a report
 
 
 def spectra(run: Path) -> dict[str, Any]:
@@ -25,7 +27,19 @@ def spectra(run: Path) -> dict[str, Any]:
     return {"records": [spectrum_of(trace) for trace in read_results(run).traces]}
 
 
-def spectrum_of(trace: Trace) -> dict[str, Any]:
+def printed_spectra(traces: Sequence[Trace]) -> list[dict[str, Any]]:
+    """Of each trace, with few points and digits, for a page that holds all it shows."""
+    most = max(ON_PAPER // max(len(traces), 1), 60)
+    return [{key: _short(item) for key, item in spectrum_of(trace, most).items()} for trace in traces]
+
+
+def _short(item: Any) -> Any:
+    if isinstance(item, dict):
+        return {key: _short(value) for key, value in item.items()}
+    return [float(f"{value:.4g}") for value in item] if isinstance(item, np.ndarray) else item
+
+
+def spectrum_of(trace: Trace, most: int = MOST) -> dict[str, Any]:
     from scipy.signal import csd, welch
 
     scored = trace.scored
@@ -38,7 +52,7 @@ def spectrum_of(trace: Trace) -> dict[str, Any]:
     responses = {"measured": response, "model": model}
     crossed = {name: csd(drive, values, **options)[1] for name, values in responses.items()}
     _, own = welch(response, **options)
-    kept = np.unique(np.geomspace(1, frequency.size - 1, min(MOST, frequency.size - 1)).astype(int))
+    kept = np.unique(np.geomspace(1, frequency.size - 1, min(most, frequency.size - 1)).astype(int))
     moved = power[kept] > MOVED * power.max()
     found: dict[str, Any] = {
         "name": trace.record,
