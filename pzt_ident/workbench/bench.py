@@ -54,7 +54,7 @@ class Bench:
                 await change(self, form)
             finally:
                 self.making = None
-        self.changed()
+                self.changed()
 
     async def step(self, make: Callable[[], None]) -> None:
         """Make a step and fill it."""

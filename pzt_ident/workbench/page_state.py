@@ -77,12 +77,13 @@ def step_state(session: Session, entry: dict[str, Any]) -> dict[str, Any]:
 
 def optimizers(session: Session) -> list[dict[str, Any]]:
     """The comparison of the optimizers in the newest run of the chain in which some searched, the best first. `equal`:
-    whether the best polished fit is as good as the best of all, within the noise."""
+    whether its fits are as good as the best of all, within the noise."""
     for entry in reversed(session.chain()):
         result = read(session.step(entry["number"]) / "run" / "result.json")
         if result and result.get("league"):
-            least = min(row["rmse_best"] for row in result["league"])
-            return [row | {"equal": not differ(row["rmse_best"], least, result["floor"])} for row in result["league"]]
+            errors = [min(row["rmse_best"], row["polished_rmse_median"]) for row in result["league"]]
+            equal = [not differ(error, min(errors), result["floor"]) for error in errors]
+            return [row | {"equal": same} for row, same in zip(result["league"], equal, strict=True)]
     return []
 
 

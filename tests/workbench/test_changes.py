@@ -117,6 +117,7 @@ def test_any_order_of_clicks_leaves_a_session_that_opens(rounds):
             asked = [(name, body | ({} if at is None else {"at": at})) for (name, body), at, _ in clicks]
             times = [count for *_, count in clicks]
             post(bench, *(item for item, count in zip(asked, times, strict=True) for _ in range(count)))
+        assert not bench.busy
         again = Session(root, root / "workbench")
         assert (again.steps, again.at, again.warning) == (bench.session.steps, bench.session.at, "")
         for step in again.steps:
