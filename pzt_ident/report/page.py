@@ -30,7 +30,19 @@ if TYPE_CHECKING:
 
 LARGEST = 295_000  # bytes of the page; above that its signals are thinned further
 POINTS = (7000, 4000, 2000)  # samples of all records together, tried in this order
-MODULES = ("parts", "signals", "plot", "gestures", "legend", "figure", "scenes", "explorer", "staircase", "report")
+MODULES = (
+    "parts",
+    "signals",
+    "scale",
+    "plot",
+    "gestures",
+    "legend",
+    "figure",
+    "scenes",
+    "explorer",
+    "staircase",
+    "report",
+)
 
 
 def write_report(folder: Path) -> Path:

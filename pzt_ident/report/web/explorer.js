@@ -1,6 +1,6 @@
 import { Figure } from "./figure.js";
 import { element, redrawForPrint, select, USE_NAMES } from "./parts.js";
-import { tick } from "./plot.js";
+import { tick } from "./scale.js";
 import { bodeScenes, COLOURINGS, driveScene, LOOP_VIEWS, loopScene, NAMES, residualScene, responseScene, spectrumScene } from "./scenes.js";
 import { deviationFromLine, errorOf, lowerBound, marksInBox, marksInTime, number, sampledAt } from "./signals.js";
 
@@ -127,14 +127,23 @@ export class Explorer {
 
   async drawSpectra() {
     const { record, timeView } = this;
-    const spectra = await this.spectra(record);
+    const waiting = setTimeout(() => this.say("Computing …"), 200);
+    const spectra = await Promise.resolve(this.spectra(record)).catch((error) => error);
+    clearTimeout(waiting);
     if (record !== this.record || timeView !== this.timeView) return;
+    if (spectra instanceof Error) return this.say(spectra.message);
     const found = timeView === "spectrum" ? spectra?.residual.some((value) => value > 0) && [spectrumScene(spectra, record.unit)] : spectra?.measured?.amplitude.filter(Number.isFinite).length > 2 && bodeScenes(spectra, `${record.unit}/${record.driveUnit}`);
-    if (!found) return this.response.say(timeView === "spectrum" ? "There is no spectrum of this record." : "The drive of this record has too few frequencies for a frequency response.");
+    if (!found) return this.say(timeView === "spectrum" ? "There is no spectrum of this record." : "The drive of this record has too few frequencies for a frequency response.");
     this.response.plot.along = this.lower.plot.along = false;
     this.lower.element.hidden = found.length < 2;
     this.response.show(found[0], timeView === "spectrum" ? record.unit : `${record.unit}/${record.driveUnit}`);
     if (found[1]) this.lower.show(found[1], "°");
+  }
+
+  /** A sentence in the place of the plots over time. */
+  say(text) {
+    this.response.say(text);
+    this.lower.element.hidden = true;
   }
 
   /** Show what the model would do with other values: a map of record and axis to {places, values}; null ends it. */

@@ -1,7 +1,8 @@
 import { listen } from "./gestures.js";
 import { Legend } from "./legend.js";
 import { element } from "./parts.js";
-import { Plot, tick } from "./plot.js";
+import { Plot } from "./plot.js";
+import { tick } from "./scale.js";
 
 let count = 0;
 

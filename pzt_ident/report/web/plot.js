@@ -1,5 +1,6 @@
 import { isPrinting } from "./parts.js";
-import { extent, lowerBound, number, ticks } from "./signals.js";
+import { padded, Scale, tick } from "./scale.js";
+import { lowerBound } from "./signals.js";
 
 const NEAR = 0.7; // px: shorter steps of a curve are invisible
 const APART = 4; // px between neighbouring dots, so that they are seen as dots
@@ -9,39 +10,6 @@ const HEAT = ["#30123b", "#4559cb", "#3e9bfe", "#18d7cc", "#46f783", "#a4fc3b", 
 /** A colour of the page's style sheet, such as "--model". */
 export function colour(name) {
   return name.startsWith("--") ? getComputedStyle(document.documentElement).getPropertyValue(name).trim() : name;
-}
-
-/** Values along one side of a plot: `low` to `high` at the pixels `from` to `to`, linear or logarithmic. */
-class Scale {
-  set([low, high], from, to, log) {
-    Object.assign(this, { low, high, from, to, log });
-    [this.first, this.last] = log ? [Math.log(low), Math.log(high)] : [low, high];
-    this.perValue = (to - from) / (this.last - this.first);
-  }
-
-  px(value) { return this.from + ((this.log ? Math.log(value) : value) - this.first) * this.perValue; }
-
-  value(px) {
-    const place = this.first + (px - this.from) / this.perValue;
-    return this.log ? Math.exp(place) : place;
-  }
-
-  ticks(spacing) {
-    const count = Math.max(1.5, Math.abs(this.to - this.from) / spacing);
-    if (this.log) return decades(this.low, this.high, count);
-    const values = ticks([this.low, this.high], count);
-    return values.length > 1 ? values : ticks([this.low, this.high], 2 * count);
-  }
-}
-
-/** Round values of a logarithmic axis: 1, 2, 5 of every decade where there is room, else every decade or so. */
-export function decades(low, high, count) {
-  const span = Math.log10(high / low);
-  const steps = span * 3 <= count ? [1, 2, 5] : [1], jump = Math.ceil(span / count) || 1, values = [];
-  for (let power = Math.floor(Math.log10(low)); power <= Math.ceil(Math.log10(high)); power++)
-    if (steps.length > 1 || power % jump === 0) values.push(...steps.map((step) => Number(`${step}e${power}`)));
-  const inside = values.filter((value) => value >= low * 0.9999 && value <= high * 1.0001);
-  return inside.length > 1 ? inside : ticks([low, high], count).filter((value) => value > 0);
 }
 
 /** A plot on three canvases: axes and what stays, what moves, and marks with the cursor.
@@ -338,37 +306,11 @@ export class Plot {
   }
 }
 
-function padded([low, high], log) {
-  if (log) return [low / 1.15, high * 1.15];
-  return [low - 0.04 * (high - low), high + 0.04 * (high - low)];
-}
-
 function rule(pen, x0, y0, x1, y1) {
   pen.beginPath();
   pen.moveTo(x0, y0);
   pen.lineTo(x1, y1);
   pen.stroke();
-}
-
-/** Mean of `values` in each cell of a grid over the plane, from point `first` on; NaN in empty cells. */
-export function gridded(xs, ys, values, first, columns = 110, rows = 72) {
-  const [x, y] = [extent(xs.subarray(first)), extent(ys.subarray(first))];
-  const total = new Float64Array(columns * rows), count = new Float64Array(columns * rows);
-  for (let i = first; i < xs.length; i++) {
-    const column = Math.min(columns - 1, Math.floor(((xs[i] - x[0]) / (x[1] - x[0])) * columns));
-    const row = Math.min(rows - 1, Math.floor(((ys[i] - y[0]) / (y[1] - y[0])) * rows));
-    total[row * columns + column] += values[i];
-    count[row * columns + column] += 1;
-  }
-  const means = Array.from(total, (sum, cell) => (count[cell] ? sum / count[cell] : NaN));
-  const sizes = means.filter((mean) => !Number.isNaN(mean)).map(Math.abs).sort((a, b) => a - b);
-  return { x, y, columns, rows, means, largest: sizes[Math.floor(0.98 * (sizes.length - 1))] || 1 };
-}
-
-export function tick(value) {
-  const [mantissa, power] = number(value, 6).split(" × ");
-  const short = mantissa.includes(".") ? mantissa.replace(/\.?0+$/, "") : mantissa;
-  return power ? `${short} × ${power}`.replace(/^(−?)1 × /, "$1") : short;
 }
 
 function rgb(hex) {

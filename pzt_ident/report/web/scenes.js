@@ -1,7 +1,6 @@
 // What the plots of an explorer show of a record: series, ranges and bands. Nothing here touches the page.
 
-import { gridded } from "./plot.js";
-import { extent, lowerBound, number } from "./signals.js";
+import { extent, gridded, lowerBound, number } from "./signals.js";
 
 const MODELS = ["--model", "--before", "--third", "--fourth"];
 export const NAMES = { now: "model", before: "model before" };

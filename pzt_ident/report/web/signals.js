@@ -96,6 +96,21 @@ export function sampledAt(values, places) {
   return Float64Array.from(places, (place) => values[place]);
 }
 
+/** Mean of `values` in each cell of a grid over the plane, from point `first` on; NaN in empty cells. */
+export function gridded(xs, ys, values, first, columns = 110, rows = 72) {
+  const [x, y] = [extent(xs.subarray(first)), extent(ys.subarray(first))];
+  const total = new Float64Array(columns * rows), count = new Float64Array(columns * rows);
+  for (let i = first; i < xs.length; i++) {
+    const column = Math.min(columns - 1, Math.floor(((xs[i] - x[0]) / (x[1] - x[0])) * columns));
+    const row = Math.min(rows - 1, Math.floor(((ys[i] - y[0]) / (y[1] - y[0])) * rows));
+    total[row * columns + column] += values[i];
+    count[row * columns + column] += 1;
+  }
+  const means = Array.from(total, (sum, cell) => (count[cell] ? sum / count[cell] : NaN));
+  const sizes = means.filter((mean) => !Number.isNaN(mean)).map(Math.abs).sort((a, b) => a - b);
+  return { x, y, columns, rows, means, largest: sizes[Math.floor(0.98 * (sizes.length - 1))] || 1 };
+}
+
 export function extent(values) {
   let low = Infinity, high = -Infinity;
   for (const value of values) {

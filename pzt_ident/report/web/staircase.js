@@ -1,5 +1,5 @@
 import { element, redrawForPrint, svgElement, USE_NAMES } from "./parts.js";
-import { decades, tick } from "./plot.js";
+import { decades, tick } from "./scale.js";
 import { number } from "./signals.js";
 
 const USES = Object.keys(USE_NAMES);
