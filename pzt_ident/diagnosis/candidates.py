@@ -10,7 +10,7 @@ import numpy as np
 
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.refit import Case, Fit, refit
+from pzt_ident.diagnosis.refit import THREADS, Case, Fit, refit
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, applicable, squared_misfit
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.model.registry import blocks, form_of, word_of
@@ -50,7 +50,7 @@ class Candidate:
 def score_all(case: Case, before: Fit, scorer: Scorer) -> list[Candidate]:
     """Every effect that can be added to the model, with the scores of its forms."""
     words, candidates = applicable(case, before.effects), list[Candidate]()
-    with ThreadPoolExecutor(2) as pool:
+    with ThreadPoolExecutor(THREADS) as pool:
         for scores in pool.map(scorer.scores, words):
             candidates.append(Candidate.of(scores))
             facts = {"effect": scores[0].effect, "explained": candidates[-1].score.explained}
@@ -65,7 +65,7 @@ def refit_all(case: Case, before: Fit, candidates: Sequence[Candidate]) -> None:
     def refitted(score: Score) -> Fit:
         return refit(case, before, (*before.effects, score.effect), score.guess)
 
-    with ThreadPoolExecutor(2) as pool:
+    with ThreadPoolExecutor(THREADS) as pool:
         fits = pool.map(refitted, [score for forms in scores for score in forms.values()])
         for candidate, forms in zip(candidates, scores, strict=True):
             candidate.refits = {item: next(fits) for item in forms}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -25,6 +26,7 @@ from pzt_ident.search.uncertainty import Estimate, estimates
 Array = NDArray[np.float64]
 Listener = Callable[[dict[str, Any]], None]
 
+THREADS = max(2, min(6, os.cpu_count() or 2))  # that fit and score effects side by side
 EDGE = 1e-4  # of a parameter's range: as near to its end it is on the bound
 STEP_TOLERANCE = 0.05  # noise floors: where halving the step changes more of a record, the step is halved
 FINEST = 8  # steps per sample

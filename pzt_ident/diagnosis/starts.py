@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.diagnosis.refit import Case, Fit, fit_at, refine_steps
+from pzt_ident.diagnosis.refit import THREADS, Case, Fit, fit_at, refine_steps
 from pzt_ident.search.descent import descend
 from pzt_ident.search.problem import Problem
 
@@ -27,7 +27,7 @@ def first_fit(case: Case, seed: int, known: Array | None = None) -> Fit:
     order, agreed = ranked_points(problem, seed), False
     most = MOST_REFINED if known is None else REFINED
     for number in range(0, most, REFINED):
-        with ThreadPoolExecutor(2) as pool:
+        with ThreadPoolExecutor(THREADS) as pool:
             for minimum in pool.map(lambda start: descend(problem, start), order[number : number + REFINED]):
                 minima = np.vstack([minima, minimum])
                 case.on_event({"event": "fitted", "done": len(minima), "of": most + (known is not None)})

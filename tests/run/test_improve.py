@@ -180,7 +180,7 @@ class TestImprove:
         assert f"These data cannot tell {' from '.join(step['class'])}." in found["reason"]
         assert found["next_experiment"]["splits"] == step["class"]
         path = tmp_path / "out" / found["next_experiment"]["file"]
-        assert path.exists() and f"run {path}" in answer.stdout
+        assert path.exists() and f"apply the drive in {path}" in answer.stdout
 
     def test_the_noise_is_told_with_what_it_was_taken_from(self, improved):
         assert read(improved[1] / "improvement.json")["noise_floor_source"] == {"x": "rest segments"}
