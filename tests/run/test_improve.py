@@ -94,7 +94,7 @@ class TestDiagnose:
         proposal = read(out / "diagnosis.json")["next_experiment"]
         assert set(proposal) == {"splits", "file", "why"}
         assert {"amplifier_lag", "sensor_lag"} <= set(proposal["splits"])
-        assert f"run {out / proposal['file']}" in answer.stdout
+        assert f"apply the drive in {out / proposal['file']}" in answer.stdout
         path = out / proposal["file"]
         assert path.read_text(encoding="utf-8").splitlines()[0] == "time [s],u_x [V]"
         time, drive = np.loadtxt(path, delimiter=",", skiprows=1).T
