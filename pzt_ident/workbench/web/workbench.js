@@ -17,7 +17,7 @@ import { Tabs } from "./tabs.js";
 const STAGES = { run: "Identifying", diagnose: "Diagnosing", improve: "Improving", control: "Following the reference" };
 const TABS = { measurement: "Measurement", parameters: "Parameters", misfit: "Where it fails", candidates: "Candidates", steps: "Steps", optimizers: "Optimizers", control: "Control", commands: "Commands" };
 const byId = (id) => document.getElementById(id);
-let state = null, asking = false, draftModel = ["bouc_wen"], disconnected = false, failure = "";
+let state = null, asking = false, newest = 0, draftModel = ["bouc_wen"], disconnected = false, failure = "";
 
 const tabs = new Tabs(byId("tabs"), byId("sheets"), TABS);
 const { sheets } = tabs;
@@ -60,6 +60,7 @@ async function act(name, body = {}, then = null) {
   } finally {
     asking = false;
     show(state);
+    if (newest > state.version) refresh();
   }
 }
 
@@ -192,7 +193,10 @@ async function upload(list) {
 }
 
 async function refresh() {
-  try { show(await requestJson("state")); } catch (error) { showError(error); }
+  try {
+    const found = await requestJson("state");
+    if (!(found.version < state?.version)) show(found); // an answer that was overtaken
+  } catch (error) { showError(error); }
 }
 
 async function openReport() {
@@ -231,7 +235,10 @@ if (initialFile && !state?.steps.length && measurement.empty) await addFile(init
 follow((event) => {
   if (disconnected) { disconnected = false; hideError(); }
   if (event.event === "step") [convergence, progress].forEach((part) => part.clear());
-  else if (event.event === "changed") { if (!asking && (event.version !== state?.version || state?.stage)) refresh(); }
+  else if (event.event === "changed") {
+    newest = event.version;
+    if (!asking && (newest !== state?.version || state?.stage)) refresh();
+  }
   else {
     convergence.update(event);
     progress.update(event);
