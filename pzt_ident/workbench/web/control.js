@@ -1,5 +1,6 @@
 import { Figure } from "./figure.js";
 import { element } from "./parts.js";
+import { printed } from "./records.js";
 import { request, requestJson, save } from "./session.js";
 import { extent, number } from "./signals.js";
 
@@ -92,8 +93,9 @@ export class Control {
     const xs = signals[0].values, references = {}, series = { error: [], displacement: [], drive: [] };
     const ways = [];
     for (const { heading, values } of signals.slice(1)) {
-      const [, axis, way, unit] = heading.match(/^(.*?), (.*) \[(.*)\]$/) ?? [];
+      const [, axis, way, stated] = heading.match(/^(.*?), (.*) \[(.*)\]$/) ?? [];
       if (!axis) continue;
+      const unit = printed(stated);
       if (way === "reference") {
         references[axis] = values;
         series.displacement.push({ label: `${axis}, reference`, xs, ys: values, colour: "--measured", dots: true, unit });
@@ -119,7 +121,7 @@ export class Control {
 }
 
 function said({ file, axes, samples, rate }) {
-  return `${file.split("/").at(-1)}: ${Object.entries(axes).map(([axis, { unit }]) => `${axis} in ${unit}`).join(", ")}; ${samples} samples${rate ? ` at ${number(rate, 4)} Hz` : ""}.`;
+  return `${file.split("/").at(-1)}: ${Object.entries(axes).map(([axis, { unit }]) => `${axis} in ${printed(unit)}`).join(", ")}; ${samples} samples${rate ? ` at ${number(rate, 4)} Hz` : ""}.`;
 }
 
 function floats(data) {

@@ -33,12 +33,12 @@ export class Optimizers {
     element(this.league, "p", { class: "quiet" }, `RMSE [${unit}] on the identification records after ${rows[0].evaluations} evaluations a run: the best of the optimizer itself, and the median after the local polish that ends a run. CPU time of a run.`);
     const table = element(this.league, "table", { id: "league" });
     const head = element(element(table, "thead"), "tr");
-    for (const [text, style] of [["optimizer", "word"], ["own", "number"], ["polished", "number"], ["runs", "number"], ["CPU", "number"]]) element(head, "th", { scope: "col", class: style }, text);
-    const body = element(table, "tbody");
+    for (const text of ["own", "polished", "runs", "CPU"]) element(head, "th", { scope: "col", class: "number" }, text);
     for (const row of rows) {
-      const line = element(body, "tr");
-      const name = element(line, "th", { scope: "row" }, row.optimizer);
+      const body = element(table, "tbody");
+      const name = element(element(body, "tr"), "th", { scope: "rowgroup", colspan: 4 }, row.optimizer);
       if (row.equal) element(name, "span", { class: "tag good" }, "within the noise of the best");
+      const line = element(body, "tr");
       for (const text of [number(row.rmse_best), number(row.polished_rmse_median), String(row.runs), `${number(row.cpu_seconds_median, 2)} s`]) element(line, "td", { class: "number" }, text);
     }
   }
