@@ -9,6 +9,7 @@ import signal
 import sys
 import time
 from collections.abc import Callable, Coroutine, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -80,12 +81,14 @@ class Runner:
     async def _handed(self, arguments: list[str]) -> Process:
         """A process that has been handed its arguments: the waiting one unless it has ended."""
         waiting, self.waiting = self.waiting, None
-        process = await asyncio.shield(waiting) if waiting else await self._spawned()
-        if process.returncode is not None:
-            process = await self._spawned()
-        assert process.stdin
-        process.stdin.write(json.dumps(arguments).encode() + b"\n")
-        await process.stdin.drain()
+        for ready in (waiting, None):
+            process = await asyncio.shield(ready) if ready else await self._spawned()
+            assert process.stdin
+            with suppress(ConnectionError):
+                process.stdin.write(json.dumps(arguments).encode() + b"\n")
+                await process.stdin.drain()
+                if process.returncode is None:
+                    break
         return process
 
     async def _spawned(self, searching: bool = False) -> Process:
