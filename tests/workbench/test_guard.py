@@ -3,6 +3,7 @@
 import itertools
 import json
 import os
+import socket
 
 import pytest
 from starlette.testclient import TestClient
@@ -12,6 +13,7 @@ from pzt_ident.workbench import uploads
 from pzt_ident.workbench.gets import GETS as GETS_
 from pzt_ident.workbench.guard import inside
 from pzt_ident.workbench.posts import CHANGES
+from pzt_ident.workbench.serve import bind
 
 from .conftest import GOOD, HOST, TOKEN, form, measured
 
@@ -213,3 +215,9 @@ def test_two_hosts_in_one_request_are_refused(app):
     client = TestClient(app, base_url=f"http://{HOST}")
     headers = [("host", HOST), ("host", "evil.example"), ("x-pzt-token", GOOD["x-pzt-token"])]
     assert client.get("/api/state", headers=headers).status_code == 421
+
+
+def test_an_answer_does_not_wait_for_an_acknowledgement():
+    """asyncio sets TCP_NODELAY where the protocol of a listener is named."""
+    with bind("127.0.0.1", 0) as listener:
+        assert listener.proto == socket.IPPROTO_TCP
