@@ -10,7 +10,6 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
-from typing import Any
 
 from playwright.sync_api import Page, expect, sync_playwright
 
@@ -23,13 +22,18 @@ def report(page: Page, folder: Path) -> None:
     """The page that `pzt-ident demo` opens, with a stretch marked."""
     subprocess.run([*COMMAND, "demo", "--out", str(folder), "--no-browser", "--quiet"], check=True)
     page.goto((folder / "improved" / "report.html").as_uri())
-    fields = page.locator(".bar input")
-    fields.nth(0).fill("4.8")
-    fields.nth(1).fill("7.4")
-    fields.nth(1).press("Enter")
-    expect(page.locator(".readout")).to_contain_text("Marked")
+    page.click("[data-mode=mark]")
+    box = page.locator("#explorer .time .plot").first.bounding_box()
+    assert box
+    page.mouse.move(box["x"] + 0.45 * box["width"], box["y"] + 50)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.67 * box["width"], box["y"] + 60, steps=4)
+    page.mouse.up()
     page.mouse.move(0, 0)
-    page.screenshot(path=FOLDER / "report.png", clip=clip(page, "h1", "#residuals"))
+    expect(page.locator(".readout")).to_contain_text("Marked")
+    bottom = page.locator("#residuals").bounding_box()
+    assert bottom
+    page.screenshot(path=FOLDER / "report.png", clip={"x": 0, "y": 0, "width": 1280, "height": bottom["y"]})
 
 
 def workbench(page: Page, folder: Path) -> None:
@@ -38,24 +42,18 @@ def workbench(page: Page, folder: Path) -> None:
     server = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, text=True)
     try:
         assert server.stdout is not None
+        page.set_viewport_size({"width": 1280, "height": 800})
         page.goto(server.stdout.readline().removeprefix("workbench: ").strip())
-        page.click("#run")
+        page.click("#action")
         for missing in ("quadratic_gain", "creep"):
-            page.click(f"#advice button[data-effect={missing}]")
+            page.click(f"#action:text('Add {missing}')")
         expect(page.locator("#verdict")).to_contain_text("adequate")
+        expect(page.locator("body.busy")).to_have_count(0)
         page.wait_for_timeout(500)
-        page.screenshot(path=FOLDER / "workbench.png", clip=clip(page, "h1", "#where-it-fails"))
+        page.screenshot(path=FOLDER / "workbench.png")
     finally:
         server.terminate()
         server.wait()
-
-
-def clip(page: Page, first: str, last: str) -> Any:
-    """From one element to where another begins."""
-    page.evaluate("scrollTo(0, 0)")
-    top, bottom = (page.locator(name).first.bounding_box() for name in (first, last))
-    assert top and bottom
-    return {"x": 0, "y": 0, "width": 1280, "height": bottom["y"]}
 
 
 def main() -> None:

@@ -72,7 +72,7 @@ class Diagnosis:
         printed = unit(self.content["unit"]) or "1"
         tried = [item for item in self.candidates if item["rmse"] or item["explained"] > 0.01]
         rows = [[item["item"], percent(item["explained"]), *_errors(item["rmse"]), item["decision"]] for item in tried]
-        return ["effect", "explains", f"identify [{printed}]", f"validate [{printed}]", "decision"], rows
+        return ["effect", "explains", f"identification [{printed}]", f"validation [{printed}]", "decision"], rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +130,7 @@ class Improvement:
             [step_name(step), *_errors(step["rmse"]), number(step["rmse"]["identify"] / floor, 3) if floor else ""]
             for step in self.content["steps"]
         ]
-        return ["step", f"identify [{printed}]", f"validate [{printed}]", "in floors"], rows
+        return ["step", f"identification [{printed}]", f"validation [{printed}]", "in floors"], rows
 
 
 def diagnose(fit: Fit) -> Diagnosis:

@@ -20,12 +20,13 @@ from pzt_ident.api.refit import with_effect
 from pzt_ident.api.statement import file_of, has_stamps, statement_of
 from pzt_ident.api.wording import as_arguments
 from pzt_ident.data.notation import listed, number, quantity, unit, with_error
-from pzt_ident.data.over_axes import together
+from pzt_ident.data.over_axes import over_uses, together
 from pzt_ident.files import write_json, write_sealed
 from pzt_ident.job.schema import Job
 from pzt_ident.run.collect import collect
 from pzt_ident.run.folder import begin, environment
 from pzt_ident.run.identify import tasks_of
+from pzt_ident.run.start import starts_of
 from pzt_ident.run.statement import Statement
 
 if TYPE_CHECKING:
@@ -62,7 +63,9 @@ class Fit(Fitted):
             record.write_csv(folder / file_of(record), stamps)
         statement = Statement(job)
         write_json(folder / "environment.json", environment(job, statement.records))
-        tasks = tasks_of(statement, folder)
+        starts = starts_of([run for run, _ in self.runs])
+        starts.keep(folder)
+        tasks = tasks_of(statement, folder, starts)
         for task, (run, checkpoint) in zip(tasks, self.runs, strict=True):
             checkpoint.save(task.losses)
             write_sealed(task.result, run)
@@ -105,7 +108,7 @@ class Fit(Fitted):
         floors = [f"{quantity(floor, self.noise['units'][axis])} ({axis})" for axis, floor in self.noise_floor.items()]
         over = self.noise["floor"]
         ratio = f", {number(self.rmse['identify'] / over, 3)} noise floors" if over and self.rmse["identify"] else ""
-        errors = f"RMSE{together(self.noise['units'])}: " + ", ".join(f"{error} {use}" for use, error in rmse.items())
+        errors = f"RMSE{together(self.noise['units'])}: " + over_uses(rmse)
         return f"{self.model}\n{errors}{ratio}\nnoise floor: {listed(floors)}"
 
     def _table(self) -> tuple[list[str], list[list[str]]]:

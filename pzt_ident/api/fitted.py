@@ -22,7 +22,7 @@ from pzt_ident.engine.simulator import simulate
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.run.checkpoint import Checkpoint
 from pzt_ident.run.statement import Statement
-from pzt_ident.search.uncertainty import covariance
+from pzt_ident.search.uncertainty import covariance, judged
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -77,7 +77,8 @@ class Fitted(Controlled):
     ) -> None:
         self.statement, self.model, self.records, self.sections = statement, model, records, dict(sections)
         self.runs = tuple(runs)
-        self.best = min((run for run, _ in self.runs), key=lambda run: run["rmse"]["identify"])
+        results = [run for run, _ in self.runs]
+        self.best = judged(min(results, key=lambda run: run["rmse"]["identify"]), results)
         self.point = np.asarray(self.best["point"], dtype=np.float64)
 
     @property

@@ -23,6 +23,7 @@ from pzt_ident.run.events import nobody
 from pzt_ident.run.folder import check_unchanged, read_environment
 from pzt_ident.run.identify import tasks_of
 from pzt_ident.run.results import read_results
+from pzt_ident.run.start import Starts
 from pzt_ident.run.statement import Statement
 from pzt_ident.run.task import identification
 
@@ -100,7 +101,7 @@ def _read(folder: Path, plugins: bool) -> Fit:
         use: tuple(Record.of(record) for record in statement.records if record.use == use)
         for use in ("identify", "validate")
     }
-    tasks = {task.run: task for task in tasks_of(statement, folder)}
+    tasks = {task.run: task for task in tasks_of(statement, folder, Starts.kept(folder))}
     finished = [read_sealed(tasks[run["run"]].result) for run in results.result["runs"]]
     runs = [(run, Checkpoint(tasks[run["run"]].losses)) for run in finished]
     chain, sections = Model.of(job), sections_of(job)

@@ -58,9 +58,10 @@ def from_refit(fit: Fitted, case: Case, refit: diagnosis.Fit) -> Parts:
     checkpoint, seconds = Checkpoint(), time.perf_counter() - begun
     with checkpoint.appending() as append:
         append(seconds, np.array([refit.identify]))
+    optimizer = optimizer_of(fit)
     run: dict[str, Any] = {
-        "run": f"{fit.best['optimizer']}-0",
-        "optimizer": fit.best["optimizer"],
+        "run": f"{optimizer}-0",
+        "optimizer": optimizer,
         "repeat": 0,
         **known,
         "rmse_before_polish": known["rmse"],
@@ -74,6 +75,12 @@ def from_refit(fit: Fitted, case: Case, refit: diagnosis.Fit) -> Parts:
     return Parts(statement, fit.model.with_effects(refit.effects), records, sections, [(run, checkpoint)])
 
 
+def optimizer_of(fit: Fitted) -> str:
+    """The optimizer that found a fit; the first of its job where the fit came from elsewhere."""
+    words = [item["name"] for item in fit.sections["optimizers"]]
+    return fit.best["optimizer"] if fit.best["optimizer"] in words else words[0]
+
+
 def restated(
     fit: Fitted, effects: tuple[str, ...], steps: tuple[int, ...] = (), settings: dict[str, Any] | None = None
 ) -> tuple[Statement, dict[str, tuple[Record, ...]], dict[str, Any]]:
@@ -84,7 +91,7 @@ def restated(
     records = {
         use: tuple(record.with_steps(counts[record.name]) for record in group) for use, group in fit.records.items()
     }
-    chosen = next(item for item in fit.sections["optimizers"] if item["name"] == fit.best["optimizer"])
+    chosen = next(item for item in fit.sections["optimizers"] if item["name"] == optimizer_of(fit))
     parameters = fit.sections["parameters"] | (settings or {})
     sections = fit.sections | {"optimizers": [chosen], "repeats": 1, "parameters": parameters}
     text = job_text(fit.statement.job.name, fit.model.with_effects(effects), records, sections)

@@ -1,20 +1,45 @@
-"""The command line as a child process, which ends when the process that started it is gone."""
+"""The command line as a child process: it waits, warm, for its arguments, and ends when what started it is gone."""
 
 from __future__ import annotations
 
+import json
 import os
 import signal
+import sys
+from importlib import import_module
 from threading import Thread
+
+WARM = ("pzt_ident.run.identify", "pzt_ident.run.improve", "pzt_ident.engine.kernel", "scipy.optimize", "pandas")
 
 
 def end_with_parent() -> None:
     """End the command once nothing writes to its standard input any more: the workbench was killed."""
-    os.read(0, 1)
+    while os.read(0, 4096):
+        pass
     os.kill(os.getpid(), signal.SIGTERM)
 
 
-def main() -> None:
-    from pzt_ident.cli.commands import main
+def arguments() -> list[str]:
+    """The line of JSON on the standard input, byte by byte: what follows it is left. Ends where there is none."""
+    line = bytearray()
+    while not line.endswith(b"\n"):
+        byte = os.read(0, 1)
+        if not byte:
+            sys.exit(0)
+        line += byte
+    return list(json.loads(line))
 
+
+def main(searching: bool) -> None:
+    """searching: have the server of the searches there too."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy comes
+    from pzt_ident.cli.commands import main
+    from pzt_ident.run.pool import context
+
+    for name in WARM:
+        import_module(name)
+    if searching:
+        context()
+    sys.argv[1:] = arguments()
     Thread(target=end_with_parent, daemon=True).start()
     main(prog_name="pzt-ident")

@@ -32,6 +32,7 @@ from pzt_ident.cli.options import (
     plugins_flag,
     plugins_option,
     run_options,
+    start_option,
 )
 from pzt_ident.errors import DamagedError
 
@@ -56,28 +57,52 @@ def main(debug: bool) -> None:
 @main.command()
 @click.argument("job", type=EXISTING)
 @click.option("--out", type=EXISTING, help="Folder for the results; results/<name>/<time>-<hash> if not given.")
+@start_option
+@click.option("--no-search", is_flag=True, help="Polish the fit of --from, and let no optimizer search.")
 @run_options
 @plugins_flag
 @output_options
-def run(job: Path, out: Path | None, place: Place, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
+def run(
+    job: Path,
+    out: Path | None,
+    start: Path | None,
+    no_search: bool,
+    place: Place,
+    no_report: bool,
+    plugins: bool,
+    as_json: bool,
+    quiet: bool,
+) -> None:
     """Identify the model of a job file JOB."""
 
-    def start(listen: Listener) -> Path:
+    def begin(listen: Listener) -> Path:
         from pzt_ident.job.schema import load_job
         from pzt_ident.run.identify import run
 
-        return run(load_job(job, plugins), out, place=place, listen=listen)
+        job_ = load_job(job, plugins)
+        return run(job_, out, place=place, listen=listen, start=start, only_start=no_search)
 
-    _identify(start, no_report, as_json, quiet)
+    if no_search and start is None:
+        raise click.UsageError("--no-search needs a fit to start from: give --from RESULT")
+    _identify(begin, no_report, as_json, quiet)
 
 
 @main.command()
 @click.argument("folder", metavar="DIR", type=EXISTING)
+@start_option
 @run_options
 @plugins_flag
 @output_options
-def resume(folder: Path, place: Place, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
-    """Go on with the run or the fleet in the folder DIR."""
+def resume(
+    folder: Path,
+    start: Path | None,
+    place: Place,
+    no_report: bool,
+    plugins: bool,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Go on with the run or the fleet in the folder DIR, with --from from another fit as well."""
     if (folder / "fleet.json").is_file():
         resume_fleet(folder, place, plugins, as_json, quiet)
         return
@@ -85,12 +110,12 @@ def resume(folder: Path, place: Place, no_report: bool, plugins: bool, as_json: 
         _diagnose_again(folder, no_report, plugins, as_json, quiet)
         return
 
-    def start(listen: Listener) -> Path:
+    def begin(listen: Listener) -> Path:
         from pzt_ident.run.identify import resume
 
-        return resume(folder, place=place, listen=listen, plugins=plugins)
+        return resume(folder, place=place, listen=listen, plugins=plugins, start=start)
 
-    _identify(start, no_report, as_json, quiet)
+    _identify(begin, no_report, as_json, quiet)
 
 
 def _is_diagnosis(folder: Path) -> bool:
@@ -188,6 +213,7 @@ def diagnose(job: Path, **options: Any) -> None:
 
 @main.command()
 @edit_options("EFFECT")
+@start_option
 def add(**options: Any) -> None:
     """Write a new job file: JOB with one EFFECT more, comments kept."""
     edit_job("add", **options)
@@ -224,6 +250,7 @@ def _diagnose(
     show: Callable[[dict[str, Any], Path], None],
     job: Path,
     out: Path | None,
+    start: Path | None,
     no_report: bool,
     plugins: bool,
     budget: float | None,
@@ -232,10 +259,10 @@ def _diagnose(
 ) -> None:
     from pzt_ident.job.schema import load_job
 
-    def start(listen: Listener) -> Path:
-        return function(load_job(job, plugins), out, listen, budget)
+    def begin(listen: Listener) -> Path:
+        return function(load_job(job, plugins), out, listen, budget, start)
 
-    _show_diagnosis(start, name, show, no_report, as_json, quiet)
+    _show_diagnosis(begin, name, show, no_report, as_json, quiet)
 
 
 def _show_diagnosis(

@@ -8,6 +8,7 @@ import click
 
 from pzt_ident.cli.result_tables import show_notes
 from pzt_ident.cli.table import grouped_by_range, number, table
+from pzt_ident.data.over_axes import USE_NAMES
 
 Facts = dict[str, Any]
 
@@ -17,7 +18,7 @@ def show_job(facts: Facts) -> None:
     table(
         ("record", "use", "samples", "rate [Hz]", "length [s]", "not scored [s]", "file"),
         [
-            (row["name"], row["use"], row["samples"], *(number(row[key]) for key in _TIMES), row["file"])
+            (row["name"], USE_NAMES[row["use"]], row["samples"], *(number(row[key]) for key in _TIMES), row["file"])
             for row in facts["records"]
         ],
     )

@@ -119,6 +119,12 @@ def place_option(command: Command) -> Command:
     return on(workers(place))
 
 
+def start_option(command: Command) -> Command:
+    """--from, as `start`."""
+    text = "Start from the fit in this folder of a run, diagnosis or improvement, or in a JSON file of values."
+    return click.option("--from", "start", metavar="RESULT", type=EXISTING, help=text)(command)
+
+
 def run_options(command: Command) -> Command:
     """--on, --workers and --no-report."""
     return no_report_flag(place_option(command))
@@ -127,7 +133,7 @@ def run_options(command: Command) -> Command:
 def diagnosis_options(command: Command) -> Command:
     """JOB, --out and the options of a command that looks for what a model misses."""
     text = "Folder for the results; results/<name>/<time>-<hash> if not given."
-    command = no_report_flag(plugins_flag(output_options(command)))
+    command = start_option(no_report_flag(plugins_flag(output_options(command))))
     more = "CPU time to spend, such as 60s or 5 min; 60 s or 1 ms a sample if not given."
     command = click.option("--budget", type=Seconds(), help=more)(command)
     return click.argument("job", type=EXISTING)(click.option("--out", type=EXISTING, help=text)(command))
@@ -163,12 +169,14 @@ def edit_options(metavar: str, **attributes: Any) -> Callable[[Command], Command
     return decorate
 
 
-def edit_job(name: str, job: Path, words: Any, out: Path, plugins: bool, as_json: bool, quiet: bool) -> None:
+def edit_job(
+    name: str, job: Path, words: Any, out: Path, plugins: bool, as_json: bool, quiet: bool, **more: Any
+) -> None:
     """Write another job file by the function `name` of pzt_ident.job.edit, and print what is in it."""
     from pzt_ident.job import edit
     from pzt_ident.model.registry import word_of
 
-    new_job = getattr(edit, name)(job, words, out, plugins)
+    new_job = getattr(edit, name)(job, words, out, plugins, **more)
     facts = {"model": [word_of(item) for item in new_job.model], "effects": list(new_job.effects)}
     contents = "; ".join(f"{key} {', '.join(words) or 'none'}" for key, words in facts.items())
     text = f"wrote {out}: {contents}\nnext: pzt-ident run {quote(str(out))}"

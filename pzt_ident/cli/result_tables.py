@@ -10,7 +10,7 @@ import click
 
 from pzt_ident.cli.progress import failure_message
 from pzt_ident.cli.table import number, table
-from pzt_ident.data.over_axes import together, weighed
+from pzt_ident.data.over_axes import over_uses, together, weighed
 
 
 def show_result(result: dict[str, Any], folder: Path) -> None:
@@ -62,4 +62,4 @@ _LEAGUE = ("rmse_best", "rmse_median", "polished_rmse_median")
 
 
 def rmse_by_use(rmse: dict[str, float | None]) -> str:
-    return ", ".join(f"{number(value)} {use}" for use, value in rmse.items())
+    return over_uses({use: number(value) for use, value in rmse.items() if value is not None})

@@ -9,6 +9,7 @@ import click
 
 from pzt_ident.cli.result_tables import rmse_by_use, show_floors
 from pzt_ident.cli.table import number, table
+from pzt_ident.data.notation import listed
 from pzt_ident.data.over_axes import together
 from pzt_ident.report.tables import expected
 from pzt_ident.run.events import step_name, verdict_line
@@ -32,8 +33,8 @@ def show_diagnosis(diagnosis: Facts, folder: Path) -> None:
         for item in diagnosis["candidates"]
         if item["rmse"] or item["explained"] > 0.01
     ]
-    errors = (f"{error}, identify [{unit}]", f"validate [{unit}]")
-    table(("effect", "explains", "expected", "visible", *errors, "decision"), rows)
+    errors = (f"{error}, identification [{unit}]", f"validation [{unit}]")
+    table(("effect", "explains", "estimate", "visible", *errors, "decision"), rows)
     click.echo(f"{error} [{unit}]: {rmse_by_use(diagnosis['rmse'])}")
     show_floors(diagnosis)
     click.echo(diagnosis["reason"])
@@ -52,7 +53,8 @@ def _advise(diagnosis: Facts, folder: Path) -> None:
 
 
 def _propose(proposal: Facts, folder: Path) -> None:
-    click.echo(f"to tell {' from '.join(proposal['splits'])}, run {folder / proposal['file']} ({proposal['why']})")
+    drive = f"apply the drive in {folder / proposal['file']}: {proposal['why']}"
+    click.echo(f"to distinguish {listed(proposal['splits'])}, {drive}")
 
 
 def show_improvement(improvement: Facts, folder: Path) -> None:
@@ -73,8 +75,8 @@ def show_improvement(improvement: Facts, folder: Path) -> None:
     table(
         (
             "step",
-            f"{error}, identify [{unit}]",
-            f"validate [{unit}]",
+            f"{error}, identification [{unit}]",
+            f"validation [{unit}]",
             "in floors",
             "expected",
             "explained",

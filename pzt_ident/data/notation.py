@@ -87,8 +87,8 @@ def power_of_ten(power: int) -> str:
 
 
 def listed(names: Iterable[str]) -> str:
-    """a, b and c."""
-    *most, last = names
+    """a, b and c; empty where there is nothing."""
+    *most, last = [*names] or [""]
     return f"{', '.join(most)} and {last}" if most else last
 
 

@@ -8,6 +8,13 @@ from pzt_ident.data.noise import LEAST_SCALE
 from pzt_ident.data.notation import listed, percent
 from pzt_ident.data.units import of_one_kind
 
+USE_NAMES = {"identify": "identification", "validate": "validation"}
+
+
+def over_uses(errors: Mapping[str, str]) -> str:
+    """Errors by use in words: `0.12 um on the identification records, 0.15 um on the validation records`."""
+    return ", ".join(f"{error} on the {USE_NAMES[use]} records" for use, error in errors.items())
+
 
 def together(units: Mapping[str, str]) -> str:
     """The suffix to the name of a number that is the root mean square over all axes."""

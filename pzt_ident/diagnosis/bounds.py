@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pzt_ident.diagnosis.criteria import removes_enough
-from pzt_ident.diagnosis.refit import Case, Fit, descend, fit_at, refine_steps
+from pzt_ident.diagnosis.refit import Case, Fit, fit_at, refine_steps
+from pzt_ident.search.descent import descend
 
 SLIP = 0.15  # of a bound, by which a data sheet may be beside the truth
 
@@ -26,7 +27,7 @@ def beyond_bounds(case: Case, first: Fit) -> tuple[Case, Fit] | None:
         return None
     wide = case.with_specs(specs)
     problem = wide.problem(first.effects, first.steps, first.measured_only)
-    point = descend(problem, problem.unit_point(first.values), case.budget)
+    point = descend(problem, problem.unit_point(first.values), going=case.budget.lasts)
     fit = refine_steps(wide, fit_at(first.effects, problem, point, first.converged, first.measured_only))
     return (wide, fit) if removes_enough(case, first, first, fit) else None
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.refit import Case, Fit, refit
+from pzt_ident.diagnosis.refit import THREADS, Case, Fit, refit
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, applicable, squared_misfit
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.model.registry import blocks, form_of, word_of
@@ -50,7 +50,7 @@ class Candidate:
 def score_all(case: Case, before: Fit, scorer: Scorer) -> list[Candidate]:
     """Every effect that can be added to the model, with the scores of its forms."""
     words, candidates = applicable(case, before.effects), list[Candidate]()
-    with ThreadPoolExecutor(2) as pool:
+    with ThreadPoolExecutor(THREADS) as pool:
         for scores in pool.map(scorer.scores, words):
             candidates.append(Candidate.of(scores))
             facts = {"effect": scores[0].effect, "explained": candidates[-1].score.explained}
@@ -69,7 +69,7 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
         forms = {score.effect: score for score in (candidate.forms[0], candidate.score)}
         return {item: refit(case, before, (*before.effects, item), score.guess) for item, score in forms.items()}
 
-    with ThreadPoolExecutor(2) as pool:
+    with ThreadPoolExecutor(THREADS) as pool:
         for candidate, fits in zip(candidates, pool.map(refits, candidates), strict=True):
             candidate.refits = fits
     return [candidate for candidate in candidates if candidate.refits]
@@ -109,6 +109,11 @@ def restart_look_alikes(case: Case, first: Fit, before: Fit, candidates: list[Ca
 def are_look_alikes(one: str, other: str) -> bool:
     """Whether one of two effects counts the other among its look-alikes."""
     return word_of(one) in blocks[other].look_alikes or word_of(other) in blocks[one].look_alikes
+
+
+def differ(one: float, other: float, floor: float) -> bool:
+    """Whether two errors differ by more than the noise leaves open."""
+    return abs(one**2 - other**2) ** 0.5 > TIE * floor
 
 
 def is_tied(case: Case, effect: str, fit: Fit, rival: Fit) -> bool:

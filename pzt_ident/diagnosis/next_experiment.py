@@ -37,10 +37,9 @@ class DriveLimits:
 
 
 class Protocol(NamedTuple):
-    """A drive that moves one axis: its name, what it shows, sample time dt, s, and the drives, (axes, samples)."""
+    """A drive that moves one axis: its name, sample time dt, s, and the drives, (axes, samples)."""
 
     name: str
-    purpose: str
     dt: float
     drive: Array
 
@@ -51,7 +50,6 @@ class Proposal:
     floors. drive: (axes, samples), SI units."""
 
     name: str
-    why: str
     splits: tuple[str, ...]
     dt: float
     drive: Array
@@ -68,14 +66,14 @@ def propose(case: Case, rivals: dict[str, Fit], limits: Sequence[DriveLimits]) -
     best_rank = (0.0, 0.0)
     drive_of_axis = drives_of(case.records)
     drive_limits = [limits[list(drive_of_axis).index(drive)] for drive in range(drive_of_axis.max() + 1)]
-    for name, purpose, dt, drives in protocols(drive_limits, drive_of_axis[case.records[0].measured[0]]):
+    for name, dt, drives in protocols(drive_limits, drive_of_axis[case.records[0].measured[0]]):
         drive = drives[drive_of_axis]
         responses = [respond(case, fit, dt, drive) for fit in rivals.values()]
         separations = [float(np.sqrt(np.mean((a - b) ** 2))) / case.floor for a, b in combinations(responses, 2)]
         least = min(separations)
         rank = (sum(min(separation, AMPLE) for separation in separations if separation > SEPARATED), least)
         if np.isfinite(separations).all() and rank[0] > 0 and rank > best_rank:
-            best, best_rank = Proposal(name, purpose, tuple(rivals), dt, drive, least), rank
+            best, best_rank = Proposal(name, tuple(rivals), dt, drive, least), rank
     return best
 
 
@@ -112,26 +110,21 @@ def axis_protocols(limits: DriveLimits) -> list[Protocol]:
     slow = min(0.5, fast)
     nested = [1, 0.2, 0.8, 0.3, 0.7, 0.4, 0.7, 0.3, 0.8, 0.2, 1, 0]
     return [
-        Protocol("slow triangles", "rate and creep play no part", 1e-3, ramps(limits, [1, 0] * 3, slow, 1e-3)),
-        Protocol("two rates", "a lag grows with the rate, hysteresis with its logarithm", 1e-4,
-                 two_rates(limits, fast, 1e-4)),
-        Protocol("steps and holds",
-                 "creep follows the step, relaxation stops after a small step back, drift does not care", 1e-2,
-                 holds(limits, [0.6, 0.57, 0.3, 0.9, 0.1], 1e-2)),
-        Protocol("nested loops", "memory closes its loops, a gain does not", 1e-3, ramps(limits, nested, slow, 1e-3)),
-        Protocol("two amplitudes", "a gain that grows with the amplitude, or bends", 1e-3,
-                 ramps(limits, [0.4, 0, 0.4, 0, 1, 0, 1, 0], slow, 1e-3)),
-        Protocol("small chirp", "phase against frequency: delay, lag and modes part", 5e-5,
-                 chirp(limits, CHIRP, 2.0, 5e-5)),
-    ]  # fmt: skip
+        Protocol("slow triangles", 1e-3, ramps(limits, [1, 0] * 3, slow, 1e-3)),
+        Protocol("two rates", 1e-4, two_rates(limits, fast, 1e-4)),
+        Protocol("steps and holds", 1e-2, holds(limits, [0.6, 0.57, 0.3, 0.9, 0.1], 1e-2)),
+        Protocol("nested loops", 1e-3, ramps(limits, nested, slow, 1e-3)),
+        Protocol("two amplitudes", 1e-3, ramps(limits, [0.4, 0, 0.4, 0, 1, 0, 1, 0], slow, 1e-3)),
+        Protocol("small chirp", 5e-5, chirp(limits, CHIRP, 2.0, 5e-5)),
+    ]
 
 
 def coupling_protocols(limits: DriveLimits) -> Iterator[Protocol]:
     """The protocols of another axis than the measured one, drives of shape (samples,)."""
     slow = ramps(limits, [1, 0] * 2, min(0.5, fastest_cycles(limits)), 1e-3)
-    yield Protocol("the other axis alone", "what comes through a coupling", 1e-3, slow)
+    yield Protocol("the other axis alone", 1e-3, slow)
     fast = chirp(limits, COUPLING_CHIRP, 1.0, 2e-5)
-    yield Protocol("chirp of the other axis", "couplings ring at different modes", 2e-5, fast)
+    yield Protocol("chirp of the other axis", 2e-5, fast)
 
 
 def fastest_cycles(limits: DriveLimits) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -18,15 +19,17 @@ from pzt_ident.engine.simulator import Simulator
 from pzt_ident.model.block import Coupling
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import Choice, blocks, word_of
+from pzt_ident.search.descent import descend
 from pzt_ident.search.problem import FixedValue, ParameterSpec, Problem
+from pzt_ident.search.uncertainty import Estimate, estimates
 
 Array = NDArray[np.float64]
 Listener = Callable[[dict[str, Any]], None]
 
+THREADS = max(2, min(6, os.cpu_count() or 2))  # that fit and score effects side by side
 EDGE = 1e-4  # of a parameter's range: as near to its end it is on the bound
 STEP_TOLERANCE = 0.05  # noise floors: where halving the step changes more of a record, the step is halved
 FINEST = 8  # steps per sample
-DAMPINGS = 10.0 ** np.arange(-5, 4)
 
 
 class Case:
@@ -143,6 +146,11 @@ class Fit:
         """The free parameters by name, in the user's units."""
         return dict(zip(self.problem.names, self.problem.physical(self.point)[0].tolist(), strict=True))
 
+    @cached_property
+    def estimates(self) -> list[Estimate]:
+        """What the data determine of the parameters."""
+        return estimates(self.problem, self.point)[0]
+
 
 def fit_at(
     effects: tuple[str, ...], problem: Problem, point: Array, converged: bool = True, measured_only: bool = False
@@ -177,7 +185,10 @@ def _best_of_axes(case: Case, before: Fit, effects: tuple[str, ...], problem: Pr
         if residuals_differ(case, problem.residuals(start)[0], restricted.residuals(start)[0]):
             variants.append((restricted, True))
     fits = [
-        refine_steps(case, fit_at(effects, variant, descend(variant, start, case.budget), measured_only=measured_only))
+        refine_steps(
+            case,
+            fit_at(effects, variant, descend(variant, start, going=case.budget.lasts), measured_only=measured_only),
+        )
         for variant, measured_only in variants
     ]
     return min(fits, key=lambda fit: fit.total)
@@ -198,7 +209,7 @@ def refine_steps(case: Case, fit: Fit) -> Fit:
         return fit
     steps = [count * (2 if halve else 1) for count, halve in zip(fit.steps, coarse, strict=True)]
     problem = case.problem(fit.effects, steps, fit.measured_only)
-    point = descend(problem, fit.point, case.budget)
+    point = descend(problem, fit.point, going=case.budget.lasts)
     return refine_steps(case, fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
 
 
@@ -213,36 +224,3 @@ def step_errors(case: Case, fit: Fit) -> Array:
         change = (fine - coarse)[:, record.settle :] / problem.sizes[:, None]
         errors.append(np.sqrt(np.mean(np.var(change, axis=1))))
     return np.array(errors)
-
-
-def descend(problem: Problem, point: Array, budget: Budget, most: int = 30) -> Array:
-    """The point that Levenberg-Marquardt on the normal equations reaches in the unit cube, all dampings in one
-    batch."""
-    point = np.clip(point, 0, 1)
-    loss, slow = problem.loss(point)[0], 0
-    for _ in range(most if np.isfinite(loss) else 0):
-        if not budget.lasts():
-            break
-        jacobian, residual = problem.jacobian(point), problem.residuals(point)[0]
-        gradient, curvature = jacobian.T @ residual, jacobian.T @ jacobian
-        free = ~(((point <= 0) & (gradient > 0)) | ((point >= 1) & (gradient < 0)))
-        trials = np.array([damped_step(point, gradient, curvature, free, damping) for damping in DAMPINGS])
-        best, least = problem.best(trials, point)
-        if not least < loss:
-            break
-        slow = slow + 1 if least > (1 - 1e-4) * loss else 0
-        point, loss = best, least
-        if slow == 3:
-            break
-    return point
-
-
-def damped_step(point: Array, gradient: Array, curvature: Array, free: NDArray[np.bool_], damping: float) -> Array:
-    """The point after one Levenberg-Marquardt step of the free parameters, inside the unit cube."""
-    if not free.any():
-        return point
-    block = curvature[np.ix_(free, free)]
-    scale = np.maximum(np.diag(block), 1e-12 * max(np.diag(block).max(), 1e-300))
-    step = np.zeros(point.size)
-    step[free] = -np.linalg.lstsq(block + damping * np.diag(scale), gradient[free], rcond=None)[0]
-    return np.clip(point + np.clip(step, -0.3, 0.3), 0, 1)

@@ -7,7 +7,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.diagnosis.refit import Case, Fit, descend, fit_at, refine_steps
+from pzt_ident.diagnosis.refit import THREADS, Case, Fit, fit_at, refine_steps
+from pzt_ident.search.descent import descend
 from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
@@ -18,24 +19,35 @@ AGREEMENT = 0.01  # of the loss, between the two best minima
 RESTARTS = 2  # random points of one block that are refined
 
 
-def first_fit(case: Case, seed: int) -> Fit:
-    """The job's own model, fitted from random points; not converged where the two best minima differ."""
+def first_fit(case: Case, seed: int, known: Array | None = None) -> Fit:
+    """The job's own model, fitted from random points; not converged where the two best minima differ. known: the point
+    of a fit that was searched for, beside which one batch of random points is enough."""
     problem = case.problem(case.effects)
-    rng = np.random.default_rng(seed)
-    starts = rng.uniform(size=(STARTS, problem.dimensions))
-    order = np.argsort(problem.loss(starts), kind="stable")[:MOST_REFINED]
-    minima, agreed = np.empty((0, problem.dimensions)), False
-    while len(minima) < MOST_REFINED and not agreed:
-        batch = starts[order[len(minima) : len(minima) + REFINED]]
-        with ThreadPoolExecutor(2) as pool:
-            for minimum in pool.map(lambda start: descend(problem, start, case.budget), batch):
+    minima = (
+        np.empty((0, problem.dimensions)) if known is None else descend(problem, known, going=case.budget.lasts)[None]
+    )
+    order, agreed = ranked_points(problem, seed), False
+    most = MOST_REFINED if known is None else REFINED
+    for number in range(0, most, REFINED):
+        with ThreadPoolExecutor(THREADS) as pool:
+            for minimum in pool.map(
+                lambda start: descend(problem, start, going=case.budget.lasts), order[number : number + REFINED]
+            ):
                 minima = np.vstack([minima, minimum])
-                case.on_event({"event": "fitted", "done": len(minima), "of": len(order)})
+                case.on_event({"event": "fitted", "done": len(minima), "of": most + (known is not None)})
         losses = problem.loss(minima)
         best, second = np.sort(losses)[:2]
         agreed = bool(second <= (1 + AGREEMENT) * best + 0.1 * case.floor and np.isfinite(best))
+        if agreed:
+            break
     point = min((minima[np.argmin(losses)], best_of_each_axis(case, problem, minima)), key=lambda p: problem.loss(p)[0])
-    return refine_steps(case, fit_at(case.effects, problem, point, agreed))
+    return refine_steps(case, fit_at(case.effects, problem, point, agreed or known is not None))
+
+
+def ranked_points(problem: Problem, seed: int) -> Array:
+    """(STARTS, dimensions) random points, the best first."""
+    points = np.random.default_rng(seed).uniform(size=(STARTS, problem.dimensions))
+    return points[np.argsort(problem.loss(points), kind="stable")]
 
 
 def best_of_each_axis(case: Case, problem: Problem, minima: Array) -> Array:
@@ -45,7 +57,7 @@ def best_of_each_axis(case: Case, problem: Problem, minima: Array) -> Array:
     best = dict(zip(problem.model.measured, np.argmin(errors, axis=0), strict=True))
     axes = [problem.model.entries[column].axis for column in problem.free]
     point = np.array([minima[best.get(axis, np.argmin(errors.sum(axis=1)))][i] for i, axis in enumerate(axes)])
-    return descend(problem, point, case.budget) if len(set(best.values())) > 1 else point
+    return descend(problem, point, going=case.budget.lasts) if len(set(best.values())) > 1 else point
 
 
 def restart(case: Case, fit: Fit, block: str = "", starts_per_block: int = RESTARTS) -> Fit:
@@ -61,7 +73,7 @@ def restart(case: Case, fit: Fit, block: str = "", starts_per_block: int = RESTA
         restarted = np.array([column_owner == owner for column_owner in owners])
         starts = np.where(restarted, random_points(problem, rng), fit.point)
         for start in starts[np.argsort(problem.loss(starts))[:starts_per_block]]:
-            point = descend(problem, start, case.budget)
+            point = descend(problem, start, going=case.budget.lasts)
             fits.append(fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
     return min(fits, key=lambda candidate: candidate.total)
 

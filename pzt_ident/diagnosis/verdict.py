@@ -207,7 +207,7 @@ def missing_sentence(case: Case, first: Fit, before: Fit, fit: Fit, words: list[
     if not_in_validation(case, first, before, fit):
         sentence += " The validation records show nothing of it, so only the identification records support it."
     if not adequate(case, first, fit):
-        sentence += " More is missing, or it stands in for something else: `pzt-ident improve` follows it up."
+        sentence += " More is missing, or it stands in for something else."
     phrases = list(map(phrase_of, words))
     if len(words) == 1:
         return f"Missing: {phrases[0]}. {sentence[0].upper()}{sentence[1:]}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Mapping, Sequence
 from io import StringIO
@@ -13,8 +14,9 @@ from pzt_ident.job.schema import Job, load_job
 from pzt_ident.model.registry import blocks, word_of
 
 
-def add(job: Path, effect: str, out: Path, plugins: bool = False) -> Job:
-    """Write the job with one more effect into the new file `out`; returns the new job.
+def add(job: Path, effect: str, out: Path, plugins: bool = False, start: Path | None = None) -> Job:
+    """Write the job with one more effect into the new file `out`; returns the new job. start: the folder of a diagnosis
+    that tried it; the job then has the steps of the simulation, and the axes without the effect, of that fit.
 
     Raises InputError where the effect is unknown, in the job already or does not fit the model, and where `out` exists.
     """
@@ -23,7 +25,21 @@ def add(job: Path, effect: str, out: Path, plugins: bool = False) -> Job:
         raise InputError(f"{word_of(effect)!r} is in its effects already", where=str(job), remedy="add another effect")
     if word_of(effect) not in blocks:
         raise InputError(f"unknown effect {effect!r}", remedy=nearest(effect, blocks.effects()))
-    return _write(before, (*before.effects, effect), None, out, plugins)
+    return _write(before, (*before.effects, effect), None, out, plugins, **(tried(start, effect) if start else {}))
+
+
+def tried(folder: Path, effect: str) -> dict[str, Any]:
+    """What the fit in which a diagnosis tried an effect has beside it, as `edited` takes it; empty where it did not."""
+    path = folder / "diagnosis.json"
+    try:
+        candidates = json.loads(path.read_text(encoding="utf-8"))["candidates"] if path.is_file() else []
+    except (ValueError, KeyError):
+        remedy = "run `pzt-ident diagnose` again"
+        raise InputError("is not as `pzt-ident diagnose` writes it", where=str(path), remedy=remedy) from None
+    for item in candidates:
+        if item.get("parameters") and effect in (item["effect"], item["item"]):
+            return {key: item[key] for key in ("steps", "values") if item.get(key)}
+    return {}
 
 
 def remove(job: Path, effect: str, out: Path, plugins: bool = False) -> Job:
@@ -52,12 +68,14 @@ def _effects_there(effects: Sequence[str]) -> str:
     return f"it has {', '.join(effects)}" if effects else "it has none"
 
 
-def _write(before: Job, effects: Sequence[str], words: Sequence[str] | None, out: Path, plugins: bool) -> Job:
+def _write(
+    before: Job, effects: Sequence[str], words: Sequence[str] | None, out: Path, plugins: bool, **more: Any
+) -> Job:
     from pzt_ident.files import write_text
 
     if out.exists():
         raise InputError("exists already", where=str(out), remedy="give another file with -o")
-    text = edited(before, effects, out.parent, words)
+    text = edited(before, effects, out.parent, words, **more)
     new_job = Job.from_text(text, out.parent, str(out), plugins)
     write_text(out, text)
     return new_job
@@ -71,11 +89,14 @@ def edited(
     steps: Sequence[int] = (),
     values: Mapping[str, float] | None = None,
     bounds: Mapping[str, tuple[float, float]] | None = None,
+    parameters: Mapping[str, Mapping[str, Any]] | None = None,
+    sections: Mapping[str, Any] | None = None,
 ) -> str:
     """The job's text with these effects, and with paths relative to another folder.
 
     words: the blocks of the model, where it changes. steps: of the simulation in a sample, for every record.
     values: of parameters that are fixed from now on. bounds: of parameters that the job has, where they change.
+    parameters: what the job says of some from now on, `bounds` or `value`. sections: other sections, whole.
     """
     from ruamel.yaml import YAML
 
@@ -91,8 +112,11 @@ def edited(
             record["steps"] = count
     for name, (low, high) in (bounds or {}).items():
         document["parameters"][name]["bounds"][:] = [float(f"{low:.6g}"), float(f"{high:.6g}")]
-    if values:
-        _fix_parameters(document, values)
+    _drop_parameters(document, job, effects, words)
+    if given := {name: {"value": value} for name, value in (values or {}).items()} | dict(parameters or {}):
+        _set_parameters(document, given)
+    for name, content in (sections or {}).items():
+        document[name] = _flow(content)
     if job.folder.resolve() != folder.resolve():
         _rebase_files(document, job.folder, folder)
         for i, file in enumerate(document.get("plugins", ())):
@@ -116,15 +140,43 @@ def _set_effects(document: Any, effects: Sequence[str]) -> None:
     listed.extend(word for word in effects if word not in listed)
 
 
-def _fix_parameters(document: Any, values: Mapping[str, float]) -> None:
+def _drop_parameters(document: Any, job: Job, effects: Sequence[str], words: Sequence[str] | None) -> None:
+    """Take out what the job says of parameters of blocks and effects that it no longer has."""
+    before = {*map(word_of, job.model), *map(word_of, job.effects)}
+    gone = before - {*map(word_of, job.model if words is None else words), *map(word_of, effects)}
+    for name in list(document.get("parameters") or {}):
+        block, _, word = name.rpartition(".")
+        owner = block.rpartition(".")[2]
+        parameter = blocks[owner].parameters().get(word) if owner in blocks else None
+        if owner in gone or (parameter and word_of(parameter.effect or "") in gone):
+            del document["parameters"][name]
+    if "parameters" in document and not document["parameters"]:
+        del document["parameters"]
+
+
+def _set_parameters(document: Any, given: Mapping[str, Mapping[str, Any]]) -> None:
     from ruamel.yaml.comments import CommentedMap
 
     if not document.get("parameters"):
         document.pop("parameters", None)
         document.insert(list(document).index("effects") + 1, "parameters", CommentedMap())
-    for name, value in values.items():
-        document["parameters"][name] = CommentedMap(value=value)
-        document["parameters"][name].fa.set_flow_style()
+    for name, content in given.items():
+        document["parameters"][name] = _flow(content)
+
+
+def _flow(content: Any) -> Any:
+    """Mappings and lists as they are written on one line; a list of mappings has a line for each."""
+    from ruamel.yaml.comments import CommentedMap, CommentedSeq
+
+    if isinstance(content, Mapping):
+        node: Any = CommentedMap({key: _flow(value) for key, value in content.items()})
+    elif isinstance(content, list | tuple):
+        node = CommentedSeq([_flow(value) for value in content])
+    else:
+        return content
+    if not any(isinstance(value, Mapping) for value in content):
+        node.fa.set_flow_style()
+    return node
 
 
 def _items(items: Sequence[Any], words: Sequence[str]) -> list[Any]:

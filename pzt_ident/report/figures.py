@@ -225,14 +225,15 @@ def misfit_plates(results: Results) -> Iterator[Plate]:
 
 
 def _search_plates(results: Results) -> Iterator[Plate]:
-    yield Plate(
-        "convergence",
-        "convergence",
-        "Best RMSE on the identification records so far, before the local polish: median and quartiles over the "
-        "repeats of each optimizer.",
-        search.convergence_height,
-        partial(search.draw_convergence, results=results),
-    )
+    if search.optimizers(results):
+        yield Plate(
+            "convergence",
+            "convergence",
+            "Best RMSE on the identification records so far, before the local polish: median and quartiles over the "
+            "repeats of each optimizer.",
+            search.convergence_height,
+            partial(search.draw_convergence, results=results),
+        )
     if free := search.free_parameters(results):
         yield Plate(
             "estimates",

@@ -17,7 +17,8 @@ from pzt_ident.data.over_axes import together
 from pzt_ident.files import plain, write_text
 from pzt_ident.report.figures import Plate, write_page_figures
 from pzt_ident.report.inline import inline
-from pzt_ident.report.sentences import findings, verdict
+from pzt_ident.report.sentences import findings, next_step, verdict
+from pzt_ident.report.spectra import printed_spectra
 from pzt_ident.report.tables import Table, make_tables, write_tables
 from pzt_ident.report.traces import packed
 from pzt_ident.run.events import step_name
@@ -29,7 +30,19 @@ if TYPE_CHECKING:
 
 LARGEST = 295_000  # bytes of the page; above that its signals are thinned further
 POINTS = (7000, 4000, 2000)  # samples of all records together, tried in this order
-MODULES = ("parts.js", "signals.js", "plane.js", "explorer.js", "staircase.js", "report.js")
+MODULES = (
+    "parts",
+    "signals",
+    "scale",
+    "plot",
+    "gestures",
+    "legend",
+    "figure",
+    "scenes",
+    "explorer",
+    "staircase",
+    "report",
+)
 
 
 def write_report(folder: Path, static: bool = True) -> Path:
@@ -43,12 +56,12 @@ def write_report(folder: Path, static: bool = True) -> Path:
     write_tables(tables, results.folder / "tables")
     variables = _template_variables(results, tables, _figures_by_section(results) if static else {})
     variables["static"] = static
-    stairs = [staircase(results, "stairs")] if results.improvement else []
-    content = {"floors": results.floors, "stairs": stairs}
+    stairs = [staircase(results, "stairs")] if results.improvement or results.result else []
+    content = {"floors": results.floors, "stairs": stairs, "spectra": printed_spectra(results.traces)}
     page = ""
     for points in POINTS:
         content["records"] = packed(results.models, points)
-        page = rendered("report.html", results.name, content, **variables)
+        page = rendered("report.html", results.name, content, stairs=bool(stairs), **variables)
         if len(page.encode()) < LARGEST:
             break
     write_text(results.folder / "report.html", page)
@@ -73,17 +86,22 @@ def _template_variables(results: Results, tables: dict[str, Table], figures: dic
         "verdict": verdict(results),
         "misfits": list(results.misfit.get("axes", {}).values()),
         "findings": findings(results),
+        "next_step": next_step(results),
         "failed_simulations": sum(run["failed_simulations"] for run in results.result.get("runs", ())),
         "optimizers": listed(row["optimizer"] for row in results.result["league"]) if results.result else "",
     }
 
 
 def staircase(results: Results, place: str) -> dict[str, Any]:
-    """What the page's script draws of an improvement into the element with the id `place`."""
-    improvement = results.improvement
-    steps = [{"name": step_name(step), **step["rmse"]} for step in improvement["steps"]]
-    axis = {"unit": numbers.unit(improvement["unit"]) or "1", "together": together(results.units)}
-    return {"place": place, "steps": steps, "floor": improvement["floor"], **axis}
+    """What the page's script draws of the steps of an improvement, or of a single run, into the element with the id
+    `place`."""
+    if improvement := results.improvement:
+        steps = [{"name": step_name(step), **step["rmse"]} for step in improvement["steps"]]
+        unit, floor = improvement["unit"], improvement["floor"]
+    else:
+        steps, unit, floor = [{"name": "as given", **results.rmse}], results.unit, results.floor
+    axis = {"unit": numbers.unit(unit) or "1", "together": together(results.units)}
+    return {"place": place, "steps": steps, "floor": floor, **axis}
 
 
 def rendered(name: str, title: str, content: dict[str, Any], **variables: Any) -> str:
@@ -91,16 +109,16 @@ def rendered(name: str, title: str, content: dict[str, Any], **variables: Any) -
     from markupsafe import Markup
 
     data = json.dumps(plain(content), separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
-    scripts = [web_file("uplot/uPlot.iife.min.js"), bundled_modules()]
-    allowed = " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(s.encode()).digest()).decode()}'" for s in scripts)
-    css = "\n".join(web_file(sheet) for sheet in ("page.css", "plots.css", "uplot/uPlot.min.css"))
+    script = bundled_modules()
+    allowed = f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
+    css = "\n".join(web_file(sheet) for sheet in ("page.css", "plots.css", "report.css"))
     page = (
         environment()
         .get_template(name)
         .render(
             title=title,
             content=Markup(data),
-            scripts=[Markup(script) for script in scripts],
+            script=Markup(script),
             allowed=Markup(allowed),
             css=Markup(css),
             **variables,
@@ -115,7 +133,7 @@ def web_file(name: str) -> str:
 
 def bundled_modules() -> str:
     """The page's JavaScript modules as one, without imports, exports, comments and indentation."""
-    source = "\n".join(web_file(name) for name in MODULES)
+    source = "\n".join(web_file(f"{name}.js") for name in MODULES)
     return re.sub(
         r"^import .*;\n|^export (?=async|function|class|const)|^ *(//.*|/\*\*[^/]*\*/)\n|^ +",
         "",

@@ -103,7 +103,8 @@ def estimates_height(width: float, parameters: int) -> float:
 def draw_estimates(figure: Figure, results: Results) -> None:
     """Estimates of each free parameter from all runs relative to its bounds, the best run ringed."""
     names = free_parameters(results)
-    styles = {name: _marker_style(place) for place, name in enumerate(optimizers(results))}
+    found_by = dict.fromkeys([*optimizers(results), *(run["optimizer"] for run in results.result["runs"])])
+    styles = {name: _marker_style(place) for place, name in enumerate(found_by)}
     keys = [key(name, linestyle="", **style) for name, style in styles.items()]
     ring = {"marker": "o", "markersize": 5.5, "markerfacecolor": "none", "markeredgecolor": INK, "markeredgewidth": 0.7}
     top = heading(figure, "Estimates of all runs within their bounds", [*keys, key("best run", linestyle="", **ring)])

@@ -7,11 +7,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from pzt_ident.data.notation import count, listed, number, quantity, ranges, spelled
+from pzt_ident.data.over_axes import USE_NAMES as USE_NAMES
 from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.run.results import Results
 
-USE_NAMES = {"identify": "identification", "validate": "validation"}
-BETTER_FIT = 0.95  # of the run's RMSE: a refit below that is reported
 NOISELESS = 1e-6  # of the span of a response: no sensor has less noise
 FLOORS = re.compile(r"(?:([\d.]+) to )?([\d.]+) noise floors")
 
@@ -35,26 +34,12 @@ def printed_reason(text: str, results: Results) -> str:
     if results.share_of_noise < NOISELESS and len(results.floors) == 1:
         (floor,) = results.floors.values()
         text = FLOORS.sub(lambda match: _in_unit(match, floor or 0.0, results.unit), text)
-    return _prose(text + _better_refit(results))
+    return _prose(text)
 
 
 def _prose(text: str) -> str:
     """A sentence with printed units and without the backticks of terminal messages."""
     return spelled(text).replace("`", "")
-
-
-def _better_refit(results: Results) -> str:
-    """A sentence where the diagnosis, which refits the model from several starting points, found a better fit."""
-    if not (results.result and results.diagnosis):
-        return ""
-    refit, run = results.diagnosis["rmse"]["identify"], results.best["rmse"]["identify"]
-    if refit > BETTER_FIT * run:
-        return ""
-    refit_size, run_size = (quantity(value, results.unit, 3) for value in (refit, run))
-    return (
-        f" A refit from other starting points has an RMSE of {refit_size}{together(results.units)} instead of the "
-        f"run's {run_size}: search longer."
-    )
 
 
 def _in_unit(match: re.Match[str], floor: float, unit: str) -> str:
@@ -82,6 +67,21 @@ def findings(results: Results) -> list[str]:
     diagnosed += weighed(results.units)
     run = [*_parameters(results), *_notes(results), *_failures(results)] if results.result else []
     return [_prose(sentence) for sentence in lost + diagnosed + run]
+
+
+def next_step(results: Results) -> str:
+    """What to do next, in one sentence."""
+    if not results.diagnosis:
+        return "Diagnose the model: it is not known yet whether an effect is missing."
+    verdict = results.diagnosis["verdict"]
+    best = next((item for item in results.diagnosis["candidates"] if item["decision"] == "missing"), None)
+    if best and verdict == "inconclusive" and (proposal := results.next_experiment):
+        return f"Measure again with the drive in {proposal['file']}: it tells {listed(proposal['splits'])} apart."
+    if best:
+        return f"Add {best.get('item', best['effect'])} to the model and identify it again."
+    if verdict == "adequate":
+        return "Put the model to work: compute the drive for a reference, or export it for a controller."
+    return "See below where the model fails, and which effects come near to an explanation."
 
 
 def _advice(results: Results) -> Iterator[str]:

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from pzt_ident.data.notation import number, quantity, unit
+from pzt_ident.data.notation import number, quantity, unit, with_error
+from pzt_ident.diagnosis.candidates import differ
 from pzt_ident.files import write_text
 from pzt_ident.report.page import POINTS, rendered, staircase
 from pzt_ident.report.sentences import USE_NAMES, listed, together, verdict
@@ -50,11 +51,17 @@ def ranking(results: dict[str, Results]) -> str:
     use = "identify" if any(result.rmse["validate"] is None for result in results.values()) else "validate"
     if len({(result.unit, *result.units) for result in results.values()}) > 1:
         return "The results have different axes or units: their errors cannot be ranked."
-    best = min(results, key=lambda name: results[name].rmse[use] or 0.0)
+    errors = {name: result.rmse[use] or 0.0 for name, result in results.items()}
+    best = min(errors, key=lambda name: errors[name])
+    floor = min(result.floor or 0.0 for result in results.values())
     size = f"{quantity(results[best].rmse[use], results[best].unit, 3)}{together(results[best].units)}"
-    equal = [name for name in results if number(results[name].rmse[use]) == number(results[best].rmse[use])]
+    printed = {name: number(error) for name, error in errors.items()}
+    equal = [n for n in results if printed[n] == printed[best] or not differ(errors[n], errors[best], floor)]
     if len(equal) > 1:
-        return f"{listed(equal)} have the same lowest RMSE on the {USE_NAMES[use]} records: {size}."
+        return (
+            f"{listed(equal)} have the lowest RMSE on the {USE_NAMES[use]} records, {size}: they differ by less than"
+            " the noise leaves open."
+        )
     return f"{best} has the lowest RMSE on the {USE_NAMES[use]} records: {size}."
 
 
@@ -107,9 +114,15 @@ def parameters(results: dict[str, Results]) -> Table:
             "parameter": key,
             "unit": next(entries[key]["unit"] for entries in values.values() if key in entries),
             **{name: entries.get(key, {}).get("value") for name, entries in values.items()},
+            **{error_of(name): entries.get(key, {}).get("standard_error") for name, entries in values.items()},
         }
         for key in names
     ]
     cells: dict[str, Cell] = {"parameter": lambda row: row["parameter"], "unit": lambda row: unit(row["unit"])}
-    cells |= {name: lambda row, name=name: number(row[name], 5) for name in results}  # type: ignore[misc]
+    cells |= {name: lambda row, name=name: with_error(row[name], row[error_of(name)]) for name in results}  # type: ignore[misc]
     return table("parameters", rows, cells, {"parameter", "unit"}, {})
+
+
+def error_of(name: str) -> str:
+    """The column of the standard errors of a result."""
+    return f"{name}, standard error"

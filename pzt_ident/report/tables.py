@@ -63,6 +63,7 @@ def league(results: Results) -> Table:
         "evaluations": lambda row: count(row["evaluations"]),
         "evaluations to within 1\u00a0%": lambda row: count(row["evaluations_to_1_percent_median"]),
         "success": lambda row: percent(row["success"]),
+        "success after polish": lambda row: percent(row.get("polished_success")),
     }
     if len(results.result["league"]) > 1:
         cells["worse than first"] = lambda row: f"{row['leader_ahead']} of {row['pairs']}" if row.get("pairs") else "–"
@@ -113,9 +114,12 @@ def parameters(results: Results) -> Table:
         {"parameter": name, **{key: entry.get(key) for key in keys}}
         for name, entry in results.best["parameters"].items()
     ]
+    for row in rows:
+        row["low"], row["high"] = interval_of(results.best["parameters"][row["parameter"]]) or (None, None)
     cells: dict[str, Cell] = {
         "parameter": lambda row: row["parameter"],
         "value": lambda row: with_error(row["value"], row["standard_error"]),
+        "95 % interval": lambda row: "" if row["low"] is None else f"{number(row['low'])} to {number(row['high'])}",
         "unit": lambda row: unit(row["unit"]),
         "bounds": lambda row: bounds(row["lower"], row["upper"]),
         "verdict": lambda row: row["verdict"],
@@ -123,6 +127,14 @@ def parameters(results: Results) -> Table:
     if any(row["note"] for row in rows):
         cells["note"] = lambda row: row["note"] or ""
     return table("parameters", rows, cells, {"parameter", "unit", "verdict", "note"}, {})
+
+
+def interval_of(entry: Mapping[str, Any]) -> tuple[float, float] | None:
+    """The 95 % interval of a parameter: as stated, else from its standard error; None if it has none."""
+    if stated := entry.get("interval"):
+        return stated[0], stated[1]
+    error = entry.get("standard_error")
+    return (entry["value"] - 1.96 * error, entry["value"] + 1.96 * error) if error else None
 
 
 def records(results: Results) -> Table:
@@ -203,6 +215,8 @@ def steps(results: Results) -> Table:
             **step["rmse"],
             "floors": step["rmse"]["identify"] / results.improvement["floor"],
             **{key: step.get(key) for key in ("expected", "explained")},
+            "promised": (step.get("promised") or {}).get("identify"),
+            "note": step.get("note") or "",
             "class": " or ".join(step["class"]),
         }
         for step in results.improvement["steps"]
@@ -217,7 +231,12 @@ def steps(results: Results) -> Table:
         "explained share": lambda row: percent(row["explained"]),
         "supported by the data": lambda row: row["class"],
     }
-    return table("steps", rows, cells, {"step", "supported by the data"}, _headings(results, "identify", "validate"))
+    if any(row["promised"] for row in rows):
+        cells[pooled("promised RMSE", results)] = lambda row: number(row["promised"])
+    if any(row["note"] for row in rows):
+        cells["note"] = lambda row: row["note"]
+    headings = _headings(results, "identify", "validate", "promised")
+    return table("steps", rows, cells, {"step", "supported by the data", "note"}, headings)
 
 
 def changes(results: Results) -> Table:
@@ -228,14 +247,16 @@ def changes(results: Results) -> Table:
             "parameter": name,
             "unit": item["unit"],
             "as_given": first.get(name, {}).get("value"),
+            "as_given_standard_error": first.get(name, {}).get("standard_error"),
             "improved": item["value"],
+            "standard_error": item.get("standard_error"),
         }
         for name, item in last.items()
     ]
     cells: dict[str, Cell] = {
         "parameter": lambda row: row["parameter"],
-        "as given": lambda row: number(row["as_given"], 5),
-        "improved": lambda row: number(row["improved"], 5),
+        "as given": lambda row: with_error(row["as_given"], row["as_given_standard_error"]),
+        "improved": lambda row: with_error(row["improved"], row["standard_error"]),
         "unit": lambda row: unit(row["unit"]),
     }
     return table("changes", rows, cells, {"parameter", "unit"}, {})

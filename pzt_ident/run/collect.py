@@ -17,10 +17,12 @@ from pzt_ident.files import digest_of, write_sealed, write_text
 from pzt_ident.run.checkpoint import read_losses
 from pzt_ident.run.folder import read_environment
 from pzt_ident.run.misfit import write_misfits
+from pzt_ident.run.start import START
 from pzt_ident.run.statement import Statement
 from pzt_ident.run.task import Task, read_result
 from pzt_ident.search.league import rank
 from pzt_ident.search.problem import Problem
+from pzt_ident.search.uncertainty import judged
 
 
 def collect(
@@ -35,11 +37,12 @@ def collect(
         raise RunError("every run failed: " + "; ".join(dict.fromkeys(failed.values())))
     job, records, problem = statement.job, statement.records, statement.problem
     runs = [read_result(task) for task in done]
-    histories = {task.run: history_of(task, factor(statement.unit)) for task in done}
+    searches = [task for task in done if task.optimizer != START]
+    histories = {task.run: history_of(task, factor(statement.unit)) for task in searches}
     league = rank(runs, histories)
-    best = min(runs, key=lambda run: run["rmse"]["identify"])
+    best = judged(min(runs, key=lambda run: run["rmse"]["identify"]), runs)
     point = np.array(best["point"])
-    write_text(folder / "history.csv", history_text(done, histories))
+    write_text(folder / "history.csv", history_text(searches, histories))
     write_signals(folder / "signals.nc", problem.errors(point))
     result = {
         "name": job.name,

@@ -6,10 +6,11 @@ import shutil
 from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 from pzt_ident.data.record import Record
 from pzt_ident.errors import InputError, RunError
-from pzt_ident.files import read_files, write_files, write_text
+from pzt_ident.files import read_files, write_files, write_json, write_text
 from pzt_ident.job.edit import edited
 from pzt_ident.job.files import moved
 from pzt_ident.job.schema import Job
@@ -18,20 +19,28 @@ from pzt_ident.run.folder import begin, read_environment, read_job, results_fold
 from pzt_ident.run.improve import diagnose, improve
 from pzt_ident.run.place import Place
 from pzt_ident.run.pool import Tell
+from pzt_ident.run.start import file_of, read_start
 from pzt_ident.run.statement import Statement
 
 OF_THIS_PROCESS = ("job.yaml", "environment.json")
 
 
 def improve_at(
-    place: Place, job: Job, out: Path | None = None, listen: Listen = nobody, budget: float | None = None
+    place: Place,
+    job: Job,
+    out: Path | None = None,
+    listen: Listen = nobody,
+    budget: float | None = None,
+    start: Path | None = None,
 ) -> Path:
     """As `improve`, at a place. Raises RunError where it came to nothing there, LostError where the place is gone."""
     if place.shares_disk:
-        return improve(job, out, listen, budget)
+        return improve(job, out, listen, budget, start)
     statement, folder = Statement(job), results_folder(job, out)
-    begin(folder, job, edited(job, job.effects, folder), statement.records, {"name": "improve", "budget": budget})
-    task = (job.text, job.folder.resolve(), statement.records, folder.resolve(), budget)
+    known = None if start is None else file_of(read_start(start, job))
+    began = {"name": "improve", "budget": budget, "start": start and str(start)}
+    begin(folder, job, edited(job, job.effects, folder), statement.records, began)
+    task = (job.text, job.folder.resolve(), statement.records, folder.resolve(), budget, known)
 
     def keep(name: str, files: dict[str, bytes]) -> None:
         write_files(folder, {file: content for file, content in files.items() if file not in OF_THIS_PROCESS})
@@ -44,13 +53,21 @@ def improve_at(
 
 
 def improve_there(
-    tell: Tell, text: str, job_folder: Path, records: Sequence[Record], folder: Path, budget: float | None
+    tell: Tell,
+    text: str,
+    job_folder: Path,
+    records: Sequence[Record],
+    folder: Path,
+    budget: float | None,
+    known: dict[str, Any] | None,
 ) -> dict[str, bytes]:
-    """Entry of a worker; returns the files of the improvement."""
+    """Entry of a worker; returns the files of the improvement. known: the content of a file of values to start from."""
     with TemporaryDirectory(prefix="pzt-ident-") as scratch:
-        there = improve(
-            Job.from_text(text, job_folder, plugins=True), Path(scratch) / "improved", tell, budget, records
-        )
+        start = None if known is None else Path(scratch) / "start.json"
+        if start:
+            write_json(start, known)
+        job = Job.from_text(text, job_folder, plugins=True)
+        there = improve(job, Path(scratch) / "improved", tell, budget, start, records)
         move(there, folder)
         return read_files(there)
 
@@ -79,7 +96,8 @@ def begin_again(folder: Path, listen: Listen = nobody, plugins: bool = False) ->
     again = {"improve": improve, "diagnose": diagnose}.get(task["name"])
     if again is None:
         raise InputError(f"was begun with {task['name']!r}", where=str(folder), remedy="start it anew")
-    again(job, new, listen, task.get("budget"))
+    start = task.get("start")
+    again(job, new, listen, task.get("budget"), start and Path(start))
     shutil.rmtree(folder)
     new.rename(folder)
     return folder

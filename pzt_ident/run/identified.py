@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from pzt_ident.control.export.tables import FORMAT
 from pzt_ident.control.identified import Identified
 from pzt_ident.control.notes import frequency
+from pzt_ident.data.over_axes import over_uses
 from pzt_ident.data.units import factor
 from pzt_ident.errors import InputError
 from pzt_ident.files import read_sealed
@@ -35,7 +36,7 @@ def read_identified(path: Path, plugins: bool = False, as_given: bool = False) -
     """
     if path.is_file():
         return of_json(path)
-    improved = (path / "improvement.json").is_file()
+    improved = (path / "improved.yaml").is_file()
     if not improved and not (path / "result.json").is_file():
         raise InputError("holds no result", where=str(path), remedy=A_RESULT)
     values, rmse, name = _improved(path, as_given) if improved else _best(path)
@@ -80,7 +81,7 @@ def of_statement(statement: Statement, theta: Array, errors: Errors, rmse: Error
     problem, records = statement.problem, [r for r in statement.records if r.use == "identify"]
     stated, axes = statement.job.limits, range(len(problem.model.axes))
     ends = np.array([[record.drive.min(axis=1), record.drive.max(axis=1)] for record in records])
-    errors_by_use = ", ".join(f"{error:.3g} {statement.unit} {use}" for use, error in rmse.items() if error is not None)
+    known = {use: f"{error:.3g} {statement.unit}" for use, error in rmse.items() if error is not None}
     return Identified(
         statement.job.name,
         problem.model,
@@ -93,7 +94,7 @@ def of_statement(statement: Statement, theta: Array, errors: Errors, rmse: Error
         tuple(records[0].response_units),
         tuple(max(frequency(record.drive[axis], record.dt) for record in records) for axis in axes),
         (stated.drive, stated.slew),
-        f"RMSE: {errors_by_use}.",
+        f"RMSE: {over_uses(known)}.",
         words_of(statement.job),
     )
 

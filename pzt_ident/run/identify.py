@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
 from pzt_ident.data.over_axes import together
 from pzt_ident.data.units import factor, same_kind
-from pzt_ident.errors import DamagedError, InputError
+from pzt_ident.errors import DamagedError, InputError, RunError
 from pzt_ident.files import write_files
 from pzt_ident.job.schema import Job
 from pzt_ident.model.registry import optimizers
@@ -15,25 +17,45 @@ from pzt_ident.run.events import Listen, event_log, nobody
 from pzt_ident.run.folder import begin, check_unchanged, read_environment, read_job, results_folder
 from pzt_ident.run.place import HERE, Place
 from pzt_ident.run.results import read_results
+from pzt_ident.run.start import START, Starts
 from pzt_ident.run.statement import Statement
-from pzt_ident.run.task import Task, read_result, work, work_away
+from pzt_ident.run.task import Task, read_result, search, work, work_away
 
 
-def run(job: Job, out: Path | None = None, *, place: Place = HERE, listen: Listen = nobody) -> Path:
-    """Identify what the job asks for; returns the folder of results. `listen` is told each event as it happens.
+def run(
+    job: Job,
+    out: Path | None = None,
+    *,
+    place: Place = HERE,
+    listen: Listen = nobody,
+    start: Path | None = None,
+    only_start: bool = False,
+) -> Path:
+    """Identify what the job asks for; returns the folder of results. `listen` is told each event as it happens. start:
+    a folder of results, or a file of values, whose fit is polished as a row of its own beside the searches, or instead
+    of them if `only_start`; the better one is the result.
 
     Writes `job.yaml`, `environment.json`, `events.jsonl`, `history.csv`, `signals.nc`, `residuals.json` and, last,
     `result.json`. Raises InputError before anything is written where the job or its data are wrong.
     """
     statement = Statement(job)
     folder = results_folder(job, out)
-    tasks = tasks_of(statement, folder)
+    starts = Starts(search=not only_start or start is None).and_(start, job)
+    tasks = tasks_of(statement, folder, starts)
     begin(folder, job, job.text, statement.records)
+    starts.keep(folder)
     return _search(statement, folder, tasks, place, listen)
 
 
-def resume(folder: Path, *, place: Place = HERE, listen: Listen = nobody, plugins: bool = False) -> Path:
-    """Go on where a killed run stopped, to the result that it would have had.
+def resume(
+    folder: Path,
+    *,
+    place: Place = HERE,
+    listen: Listen = nobody,
+    plugins: bool = False,
+    start: Path | None = None,
+) -> Path:
+    """Go on where a killed run stopped, to the result that it would have had. start: as of `run`, one more.
 
     Raises InputError where the folder holds no run, or its job or data have changed.
     """
@@ -42,7 +64,9 @@ def resume(folder: Path, *, place: Place = HERE, listen: Listen = nobody, plugin
     job = Job.from_text(text, Path(begun["job_folder"]), f"{begun['job_name']}.yaml", plugins)
     statement = Statement(job)
     check_unchanged(job, statement.records, begun, folder)
-    return _search(statement, folder, tasks_of(statement, folder), place, listen)
+    starts = Starts.kept(folder).and_(start, job)
+    starts.keep(folder)
+    return _search(statement, folder, tasks_of(statement, folder, starts), place, listen)
 
 
 def _search(statement: Statement, folder: Path, tasks: list[Task], place: Place, listen: Listen) -> Path:
@@ -53,7 +77,7 @@ def _search(statement: Statement, folder: Path, tasks: list[Task], place: Place,
             runs, budget = [task.run for task in missing], sum(task.stop["evaluations"] for task in missing)
             size = {"budget": budget, "unit": statement.unit, "together": together(statement.records[0].units)}
             tell({"event": "start", "runs": runs, **size, "folder": str(folder)})
-            collect(statement, folder, tasks, search_all(statement, folder, missing, place, tell))
+            collect(statement, folder, tasks, _worked(statement, folder, missing, place, tell))
         else:
             tell({"event": "finished"})
         tell({"event": "done", "folder": str(folder)})
@@ -96,6 +120,20 @@ def told_so_far(task: Task) -> bytes:
     return task.losses.read_bytes() if task.losses.exists() else b""
 
 
+def _worked(statement: Statement, folder: Path, tasks: list[Task], place: Place, tell: Listen) -> dict[str, str]:
+    """Run searches at a place, and polish fits from elsewhere here; the reason for each run that failed."""
+    searches = [task for task in tasks if task.optimizer != START]
+    failed = search_all(statement, folder, searches, place, tell) if searches else {}
+    for task in (task for task in tasks if task.optimizer == START):
+        try:
+            with np.errstate(all="ignore"):
+                search(task, statement, tell)
+        except RunError as error:
+            failed[task.run] = str(error)
+            tell({"event": "failed", "run": task.run, "reason": str(error)})
+    return failed
+
+
 def stop_of(statement: Statement) -> dict[str, float | int | None]:
     """When each search ends; all have the budget of the first optimizer unless the job gives one.
 
@@ -114,11 +152,16 @@ def stop_of(statement: Statement) -> dict[str, float | int | None]:
     }
 
 
-def tasks_of(statement: Statement, folder: Path) -> list[Task]:
-    """Optimizers times repeats. Raises InputError as `stop_of` does."""
+def tasks_of(statement: Statement, folder: Path, starts: Starts = Starts()) -> list[Task]:  # noqa: B008
+    """Optimizers times repeats, then the fits to start from. Raises InputError as `stop_of` does."""
     job, stop = statement.job, stop_of(statement)
-    return [
+    searches = [
         Task(f"{choice.name}-{repeat}", choice.name, choice.settings, repeat, job.seed, stop, job.polish, folder)
         for choice in job.optimizers
         for repeat in range(job.repeats)
+    ]
+    alone = {"evaluations": 1}
+    return searches * starts.search + [
+        Task(f"{START}-{number}", START, {"start": start}, number, job.seed, alone, True, folder)
+        for number, (_, start) in enumerate(starts.given)
     ]

@@ -31,6 +31,7 @@ from pzt_ident.run.events import Event, Listen, event_log, nobody, sentence
 from pzt_ident.run.folder import begin, results_folder
 from pzt_ident.run.misfit import compare
 from pzt_ident.run.next_drive import limits_of, separating
+from pzt_ident.run.start import read_start, start_point
 from pzt_ident.run.statement import Statement, loss_unit
 
 
@@ -40,6 +41,7 @@ def opened_case(
     out: Path | None,
     listen: Listen = nobody,
     budget: float | None = None,
+    start: Path | None = None,
     records: Sequence[Record] | None = None,
     task: str = "improve",
 ) -> Iterator[tuple[Case, Path]]:
@@ -48,7 +50,8 @@ def opened_case(
     records: those of the job where they were read already. Raises InputError where job or data are wrong.
     """
     statement, folder = Statement(job, records), results_folder(job, out)
-    begin(folder, job, edited(job, job.effects, folder), statement.records, {"name": task, "budget": budget})
+    began = {"name": task, "budget": budget, "start": start and str(start)}
+    begin(folder, job, edited(job, job.effects, folder), statement.records, began)
     case = case_of(statement)
     with event_log(folder, listen) as tell, np.errstate(all="ignore"):
         case.on_event = lambda event: tell(worded(case, event))
@@ -75,11 +78,17 @@ def told(case: Case, step: stairs.Step) -> None:
     case.on_event({"event": "stair", "units": case.records[0].units, **stair(case, step)})
 
 
-def diagnose(job: Job, out: Path | None = None, listen: Listen = nobody, budget: float | None = None) -> Path:
+def diagnose(
+    job: Job,
+    out: Path | None = None,
+    listen: Listen = nobody,
+    budget: float | None = None,
+    start: Path | None = None,
+) -> Path:
     """Fit the job's model, say where it fails and what it misses; writes `diagnosis.json`, `residuals.json` and
-    `signals.nc` into the folder returned. budget: as of `improve`."""
-    with opened_case(job, out, listen, budget, task="diagnose") as (case, folder):
-        first = first_fit(case, job.seed)
+    `signals.nc` into the folder returned. budget, start: as of `improve`."""
+    with opened_case(job, out, listen, budget, start, task="diagnose") as (case, folder):
+        first = fitted(case, job, start)
         told(case, stairs.Step(first))
         found = judge(case, first)
         content = diagnosis_of(job, case, found, folder)
@@ -89,23 +98,33 @@ def diagnose(job: Job, out: Path | None = None, listen: Listen = nobody, budget:
     return folder
 
 
+def fitted(case: Case, job: Job, start: Path | None) -> Fit:
+    """The fit of the job's model, the best of random points and of the fit in a place that is given."""
+    if start is None:
+        return first_fit(case, job.seed)
+    known = start_point(case.problem(case.effects), read_start(start, job))
+    return first_fit(case, job.seed, known)
+
+
 def improve(
     job: Job,
     out: Path | None = None,
     listen: Listen = nobody,
     budget: float | None = None,
+    start: Path | None = None,
     records: Sequence[Record] | None = None,
 ) -> Path:
     """Diagnose, add what is missing and diagnose again, until nothing is missing or nothing more is known.
 
     budget: CPU seconds, by default 60 or 1 ms a sample. After them the verdict is on what was found by then, and says
-    what was not tried. records: those of the job where they were read already.
+    what was not tried. start: a folder of results, or a file of values, whose fit is gone on from where it is the
+    better one. records: those of the job where they were read already.
 
     Writes `improved.yaml`, `diagnosis.json` and `residuals.json` of the last model, `improvement.json`, and the signals
     of the model as given and of the last one.
     """
-    with opened_case(job, out, listen, budget, records) as (case, folder):
-        staircase = stairs.improve(case, first_fit(case, job.seed), SoFar(job, case, folder))
+    with opened_case(job, out, listen, budget, start, records) as (case, folder):
+        staircase = stairs.improve(case, fitted(case, job, start), SoFar(job, case, folder))
         steps, diagnosis = staircase.steps, diagnosis_of(job, case, staircase.last, folder)
         for name, step in (("signals_as_given.nc", steps[0]), ("signals.nc", steps[-1])):
             write_signals(folder / name, step.fit.problem.errors(step.fit.point))
@@ -207,7 +226,6 @@ def by_record(case: Case, fit: Fit) -> list[dict[str, Any]]:
 
 
 def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
-    values = zip(step.fit.values.items(), step.fit.problem.units, strict=True)
     return {
         "added": step.added and word_of(step.added),
         "removed": step.removed and word_of(step.removed),
@@ -218,7 +236,27 @@ def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
         "records": by_record(case, step.fit),
         "explained": step.explained,
         "expected": step.expected,
-        "parameters": {name: {"value": value, "unit": unit} for (name, value), unit in values},
+        "parameters": parameters_of(step.fit),
+        "effects": list(step.fit.effects),
+        "steps": list(step.fit.steps),
+    }
+
+
+def parameters_of(fit: Fit) -> dict[str, dict[str, Any]]:
+    """The free parameters of a fit with their units and standard errors, None where the data do not determine them."""
+    return {
+        item.name: {"value": item.value, "unit": item.unit, "standard_error": item.standard_error}
+        for item in fit.estimates
+    }
+
+
+def refitted(case: Case, fit: Fit) -> dict[str, Any]:
+    """What the job of a refit is to have, so that a run of it starts there and finds no less."""
+    units = zip(fit.values.items(), fit.problem.units, strict=True)
+    return {
+        "parameters": {name: {"value": value, "unit": unit} for (name, value), unit in units},
+        "steps": list(fit.steps),
+        "values": case.unmeasured_nulls(fit.effects) if fit.measured_only else {},
     }
 
 
@@ -233,11 +271,13 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
     return {
         "verdict": found.verdict,
         "reason": reason
-        + (caveats(case, found.best.fit) if found.best and found.best.fit else "")
+        + caveats(case, found.best.fit if found.best and found.best.fit else found.before)
         + broken_conditions(found.before),
         **units_and_floors(list(case.records)),
         "rmse": errors_of(case, found.before),
         "records": by_record(case, found.before),
+        "effects": list(found.before.effects),
+        "parameters": parameters_of(found.before),
         "candidates": [
             {
                 "effect": word_of(item.score.effect),
@@ -251,6 +291,7 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
                 "power": item.score.power if np.isfinite(item.score.power) else None,
                 "rmse": errors_of(case, item.fit) if item.fit else None,
                 "records": by_record(case, item.fit) if item.fit else None,
+                **(refitted(case, item.fit) if item.fit else {}),
                 "decision": item.decision,
                 "physics": headline(blocks[item.score.effect]),
                 "look_alikes": list(blocks[item.score.effect].look_alikes),

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from pzt_ident.data.notation import listed
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis.next_experiment import SEPARATED, WELL_SEPARATED, DriveLimits, Proposal, propose
 from pzt_ident.diagnosis.refit import Case, Fit
@@ -54,8 +55,11 @@ def written(case: Case, proposal: Proposal, folder: Path) -> dict[str, Any]:
     text = "\n".join([header, *(",".join(f"{value:.9g}" for value in row) for row in rows)]) + "\n"
     path = folder / "next_experiment.csv"
     write_text(path, text)
-    apart = f"them {proposal.separation:.1f} noise floors" if proposal.separation > SEPARATED else "some of them"
-    said = f"{proposal.name}: {proposal.why}; sets {apart} apart, sampled at {1 / proposal.dt:g} Hz"
+    models = f"the models with {listed(proposal.splits)}"
+    apart = f"{models} differ by {proposal.separation:.1f} noise floors"
+    if proposal.separation <= SEPARATED:
+        apart = f"some of {models} differ by more than {SEPARATED:g} noise floors"
+    said = f"{proposal.name}, sampled at {1 / proposal.dt:g} Hz, on which {apart}"
     if proposal.separation < WELL_SEPARATED:
         said += f", which is little. {blocks[proposal.splits[0]].separate_by}".removesuffix(".")
     return {"splits": list(proposal.splits), "file": path.name, "why": said}

@@ -19,8 +19,9 @@ from pzt_ident.files import damaged, read_files, read_sealed, write_bytes, write
 from pzt_ident.model.optimizer import Optimizer
 from pzt_ident.model.registry import optimizers
 from pzt_ident.run.checkpoint import Checkpoint, read_losses
+from pzt_ident.run.start import START, start_point
 from pzt_ident.run.statement import Statement
-from pzt_ident.search.loop import Outcome, State, Stop, optimize
+from pzt_ident.search.loop import History, Outcome, State, Stop, optimize
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.uncertainty import estimates
 
@@ -78,7 +79,8 @@ def search(task: Task, statement: Statement, tell: Tell) -> None:
 def identification(task: Task, statement: Statement, checkpoint: Checkpoint, tell: Tell) -> dict[str, Any]:
     """The entry of one run in `result.json`. Raises RunError where every simulation failed."""
     problem, size = statement.problem, factor(statement.unit)
-    outcome, seconds, cpu_seconds = searched(task, problem, size, checkpoint, tell)
+    find = begun_from if task.optimizer == START else searched
+    outcome, seconds, cpu_seconds = find(task, problem, size, checkpoint, tell)
     if not np.isfinite(outcome.loss):
         raise RunError(f"the simulation of each of its {outcome.evaluations} candidates failed: narrow the bounds")
     begun, problem.failed = time.perf_counter(), 0
@@ -149,6 +151,22 @@ def searched(
     seconds, cpu_seconds = elapsed(), time.process_time() - cpu
     tell(generation_event(task, outcome.evaluations, rmse(problem, outcome.point, size), seconds))
     return outcome, seconds, cpu_seconds
+
+
+def begun_from(
+    task: Task, problem: Problem, size: float, checkpoint: Checkpoint, tell: Tell
+) -> tuple[Outcome, float, float]:
+    """A fit from elsewhere in the place of an optimizer's outcome."""
+    begun, cpu = time.perf_counter(), time.process_time()
+    point = start_point(problem, task.settings["start"])
+    losses = problem.loss(point)
+    seconds = time.perf_counter() - begun
+    if not checkpoint.generations:
+        with checkpoint.appending() as append:
+            append(seconds, losses)
+    tell(generation_event(task, 1, rmse(problem, point, size), seconds))
+    history = History(np.ones(1, dtype=np.int64), np.array([seconds]), losses)
+    return Outcome(point, float(losses[0]), 1, history, START), seconds, time.process_time() - cpu
 
 
 def warm_up(optimizer: Optimizer, problem: Problem) -> None:

@@ -13,18 +13,25 @@ NEAR = 1.01  # times the best RMSE of all runs
 def rank(runs: list[dict[str, Any]], histories: dict[str, np.ndarray]) -> list[dict[str, Any]]:
     """One row per optimizer, best first. Adds to each run the evaluations after which it was within one percent.
 
-    histories: by run, (generations, 3) with evaluations, seconds and best RMSE. Success is the share of runs within one
-    percent of the best RMSE of all runs, polished or not.
+    histories: by run, (generations, 3) with evaluations, seconds and best RMSE; a run without one started from a fit
+    and is no optimizer's. Success is the share of runs within one percent of the best RMSE of all runs, polished or
+    not, before the polish and after it.
     """
-    best = min(min(run["rmse"]["identify"], run["rmse_before_polish"]["identify"]) for run in runs)
+    best = min((min(run["rmse"]["identify"], run["rmse_before_polish"]["identify"]) for run in runs), default=0.0)
     for run in runs:
-        evaluations, _, losses = histories[run["run"]].T
-        near = np.flatnonzero(losses <= NEAR * best)
-        run["evaluations_to_1_percent"] = int(evaluations[near[0]]) if near.size else None
+        run["evaluations_to_1_percent"] = None
+        if run["run"] in histories:
+            evaluations, _, losses = histories[run["run"]].T
+            near = np.flatnonzero(losses <= NEAR * best)
+            run["evaluations_to_1_percent"] = int(evaluations[near[0]]) if near.size else None
+    runs = [run for run in runs if run["run"] in histories]
     rows = [
         summary_of(name, [run for run in runs if run["optimizer"] == name])
         for name in dict.fromkeys(r["optimizer"] for r in runs)
     ]
+    for row in rows:
+        polished = [run["rmse"]["identify"] for run in runs if run["optimizer"] == row["optimizer"]]
+        row["polished_success"] = sum(error <= NEAR * best for error in polished) / len(polished)
     rows.sort(key=lambda row: row["rmse_median"])
     rmse = {row["optimizer"]: rmse_by_repeat(runs, row["optimizer"]) for row in rows}
     return [row | paired_comparison(rmse[rows[0]["optimizer"]], rmse[row["optimizer"]]) for row in rows]

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.units import factor
 from pzt_ident.search.problem import Problem
+from pzt_ident.search.profile import TWO_SIDED, intervals
 
 Array = NDArray[np.float64]
 
@@ -16,12 +18,14 @@ LOOSE = 0.2  # of the search range: with a larger standard error a parameter is 
 FLAT = 0.01  # of the RMSE: a smaller change of the RMSE is negligible
 WIDE = 0.5  # of the search range: with a negligible change over more, a parameter is not determined
 EDGE = 1e-4  # of the search range: a parameter this close to a bound is on it
+SAME = 1.001  # times the best RMSE: what runs with less reach is the same
+SCATTER = 0.01  # of the search range, by which such runs may put a parameter beyond its interval
 TIED = 0.995  # correlation above which two parameters are known only together
 
 
 class Estimate(NamedTuple):
     """One free parameter in the user's units; standard_error is None if it is not determined. `at`: for a parameter of
-    a branch, the drive at which the branch acts, and its unit."""
+    a branch, the drive at which the branch acts, and its unit. `interval`: of 95 %, None where it has none."""
 
     name: str
     value: float
@@ -33,6 +37,7 @@ class Estimate(NamedTuple):
     verdict: str
     note: str
     at: tuple[float, str] | None = None
+    interval: tuple[float, float] | None = None
 
 
 def estimates(problem: Problem, point: Array) -> tuple[list[Estimate], Array]:
@@ -40,12 +45,17 @@ def estimates(problem: Problem, point: Array) -> tuple[list[Estimate], Array]:
 
     Standard errors are those of least squares with correlated residuals: (J'J)^-1 M (J'J)^-1 with M summed over
     blocks of neighbouring samples (White 1980; Newey & West 1987), in no direction less than white noise or noise with
-    the spectrum of the residual gives: blocks miss what is correlated over their ends. A parameter is not determined if
-    its standard error exceeds LOOSE, or if it changes the RMSE by less than one percent over more than WIDE, of its
-    search range.
+    the spectrum of the residual gives: blocks miss what is correlated over their ends. Where the profile of the loss is
+    flatter than its curvature says, the standard error is that of the interval which the profile gives. A parameter is
+    not determined if its standard error exceeds LOOSE, or if it changes the RMSE by less than one percent over more
+    than WIDE, of its search range.
     """
-    covariance = covariance_of(problem.jacobian(point), problem.residuals(point)[0])
+    jacobian = problem.jacobian(point)
+    covariance = covariance_of(jacobian, problem.residuals(point)[0])
     error = np.sqrt(np.diag(covariance))
+    ends = intervals(problem, point, jacobian, error)
+    misleads = np.ptp(ends, axis=1) > 1.01 * 2 * TWO_SIDED * error
+    error = np.where(misleads, np.ptp(ends, axis=1) / (2 * TWO_SIDED), error)
     value = problem.physical(point)[0]
     slope = (problem.physical(point + 1e-6) - problem.physical(point - 1e-6))[0] / 2e-6
     flat = flat_share(problem, point)
@@ -54,15 +64,27 @@ def estimates(problem: Problem, point: Array) -> tuple[list[Estimate], Array]:
     rows = []
     for i, name in enumerate(problem.names):
         verdict, note = verdict_of(point[i], error[i], flat[i])
+        interval = interval_of(problem, point, i, ends[i])
         standard_error = float(error[i] * abs(slope[i])) if verdict != "not determined" else None
         if verdict == "determined":
             note = caution(problem, i, value[i], standard_error or 0.0, correlation[i])
         lower, upper = float(problem.lower[i]), float(problem.upper[i])
         scale_word = "log" if problem.log[i] else "linear"
-        rows.append(
-            Estimate(name, float(value[i]), problem.units[i], lower, upper, standard_error, scale_word, verdict, note)
-        )
+        facts = (problem.units[i], lower, upper, standard_error, scale_word, verdict, note, None)
+        rows.append(Estimate(name, float(value[i]), *facts, interval if standard_error is not None else None))
     return rows + linear_estimates(problem, point), correlation
+
+
+def interval_of(problem: Problem, point: Array, i: int, ends: Array) -> tuple[float, float]:
+    """The ends of an interval in the user's units. Of a logarithmic parameter they are not symmetric; beyond the cube,
+    where it has none, they are as far from the value as its slope says."""
+    slope = (problem.physical(point + 1e-6) - problem.physical(point - 1e-6))[0, i] / 2e-6
+    value, found = problem.physical(point)[0, i], []
+    for end in ends:
+        moved = point.copy()
+        moved[i] = np.clip(end, 0, 1)
+        found.append(float(problem.physical(moved)[0, i]) if 0 <= end <= 1 else float(value + slope * (end - point[i])))
+    return min(found), max(found)
 
 
 def covariance(problem: Problem, point: Array) -> Array:
@@ -99,6 +121,40 @@ def linear_estimates(problem: Problem, point: Array) -> list[Estimate]:
         at = None if threshold is None else (float(threshold) / factor(drive_unit), drive_unit)
         rows.append(Estimate(entry.name, value, unit, lower, upper, standard_error, "linear", verdict, note, at))
     return rows
+
+
+def judged(best: dict[str, Any], runs: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """The best run, its parameters not determined where runs that reach the same RMSE put them beyond their intervals,
+    by more than SCATTER of the search range."""
+    same = [run for run in runs if run["rmse"]["identify"] <= SAME * best["rmse"]["identify"]]
+    parameters = {}
+    for name, item in best["parameters"].items():
+        values = [run["parameters"][name]["value"] for run in same if name in run["parameters"]]
+        parameters[name] = item if agree(item, values) else item | scattered(item, values)
+    return best | {"parameters": parameters}
+
+
+def agree(item: Mapping[str, Any], values: Sequence[float]) -> bool:
+    """Whether the values of a parameter lie within its interval, or close to it. True where it has none."""
+    if item["verdict"] != "determined" or not item.get("interval"):
+        return True
+    places = [place_of(item, value) for value in values]
+    low, high = (place_of(item, end) for end in item["interval"])
+    return all(low - SCATTER < place < high + SCATTER for place in places)
+
+
+def place_of(item: Mapping[str, Any], value: float) -> float:
+    """Where a value is in the search range, 0 to 1."""
+    low, high = item["lower"], item["upper"]
+    if item["scale"] == "log":
+        low, high, value = np.log(low), np.log(high), np.log(max(value, low * 1e-3))
+    return float((value - low) / ((high - low) or 1.0))
+
+
+def scattered(item: Mapping[str, Any], values: Sequence[float]) -> dict[str, Any]:
+    unit = f" {item['unit']}".removesuffix(" 1")
+    note = f"runs of the same RMSE put it at {min(values):.3g} to {max(values):.3g}{unit}"
+    return {"verdict": "not determined", "note": note, "standard_error": None, "interval": None}
 
 
 def verdict_of_linear(visible: bool, value: float, error: float, largest: float) -> tuple[str, str]:

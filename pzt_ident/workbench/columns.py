@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from functools import partial
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pzt_ident.data.readers.open import open_table, parts_of
 from pzt_ident.data.readers.table import Column, Table
@@ -41,10 +42,10 @@ def columns_of(*files: tuple[Path, str | None]) -> dict[str, Any]:
     """
     sources, columns, rate = list[dict[str, Any]](), list[dict[str, Any]](), ""
     for path, part in files:
-        source, table = _of_file(path, part)
+        source, table, _ = _opened(path, part)
         columns += [item | {"of": len(sources)} for item in _columns(table)]
         rate = rate or _rate(table)
-        sources.append(source)
+        sources.append(dict(source))
     rows = {item["rows"] for item in columns}
     if len(rows) > 1:
         lengths = ", ".join(
@@ -54,6 +55,36 @@ def columns_of(*files: tuple[Path, str | None]) -> dict[str, Any]:
         raise InputError(f"the files of a record differ in rows: {lengths}", remedy="drop files of one measurement")
     _guess(columns)
     return {"files": sources, "rows": rows.pop(), "rate": rate, "columns": columns}
+
+
+def values_of(*files: tuple[Path, str | None]) -> dict[tuple[int, int], NDArray[np.float64]]:
+    """The numeric columns of the files of one record by index of the file and number of the column."""
+    found = dict[tuple[int, int], NDArray[np.float64]]()
+    for index, (path, part) in enumerate(files):
+        found |= {(index, number): values for number, values in _opened(path, part)[2].items()}
+    return found
+
+
+def _opened(path: Path, part: str | None) -> tuple[dict[str, Any], Table, dict[int, NDArray[np.float64]]]:
+    """A file as `_of_file`, with its numeric columns; read again when it changes."""
+    try:
+        stamp = path.stat().st_mtime_ns
+    except OSError:
+        stamp = 0
+    return _read(path, part, stamp)
+
+
+@lru_cache(4)
+def _read(path: Path, part: str | None, stamp: int) -> tuple[dict[str, Any], Table, dict[int, NDArray[np.float64]]]:
+    source, table = _of_file(path, part)
+    numbered = enumerate(_split_array(table.columns), 1)
+    return source, table, {number: values for number, c in numbered if (values := _numbers(c)) is not None}
+
+
+def hertz(rate: str) -> float:
+    """A sample rate such as `200 Hz`. Raises ValueError for what is none."""
+    number, unit = re.fullmatch(r"\s*([\d.eE+-]+)\s*(\w+)\s*", rate).groups()  # type: ignore[union-attr]
+    return float(number) * factor(unit)
 
 
 def _of_file(path: Path, part: str | None) -> tuple[dict[str, Any], Table]:
@@ -106,11 +137,8 @@ def _split_array(columns: Sequence[Column]) -> Sequence[Column]:
 
 
 def _column(number: int, column: Column) -> dict[str, Any] | None:
-    try:
-        values = np.squeeze(np.asarray(column.load(), dtype=float))
-    except (ValueError, TypeError):
-        return None
-    if values.ndim != 1 or values.size < MIN_ROWS or not np.isfinite(values).any():
+    values = _numbers(column)
+    if values is None:
         return None
     return {
         "number": number,
@@ -118,7 +146,7 @@ def _column(number: int, column: Column) -> dict[str, Any] | None:
         "name": column.name,
         "unit": _unit(column),
         "rows": values.size,
-        "first": values[:FIRST_VALUES].tolist(),
+        "first": [float(value) if np.isfinite(value) else None for value in values[:FIRST_VALUES]],
         "low": float(np.nanmin(values)),
         "high": float(np.nanmax(values)),
         "regular": _regular(values),
@@ -126,6 +154,16 @@ def _column(number: int, column: Column) -> dict[str, Any] | None:
         "rough": _roughness(values),
         "role": "",
     }
+
+
+def _numbers(column: Column) -> NDArray[np.float64] | None:
+    """The values of a column, None unless it holds some numbers."""
+    try:
+        values = np.squeeze(np.asarray(column.load(), dtype=float))
+    except (ValueError, TypeError):
+        return None
+    known = values.ndim == 1 and values.size >= MIN_ROWS and np.isfinite(values).any()
+    return values if known else None
 
 
 def _unit(column: Column) -> str | None:
@@ -138,6 +176,7 @@ def _unit(column: Column) -> str | None:
 
 
 def _regular(values: np.ndarray) -> bool:
+    """Whether the values rise by equal steps."""
     steps = np.diff(values)
     return bool((steps > 0).all() and np.ptp(steps) < 0.01 * np.median(steps))
 
@@ -150,17 +189,24 @@ def _shape(values: np.ndarray) -> list[float]:
 
 
 def _roughness(values: np.ndarray) -> float:
-    """Median absolute third difference over the span, large for a noisy sensor."""
-    span = np.nanmax(values) - np.nanmin(values)
-    return float(np.nanmedian(np.abs(np.diff(values, 3))) / (span or 1)) if values.size > 3 else 0.0
+    """Median absolute third difference over the span, large for a noisy sensor; NaN where too few values follow each
+    other."""
+    span, third = np.nanmax(values) - np.nanmin(values), np.abs(np.diff(values, 3))
+    known = third[np.isfinite(third)]
+    return float(np.median(known) / (span or 1)) if known.size else float("nan")
 
 
 def _guess(columns: list[dict[str, Any]]) -> None:
     """Give each role to one column: by unit or name, else by order, where the smoother of two unnamed columns is the
-    drive. A further axis is recognised where both its names differ from those of the first by one letter or digit."""
+    drive. A uniform ramp counts samples: it is a drive only where its unit says so, and nothing else is one. A column
+    that rests has a role where its unit or name says so, since it may move in another record. A further axis is
+    recognised where both its names differ from those of the first by one letter or digit."""
     by_evidence = (("time", _is_time), ("x.drive", _is_drive), ("x.response", _is_length), ("x.response", _is_charge))
     for role, fits in by_evidence:
-        _assign(columns, role, fits)
+        _assign(columns, role, fits, ramps=role == "time")
+    _assign(columns, "x.drive", lambda item: bool(item["unit"]) and _is_drive(item), ramps=True)
+    for role, fits in by_evidence[1:]:
+        _assign(columns, role, fits, still=True)
     for role in ("x.drive", "x.response") if len(columns) > 1 else ():
         _assign(columns, role, lambda item: True)
     first = [item for role in ("x.drive", "x.response") for item in columns if item["role"] == role]
@@ -183,10 +229,18 @@ def _without_axis(name: str) -> str:
     return re.sub(r"(?<![0-9])[0-9](?![0-9])|(?<![a-z])[xyzabc](?![a-z])|(?<=[0-9_])[xyzabc]|[xyz]$", "", name.lower())
 
 
-def _assign(columns: list[dict[str, Any]], role: str, fits: Callable[[dict[str, Any]], bool]) -> None:
-    """Give a role that no column has to the first column that is free, not constant and `fits`."""
+def _assign(
+    columns: list[dict[str, Any]],
+    role: str,
+    fits: Callable[[dict[str, Any]], bool],
+    still: bool = False,
+    ramps: bool = False,
+) -> None:
+    """Give a role that no column has to the first column that is free and `fits`; constant if `still`, else not; no
+    uniform ramp unless `ramps`."""
     for item in columns if role not in [item["role"] for item in columns] else ():
-        if not item["role"] and item["high"] > item["low"] and fits(item):
+        constant = not item["high"] > item["low"]
+        if not item["role"] and constant == still and (ramps or not item["regular"]) and fits(item):
             item["role"] = role
             return
 

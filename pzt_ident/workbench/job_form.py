@@ -48,7 +48,8 @@ def file_sources(records: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def _record(form: dict[str, Any], record: dict[str, Any]) -> list[str]:
     """The lines of one record. A use of "split" gives two: the first two thirds for identification, and the whole
-    record for validation with only its last third scored, so that the model has the history of the stage there."""
+    record for validation with only its last third scored, so that the model has the history of the stage there. `crop`:
+    the first sample that is taken, and the first that is not; `settle`: a time that is not scored."""
     rate = {"sample_rate": form["sample_rate"]} if form.get("sample_rate") else {}
     keys = ("file", "table", "sheet")
     facts = ", ".join(
@@ -60,11 +61,15 @@ def _record(form: dict[str, Any], record: dict[str, Any]) -> list[str]:
             for role, channel in channels.items()
         )
         facts += f", channels: {{{', '.join(columns)}}}"
+    begin, end = map(int, record.get("crop") or (0, record.get("rows", 0)))
+    rows = f", rows: [{begin}, {end}]" if record.get("crop") else ""
+    settle = f", settle: {_text(record['settle'])}" if record.get("settle") else ""
     if record["use"] != "split":
-        return [f"{facts}, use: {_text(record['use'])}"]
-    first = int(record["rows"]) * 2 // 3
-    settle = f"settle: {first * _sample_time(form, record):.9g} s"
-    return [f"{facts}, use: identify, rows: [0, {first}]", f"{facts}, use: validate, {settle}"]
+        return [f"{facts}, use: {_text(record['use'])}{rows}{settle}"]
+    first = (end - begin) * 2 // 3
+    kept_back = f"settle: {first * _sample_time(form, record):.9g} s"
+    fitted = f"rows: [{begin}, {begin + first}]"
+    return [f"{facts}, use: identify, {fitted}{settle}", f"{facts}, use: validate{rows}, {kept_back}"]
 
 
 def _sample_time(form: dict[str, Any], record: dict[str, Any]) -> float:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -10,20 +12,29 @@ from pzt_ident.data.notation import spelled, unit
 from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.data.readers.registry import readers
 from pzt_ident.data.signals import Trace
-from pzt_ident.model.description import headline
-from pzt_ident.model.registry import blocks, word_of
+from pzt_ident.diagnosis.candidates import differ
+from pzt_ident.errors import InputError
+from pzt_ident.model.description import description_of, words
+from pzt_ident.model.description import headline as first_sentence
+from pzt_ident.model.registry import blocks, phrase_of, word_of
 from pzt_ident.report.sentences import printed_reason
+from pzt_ident.report.style import decimate
 from pzt_ident.report.tables import expected
 from pzt_ident.report.traces import packed
 from pzt_ident.run.results import read_results
+from pzt_ident.workbench import downloads
 from pzt_ident.workbench.guard import LARGEST_UPLOAD
+from pzt_ident.workbench.headline import headline as headline
+from pzt_ident.workbench.measurement import WHOLE, encoded
 from pzt_ident.workbench.session import Session
+from pzt_ident.workbench.step_model import model_of
 
 PRINTERS = {"unit": unit} | dict.fromkeys(("reason", "why", "said", "sentences"), spelled)
 
 
 def state(session: Session) -> dict[str, Any]:
     """The whole state except the signals; parts without results are None or empty."""
+    session.settle()
     chain = session.chain()
     step = session.step() if chain else None
     job = job_of(session) if step else None  # read first: its plugins may register blocks
@@ -33,26 +44,70 @@ def state(session: Session) -> dict[str, Any]:
         "largest": LARGEST_UPLOAD,
         "blocks": model_blocks(),
         "effects": effects(),
+        "optimizer_words": optimizer_words(),
         "files": [*files_in(session.root), *(session.relative(session.data / name) for name in files_in(session.data))],
         "steps": [step_state(session, entry) for entry in chain],
         "others": [step_state(session, entry) for entry in session.steps if entry not in chain],
-        "stage": session.stage,
-        "since": session.since,
-        "failure": session.failure,
+        "at": session.at,
+        "warning": session.warning,
+        "draft": session.draft,
         **over_axes(session),
         "job": job,
         "result": read(step / "run" / "result.json") if step else None,
         "misfit": read(step / "run" / "residuals.json") if step else None,
-        "diagnosis": diagnosis_of(step) if step else None,
+        "diagnosis": diagnosis_of(session, step) if step else None,
+        "parameters": printed(model_of(step, session.plugins).parameters) if step else [],
+        "optimizers": optimizers(session),
+        "improving": improving(step) if step else None,
+        "control": read(step / "control" / "control.json") if step else None,
+        "downloads": downloads.names(session),
+        "limits": job["limits"] if job else None,
         "commands": session.logged_commands(),
     }
 
 
 def step_state(session: Session, entry: dict[str, Any]) -> dict[str, Any]:
-    """A step and the RMSE of its model by use, None if it was not run."""
+    """A step, the RMSE of its model by use, None if it was not run, that of the identification records in noise
+    floors, and what the diagnosis before promised."""
     result = read(session.step(entry["number"]) / "run" / "result.json")
     rmse = result["best"]["rmse"] if result and result.get("best") else {"identify": None, "validate": None}
-    return entry | rmse
+    floors = rmse["identify"] / result["floor"] if rmse["identify"] is not None and result.get("floor") else None
+    return {"promised": None, "note": ""} | entry | rmse | {"floors": floors}
+
+
+def optimizers(session: Session) -> list[dict[str, Any]]:
+    """The comparison of the optimizers in the newest run of the chain in which some searched, the best first. `equal`:
+    whether its fits are as good as the best of all, within the noise."""
+    for entry in reversed(session.chain()):
+        result = read(session.step(entry["number"]) / "run" / "result.json")
+        if result and result.get("league"):
+            errors = [min(row["rmse_best"], row["polished_rmse_median"]) for row in result["league"]]
+            equal = [not differ(error, min(errors), result["floor"]) for error in errors]
+            return [row | {"equal": same} for row, same in zip(result["league"], equal, strict=True)]
+    return []
+
+
+def improving(step: Path) -> dict[str, Any] | None:
+    """The steps that an improvement of this step has taken so far, None where none was asked for."""
+    path = step / "improved" / "events.jsonl"
+    if not path.exists():
+        return None
+    lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line.endswith("}")]
+    stairs = [item for line in lines if (item := json.loads(line))["event"] == "stair"]
+    return {"steps": [printed(item) for item in stairs]}
+
+
+def tracking(path: Path) -> dict[str, Any]:
+    """The columns of a comparison of ways to follow a reference, by heading, as 32-bit floats, of long ones the
+    extremes. Raises InputError where there is none."""
+    import pandas as pd
+
+    if not path.exists():
+        raise InputError("nothing follows a reference yet", remedy="drop a reference")
+    frame = pd.read_csv(path)
+    kept = decimate(frame.iloc[:, 1].to_numpy(float), WHOLE // 2)
+    columns = {name: encoded(frame[name].to_numpy("<f4")[kept]) for name in frame}
+    return {"samples": len(frame), "columns": columns}
 
 
 def over_axes(session: Session) -> dict[str, str]:
@@ -64,15 +119,23 @@ def over_axes(session: Session) -> dict[str, str]:
     return {"unit": unit, "together": together(units), "weighed": " ".join(weighed(units))}
 
 
-def diagnosis_of(step: Path) -> dict[str, Any] | None:
+def diagnosis_of(session: Session, step: Path) -> dict[str, Any] | None:
     """The diagnosis with the estimated parameters of each effect as printed text."""
     path = step / "diagnosis" / "diagnosis.json"
     if not path.exists():
         return None
     diagnosis = json.loads(path.read_text(encoding="utf-8"))
     for item in diagnosis["candidates"]:
-        item["would_be"] = expected(item["expected"], item["units"])
-    return printed(diagnosis) | {"reason": printed_reason(diagnosis["reason"], read_results(step / "run"))}
+        item["estimate"] = expected(item["expected"], item["units"])
+    reason = diagnosis["reason"] + tied_sentences(session)
+    return printed(diagnosis) | {"reason": printed_reason(reason, read_results(step / "run"))}
+
+
+def tied_sentences(session: Session) -> str:
+    """What stays undecided of effects that were added where others would have fitted as well."""
+    effects = list(map(word_of, session.job().effects))
+    tied = [entry["tied"] for entry in session.chain() if set(entry.get("tied", ())) & set(effects)]
+    return "".join(f" These data cannot tell {' from '.join(map(phrase_of, words))}." for words in tied)
 
 
 def job_of(session: Session) -> dict[str, Any]:
@@ -84,14 +147,22 @@ def job_of(session: Session) -> dict[str, Any]:
         "effects": job.effects,
         "folder": folder,
         "text": job.text,
+        "limits": asdict(job.limits),
+        "search": {
+            "optimizers": [{"name": item.name, **item.settings} for item in job.optimizers],
+            "repeats": job.repeats,
+            "seed": job.seed,
+        },
     }
 
 
-def signals(session: Session) -> dict[str, Any]:
-    """All samples of the records with the models of the current step and of the one before."""
+def signals(session: Session, numbers: Sequence[int] = ()) -> dict[str, Any]:
+    """All samples of the records with the models of the current step and of the one before, or of the steps of these
+    numbers."""
     models: dict[str, tuple[Trace, ...]] = {}
-    for entry, name in zip(reversed(session.chain()), ("now", "before"), strict=False):
-        run = session.step(entry["number"]) / "run"
+    shown = numbers or [entry["number"] for entry in reversed(session.chain())]
+    for number, name in zip(shown, ("now", "before"), strict=False):
+        run = session.step(number) / "run"
         if (run / "result.json").exists():
             models[name] = read_results(run).traces
     result = read(session.step() / "run" / "result.json") or {"noise_floor": {}}
@@ -99,10 +170,11 @@ def signals(session: Session) -> dict[str, Any]:
 
 
 def read(path: Path) -> Any:
-    """The content of a JSON file with printed units; None if there is no file."""
-    if not path.exists():
+    """The content of a JSON file with printed units; None if there is no file, or a damaged one."""
+    try:
+        return printed(json.loads(path.read_text(encoding="utf-8"))) if path.exists() else None
+    except ValueError:
         return None
-    return printed(json.loads(path.read_text(encoding="utf-8")))
 
 
 def printed(content: Any, key: str = "") -> Any:
@@ -130,11 +202,20 @@ def effects() -> list[dict[str, Any]]:
     return [description(word) for word in blocks.effects()]
 
 
+def optimizer_words() -> list[dict[str, Any]]:
+    """The optimizers with the defaults of their settings."""
+    settings = {word: description_of(word)["settings"] for word in words("optimizers")}
+    return [
+        {"name": word, "doc": doc, "settings": {item["name"]: item["default"] for item in settings[word]}}
+        for word, doc in words("optimizers").items()
+    ]
+
+
 def description(word: str) -> dict[str, Any]:
     place = getattr(blocks[word], "place", None)
     return {
         "name": word,
-        "doc": headline(blocks[word]),
+        "doc": first_sentence(blocks[word]),
         "place": None if place is None else int(place),
         "kind": blocks.kind_of(word),
     }

@@ -84,7 +84,10 @@ def step_of(
         "rmse": best["rmse"],
         "explained": share_explained(previous, best["rmse"]["identify"], floor),
         "expected": None,
+        "promised": entry.get("promised"),
+        "note": entry.get("note", ""),
         "parameters": {
-            name: {key: item[key] for key in ("value", "unit")} for name, item in best["parameters"].items()
+            name: {key: item.get(key) for key in ("value", "unit", "standard_error", "interval")}
+            for name, item in best["parameters"].items()
         },
     }

@@ -90,10 +90,10 @@ def test_the_next_drive_has_the_column_of_each_axis(tmp_path):
 @pytest.mark.parametrize("form", [str, lambda item: item._repr_html_()])
 def test_they_show_themselves(form, diagnosis, improvement):
     stairs = form(improvement)
-    assert all(part in stairs for part in ("+ creep", "0.004929", "0.1111", "adequate", "identify [µm]"))
+    assert all(part in stairs for part in ("+ creep", "0.004929", "0.1111", "adequate", "identification [µm]"))
     assert all(
         part in form(diagnosis)
-        for part in (QUADRATIC, "0.03431", "73\N{NO-BREAK SPACE}%", "not missing", "validate [µm]")
+        for part in (QUADRATIC, "0.03431", "73\N{NO-BREAK SPACE}%", "not missing", "validation [µm]")
     )
 
 

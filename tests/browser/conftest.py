@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-SECONDS = 180
+AXE = Path(__file__).with_name("axe.min.js")
+SECONDS = 120
 
 if CHROMIUM is None and os.environ.get("CI"):
     raise RuntimeError("no chromium: `apt-get install chromium`")
@@ -38,7 +39,7 @@ def browsing(chromium):
 
     @contextmanager
     def browse():
-        context = chromium.new_context(color_scheme="light", viewport={"width": 1280, "height": 900})
+        context = chromium.new_context(color_scheme="light", viewport={"width": 1280, "height": 800})
         page, faults = context.new_page(), []
         page.set_default_timeout(1000 * SECONDS)
         page.on("console", lambda said: faults.append(said.text) if said.type in ("error", "warning") else None)
@@ -61,16 +62,16 @@ def outside(url: str) -> bool:
     return not url.startswith(("file:///", "data:", "blob:", "http://127.0.0.1:"))
 
 
-@pytest.fixture
-def workbench(tmp_path):
-    """Start a workbench in a folder; gives its address."""
+@contextmanager
+def workbenches(folder: Path):
+    """Starts workbenches in a folder; each start gives an address."""
     running: list[subprocess.Popen[str]] = []
 
     def start(*arguments: str) -> str:
         command = [sys.executable, "-m", "pzt_ident", "workbench", "--no-browser", "--out", "workbench", *arguments]
         source = str(Path(__file__).parents[2])
         environment = os.environ | {"PYTHONUNBUFFERED": "1", "PYTHONPATH": source}
-        process = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, text=True, env=environment)
+        process = subprocess.Popen(command, cwd=folder, stdout=subprocess.PIPE, text=True, env=environment)
         running.append(process)
         assert process.stdout is not None
         return process.stdout.readline().removeprefix("workbench: ").strip()
@@ -79,3 +80,24 @@ def workbench(tmp_path):
     for process in running:
         process.send_signal(signal.SIGINT)
         process.wait(20)
+
+
+@pytest.fixture
+def workbench(tmp_path):
+    with workbenches(tmp_path) as start:
+        yield start
+
+
+def faults_of(page) -> list[str]:
+    """What axe-core finds against WCAG 2.2 AA on a page, in both themes."""
+    levels = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]
+    found = []
+    for scheme in ("dark", "light"):
+        page.emulate_media(color_scheme=scheme)
+        page.evaluate(AXE.read_text(encoding="utf-8"))
+        result = page.evaluate(
+            "levels => axe.run(document, { runOnly: levels, rules: { 'target-size': { enabled: true } } })", levels
+        )
+        assert len(result["passes"]) > 15
+        found += [f"{scheme}: {item['id']}: {node['html']}" for item in result["violations"] for node in item["nodes"]]
+    return found

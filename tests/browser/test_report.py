@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
+from browser.conftest import faults_of
 from pzt_ident.report.page import write_report
 from pzt_ident.run.results import read_results
 from run_folders import make_run
@@ -28,7 +29,10 @@ def loaded(browsing, folder):
 @pytest.fixture
 def opened(loaded):
     """The report as it opens: nothing marked."""
-    loaded.click("text=Clear")
+    loaded.click("text=Show all")
+    loaded.click("[data-mode=mark]")
+    if loaded.locator("text=Clear mark").is_enabled():
+        loaded.click("text=Clear mark")
     expect(loaded.locator(".readout")).to_contain_text("Whole record")
     return loaded
 
@@ -45,7 +49,8 @@ def rmse_of(folder, start=0.0, end=np.inf):
 
 def test_it_opens_without_a_network_or_an_error(opened, folder):
     assert rmse_shown(opened) == pytest.approx(rmse_of(folder), rel=0.006)
-    assert opened.locator(".u-wrap > canvas").count() == 2 and opened.locator(".plane canvas.drawn").count() == 2
+    assert opened.locator(".plot canvas.drawn").count() == 3
+    assert faults_of(opened) == []
 
 
 def test_in_the_dark_the_paper_is(opened):
@@ -56,44 +61,61 @@ def test_in_the_dark_the_paper_is(opened):
     opened.emulate_media(color_scheme="light")
 
 
-def test_a_stretch_by_its_times(opened, folder):
-    fields = opened.locator(".bar input")
-    fields.nth(0).fill("5")
-    fields.nth(1).fill("12")
-    fields.nth(1).press("Enter")
-    expect(opened.locator(".readout")).to_contain_text(re.compile(r"Marked from (5|5\.0\d*) s to (12|11\.9\d*) s"))
-    assert rmse_shown(opened) == pytest.approx(rmse_of(folder, 5, 12), rel=0.02)
-
-
-def test_a_drag_in_time_marks_the_planes_too(opened):
-    before = opened.evaluate("document.querySelectorAll('.plane .marked')[1].toDataURL()")
-    box = opened.locator(".curves .u-over").first.bounding_box()
+def test_a_drag_in_time_marks_the_loop_too(opened, folder):
+    before = opened.evaluate("document.querySelector('.loop canvas.pointed').toDataURL()")
+    box = opened.locator(".time .plot").first.bounding_box()
     opened.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 40)
     opened.mouse.down()
     opened.mouse.move(box["x"] + 0.5 * box["width"], box["y"] + 60, steps=5)
     opened.mouse.up()
+    opened.mouse.move(1, 1)
     expect(opened.locator(".readout")).to_contain_text("Marked from")
-    ends = [float(opened.locator(".bar input").nth(i).input_value()) for i in (0, 1)]
-    assert ends == pytest.approx([12, 20], abs=0.5)
-    assert opened.evaluate("document.querySelectorAll('.plane .marked')[1].toDataURL()") != before
+    start, end = (
+        float(word) for word in re.search(r"from ([\d.]+) s to ([\d.]+) s", opened.text_content(".readout")).groups()
+    )
+    assert (start, end) == pytest.approx((10.5, 19), abs=1)
+    assert rmse_shown(opened) == pytest.approx(rmse_of(folder, start, end), rel=0.02)
+    assert opened.evaluate("document.querySelector('.loop canvas.pointed').toDataURL()") != before
 
 
 def test_a_box_in_the_loop_marks_segments_of_time(opened):
-    opened.locator(".plane .pointed").first.scroll_into_view_if_needed()
-    box = opened.locator(".plane .pointed").first.bounding_box()
-    opened.mouse.move(box["x"] + 0.8 * box["width"], box["y"] + 0.05 * box["height"])
+    box = opened.locator(".loop .plot").bounding_box()
+    opened.mouse.move(box["x"] + 0.8 * box["width"], box["y"] + 0.1 * box["height"])
     opened.mouse.down()
     opened.mouse.move(box["x"] + 0.95 * box["width"], box["y"] + 0.4 * box["height"], steps=4)
     opened.mouse.up()
+    opened.mouse.move(1, 1)
     expect(opened.locator(".readout")).to_contain_text(re.compile(r"Marked \d+ segments"))
 
 
+def test_the_wheel_scrolls_the_page_unless_a_plot_has_the_focus(opened):
+    span = "document.querySelector('.time .plot').dataset.span"
+    plot = opened.locator(".time .plot").first
+    whole = opened.evaluate(span)
+    opened.locator("[data-mode=mark]").focus()
+    plot.hover()
+    opened.mouse.wheel(0, -300)
+    assert opened.evaluate(span) == whole
+    plot.focus()
+    plot.hover()
+    opened.mouse.wheel(0, -300)
+    assert opened.evaluate(span) != whole
+
+
+def test_spectrum_and_frequency_response_are_in_the_file(opened):
+    for view, legend in (("spectrum", "residual"), ("bode", "measured")):
+        opened.select_option("[aria-label='View over time or frequency']", view)
+        expect(opened.locator(".time .legend").first).to_contain_text(legend)
+    opened.select_option("[aria-label='View over time or frequency']", "time")
+
+
 def test_the_keyboard_reaches_the_mark(opened):
-    opened.locator(".curves").focus()
-    opened.keyboard.press("ArrowRight")
-    expect(opened.locator(".readout")).to_contain_text("Marked from 0 s to 3.99")
-    opened.keyboard.press("Shift+ArrowRight")
+    opened.locator(".time .plot").first.focus()
+    for key in ("ArrowRight", "Shift+ArrowRight", "Shift+ArrowRight"):
+        opened.keyboard.press(key)
+    expect(opened.locator("text=Clear mark")).to_be_enabled()
     opened.keyboard.press("Enter")
+    assert float(opened.evaluate("document.querySelector('.time .plot').dataset.span").split()[1]) < 5
     opened.keyboard.press("Escape")
     expect(opened.locator(".readout")).to_contain_text("Whole record")
 
@@ -101,9 +123,11 @@ def test_the_keyboard_reaches_the_mark(opened):
 def test_it_prints(opened, tmp_path):
     opened.emulate_media(media="print")
     opened.evaluate("dispatchEvent(new Event('beforeprint'))")
-    width = "[...document.querySelectorAll('.explorer canvas')].map((one) => one.getBoundingClientRect().right)"
-    assert max(opened.evaluate(width)) < 180 / 25.4 * 96
-    assert not opened.locator(".plane .marked").first.is_visible()  # it would cut out what is below
+    edges = "[...document.querySelectorAll('#explorer canvas')].map(canvas => canvas.getBoundingClientRect().right)"
+    assert max(opened.evaluate(edges)) < 180 / 25.4 * 96
+    assert not opened.locator(".plot .pointed").first.is_visible()  # it would cut out what is below
+    order = "[...document.querySelectorAll('main > section')].map(section => section.id)"
+    assert opened.evaluate(order)[:3] == ["staircase", "model", "parameters"]  # the first page
     opened.evaluate("dispatchEvent(new Event('afterprint'))")
     opened.emulate_media(media="screen")
     opened.pdf(path=tmp_path / "report.pdf", format="A4")

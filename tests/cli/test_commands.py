@@ -121,7 +121,7 @@ class TestRun:
         assert "pso        2     0.1235" in result.stdout
         assert "bouc_wen.gain  0.0819  0.0002          um/V  determined" in result.stdout
         assert "lumped.mass    0.3     -               kg    not determined" in result.stdout
-        assert "RMSE [um]: 0.12 identify, - validate (pso-1)" in result.stdout
+        assert "RMSE [um]: 0.12 on the identification records (pso-1)" in result.stdout
         assert "noise floor of x [um]: 0.0289" in result.stdout
         assert "slow: decimated by 4" in result.stdout
         assert "pso-0 failed: its process was killed by signal 9" in result.stdout
@@ -131,7 +131,11 @@ class TestRun:
     def test_hands_its_options_on(self, folder, quick):
         call("run", "job.yaml", "--out", "there", "--workers", "3", "--no-report")
         ((job, out, options),) = quick
-        assert (job.name, out, options) == ("small", Path("there"), {"place": Local(3)})
+        assert (job.name, out, options) == (
+            "small",
+            Path("there"),
+            {"place": Local(3), "start": None, "only_start": False},
+        )
         assert not (Path("out") / "report.html").exists()
 
     def test_json_is_all_there_is(self, folder, quick):
@@ -146,7 +150,7 @@ class TestRun:
     def test_resume(self, folder, quick):
         result = call("resume", "out", "--workers", "1")
         assert result.exit_code == 0
-        assert quick == [(Path("out"), {"place": Local(1), "plugins": False})]
+        assert quick == [(Path("out"), {"place": Local(1), "plugins": False, "start": None})]
         assert (Path("out") / "report.html").exists()
 
     def test_resume_without_a_run(self, folder):
@@ -201,7 +205,7 @@ class TestCheck:
         result = call("check", "job.yaml")
         assert result.exit_code == 0
         assert result.stdout.startswith("small (")
-        assert "validate  validate  300      1000       0.3         0.1" in result.stdout
+        assert "validate  validation      300      1000       0.3         0.1" in result.stdout
         assert "x     0 to 100 V" in result.stdout
         assert "bouc_wen.gamma  1/V" in result.stdout
         assert "fixed at 0.01" in result.stdout

@@ -54,8 +54,8 @@ def within(drive, limits, dt):
 )
 def test_every_drive_stays_within_what_the_rig_may_do(low, span, rate, duration, axes, axis):
     limits = DriveLimits(low, low + span, rate, duration)
-    for name, why, dt, drive in protocols([limits] * axes, min(axis, axes - 1)):
-        assert name and why
+    for name, dt, drive in protocols([limits] * axes, min(axis, axes - 1)):
+        assert name
         assert drive.shape[0] == axes
         assert np.isfinite(drive).all()
         for row in drive:
@@ -65,7 +65,7 @@ def test_every_drive_stays_within_what_the_rig_may_do(low, span, rate, duration,
 @pytest.mark.parametrize(("duration", "seen"), [(60.0, True), (4.0, True), (0.2, False)])
 def test_two_rates_are_two_or_none(duration, seen):
     drives = [
-        drive[0] for name, _, _, drive in protocols([DriveLimits(0.0, 100.0, 1e3, duration)], 0) if name == "two rates"
+        drive[0] for name, _, drive in protocols([DriveLimits(0.0, 100.0, 1e3, duration)], 0) if name == "two rates"
     ]
     assert bool(drives) == seen
     for drive in drives:
@@ -75,7 +75,7 @@ def test_two_rates_are_two_or_none(duration, seen):
 
 
 def test_an_axis_that_never_moved_is_not_moved():
-    drives = {name: drive for name, _, _, drive in protocols([LIMITS, DriveLimits(5.0, 5.0, 0.0, 60.0)], 0)}
+    drives = {name: drive for name, _, drive in protocols([LIMITS, DriveLimits(5.0, 5.0, 0.0, 60.0)], 0)}
     assert drives
     assert all(np.all(drive[1] == 5) for drive in drives.values())
 
@@ -90,7 +90,7 @@ def test_holds_last_as_long_whatever_the_ramps_take():
     for rate in (1e5, 5.0):
         drive, dt = next(
             (drive[0], dt)
-            for name, _, dt, drive in protocols([DriveLimits(0.0, 100.0, rate, 200.0)], 0)
+            for name, dt, drive in protocols([DriveLimits(0.0, 100.0, rate, 200.0)], 0)
             if "holds" in name
         )
         level = np.isclose(drive, 60)
@@ -107,7 +107,7 @@ def test_a_chirp_sweeps_its_band_and_no_more():
 
 
 def test_the_other_axis_moves_alone():
-    other = [drive for name, _, _, drive in protocols([LIMITS] * 2, 0) if "other axis" in name]
+    other = [drive for name, _, drive in protocols([LIMITS] * 2, 0) if "other axis" in name]
     assert all(np.ptp(drive[0]) == 0 < np.ptp(drive[1]) for drive in other)
 
 
@@ -115,7 +115,7 @@ def test_the_proposal_sets_the_rivals_furthest_apart(case, rivals):
     proposal = propose(case, rivals, [LIMITS])
     assert proposal.splits == ("sensor_lag", "delay")
     assert proposal.separation > 3
-    for _, _, dt, drive in protocols([LIMITS], 0):
+    for _, dt, drive in protocols([LIMITS], 0):
         one, two = (respond(case, fit, dt, drive) for fit in rivals.values())
         assert np.sqrt(np.mean((one - two) ** 2)) / case.floor <= proposal.separation * (1 + 1e-9)
 
@@ -137,7 +137,7 @@ def test_a_rig_that_may_do_nothing_is_asked_nothing(case, rivals):
 
 
 def test_a_response_is_about_its_mean(case, rivals):
-    _, _, dt, drive = next(iter(protocols([LIMITS], 0)))
+    _, dt, drive = next(iter(protocols([LIMITS], 0)))
     response = respond(case, rivals["delay"], dt, drive)
     assert response.shape == drive.shape[1:]
     assert response.mean() == pytest.approx(0, abs=1e-15)
@@ -151,7 +151,7 @@ def proposed(monkeypatch):
 
     def of(**places):
         case = SimpleNamespace(records=[rig.record(wave)], floor=2.0)
-        drives = [(name, name, 1e-3, np.array([number]) * np.ones((1, 100))) for number, name in enumerate(places)]
+        drives = [(name, 1e-3, np.array([number]) * np.ones((1, 100))) for number, name in enumerate(places)]
         monkeypatch.setattr(next_experiment, "protocols", lambda limits, axis: drives)
 
         def respond(case, fit, dt, drive):
@@ -215,7 +215,7 @@ def test_axes_that_are_driven_alike_move_together_and_others_stay(monkeypatch):
     u, v = np.random.default_rng(0).uniform(0, 1, (2, 50))
     case = SimpleNamespace(records=[rig.record(u, v, u)], floor=1.0)
     moves = np.array([[1.0, 2.0], [3.0, 4.0]])
-    monkeypatch.setattr(next_experiment, "protocols", lambda limits, axis: [("it", "why", 1e-3, moves)])
+    monkeypatch.setattr(next_experiment, "protocols", lambda limits, axis: [("it", 1e-3, moves)])
     monkeypatch.setattr(next_experiment, "respond", lambda case, fit, dt, drive: fit * np.ones(2))
     proposal = propose(case, {"one": 0.0, "two": 1.0}, [LIMITS] * 3)
     np.testing.assert_array_equal(proposal.drive, moves[[0, 1, 0]])

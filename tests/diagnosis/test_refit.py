@@ -12,13 +12,14 @@ import stage
 from pzt_ident.diagnosis import refit, starts
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.caveats import bounds_sentence, measured_only_sentence
-from pzt_ident.diagnosis.refit import damped_step, descend, fit_at
+from pzt_ident.diagnosis.refit import fit_at
 from pzt_ident.diagnosis.starts import first_fit, restart
 from pzt_ident.engine.simulator import simulate
 from pzt_ident.model.block import Addition, Block, Coupling, Place
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks
+from pzt_ident.search.descent import damped_step, descend
 
 
 @pytest.fixture(scope="module")

@@ -126,7 +126,8 @@ def test_another_model_keeps_comments_and_settings(job):
     path = job(JOB.replace("lumped]", "{name: rod, elements: 12}]  # long"))
     out = path.with_name("new.yaml")
     answer = call("model", path, "prandtl_ishlinskii", "rod", "-o", out)
-    assert answer.exit_code == 2 and "bouc_wen.alpha" in answer.stderr  # its bounds are still there
+    assert answer.exit_code == 0 and "bouc_wen.alpha" not in out.read_text()
+    out.unlink()
     bare = job(JOB[: JOB.index("# narrower")].replace("lumped]", "{name: rod, elements: 12}]  # long"))
     answer = call("model", bare, "prandtl_ishlinskii", "rod", "-o", out)
     assert answer.stdout.startswith(f"wrote {out}: model prandtl_ishlinskii, rod; effects drift\n")
@@ -214,3 +215,33 @@ def test_no_job_no_file(tmp_path):
     assert answer.exit_code == 2
     assert "no such file" in answer.stderr
     assert not list(tmp_path.iterdir())
+
+
+SAID = """\
+records: [{file: a.csv, use: identify}]
+channels:
+  time: "t [s]"
+  axes: {x: {drive: "u [V]", response: "x [um]"}}
+model: [bouc_wen, lumped]
+effects: [creep]
+parameters:
+  bouc_wen.alpha: {value: 0.4}
+  lumped.mass: {value: 0.2}
+  creep.ratio: {bounds: [0, 0.2]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("command", "words", "left"),
+    [
+        ("model", ["prandtl_ishlinskii", "lumped"], ["lumped.mass", "creep.ratio"]),
+        ("remove", ["creep"], ["bouc_wen.alpha", "lumped.mass"]),
+        ("model", ["prandtl_ishlinskii"], ["creep.ratio"]),
+    ],
+)
+def test_what_a_job_says_of_a_block_goes_with_it(tmp_path, command, words, left):
+    (tmp_path / "job.yaml").write_text(SAID)
+    line = [command, str(tmp_path / "job.yaml"), *words, "-o", str(tmp_path / "new.yaml")]
+    answer = CliRunner().invoke(main, line)
+    assert answer.exit_code == 0, answer.output
+    assert list(load_job(tmp_path / "new.yaml").parameters) == left

@@ -12,17 +12,19 @@ import pytest
 from pzt_ident.data.notation import listed
 from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.report.page import write_report
-from pzt_ident.report.sentences import findings, printed_reason, verdict
+from pzt_ident.report.sentences import findings, next_step, printed_reason, verdict
 from pzt_ident.run.misfit import compare
 from pzt_ident.run.results import read_results
 from run_folders import WEIRD, make_run
 
 SECTIONS = [
+    "staircase",
     "model",
+    "parameters",
     "residuals",
     "convergence",
     "league",
-    "parameters",
+    "intervals",
     "correlations",
     "noise",
     "records",
@@ -81,7 +83,7 @@ def test_only_the_scripts_of_the_package_may_run(weird, weird_page):
     policy = re.search(r'Content-Security-Policy" content="([^"]*)"', text)[1]
     assert policy.startswith("default-src 'none'; ")
     assert policy.endswith("script-src " + " ".join(f"'sha256-{value}'" for value in hashes))
-    assert "import " not in found[1].partition("\n")[0] and not re.search(r"^(import|export) ", found[1], re.M)
+    assert "import " not in found[0].partition("\n")[0] and not re.search(r"^(import|export) ", found[0], re.M)
 
 
 def test_a_script_cannot_be_ended_by_a_name(weird, weird_page):
@@ -200,14 +202,6 @@ def test_of_a_response_without_noise_errors_are_not_counted_in_floors(tmp_path):
     assert printed_reason(text, read_results(make_run(tmp_path / "noisy"))) == text
 
 
-def test_a_better_fit_than_the_runs_is_reported(plain):
-    results = read_results(plain)
-    run = results.best["rmse"]["identify"]
-    for share, better in ((0.5, True), (0.99, False)):
-        diagnosed = replace(results, diagnosis={"rmse": {"identify": share * run}})
-        assert ("search longer" in printed_reason("The model is adequate.", diagnosed)) is better
-
-
 def test_what_is_over_axes_says_so_and_what_it_counts():
     assert (together({"x": "um"}), weighed({"x": "um"}), weighed({"x": "um", "y": "nm"})) == ("", [], [])
     assert together({"x": "um", "y": "nm", "z": "m"}) == " (x, y and z together)"
@@ -221,3 +215,18 @@ def test_the_headline_names_the_form_of_what_was_added():
     improvement = {"effects": ["creep", "delay"], "verdict": "adequate", "steps": steps, "reason": "All said."}
     said = verdict(SimpleNamespace(improvement=improvement, share_of_noise=1.0, result=None, diagnosis=None))
     assert said.startswith("Added: creep (voltage) and delay. All said.")
+
+
+@pytest.mark.parametrize(
+    ("verdict", "decision", "sentence"),
+    [
+        ("missing", "missing", "Add creep to the model"),
+        ("adequate", "not missing", "Put the model to work"),
+        ("refused", "not missing", "See below where the model fails"),
+    ],
+)
+def test_the_next_step_follows_from_the_verdict(plain, verdict, decision, sentence):
+    results = read_results(plain)
+    diagnosis = {"verdict": verdict, "candidates": [{"effect": "creep", "decision": decision}], "next_experiment": None}
+    assert sentence in next_step(replace(results, diagnosis=diagnosis))
+    assert "Diagnose the model" in next_step(replace(results, diagnosis={}))

@@ -34,7 +34,7 @@ def test_models_of_the_same_samples_are_in_one_figure(pair, tmp_path):
     page = write_side_by_side(pair, tmp_path / "both.html").read_text(encoding="utf-8")
     content = json.loads(re.search(r'id="content">(.*?)</script>', page, re.S)[1])
     assert [[model["name"] for model in record["models"]] for record in content["records"]] == [["plain", "other"]] * 2
-    assert "plain and other have the same lowest RMSE on the validation records" in page
+    assert "plain and other have the lowest RMSE on the validation records" in page
     assert {path.name for path in (tmp_path / "both").iterdir()} == {
         f"{table}.{form}" for table in ("results", "parameters") for form in ("csv", "tex")
     }
@@ -60,4 +60,14 @@ def test_results_that_are_printed_alike_have_no_winner(tmp_path):
     results = {name: read_folder(make_run(tmp_path / name, samples=80)) for name in ("a", "b")}
     use = "validate" if results["a"].rmse["validate"] is not None else "identify"
     results["b"].rmse[use] *= 1 + 1e-9
-    assert ranking(results).startswith("a and b have the same lowest RMSE on the validation records: ")
+    assert ranking(results).startswith("a and b have the lowest RMSE on the validation records, ")
+
+
+@pytest.mark.parametrize(("other", "tied"), [(0.00492, True), (0.00600, False)])
+def test_a_winner_is_ahead_by_more_than_the_noise_leaves_open(tmp_path, other, tied):
+    """0.00004 um at a noise of 0.00488 um is no victory."""
+    results = {name: read_folder(make_run(tmp_path / name, samples=80)) for name in ("a", "b")}
+    for result, error in zip(results.values(), (0.00488, other), strict=True):
+        result.result["floor"] = 0.00488
+        result.rmse["validate"] = error
+    assert ("differ by less than the noise" in ranking(results)) == tied

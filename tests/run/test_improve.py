@@ -94,7 +94,7 @@ class TestDiagnose:
         proposal = read(out / "diagnosis.json")["next_experiment"]
         assert set(proposal) == {"splits", "file", "why"}
         assert {"amplifier_lag", "sensor_lag"} <= set(proposal["splits"])
-        assert f"run {out / proposal['file']}" in answer.stdout
+        assert f"apply the drive in {out / proposal['file']}" in answer.stdout
         path = out / proposal["file"]
         assert path.read_text(encoding="utf-8").splitlines()[0] == "time [s],u_x [V]"
         time, drive = np.loadtxt(path, delimiter=",", skiprows=1).T
@@ -180,7 +180,7 @@ class TestImprove:
         assert f"These data cannot tell {' from '.join(step['class'])}." in found["reason"]
         assert found["next_experiment"]["splits"] == step["class"]
         path = tmp_path / "out" / found["next_experiment"]["file"]
-        assert path.exists() and f"run {path}" in answer.stdout
+        assert path.exists() and f"apply the drive in {path}" in answer.stdout
 
     def test_the_noise_is_told_with_what_it_was_taken_from(self, improved):
         assert read(improved[1] / "improvement.json")["noise_floor_source"] == {"x": "rest segments"}

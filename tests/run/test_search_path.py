@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from pzt_ident.run.pool import without_working_folder
-from pzt_ident.workbench.session import Session
+from pzt_ident.workbench.runner import Runner
 from workbench.conftest import alone
 
 JOB = """\
@@ -66,9 +66,12 @@ def test_no_file_beside_the_data_is_run(baited, line):
 
 
 def test_nor_by_a_command_of_the_workbench(baited):
-    bench = Session(baited, baited / "workbench")
-    bench.folder.mkdir()
-    alone(bench._run_command("run", ARGUMENTS))
+    async def story():
+        runner = Runner(baited, lambda: None)
+        await runner.run("run", ARGUMENTS)
+        await runner.close()
+
+    alone(story())
     assert ran(baited) == []
     assert (baited / "out" / "result.json").exists()
 

@@ -108,6 +108,23 @@ def test_one_percent_is_of_the_best_that_any_run_found_polished_or_not():
     assert (second["optimizer"], second["success"]) == ("rga", 0)
 
 
+def test_success_is_counted_before_the_polish_and_after_it():
+    """Of four runs that agree once polished, one was there before."""
+    runs = [run("pso", 0, 1.5, 1.0), run("pso", 1, 1.004, 1.0), run("rga", 0, 2.0, 1.001), run("rga", 1, 3.0, 2.5)]
+    first, second = rank(runs, {each["run"]: history((10, each["rmse_before_polish"]["identify"])) for each in runs})
+    assert [row["optimizer"] for row in (first, second)] == ["pso", "rga"]
+    assert (first["success"], first["polished_success"]) == (0.5, 1.0)
+    assert (second["success"], second["polished_success"]) == (0.0, 0.5)
+
+
+def test_a_fit_from_elsewhere_is_no_optimizer():
+    """It counts as the best that is known, and is in no comparison."""
+    runs = [run("pso", 0, 1.5, 1.2), run("start", 0, 1.0)]
+    (row,) = rank(runs, {"pso-0": history((10, 1.5))})
+    assert (row["optimizer"], row["success"], row["polished_success"]) == ("pso", 0.0, 0.0)
+    assert rank([run("start", 0, 1.0)], {}) == []
+
+
 def test_the_best_may_be_unpolished():
     runs = [run("pso", 0, 1.0, 1.5), run("rga", 0, 1.2)]
     rank(runs, {"pso-0": history((10, 1.0)), "rga-0": history((10, 1.2))})

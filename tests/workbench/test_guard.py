@@ -3,18 +3,22 @@
 import itertools
 import json
 import os
+import socket
 
 import pytest
 from starlette.testclient import TestClient
 
 from pzt_ident.errors import InputError
-from pzt_ident.workbench import app as server
+from pzt_ident.workbench import uploads
+from pzt_ident.workbench.gets import GETS as GETS_
 from pzt_ident.workbench.guard import inside
+from pzt_ident.workbench.posts import CHANGES
+from pzt_ident.workbench.serve import bind
 
 from .conftest import GOOD, HOST, TOKEN, form, measured
 
-POSTS = ["upload?name=a.csv", "look", "job", "run", "stop", "model", "report", "add", "remove", "undo"]
-GETS = ["state", "signals", "job", "drive", "events"]
+POSTS = [*CHANGES, "upload?name=a.csv", "reference?name=a.csv", "look", "measurement", "simulate", "report", "export"]
+GETS = [*GETS_, "events"]
 
 
 @pytest.mark.parametrize("name", POSTS)
@@ -50,7 +54,7 @@ def test_a_page_from_elsewhere_is_refused_even_with_the_token(client, origin):
 
 def test_the_page_itself_is_served(client):
     assert client.get("/api/state", headers={"origin": f"http://{HOST}"}).status_code == 200
-    for path in ("/", "/web/workbench.js", "/web/uplot/uPlot.min.css"):
+    for path in ("/", "/web/workbench.js", "/web/workbench.css"):
         answer = client.get(path)
         assert answer.status_code == 200
         assert answer.headers["content-security-policy"].startswith("default-src 'self';")
@@ -74,8 +78,7 @@ def test_no_other_origin_is_ever_let_in(client):
         "/web/..%2fcli.py",
         "/web//etc/passwd",
         "/web/__init__.py",
-        "/web/uplot/LICENSE",
-        "/web/uplot/../page.css/../../cli.py",
+        "/web/../page.css/../../cli.py",
         "/report/..%2f..%2fetc%2fpasswd",
         "/report/",
         "/etc/passwd",
@@ -145,7 +148,7 @@ def test_an_upload_of_2_gb_is_refused_before_it_is_read(client, session):
 
 
 def test_an_upload_that_lies_about_its_size_is_cut_off(client, session, monkeypatch):
-    monkeypatch.setattr(server, "LARGEST_UPLOAD", 1000)
+    monkeypatch.setattr(uploads, "LARGEST_UPLOAD", 1000)
     answer = client.post("/api/upload?name=a.csv", content=itertools.repeat(b"1,2\n3,4\n" * 20, 50))
     assert answer.status_code == 413
     assert not [path for path in session.folder.rglob("*") if path.is_file()]
@@ -212,3 +215,9 @@ def test_two_hosts_in_one_request_are_refused(app):
     client = TestClient(app, base_url=f"http://{HOST}")
     headers = [("host", HOST), ("host", "evil.example"), ("x-pzt-token", GOOD["x-pzt-token"])]
     assert client.get("/api/state", headers=headers).status_code == 421
+
+
+def test_an_answer_does_not_wait_for_an_acknowledgement():
+    """asyncio sets TCP_NODELAY where the protocol of a listener is named."""
+    with bind("127.0.0.1", 0) as listener:
+        assert listener.proto == socket.IPPROTO_TCP

@@ -11,7 +11,7 @@ from pzt_ident.workbench.session_results import gathered
 
 from .conftest import form, measured
 
-DIAGNOSIS = {"verdict": "adequate", "reason": "It is.", "next_experiment": None}
+DIAGNOSIS = {"verdict": "adequate", "reason": "It is.", "candidates": [], "next_experiment": None}
 
 
 def fill(session, identify, unit="um"):

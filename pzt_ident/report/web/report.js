@@ -1,12 +1,14 @@
 import { Explorer } from "./explorer.js";
+import { element } from "./parts.js";
 import { decode } from "./signals.js";
 import { Staircase } from "./staircase.js";
 
 const content = JSON.parse(document.getElementById("content").textContent);
 for (const { place, ...stairs } of content.stairs) new Staircase(document.getElementById(place), stairs);
-const explorer = new Explorer(
-  document.getElementById("explorer"), await Promise.all(content.records.map(decode)), { floors: content.floors },
-);
+const root = document.getElementById("explorer");
+const panes = Object.fromEntries(["bar", "loop", "time"].map((name) => [name, element(root, "div", { class: name === "bar" ? "explorer-bar" : `pane ${name}` })]));
+const spectra = content.spectra && (({ name, axis, use }) => content.spectra.find((item) => item.name === name && item.axis === axis && item.use === use));
+const explorer = new Explorer(panes, await Promise.all(content.records.map(decode)), { floors: content.floors, wheel: "focused", spectra });
 for (const button of document.querySelectorAll("button.reveal"))
   button.addEventListener("click", () => {
     const { record, axis, from, to } = button.dataset;

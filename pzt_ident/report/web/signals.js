@@ -1,4 +1,4 @@
-// The arrays of a record, marks in them, errors over marks, and thinning. Nothing here draws.
+// The arrays of a record, marks in them, and errors over marks. Nothing here draws.
 
 /** A record from the payload of `report/traces.py`: typed arrays over the kept samples (points). */
 export async function decode(packed) {
@@ -69,25 +69,6 @@ export function errorOf(record, model, marks) {
   return { rmse: samples ? Math.sqrt(squares / samples) : NaN, samples, share: total ? squares / total : 0 };
 }
 
-/** Indices of the points to draw of a segment: the minimum and maximum of every array in each bin, and both ends. */
-export function thinned(arrays, first, end, bins) {
-  if (end - first <= 2 * bins) return Array.from({ length: end - first }, (_, i) => first + i);
-  const kept = new Set([first, end - 1]);
-  for (let bin = 0; bin < bins; bin++) {
-    const from = first + Math.floor((bin * (end - first)) / bins);
-    const to = first + Math.floor(((bin + 1) * (end - first)) / bins);
-    for (const values of arrays) {
-      let low = from, high = from;
-      for (let i = from + 1; i < to; i++) {
-        if (values[i] < values[low]) low = i;
-        if (values[i] > values[high]) high = i;
-      }
-      kept.add(low).add(high);
-    }
-  }
-  return [...kept].sort((a, b) => a - b);
-}
-
 /** The first index of an ascending array whose value is not below `value`. */
 export function lowerBound(values, value) {
   let low = 0, high = values.length;
@@ -99,14 +80,35 @@ export function lowerBound(values, value) {
   return low;
 }
 
-/** Deviation of y from the least-squares line through the points from `first` on, which opens a narrow loop. */
+/** Deviation of y from the least-squares line through the points from `first` on, which opens a narrow loop, and the
+ * line: {slope, offset}. */
 export function deviationFromLine(xs, ys, first) {
   const n = xs.length - first;
   let x = 0, y = 0, xx = 0, xy = 0;
   for (let i = first; i < xs.length; i++) { x += xs[i] / n; y += ys[i] / n; }
   for (let i = first; i < xs.length; i++) { xx += (xs[i] - x) ** 2; xy += (xs[i] - x) * (ys[i] - y); }
   const slope = xx ? xy / xx : 0;
-  return ys.map((value, i) => value - y - slope * (xs[i] - x));
+  return [ys.map((value, i) => value - y - slope * (xs[i] - x)), { slope, offset: y - slope * x }];
+}
+
+/** The values at some places of an array. */
+export function sampledAt(values, places) {
+  return Float64Array.from(places, (place) => values[place]);
+}
+
+/** Mean of `values` in each cell of a grid over the plane, from point `first` on; NaN in empty cells. */
+export function gridded(xs, ys, values, first, columns = 110, rows = 72) {
+  const [x, y] = [extent(xs.subarray(first)), extent(ys.subarray(first))];
+  const total = new Float64Array(columns * rows), count = new Float64Array(columns * rows);
+  for (let i = first; i < xs.length; i++) {
+    const column = Math.min(columns - 1, Math.floor(((xs[i] - x[0]) / (x[1] - x[0])) * columns));
+    const row = Math.min(rows - 1, Math.floor(((ys[i] - y[0]) / (y[1] - y[0])) * rows));
+    total[row * columns + column] += values[i];
+    count[row * columns + column] += 1;
+  }
+  const means = Array.from(total, (sum, cell) => (count[cell] ? sum / count[cell] : NaN));
+  const sizes = means.filter((mean) => !Number.isNaN(mean)).map(Math.abs).sort((a, b) => a - b);
+  return { x, y, columns, rows, means, largest: sizes[Math.floor(0.98 * (sizes.length - 1))] || 1 };
 }
 
 export function extent(values) {

@@ -16,45 +16,67 @@ export class Chain {
     });
     root.addEventListener("dragleave", () => root.classList.remove("over"));
     root.addEventListener("drop", (event) => {
+      event.preventDefault();
       root.classList.remove("over");
       this.place(event.dataTransfer.getData("text/plain"));
+    });
+    addEventListener("keydown", (event) => {
+      const details = palette.querySelector("details[open]");
+      if (event.key !== "Escape" || !details) return;
+      details.open = false;
+      details.querySelector("summary").focus();
+    });
+    addEventListener("pointerdown", (event) => {
+      const details = palette.querySelector("details[open]");
+      if (details && !details.contains(event.target) && !root.contains(event.target)) details.open = false;
     });
   }
 
   /** `model` and `effects` are words; `catalogue` has the name, doc, place and kind of every block and effect. */
   show({ model, effects }, catalogue, begun) {
+    const key = JSON.stringify([model, effects, begun]);
+    if (key === this.key) return;
+    this.key = key;
     this.known = Object.fromEntries([...catalogue.blocks, ...catalogue.effects].map((block) => [block.name, block]));
-    this.open = begun === this.begun ? this.palette.querySelector("details")?.open : !begun;
     Object.assign(this, { model, effects, begun });
-    const position = (word) => this.known[word]?.place ?? TERM;
+    const wordOf = (item) => item.split(".")[0];
+    const position = (item) => this.known[wordOf(item)]?.place ?? TERM;
     this.root.replaceChildren();
     element(this.root, "li", { class: "end" }, "drive");
-    for (const word of [...model, ...effects].toSorted((a, b) => position(a) - position(b))) this.showBlock(word);
+    for (const word of [...model, ...effects].toSorted((a, b) => position(a) - position(b))) this.showBlock(word, this.known[wordOf(word)]?.doc ?? "");
     element(this.root, "li", { class: "end" }, "response");
     this.showPalette(catalogue);
   }
 
-  showBlock(word) {
+  showBlock(word, doc) {
     const effect = this.effects.includes(word);
-    const item = element(this.root, "li", { title: this.known[word]?.doc ?? "", ...(effect && { class: "effect" }) }, word);
+    const item = element(this.root, "li", { title: doc, ...(effect && { class: "effect" }) }, word);
     if (!effect && this.model.length === 1) return;
-    const button = element(item, "button", { type: "button", "aria-label": `Remove ${word}`, title: `Remove ${word}` }, "×");
+    const button = element(item, "button", { type: "button", "aria-label": `Remove ${word}`, title: `Remove ${word}`, ...(this.begun && { "data-acts": "" }) }, "×");
     button.addEventListener("click", () => (effect ? this.remove(word) : this.setModel(this.model.filter((other) => other !== word))));
   }
 
   showPalette({ blocks, effects }) {
+    const open = this.palette.querySelector("details")?.open ?? false;
     this.palette.replaceChildren();
-    const details = element(this.palette, "details", this.open ? { open: "" } : {});
-    element(details, "summary", {}, "Choose a block, or drag it onto the chain");
+    if (this.begun) this.showEffects(effects);
+    const details = element(this.palette, "details", open && !this.begun ? { open: "" } : {});
+    element(details, "summary", {}, "Choose blocks");
+    const sheet = element(details, "div", { class: "palette" });
+    element(sheet, "p", { class: "quiet" }, "Click a block, or drag it onto the chain. It replaces the block of the same kind.");
     for (const [kind, title] of Object.entries(KINDS)) {
-      const row = element(details, "div", { class: "bar" });
-      element(row, "span", { class: "quiet" }, title);
+      element(sheet, "p", {}, title);
+      const row = element(sheet, "div", { class: "bar" });
       for (const block of blocks.filter((item) => item.kind === kind)) this.showChip(row, block);
     }
-    if (!this.begun) return;
+  }
+
+  /** A list to choose an effect from; only the button adds it. */
+  showEffects(effects) {
     const free = effects.filter(({ name }) => !this.effects.includes(name));
-    const list = select(this.palette, [["", "Add an effect …"], ...free.map(({ name, doc }) => [name, `${name}: ${doc}`.slice(0, 110)])], "", "Add an effect");
-    list.addEventListener("change", () => list.value && this.add(list.value));
+    const list = select(this.palette, [["", "Add an effect …"], ...free.map(({ name, doc }) => [name, `${name}: ${doc}`.slice(0, 110)])], "", "Effect to add");
+    const button = element(this.palette, "button", { type: "button", "data-acts": "", "aria-label": "Add the chosen effect" }, "Add");
+    button.addEventListener("click", () => (list.value ? this.add(list.value) : list.focus()));
   }
 
   showChip(row, { name, doc }) {

@@ -1,6 +1,8 @@
-import { colour, tick } from "./plane.js";
+import { Figure } from "./figure.js";
+import { extent } from "./signals.js";
 
 const COLOURS = ["--identify", "--validate", "--third", "--fourth", "--before"];
+const DASHES = [[], [6, 3], [2, 2], [8, 2, 2, 2], [4, 2]];
 const INTERVAL = 40; // ms between two drawings, at least
 
 /** Best RMSE so far of every run against evaluations, from the lines of `events.jsonl` as they arrive. */
@@ -8,14 +10,11 @@ export class Convergence {
   constructor(root) {
     this.root = root;
     this.clear();
-    new ResizeObserver(() => this.plot && this.plot.width !== this.size().width && this.draw(true)).observe(root);
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.plot && this.draw(true));
   }
 
   clear() {
     Object.assign(this, { runs: new Map(), unit: "", together: "", best: Infinity, validate: null, done: 0, budget: 0 });
-    this.plot?.destroy();
-    this.plot = null;
+    this.root.hidden = true;
   }
 
   update(event) {
@@ -31,33 +30,24 @@ export class Convergence {
     if (!this.waiting) this.waiting = setTimeout(() => { this.waiting = null; this.draw(); }, INTERVAL);
   }
 
-  size() {
-    return { width: Math.max(280, this.root.clientWidth - 4), height: 210 };
+  draw() {
+    const series = [...this.runs].filter(([, points]) => points.length > 1).map(([label, points], place) => ({
+      label, colour: COLOURS[place % 5], dash: DASHES[Math.floor(place / 5) % 5], ...stairs(points.filter(([, best]) => best > 0)),
+    })).filter(({ xs }) => xs.length);
+    if (!series.length) return;
+    this.root.hidden = false;
+    this.figure ??= new Figure(this.root, { label: "Best RMSE so far of every run over the evaluations of the model", along: true, gestures: { reset: () => this.figure.plot.look(null, null) } });
+    const [x, y] = ["xs", "ys"].map((key) => extent(series.flatMap((line) => [...extent(line[key])])));
+    this.figure.show({ series, x: { label: "evaluations of the model", range: [0, x[1]] }, y: { label: `best RMSE so far${this.together} [${this.unit}]`, range: y, log: true } });
   }
+}
 
-  draw(rebuild = false) {
-    const tables = [...this.runs.values()].map((points) => [points.map(([x]) => x), points.map(([, y]) => y)]);
-    if (!tables.length) return;
-    const data = uPlot.join(tables);
-    if (rebuild || this.plot?.series.length !== data.length) {
-      this.plot?.destroy();
-      this.plot = new uPlot(this.options([...this.runs.keys()]), data, this.root);
-    } else this.plot.setData(data);
+function stairs(points) {
+  const xs = [], ys = [];
+  for (const [x, y] of points) {
+    if (xs.length) { xs.push(x); ys.push(ys.at(-1)); }
+    xs.push(x);
+    ys.push(y);
   }
-
-  options(names) {
-    const font = `${Math.round(0.78 * parseFloat(getComputedStyle(this.root).fontSize))}px system-ui, sans-serif`;
-    const axis = (label, more) => ({ label, labelSize: 18, font, labelFont: font, stroke: () => colour("--quiet"), grid: { stroke: () => colour("--rule"), width: 1 }, ticks: { show: false }, ...more });
-    return {
-      ...this.size(),
-      legend: { live: false },
-      padding: [null, 30, null, null],
-      cursor: { drag: { x: false, y: false } },
-      scales: { x: { time: false }, y: { distr: 3 } },
-      axes: [axis("evaluations of the model", { size: 32 }), axis(`RMSE${this.together} [${this.unit}]`, { size: 62, values: (_, values) => values.map((value) => (value === null ? "" : tick(value))) })],
-      series: [{}, ...names.map((label, place) => ({
-        label, stroke: () => colour(COLOURS[place % 5]), width: 1.5, spanGaps: true, paths: uPlot.paths.stepped({ align: 1 }), points: { show: false },
-      }))],
-    };
-  }
+  return { xs: Float64Array.from(xs), ys: Float64Array.from(ys) };
 }

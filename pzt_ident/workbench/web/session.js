@@ -5,10 +5,10 @@ const [token, dataFile] = decodeURIComponent(location.hash.slice(1)).split("&");
 /** The data file that the workbench was started with. */
 export const initialFile = dataFile ?? "";
 
-/** Request `/api/name`, with a body as POST. Throws an Error with the server's message. */
+/** Request `/api/name`, with a body as POST; a draft is sent even if the page is left. Throws an Error with the server's message. */
 export async function request(name, body, raw = false) {
   const options = { headers: { "x-pzt-token": token } };
-  if (body !== undefined) Object.assign(options, { method: "POST", body: raw ? body : JSON.stringify(body) });
+  if (body !== undefined) Object.assign(options, raw ? { method: "POST", body } : { method: "POST", body: JSON.stringify(body), keepalive: name === "draft" });
   let response;
   try {
     response = await fetch(`/api/${name}`, options);

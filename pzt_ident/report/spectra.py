@@ -1,0 +1,78 @@
+"""Spectrum of the residual, and frequency response of the stage and of its model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pzt_ident.data.notation import unit
+from pzt_ident.data.signals import Trace
+from pzt_ident.run.results import read_results
+
+Array = NDArray[np.float64]
+SEGMENTS = 8  # of a record, half overlapping
+MOVED = 1e-6  # of the largest power of the drive: below it says nothing of a response
+MOST = 2000  # points of a spectrum
+ON_PAPER = 600  # points of all spectra of a report
+
+
+def spectra(run: Path) -> dict[str, Any]:
+    """Of each record and axis: amplitude density of the residual, unit/sqrt(Hz), and the quotient of the cross spectrum
+    of drive and response over the power of the drive (H1), measured and of the model, with the coherence; None where
+    the drive has no power. Welch (1967), Hann windows."""
+    return {"records": [spectrum_of(trace) for trace in read_results(run).traces]}
+
+
+def printed_spectra(traces: Sequence[Trace]) -> list[dict[str, Any]]:
+    """Of each trace, with few points and digits, for a page that holds all it shows."""
+    most = max(ON_PAPER // max(len(traces), 1), 60)
+    return [{key: _short(item) for key, item in spectrum_of(trace, most).items()} for trace in traces]
+
+
+def _short(item: Any) -> Any:
+    if isinstance(item, dict):
+        return {key: _short(value) for key, value in item.items()}
+    return [float(f"{value:.4g}") for value in item] if isinstance(item, np.ndarray) else item
+
+
+def spectrum_of(trace: Trace, most: int = MOST) -> dict[str, Any]:
+    from scipy.signal import csd, welch
+
+    scored = trace.scored
+    drive, response, model = (getattr(trace, name)[scored] for name in ("drive", "response", "model"))
+    residual = trace.residual[scored]
+    rate = (trace.time.size - 1) / float(trace.time[-1] - trace.time[0])
+    options = {"fs": rate, "nperseg": max(8, 2 * residual.size // (SEGMENTS + 1)), "detrend": "linear"}
+    frequency, power = welch(drive, **options)
+    _, rest = welch(residual, **options)
+    responses = {"measured": response, "model": model}
+    crossed = {name: csd(drive, values, **options)[1] for name, values in responses.items()}
+    _, own = welch(response, **options)
+    kept = np.unique(np.geomspace(1, frequency.size - 1, min(most, frequency.size - 1)).astype(int))
+    moved = power[kept] > MOVED * power.max()
+    found: dict[str, Any] = {
+        "name": trace.record,
+        "use": trace.use,
+        "axis": trace.axis,
+        "unit": unit(trace.unit),
+        "driveUnit": unit(trace.drive_unit),
+        "frequency": frequency[kept],
+        "residual": np.sqrt(rest[kept]),
+        "coherence": among(moved, np.abs(crossed["measured"][kept]) ** 2 / (power * own)[kept].clip(1e-300)),
+    }
+    for name, cross in crossed.items():
+        quotient = cross[kept] / power[kept].clip(1e-300)
+        found[name] = {
+            "amplitude": among(moved, np.abs(quotient)),
+            "phase": among(moved, np.degrees(np.angle(quotient))),
+        }
+    return found
+
+
+def among(moved: NDArray[np.bool_], values: Array) -> Array:
+    """NaN where the drive has no power."""
+    return np.where(moved, values, np.nan)

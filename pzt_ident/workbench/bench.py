@@ -1,0 +1,139 @@
+"""The workbench: a session, the command that runs for it, and one change at a time."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import shutil
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Any
+
+from pzt_ident.errors import InputError
+from pzt_ident.files import plain
+from pzt_ident.workbench import adopt, page_state
+from pzt_ident.workbench.runner import Runner
+from pzt_ident.workbench.session import INTERRUPTED, Session
+from pzt_ident.workbench.step_commands import better_fit
+
+Form = dict[str, Any]
+Change = Callable[["Bench", Form], Awaitable[None]]
+
+
+class Bench:
+    """A session with what is done to it. `given`: files that are given away, by keys that cannot be guessed."""
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self.runner = Runner(session.root, self.changed)
+        self.lock = asyncio.Lock()
+        self.making: tuple[str, str] | None = None
+        self.given: dict[str, Path] = {}
+        if session.interrupted:
+            self.runner.failure = INTERRUPTED
+
+    def changed(self) -> None:
+        self.session.version += 1
+
+    @property
+    def busy(self) -> bool:
+        return self.runner.running or self.lock.locked()
+
+    async def change(self, name: str, change: Change, form: Form) -> None:
+        """Make one change after the other. A change that was asked for at another step than the current one, or that
+        is being made as it is asked for again, is not made again."""
+        asked = name, json.dumps(form, sort_keys=True)
+        twice = self.making == asked
+        async with self.lock:
+            here = int(form.get("at", self.session.at)) == self.session.at
+            if twice or not here:
+                return
+            self.making = asked
+            self.changed()
+            try:
+                await change(self, form)
+            finally:
+                self.making = None
+                self.changed()
+
+    async def step(self, make: Callable[[], None]) -> None:
+        """Make a step and fill it."""
+        await self.runner.stop()
+        await asyncio.to_thread(make)
+        self.fill()
+
+    async def move(self, go: Callable[[], None]) -> None:
+        """Go to another step."""
+        await self.runner.stop()
+        go()
+        self.runner.failure = ""
+
+    def fill(self) -> None:
+        """Run what the current step lacks; nothing where that is being done already."""
+        if not self.runner.running:
+            step = self.session.step()
+            self.runner.start(self._fill(step))
+
+    async def _fill(self, step: Path) -> None:
+        for command in self.session.commands(step):
+            if command.last.exists():
+                continue
+            if command.name == "diagnose":
+                shutil.rmtree(command.last.parent, ignore_errors=True)
+            await self.command(command.name, command.arguments)
+        if better_fit(step):
+            run, diagnosis = (self.session.relative(step / name) for name in ("run", "diagnosis"))
+            flags = ["--no-report", *self.session.plugins_flag]
+            await self.command("run", ["resume", run, "--from", diagnosis, *flags])
+
+    async def command(self, name: str, arguments: list[str]) -> None:
+        """Log a command and run it to its end."""
+        self.session.log(["pzt-ident", *map(self.session.again_word, arguments)])
+        await self.runner.run(name, arguments)
+
+    def improve(self, budget: str | None) -> None:
+        """Run `improve` on the current step; its steps become steps of the session."""
+        if not self.runner.running:
+            self.runner.start(self._improve(self.session.step(), budget))
+
+    async def _improve(self, step: Path, budget: str | None) -> None:
+        session, out = self.session, step / "improved"
+        shutil.rmtree(out, ignore_errors=True)
+        job, run, folder = (session.relative(path) for path in (step / "job.yaml", step / "run", out))
+        start = ["--from", run] if (step / "run" / "result.json").exists() else []
+        more = ["--budget", budget] if budget else []
+        flags = ["--no-report", *session.plugins_flag]
+        await self.command("improve", ["improve", job, *start, "--out", folder, *more, *flags])
+        for number in await asyncio.to_thread(adopt.improvement, session, step):
+            await self._fill(session.step(number)) if number == session.at else await self._run(session.step(number))
+
+    async def _run(self, step: Path) -> None:
+        first = self.session.commands(step)[0]
+        await self.command(first.name, first.arguments)
+
+    def put_to_work(self, reference: Path, options: list[str]) -> None:
+        """Run `control` and `drive` on the current step."""
+        if not self.runner.running:
+            self.runner.start(self._put_to_work(self.session.step(), reference, options))
+
+    async def _put_to_work(self, step: Path, reference: Path, options: list[str]) -> None:
+        if not (step / "run" / "result.json").exists():
+            raise InputError("this step has no result yet", remedy="run it first")
+        name_of, flags = self.session.relative, self.session.plugins_flag
+        shutil.rmtree(step / "control", ignore_errors=True)
+        arguments = [name_of(step / "run"), "--reference", name_of(reference), *options, *flags]
+        await self.command("control", ["control", *arguments, "--out", name_of(step / "control")])
+        await self.command("control", ["drive", *arguments, "-o", name_of(step / "control" / "drive.csv")])
+
+    def state(self) -> dict[str, Any]:
+        """All that the page shows, but signals."""
+        self.session.settle()
+        runner = self.runner
+        doing = {"stage": runner.stage, "since": runner.since, "busy": self.busy, "running": runner.running}
+        failure = self.session.readable(runner.failure)
+        state = page_state.state(self.session) | doing | {"failure": failure}
+        state["headline"] = page_state.headline(state)
+        return dict(plain(state))
+
+    async def close(self) -> None:
+        await self.runner.close()

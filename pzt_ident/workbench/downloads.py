@@ -1,0 +1,76 @@
+"""The files of a step that the page gives away."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from pathlib import Path
+
+from pzt_ident.errors import InputError, nearest
+from pzt_ident.files import write_text
+from pzt_ident.job.edit import edited
+from pzt_ident.workbench.session import Session
+from pzt_ident.workbench.session_results import gathered
+
+PLACES = {
+    "job.yaml": "job.yaml",
+    "result.json": "run/result.json",
+    "history.csv": "run/history.csv",
+    "signals.nc": "run/signals.nc",
+    "residuals.json": "run/residuals.json",
+    "diagnosis.json": "diagnosis/diagnosis.json",
+    "next_experiment.csv": "diagnosis/next_experiment.csv",
+    "drive.csv": "control/drive.csv",
+    "control.csv": "control/control.csv",
+    "control.json": "control/control.json",
+    "tracking.svg": "control/tracking.svg",
+    "tracking.pdf": "control/tracking.pdf",
+}
+"""Files of a step by the name under which they are given."""
+
+FOLDERS = {"figures.zip": "figures", "tables.zip": "tables"}
+"""Folders of a report, packed when they are asked for."""
+
+
+def names(session: Session) -> list[str]:
+    """Of all that can be had of the current step."""
+    if not session.at:
+        return []
+    step = session.step()
+    found = [name for name, place in PLACES.items() if (step / place).exists()]
+    return found + (list(FOLDERS) if (step / "run" / "result.json").exists() else [])
+
+
+def path_of(session: Session, name: str) -> Path:
+    """The file of a name; figures and tables are drawn first. Raises InputError for what is not there."""
+    known = names(session)
+    if name not in known:
+        raise InputError(f"{name!r} cannot be had of this step", remedy=nearest(name, known) if known else "")
+    step = session.step()
+    if name in FOLDERS:
+        return packed_folder(session, name)
+    if name == "job.yaml":
+        job, path = session.job(), step / "job-to-take.yaml"
+        write_text(path, edited(job, job.effects, session.root))
+        return path
+    return step / PLACES[name]
+
+
+def packed_folder(session: Session, name: str) -> Path:
+    """Figures as PDF and SVG at two widths, or tables as CSV and LaTeX, in an archive."""
+    from pzt_ident.report.figures import write_all_figures
+    from pzt_ident.report.page import write_report
+
+    run = gathered(session)
+    write_report(run)
+    if name == "figures.zip":
+        write_all_figures([run])
+    return archive(run / FOLDERS[name], session.step() / name)
+
+
+def archive(folder: Path, path: Path) -> Path:
+    """A folder as a zip file."""
+    with tempfile.TemporaryDirectory(dir=path.parent) as scratch:
+        made = shutil.make_archive(str(Path(scratch) / "packed"), "zip", folder)
+        Path(made).replace(path)
+    return path

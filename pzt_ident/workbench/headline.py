@@ -1,0 +1,52 @@
+"""The two lines at the head of the page: the verdict, and the one thing to do next."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+DOING = {
+    "run": "The model is being fitted.",
+    "diagnose": "Each effect of the catalogue is being tried.",
+    "improve": "What is missing is being added, effect by effect.",
+    "control": "The drive for the reference is being computed.",
+}
+State = Mapping[str, Any]
+
+
+def headline(state: State) -> dict[str, Any]:
+    """`verdict` and `next` as sentences, and `action`: the change that `next` means, None where there is none."""
+    verdict, following, action = _headline(state)
+    return {"verdict": verdict, "next": following, "action": action}
+
+
+def _headline(state: State) -> tuple[str, str, dict[str, Any] | None]:
+    if not state["steps"]:
+        return "Drop a measurement.", "Then confirm its columns.", None
+    if state["running"]:
+        return DOING.get(state["stage"], "The command is being started."), "", act("stop", {}, "Stop")
+    if state["failure"]:
+        return state["failure"], "Run it again.", act("run", {}, "Resume")
+    result, diagnosis = state["result"], state["diagnosis"]
+    if not result or not diagnosis:
+        return "The job is ready.", "Identify the model.", act("run", {}, "Identify")
+    return (diagnosis["reason"], *_next(diagnosis))
+
+
+def _next(diagnosis: State) -> tuple[str, dict[str, Any] | None]:
+    best = next((item for item in diagnosis["candidates"] if item["decision"] == "missing"), None)
+    if best:
+        name = best.get("item", best["effect"])
+        following = f"Add {name}, and see whether the error falls."
+        if diagnosis["verdict"] == "inconclusive" and diagnosis["next_experiment"]:
+            following = f"Add {name}, or measure again with the proposed drive, which tells them apart."
+        return following, act("add", {"effect": name}, f"Add {name}")
+    if diagnosis["verdict"] == "adequate":
+        return "Put the model to work: drop a reference to follow, or export it.", None
+    if diagnosis["verdict"] == "refused":
+        return "Narrow the bounds of the parameters, or choose another model.", None
+    return "Let two effects be tried together, and each in its other forms.", act("improve", {}, "Improve")
+
+
+def act(name: str, body: dict[str, Any], label: str) -> dict[str, Any]:
+    return {"name": name, "body": body, "label": label}

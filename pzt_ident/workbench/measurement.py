@@ -1,0 +1,155 @@
+"""A measurement before there is a job: its signals to be drawn, and what can be guessed from them."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pzt_ident.control.notes import frequency
+from pzt_ident.data.noise import noise_floor
+from pzt_ident.data.notation import unit as printed_unit
+from pzt_ident.data.record import Record
+from pzt_ident.data.units import factor
+from pzt_ident.report.style import decimate
+from pzt_ident.workbench.columns import columns_of, hertz, values_of
+
+Array = NDArray[np.float64]
+Files = Sequence[tuple[Path, str | None]]
+Roles = Mapping[str, Mapping[str, Any]]
+
+WHOLE = 20_000  # samples of a channel that are sent as they are; of a longer one its extremes
+SHORTEST_REST = 0.02  # of a record
+SHORTEST = 8  # samples
+
+
+def measured(records: Sequence[Files], columns: Roles | None = None) -> dict[str, Any]:
+    """The channels of each record, and the guess. columns: by role (`time`, `x.drive`, `x.response`), each with its
+    `number` and, among several files, `of`, and its `unit`; as guessed from all records unless given."""
+    found = [columns_of(*files) for files in records]
+    roles = dict(columns) if columns else guessed(found)
+    made = [signals_of(files, facts, roles) for files, facts in zip(records, found, strict=True)]
+    return {"records": [sent(*item) for item in made], "guess": guess_of([item[2] for item in made], roles)}
+
+
+def guessed(found: Sequence[dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """The columns by role: those of the record in which most roles are found, since a signal may rest in one."""
+    by_record = [{item["role"]: item for item in facts["columns"] if item["role"]} for facts in found]
+    return max(by_record, key=len)
+
+
+def signals_of(files: Files, facts: dict[str, Any], roles: Roles) -> tuple[str, dict[str, Array], Record | None]:
+    """Name, channels by role in the user's units, and the record that they make in SI units, if they make one."""
+    columns = values_of(*files)
+    channels = {
+        role: columns[int(column.get("of", 0)), int(column["number"])]
+        for role, column in roles.items()
+        if (int(column.get("of", 0)), int(column["number"])) in columns
+    }
+    name = files[0][0].stem + (f" {files[0][1]}" if files[0][1] else "")
+    return name, channels, record_of(name, channels, roles, facts)
+
+
+def record_of(name: str, channels: dict[str, Array], roles: Roles, facts: dict[str, Any]) -> Record | None:
+    """The record of channels, gaps bridged by lines; None without a drive, or with hardly any samples."""
+    axes = [role.partition(".")[0] for role in channels if role.endswith(".drive")]
+    samples = next((values.size for values in channels.values()), 0)
+    if not axes or samples < SHORTEST:
+        return None
+    units = {role: roles[role].get("unit") or ("um" if role.endswith("response") else "V") for role in channels}
+    unmeasured = np.full(samples, np.nan)
+
+    def rows(side: str) -> Array:
+        names = [f"{axis}.{side}" for axis in axes]
+        return np.array([bridged(channels[n]) * factor(units[n]) if n in channels else unmeasured for n in names])
+
+    time, time_unit = channels.get("time"), roles.get("time", {}).get("unit") or "s"
+    return Record(
+        name,
+        "identify",
+        sample_time(time, time_unit, facts["rate"]),
+        rows("drive"),
+        rows("response"),
+        start=float(bridged(time)[0]) * factor(time_unit) if time is not None else 0.0,
+        axes=tuple(axes),
+        drive_units=tuple(units[f"{axis}.drive"] for axis in axes),
+        response_units=tuple(units.get(f"{axis}.response") for axis in axes),
+    )
+
+
+def bridged(values: Array) -> Array:
+    """A signal with its missing values on lines between their neighbours."""
+    known = np.isfinite(values)
+    at = np.arange(values.size)
+    return values if known.all() else np.interp(at, at[known], values[known])
+
+
+def sample_time(time: Array | None, unit: str, rate: str) -> float:
+    """s; 1 where neither a column of time nor a rate is there."""
+    if time is not None:
+        return float(np.nanmax(time) - np.nanmin(time)) / max(1, time.size - 1) * factor(unit) or 1.0
+    return 1 / hertz(rate) if rate else 1.0
+
+
+def sent(name: str, channels: dict[str, Array], record: Record | None) -> dict[str, Any]:
+    """Channels as 32-bit floats: `positions` are the samples that were kept, None where all were."""
+    samples = max((values.size for values in channels.values()), default=0)
+    kept = None
+    if samples > WHOLE:
+        curves = [values for role, values in channels.items() if role != "time"]
+        kept = np.unique(np.concatenate([decimate(values, WHOLE // (2 * max(1, len(curves)))) for values in curves]))
+    return {
+        "name": name,
+        "t0": record.start if record else 0.0,
+        "dt": record.dt if record else 1.0,
+        "samples": samples,
+        "positions": None if kept is None else encoded(kept.astype("<i4")),
+        "channels": {
+            role: {"data": encoded((values if kept is None else values[kept]).astype("<f4"))}
+            for role, values in channels.items()
+        },
+    }
+
+
+def encoded(values: NDArray[Any]) -> str:
+    return base64.b64encode(values.tobytes()).decode()
+
+
+def guess_of(records: Sequence[Record | None], roles: Roles) -> dict[str, Any]:
+    """What the page says of the measurement at the drop: by axis the largest amplitude and frequency of the drive and
+    the noise floor; of each record its rests."""
+    whole = [record for record in records if record is not None]
+    columns = {role: {key: item.get(key) for key in ("number", "of", "name", "unit")} for role, item in roles.items()}
+    guess: dict[str, Any] = {"columns": columns, "rate": 1 / whole[0].dt if whole else None}
+    guess["rests"] = [rests(record) if record else [] for record in records]
+    axes = list(enumerate(whole[0].axes)) if whole and len({record.axes for record in whole}) == 1 else []
+    guess["amplitude"] = {axis: amplitude_of(whole, number) for number, axis in axes}
+    guess["frequency"] = {axis: max(frequency(r.drive[number], r.dt) for r in whole) for number, axis in axes}
+    measured_axes = [(number, axis) for number, axis in axes if number in whole[0].measured]
+    guess["noise_floor"] = {axis: floor_of(whole, number) for number, axis in measured_axes}
+    return guess
+
+
+def amplitude_of(records: Sequence[Record], axis: int) -> dict[str, Any]:
+    """The largest span of a drive."""
+    unit = records[0].drive_units[axis]
+    span = max(float(np.ptp(record.drive[axis])) for record in records)
+    return {"value": span / factor(unit), "unit": printed_unit(unit)}
+
+
+def floor_of(records: Sequence[Record], axis: int) -> dict[str, Any]:
+    unit, floor = str(records[0].response_units[axis]), noise_floor(list(records), axis)
+    return {"value": floor.value / factor(unit), "unit": printed_unit(unit), "source": floor.source}
+
+
+def rests(record: Record) -> list[list[float]]:
+    """Begin and end of the intervals in which no drive moves, s, the longer ones."""
+    span = np.ptp(record.drive, axis=1, keepdims=True)
+    still = (np.abs(np.diff(record.drive, axis=1)) <= 1e-6 * np.maximum(span, 1e-300)).all(axis=0)
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(int), [0]]))).reshape(-1, 2)
+    long = [(a, b) for a, b in edges if b - a >= SHORTEST_REST * record.samples]
+    return [[record.start + a * record.dt, record.start + b * record.dt] for a, b in long]

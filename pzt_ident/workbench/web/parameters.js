@@ -1,0 +1,85 @@
+import { element } from "./parts.js";
+import { number } from "./signals.js";
+import { plain, slider } from "./slider.js";
+
+const VERDICTS = { yes: ["determined", "good"], no: ["not determined", "warn"] };
+
+/** The parameters of the current model: value, interval, unit, bounds and verdict of each, and a slider that moves the
+ * model in the plots. `page` has move(values), settle(body), polish(values), acts(button). */
+export class Parameters {
+  constructor(root, page) {
+    Object.assign(this, { root, page, values: {}, key: "" });
+  }
+
+  show(parameters, unit, rmse) {
+    const key = JSON.stringify([parameters, unit, rmse]);
+    if (key === this.key) return;
+    Object.assign(this, { key, unit, rmse, parameters, values: {}, sliders: {} });
+    this.root.replaceChildren();
+    if (!parameters?.length) return void element(this.root, "p", { class: "quiet" }, "The parameters are shown here when the model has been identified.");
+    const bar = element(this.root, "div", { class: "sticky bar" });
+    this.error = element(bar, "strong", { role: "status" });
+    this.reset = element(bar, "button", { type: "button", class: "push" }, "Reset");
+    this.reset.addEventListener("click", () => this.back());
+    this.polish = element(bar, "button", { type: "button", class: "strong", "data-acts": "", title: "Local least squares from these values" }, "Polish from here");
+    this.polish.addEventListener("click", () => this.page.polish({ ...this.values }));
+    this.showError();
+    for (const parameter of parameters) this.entry(parameter);
+    this.told();
+  }
+
+  entry(parameter) {
+    const { name, unit, low, high, bounds, fixed, at_bound: atBound, determined, physics } = parameter;
+    const entry = element(this.root, "div", { class: "parameter", role: "group", "aria-label": name });
+    const head = element(entry, "div", { class: "parameter-head" });
+    element(head, "strong", { title: physics ?? "" }, name);
+    const line = element(entry, "div", { class: "slide" });
+    const [lowest, highest] = ["lower", "upper"].map((side, i) => [side, bounds[i]]);
+    this.bound(line, parameter, lowest, 0);
+    const made = slider(line, head, parameter, (value) => this.move(name, value));
+    this.sliders[name] = { ...made, value: parameter.value };
+    this.bound(line, parameter, highest, 1);
+    const fix = element(element(line, "label", { title: "Keep this value in the next fit" }, ""), "input", { type: "checkbox", "aria-label": `Fix ${name}`, ...(fixed && { checked: "" }) });
+    fix.after("fix");
+    fix.addEventListener("change", () => this.page.settle(fix.checked ? { parameter: name, value: this.values[name] ?? parameter.value } : { parameter: name, free: true }, () => { fix.checked = fixed; }));
+    const facts = element(entry, "small", {}, low !== null && low !== undefined && !fixed ? `95 %: ${number(low, 4)} to ${number(high, 4)} ${unit ?? ""} ` : "");
+    const [text, style] = fixed ? ["fixed", ""] : VERDICTS[determined] ?? [determined ?? "", "warn"];
+    if (text) element(facts, "span", { class: `tag ${style}` }, text);
+    if (atBound) element(facts, "span", { class: "tag warn" }, "at its bound");
+  }
+
+  bound(line, { name, bounds, unit }, [side, value], place) {
+    const field = element(line, "input", { type: "text", inputmode: "decimal", value: plain(value, 4), "aria-label": `${name}, ${side} bound${unit ? ` in ${unit}` : ""}` });
+    field.addEventListener("change", () => {
+      const changed = [...bounds];
+      changed[place] = Number(field.value.replace("−", "-"));
+      if (Number.isFinite(changed[place]) && changed[0] < changed[1]) this.page.settle({ parameter: name, bounds: changed }, () => { field.value = plain(value, 4); });
+      else field.value = plain(value, 4);
+    });
+  }
+
+  move(name, value) {
+    this.values[name] = value;
+    this.page.move({ ...this.values });
+    this.told();
+  }
+
+  back() {
+    this.values = {};
+    for (const { set, value } of Object.values(this.sliders)) set(value);
+    this.showError();
+    this.page.move(null);
+    this.told();
+  }
+
+  told() {
+    for (const button of [this.reset, this.polish]) button.hidden = !Object.keys(this.values).length;
+  }
+
+  /** The error of the model, or of what the sliders make of it. */
+  showError(moved = null) {
+    const text = (rmse) => ["validate", "identify"].filter((use) => rmse?.[use] !== null && rmse?.[use] !== undefined).map((use) => `${number(rmse[use])} ${this.unit} ${use === "validate" ? "validation" : "identification"}`).join(", ");
+    const rmse = moved ?? this.rmse;
+    this.error.textContent = rmse ? `RMSE ${text(rmse)}` : "Not fitted yet";
+  }
+}

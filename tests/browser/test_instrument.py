@@ -1,0 +1,244 @@
+"""The workbench as an instrument: one fitted demo, looked at, touched and asked for everything, by mouse and keys."""
+
+import csv
+import json
+import re
+from importlib.resources import files
+
+import pytest
+from playwright.sync_api import expect
+
+from browser.conftest import faults_of, workbenches
+
+SAMPLE = files("pzt_ident.job").joinpath("examples", "demo")
+JOB = """\
+name: demo
+records: [{file: identify.csv, use: identify}, {file: validate.csv, use: validate}]
+channels:
+  time: "time [s]"
+  axes: {x: {drive: "u_x [V]", response: "x [um]"}}
+model: [bouc_wen]
+optimizers:
+  - {name: pso, population: 20, generations: 30}
+rule_out: [asymmetry, friction, thermal_relaxation, amplifier_lag, amplitude_gain, delay, distributed_memory, drift]
+"""
+SHEETS = ("parameters", "misfit", "candidates", "steps", "optimizers", "control", "commands")
+INK = "place => document.querySelectorAll('.plot canvas.moving')[place].toDataURL()"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    made = tmp_path_factory.mktemp("instrument")
+    for name in ("identify.csv", "validate.csv"):
+        header, *rows = SAMPLE.joinpath(name).read_text(encoding="utf-8").splitlines()
+        (made / name).write_text("\n".join([header, *rows[::4]]) + "\n", encoding="utf-8")
+    (made / "job.yaml").write_text(JOB, encoding="utf-8")
+    return made
+
+
+@pytest.fixture(scope="module")
+def fitted(browsing, folder):
+    with workbenches(folder) as start, browsing() as page:
+        page.goto(start("job.yaml"))
+        page.click("#action")
+        expect(page.locator("#action")).to_have_text("Add quadratic_gain")
+        expect(page.locator("body.busy")).to_have_count(0)
+        yield page
+
+
+@pytest.fixture
+def shown(fitted):
+    """The page as it opens: nothing zoomed, marked or moved."""
+    fitted.click("text=Show all")
+    fitted.click("#tab-parameters")
+    return fitted
+
+
+def state_of(folder):
+    return json.loads((folder / "workbench" / "state.json").read_text())
+
+
+def span(page):
+    """Where the time axis begins and ends."""
+    return page.evaluate("document.querySelector('#time .plot').dataset.span.split(' ').map(Number)")
+
+
+def middle(page, selector):
+    box = page.locator(selector).first.bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (1920, 1080), (1024, 768)])
+def test_all_is_on_one_screen(shown, size):
+    shown.set_viewport_size({"width": size[0], "height": size[1]})
+    root = shown.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]")
+    assert tuple(root) <= size and root[1] <= size[1]
+    for part in ("#loop .plot", "#time .plot >> nth=1", ".stairs svg", "#panel", "#action", "#blocks"):
+        box = shown.locator(part).first.bounding_box()
+        assert box["height"] > 20 and box["y"] + box["height"] <= size[1] and box["x"] + box["width"] <= size[0]
+    shown.set_viewport_size({"width": 1280, "height": 800})
+
+
+@pytest.mark.parametrize("sheet", SHEETS)
+def test_each_sheet_is_accessible(shown, sheet):
+    shown.click(f"#tab-{sheet}")
+    assert faults_of(shown) == []
+
+
+def test_targets_are_large_enough_to_touch(shown):
+    for target in shown.locator(":is(button, select, input, summary):visible").all():
+        box = target.bounding_box()
+        assert min(box["width"], box["height"]) >= 23.9, target.evaluate("item => item.outerHTML")
+
+
+def test_the_tabs_go_by_the_arrow_keys(shown):
+    shown.focus("#tab-parameters")
+    shown.keyboard.press("ArrowRight")
+    expect(shown.locator("#sheet-misfit")).to_be_visible()
+    expect(shown.locator("#tab-misfit")).to_be_focused()
+    shown.locator("#sheet-misfit button").first.click()
+    expect(shown.locator(".readout")).to_contain_text("Marked from")
+    shown.click("text=Clear mark")
+
+
+def test_wheel_drag_and_double_click_in_time(shown):
+    whole = span(shown)
+    shown.mouse.move(*middle(shown, "#time .plot"))
+    shown.mouse.wheel(0, -400)
+    zoomed = span(shown)
+    assert whole[0] < zoomed[0] < zoomed[1] < whole[1]
+    x, y = middle(shown, "#time .plot")
+    shown.mouse.down()
+    shown.mouse.move(x + 80, y, steps=3)
+    shown.mouse.up()
+    assert span(shown)[0] < zoomed[0]
+    shown.mouse.dblclick(x, y)
+    assert span(shown) == whole
+
+
+def test_the_loop_zooms_by_wheel_and_keys(shown):
+    before = shown.evaluate(INK, 0)
+    shown.mouse.move(*middle(shown, "#loop .plot"))
+    shown.mouse.wheel(0, -300)
+    near = shown.evaluate(INK, 0)
+    assert near != before
+    shown.focus("#loop .plot")
+    shown.keyboard.press("-")
+    shown.keyboard.press("0")
+    assert shown.evaluate(INK, 0) == before
+
+
+def test_the_cursor_reads_all_plots(shown):
+    shown.mouse.move(*middle(shown, "#time .plot"))
+    expect(shown.locator("#loop .legend .value").first).to_contain_text("µm")
+    expect(shown.locator(".readout")).to_contain_text(re.compile(r"s, drive [\d.]+ V"))
+    shown.mouse.move(5, 5)
+    shown.focus("#time .plot")
+    shown.keyboard.press("ArrowRight")
+    first = shown.text_content(".readout")
+    shown.keyboard.press("ArrowRight")
+    assert shown.text_content(".readout") != first
+    shown.keyboard.press("Escape")
+
+
+def test_colours_and_the_views_over_frequency(shown):
+    shown.select_option("[aria-label='Colour of the loop']", "rate")
+    expect(shown.locator("#loop .legend")).to_contain_text("V/s")
+    shown.select_option("[aria-label='View over time or frequency']", "spectrum")
+    expect(shown.locator("#time .legend").first).to_have_text("residual")
+    shown.select_option("[aria-label='View over time or frequency']", "bode")
+    expect(shown.locator("#time .legend").first).to_contain_text("measured")
+    shown.select_option("[aria-label='View over time or frequency']", "time")
+    shown.select_option("[aria-label='Colour of the loop']", "")
+
+
+def test_a_slider_moves_the_model_and_reset_brings_it_back(shown):
+    before, ink = shown.text_content("#sheet-parameters [role=status]"), shown.evaluate(INK, 1)
+    shown.locator(".parameter input[type=range]").first.focus()
+    shown.keyboard.press("PageUp")
+    expect(shown.locator("#time .legend").first).to_contain_text("with these values")
+    expect(shown.locator("#sheet-parameters [role=status]")).not_to_have_text(before)
+    shown.click("text=Reset")
+    expect(shown.locator("#time .legend").first).not_to_contain_text("with these values")
+    expect(shown.locator("#sheet-parameters [role=status]")).to_have_text(before)
+    assert shown.evaluate(INK, 1) == ink
+
+
+def test_a_proposed_effect_is_shown_before_it_is_added(shown, folder):
+    shown.click("#tab-candidates")
+    card = shown.locator(".card", has_text="quadratic_gain").first
+    card.locator("summary").click()
+    card.locator("input[type=range]").focus()
+    shown.keyboard.press("PageUp")
+    expect(card.locator("[role=status]")).to_contain_text("RMSE")
+    expect(shown.locator("#time .legend").first).to_contain_text("with these values")
+    card.locator("summary").click()
+    expect(shown.locator("#time .legend").first).not_to_contain_text("with these values")
+    assert len(state_of(folder)["steps"]) == 1
+
+
+def test_choosing_an_effect_by_key_starts_nothing(shown, folder):
+    shown.focus("[aria-label='Effect to add']")
+    shown.keyboard.press("ArrowDown")
+    shown.wait_for_timeout(400)
+    expect(shown.locator("body.busy")).to_have_count(0)
+    assert len(state_of(folder)["steps"]) == 1
+    shown.select_option("[aria-label='Effect to add']", "")
+
+
+def test_a_note_stays_with_its_step(shown):
+    shown.click("#tab-steps")
+    shown.fill("[aria-label='Note to step 1']", "cold stage")
+    shown.keyboard.press("Tab")
+    expect(shown.locator(".stairs text.note")).to_have_text("cold stage")
+    shown.reload()
+    expect(shown.locator(".stairs text.note")).to_have_text("cold stage")
+
+
+def test_a_reference_is_followed(shown, folder):
+    rows = [f"{i / 100},{4 + (3 * min(i, 400 - i)) / 200}" for i in range(400)]
+    (folder / "ramp.csv").write_text("\n".join(["time [s],x [um]", *rows]) + "\n", encoding="utf-8")
+    shown.click("#tab-control")
+    shown.set_input_files("#sheet-control input[type=file]", folder / "ramp.csv")
+    expect(shown.locator("#sheet-control [role=status]")).to_contain_text("400 samples")
+    shown.click("#follow")
+    expect(shown.locator("#ways tbody tr")).to_have_count(3)
+    expect(shown.locator("body.busy")).to_have_count(0)
+    with shown.expect_download() as download:
+        shown.click("#take-drive")
+    with open(download.value.path(), encoding="utf-8") as drive:
+        assert len(list(csv.reader(drive))) > 400
+
+
+def test_the_model_and_the_figures_are_given_away(shown):
+    shown.click("#tab-commands")
+    for button in ("[data-export=csv]", ".downloads button:text-is('tables.zip')"):
+        with shown.expect_download() as download:
+            shown.click(button)
+        assert download.value.path().stat().st_size > 300
+
+
+def test_a_double_click_on_add_adds_once_and_two_steps_are_compared(shown, folder):
+    shown.locator("#action").dblclick()
+    expect(shown.locator("#action")).to_have_attribute("aria-disabled", "true")
+    expect(shown.locator(".stairs .mark.identify:not(.live)")).to_have_count(2)
+    expect(shown.locator("body.busy")).to_have_count(0)
+    assert [step["change"] for step in state_of(folder)["steps"]] == ["as given", "+ quadratic_gain"]
+    shown.reload()
+    expect(shown.locator("#blocks li.effect")).to_have_text("quadratic_gain×")
+    shown.click("#tab-steps")
+    expect(shown.locator("#step-2")).to_contain_text("Expected before")
+    for step in (1, 2):
+        shown.check(f"[aria-label='Compare step {step}']")
+    shown.click("text=Compare two steps")
+    expect(shown.locator("#time .legend").first).to_contain_text("step 1")
+
+
+def test_it_is_improved_by_mouse_and_the_staircase_falls(shown, folder):
+    shown.click("#improve")
+    expect(shown.locator("#stop")).to_be_visible()
+    expect(shown.locator(".stairs .mark.identify.live").first).to_be_visible()  # grows while it runs
+    expect(shown.locator("body.busy")).to_have_count(0)
+    steps = [step["change"] for step in state_of(folder)["steps"]]
+    assert steps[:2] == ["as given", "+ quadratic_gain"] and "+ creep" in steps
+    assert shown.locator(".stairs .mark.identify:not(.live)").count() == len(steps)

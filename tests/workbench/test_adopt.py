@@ -1,0 +1,70 @@
+"""The steps of an improvement become steps of the session, and keep what was left undecided."""
+
+import json
+
+import pytest
+
+from pzt_ident.job.edit import edited
+from pzt_ident.workbench import adopt, page_state
+
+from .conftest import form, measured
+
+
+def stair(effects, added=None, removed=None, tied=(), steps=(1,)):
+    value = {"value": 0.3, "unit": "1", "standard_error": 0.01}
+    return {
+        "added": added,
+        "removed": removed,
+        "form": None,
+        "change": None,
+        "class": list(tied),
+        "effects": list(effects),
+        "steps": list(steps),
+        "rmse": {"identify": 0.5, "validate": None},
+        "parameters": {"bouc_wen.alpha": value},
+    }
+
+
+@pytest.fixture
+def improved(session):
+    measured(session.root / "data.csv")
+    session.begin(form())
+    out = session.step() / "improved"
+    out.mkdir()
+    stairs = [
+        stair([]),
+        stair(["creep"], added="creep", tied=("creep", "drift"), steps=(2,)),
+        stair(["creep", "friction"], added="friction"),
+        stair(["creep"], removed="friction"),
+    ]
+    (out / "improvement.json").write_text(json.dumps({"steps": stairs}))
+    job = session.job()
+    (out / "improved.yaml").write_text(edited(job, ("creep",), out, steps=[4]))
+    return session
+
+
+def test_each_step_has_its_job_and_starts_from_the_fit_that_was_found(improved):
+    assert adopt.improvement(improved, improved.step()) == [2, 3, 4]
+    assert [entry["change"] for entry in improved.chain()] == ["as given", "+ creep", "+ friction", "− friction"]
+    assert [improved.job(n).effects for n in (2, 3, 4)] == [("creep",), ("creep", "friction"), ("creep",)]
+    assert [improved.job(n).records[0].steps for n in (2, 4)] == [2, 4]
+    for entry in improved.chain()[1:]:
+        start = json.loads((improved.folder / entry["from"]).read_text())
+        assert start["parameters"]["bouc_wen.alpha"]["value"] == 0.3 and entry["promised"]["identify"] == 0.5
+        (command, _) = improved.commands(improved.step(entry["number"]))
+        assert "--no-search" in command.arguments
+
+
+def test_what_could_not_be_told_apart_is_said_while_it_is_in_the_model(improved):
+    adopt.improvement(improved, improved.step())
+    assert page_state.tied_sentences(improved) == " These data cannot tell creep from drift."
+    improved.remove("creep")
+    assert page_state.tied_sentences(improved) == ""
+
+
+def test_steps_that_come_are_shown(improved):
+    log = improved.step() / "improved" / "events.jsonl"
+    lines = [{"event": "scored"}, {"event": "stair", **stair([])}, {"event": "stair", **stair(["creep"], "creep")}]
+    log.write_text("".join(json.dumps(line) + "\n" for line in lines) + '{"event": "st')
+    shown = page_state.improving(improved.step())
+    assert [step["effects"] for step in shown["steps"]] == [[], ["creep"]]
