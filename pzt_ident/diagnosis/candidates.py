@@ -53,7 +53,7 @@ def score_all(case: Case, before: Fit, scorer: Scorer) -> list[Candidate]:
     with ThreadPoolExecutor(THREADS) as pool:
         for scores in pool.map(scorer.scores, words):
             candidates.append(Candidate.of(scores))
-            facts = {"effect": scores[0].effect, "explained": candidates[-1].score.explained}
+            facts = {"effect": word_of(scores[0].effect), "explained": candidates[-1].score.explained}
             case.on_event({"event": "scored", **facts, "done": len(candidates), "of": len(words)})
     return candidates
 

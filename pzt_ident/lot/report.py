@@ -108,7 +108,7 @@ def page(lot: Lot, figures: dict[str | None, list[tuple[Plate, Markup]]]) -> str
         .render(
             title=lot.statement["job_name"],
             content=Markup("{}"),
-            scripts=[Markup(script)],
+            script=Markup(script),
             allowed=Markup(f"'sha256-{digest}'"),
             css=Markup(web_file("page.css")),
             lot=lot,

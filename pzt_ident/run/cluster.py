@@ -53,9 +53,14 @@ class Cluster:
         done: Done = forget,
     ) -> dict[str, str]:
         """As of `Place`. The data of a task stand in Dask's graph, so that they are sent again where they were lost."""
+        from distributed.comm import CommClosedError
+
         with quiet_dask(), self.client() as client, interrupts_deferred() as check:
-            tell(joined(client, self.words))
-            return Session(client, self.words, entry, common, tell, done).run(iter(tasks), check)
+            try:
+                tell(joined(client, self.words))
+                return Session(client, self.words, entry, common, tell, done).run(iter(tasks), check)
+            except CommClosedError:
+                raise lost(self.words) from None
 
 
 @dataclass(frozen=True)
@@ -135,7 +140,7 @@ class Session:
     def room(self) -> int:
         """How many tasks may be sent. Raises LostError where the scheduler is gone, or every worker for long."""
         if self.client.status != "running":
-            raise self.lost()
+            raise lost(self.words)
         now = time.monotonic()
         if now - self.counted > 1:
             self.threads, self.counted = sum(self.client.nthreads().values()), now
@@ -144,9 +149,6 @@ class Session:
         elif now - self.seen > SECONDS_WITHOUT_WORKERS and self.client.cluster is None:
             raise LostError(f"every worker of {self.words} is gone")
         return AHEAD * max(self.threads, 1) - len(self.running)
-
-    def lost(self) -> LostError:
-        return LostError(f"the scheduler {self.words} is gone")
 
     def begin(self, name: str, arguments: tuple[Any, ...]) -> None:
         key, raw = f"{self.topic}-{name}", pickle.dumps(arguments)
@@ -173,13 +175,17 @@ class Session:
         elif future.status == "error":
             kind, content = "failed", reason_of(future.exception())
         else:
-            raise self.lost()
+            raise lost(self.words)
         del self.running[name]
         if kind == "done":
             self.done(name, content)
         else:
             self.failed[name] = content
             self.tell({"event": "failed", "run": name, "reason": content})
+
+
+def lost(words: str) -> LostError:
+    return LostError(f"the scheduler {words} is gone")
 
 
 def reason_of(error: BaseException | None) -> str:

@@ -50,7 +50,7 @@ def test_the_first_fit_is_a_function_of_its_seed(creeping):
 
 
 def test_a_fit_whose_starts_end_apart_has_not_converged(plain, monkeypatch):
-    monkeypatch.setattr(starts, "descend", lambda problem, point, budget: point)
+    monkeypatch.setattr(starts, "descend", lambda problem, point, going: point)
     assert not first_fit(plain, 0).converged
 
 
@@ -58,9 +58,9 @@ def test_more_starts_are_refined_until_two_agree(plain, monkeypatch):
     """Of each four of the first twenty all but the first get nowhere."""
     points, descent = [], refit.descend
 
-    def lame(problem, point, budget):
+    def lame(problem, point, going):
         points.append(point)
-        return descent(problem, point, budget) if len(points) in (1, 21) else point
+        return descent(problem, point, going=going) if len(points) in (1, 21) else point
 
     monkeypatch.setattr(starts, "descend", lame)
     assert first_fit(plain, 0).converged
@@ -82,7 +82,7 @@ def test_a_block_is_found_elsewhere_and_a_fit_at_the_noise_stays(plain):
 def test_a_descent_ends_with_twice_the_budget(plain):
     problem, budget = plain.problem(()), Budget(0.0)
     start = np.full(problem.dimensions, 0.5)
-    assert (descend(problem, start, budget) == start).all()
+    assert (descend(problem, start, going=budget.lasts) == start).all()
     assert budget.untried == ["settled fits"]
 
 
@@ -107,7 +107,7 @@ def test_a_refit_goes_on_from_what_was_found(creeping):
 def test_descent_stays_in_the_cube_and_never_climbs(creeping, start):
     problem = creeping.problem(())
     ahead = np.clip(start, 0, 1)
-    end = descend(problem, np.array(start), Budget(), most=6)
+    end = descend(problem, np.array(start), most=6)
     assert np.all((end >= 0) & (end <= 1))
     assert problem.loss(end)[0] <= problem.loss(ahead)[0]
 
@@ -160,8 +160,8 @@ def test_a_descent_from_where_the_simulation_fails_is_no_success(plain, monkeypa
     problem = plain.problem(("failing",))
     start = np.array([0.5, 0.5, 0.5, 0.5, 0.9])
     with np.errstate(invalid="ignore"):
-        assert problem.loss(descend(problem, start, Budget()))[0] == np.inf
-        inside = descend(problem, np.array([0.5, 0.5, 0.5, 0.5, 0.49]), Budget())
+        assert problem.loss(descend(problem, start))[0] == np.inf
+        inside = descend(problem, np.array([0.5, 0.5, 0.5, 0.5, 0.49]))
     assert np.isfinite(problem.loss(inside)[0])
     assert inside[4] < 0.5
 

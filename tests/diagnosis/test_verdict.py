@@ -126,7 +126,7 @@ def test_what_a_shorter_step_would_change_is_blamed_on_no_effect(monkeypatch, fi
 
 def test_a_fit_that_has_not_converged_is_blamed_on_no_effect(monkeypatch):
     case = stage.case(stage.EFFECTS["creep"])
-    monkeypatch.setattr(starts, "descend", lambda problem, point, budget: point)
+    monkeypatch.setattr(starts, "descend", lambda problem, point, going: point)
     diagnosis = judged(case)
     assert diagnosis.verdict == "refused"
     assert "do not agree" in diagnosis.reason and "bounds" in diagnosis.reason

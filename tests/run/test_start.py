@@ -13,6 +13,7 @@ from pzt_ident.job.schema import load_job
 from pzt_ident.run import improve
 from pzt_ident.run.identify import resume, run
 from pzt_ident.run.improve import diagnose
+from pzt_ident.run.place import Local
 from pzt_ident.run.start import Starts, read_start, start_values
 from pzt_ident.run.statement import Statement
 
@@ -48,7 +49,7 @@ def place(tmp_path_factory):
     (folder / "data.csv").write_text("\n".join(["time [s],u [V],x [um]", *lines]) + "\n")
     (folder / "job.yaml").write_text(JOB)
     job = load_job(folder / "job.yaml")
-    run(job, folder / "run", workers=1)
+    run(job, folder / "run", place=Local(1))
     diagnose(job, folder / "diagnosis", start=folder / "run")
     return folder
 
@@ -61,10 +62,10 @@ def test_the_diagnosis_has_the_fit_of_the_run_or_a_better_one(place):
 def test_and_gives_a_better_one_back(place, tmp_path):
     poor = tmp_path / "poor.json"
     poor.write_text(json.dumps({"parameters": {"bouc_wen.alpha": {"value": 0.9, "unit": "1"}}}))
-    folder = run(load_job(place / "job.yaml"), tmp_path / "run", workers=1, start=poor, only_start=True)
+    folder = run(load_job(place / "job.yaml"), tmp_path / "run", place=Local(1), start=poor, only_start=True)
     before = read(folder / "result.json")
     assert (before["league"], [item["run"] for item in before["runs"]]) == ([], ["start-0"])
-    resume(folder, workers=1, start=place / "diagnosis")
+    resume(folder, place=Local(1), start=place / "diagnosis")
     after, found = read(folder / "result.json"), read(place / "diagnosis/diagnosis.json")
     assert [item["run"] for item in after["runs"]] == ["start-0", "start-1"]
     assert after["best"]["rmse"]["identify"] <= found["rmse"]["identify"] * (1 + 1e-9)
@@ -76,7 +77,7 @@ def test_a_step_gives_what_the_diagnosis_promised(place, tmp_path):
     fitted = next(item for item in candidates if item.get("parameters"))
     out = tmp_path / "job.yaml"
     edit.add(place / "job.yaml", fitted["item"], out, start=place / "diagnosis")
-    folder = run(load_job(out), tmp_path / "run", workers=1, start=place / "diagnosis", only_start=True)
+    folder = run(load_job(out), tmp_path / "run", place=Local(1), start=place / "diagnosis", only_start=True)
     gave = read(folder / "result.json")["best"]["rmse"]
     assert gave["identify"] <= fitted["rmse"]["identify"] * (1 + 1e-9)
 
@@ -84,7 +85,7 @@ def test_a_step_gives_what_the_diagnosis_promised(place, tmp_path):
 def test_no_optimizer_is_given_it(place, tmp_path):
     job = load_job(place / "job.yaml")
     without = read(place / "run/result.json")
-    folder = run(job, tmp_path / "run", workers=1, start=place / "diagnosis")
+    folder = run(job, tmp_path / "run", place=Local(1), start=place / "diagnosis")
     beside = read(folder / "result.json")
     assert {row["optimizer"] for row in beside["league"]} == {"pso", "cma_es"}
     by_run = {item["run"]: item for item in beside["runs"]}
@@ -95,7 +96,7 @@ def test_no_optimizer_is_given_it(place, tmp_path):
 
 def test_it_is_the_same_each_time(place, tmp_path):
     folders = [
-        run(load_job(place / "job.yaml"), tmp_path / name, workers=1, start=place / "diagnosis", only_start=True)
+        run(load_job(place / "job.yaml"), tmp_path / name, place=Local(1), start=place / "diagnosis", only_start=True)
         for name in "ab"
     ]
     one, other = (read(folder / "result.json")["best"] for folder in folders)

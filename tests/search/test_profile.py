@@ -19,6 +19,10 @@ class Toy:
     def loss(self, points):
         return np.linalg.norm(self.residuals(points), axis=1)
 
+    def best(self, points, near):
+        losses = self.loss(points)
+        return points[np.argmin(losses)], losses.min()
+
     def jacobian(self, point, step=1e-6):
         moved = np.eye(self.dimensions) * step
         return (self.residuals(point + moved) - self.residuals(point - moved)).T / (2 * step)

@@ -13,6 +13,7 @@ from starlette.testclient import TestClient
 from pzt_ident.job.schema import load_job
 from pzt_ident.run.identify import run
 from pzt_ident.run.improve import diagnose
+from pzt_ident.run.place import Local
 from pzt_ident.run.results import read_results
 from pzt_ident.workbench.app import make_app
 from pzt_ident.workbench.session import Session
@@ -40,7 +41,7 @@ def filled(tmp_path_factory):
     quick = path.read_text().replace("generations: 150", "generations: 9")
     path.write_text(quick.replace("  - {name: differential_evolution}\n", ""))
     job = load_job(session.step() / "job.yaml")
-    run(job, session.step() / "run", workers=1)
+    run(job, session.step() / "run", place=Local(1))
     diagnose(job, session.step() / "diagnosis", start=session.step() / "run")
     return session
 
