@@ -8,7 +8,6 @@ import os
 import sys
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from importlib import import_module
 from pathlib import Path
 from threading import Thread
@@ -17,23 +16,23 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from pzt_ident.cli.control_commands import control, drive, export, tune
+from pzt_ident.cli.diagnosis_commands import diagnose, diagnose_again, improve, is_diagnosis
 from pzt_ident.cli.first_commands import demo, init, workbench
 from pzt_ident.cli.fleet_commands import fleet, resume_fleet
 from pzt_ident.cli.options import (
     EXISTING,
     Group,
     answer,
-    diagnosis_options,
     edit_job,
     edit_options,
     no_report_flag,
     output_options,
-    place_option,
     plugins_flag,
-    plugins_option,
     run_options,
     start_option,
+    write_report,
 )
+from pzt_ident.cli.word_commands import atlas, list_, show
 from pzt_ident.errors import DamagedError
 
 if TYPE_CHECKING:
@@ -106,8 +105,8 @@ def resume(
     if (folder / "fleet.json").is_file():
         resume_fleet(folder, place, plugins, as_json, quiet)
         return
-    if _is_diagnosis(folder):
-        _diagnose_again(folder, no_report, plugins, as_json, quiet)
+    if is_diagnosis(folder):
+        diagnose_again(folder, no_report, plugins, as_json, quiet)
         return
 
     def begin(listen: Listener) -> Path:
@@ -116,24 +115,6 @@ def resume(
         return resume(folder, place=place, listen=listen, plugins=plugins, start=start)
 
     _identify(begin, no_report, as_json, quiet)
-
-
-def _is_diagnosis(folder: Path) -> bool:
-    from pzt_ident.run.elsewhere import task_of
-
-    return (folder / "environment.json").is_file() and task_of(folder) in ("improve", "diagnose")
-
-
-def _diagnose_again(folder: Path, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
-    """From its beginning, unless it came to its end."""
-    from pzt_ident.cli import verdict_tables
-    from pzt_ident.run.elsewhere import begin_again, task_of
-
-    improves = task_of(folder) == "improve"
-    name, show = (
-        ("improvement", verdict_tables.show_improvement) if improves else ("diagnosis", verdict_tables.show_diagnosis)
-    )
-    _show_diagnosis(lambda listen: begin_again(folder, listen, plugins), name, show, no_report, as_json, quiet)
 
 
 def _identify(start: Callable[[Listener], Path], no_report: bool, as_json: bool, quiet: bool) -> None:
@@ -148,7 +129,7 @@ def _identify(start: Callable[[Listener], Path], no_report: bool, as_json: bool,
                 _import_report_in_background()
 
         folder = start(listen_and_prepare)
-        _report(folder, no_report)
+        write_report(folder, no_report)
     result = json.loads((folder / "result.json").read_text(encoding="utf-8"))
     answer({"folder": str(folder), "result": result}, lambda: show_result(result, folder), as_json, quiet)
 
@@ -157,13 +138,6 @@ def _import_report_in_background() -> None:
     """Import what draws the report while the searches run in other processes."""
     modules = ("pandas", "matplotlib.figure", "matplotlib.backends.backend_svg", "pzt_ident.report.page")
     Thread(target=lambda: [import_module(name) for name in modules], daemon=True).start()
-
-
-def _report(folder: Path, no_report: bool) -> None:
-    if not no_report:
-        from pzt_ident.report.page import write_report
-
-        write_report(folder)
 
 
 @main.command()
@@ -196,19 +170,9 @@ def compare(source: Path, out: Path | None, no_report: bool, plugins: bool, as_j
     for _ in tracked(figures, "figures", as_json or quiet):
         pass
     if not no_report and target == folder and (folder / "report.html").exists():
-        _report(folder, no_report)
+        write_report(folder, no_report)
     facts = {"folder": str(target), "residuals": residuals}
     answer(facts, lambda: show_misfits(residuals), as_json, quiet)
-
-
-@main.command()
-@diagnosis_options
-def diagnose(job: Path, **options: Any) -> None:
-    """Say which physical effect the model of a job file JOB misses."""
-    from pzt_ident.cli import verdict_tables
-    from pzt_ident.run.improve import diagnose
-
-    _diagnose(diagnose, "diagnosis", verdict_tables.show_diagnosis, job, **options)
 
 
 @main.command()
@@ -234,55 +198,6 @@ def model(**options: Any) -> None:
 
 
 @main.command()
-@diagnosis_options
-@place_option
-def improve(job: Path, place: Place, **options: Any) -> None:
-    """Add what the model of a job file JOB misses, effect by effect, and watch the error fall."""
-    from pzt_ident.cli import verdict_tables
-    from pzt_ident.run.elsewhere import improve_at
-
-    _diagnose(partial(improve_at, place), "improvement", verdict_tables.show_improvement, job, **options)
-
-
-def _diagnose(
-    function: Callable[..., Path],
-    name: str,
-    show: Callable[[dict[str, Any], Path], None],
-    job: Path,
-    out: Path | None,
-    start: Path | None,
-    no_report: bool,
-    plugins: bool,
-    budget: float | None,
-    as_json: bool,
-    quiet: bool,
-) -> None:
-    from pzt_ident.job.schema import load_job
-
-    def begin(listen: Listener) -> Path:
-        return function(load_job(job, plugins), out, listen, budget, start)
-
-    _show_diagnosis(begin, name, show, no_report, as_json, quiet)
-
-
-def _show_diagnosis(
-    start: Callable[[Listener], Path],
-    name: str,
-    show: Callable[[dict[str, Any], Path], None],
-    no_report: bool,
-    as_json: bool,
-    quiet: bool,
-) -> None:
-    from pzt_ident.cli.progress import listening
-
-    with listening(silent=as_json or quiet) as listen:
-        folder = start(listen)
-        _report(folder, no_report)
-    verdict = json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
-    answer({"folder": str(folder), name: verdict}, lambda: show(verdict, folder), as_json, quiet)
-
-
-@main.command()
 @click.argument("job", type=EXISTING)
 @plugins_flag
 @output_options
@@ -296,54 +211,9 @@ def check(job: Path, plugins: bool, as_json: bool, quiet: bool) -> None:
     answer(summary, lambda: show_job(summary), as_json, quiet)
 
 
-@main.command("list")
-@click.argument("kind", type=click.Choice(["blocks", "effects", "optimizers"]))
-@plugins_option
-@output_options
-def list_(kind: str, as_json: bool, quiet: bool) -> None:
-    """List the words that a job may use."""
-    from pzt_ident.cli.table import table
-    from pzt_ident.model.description import words
-
-    docs = words(kind)
-    answer(docs, lambda: table(("word", "what it is"), list(docs.items())), as_json, quiet)
-
-
-@main.command()
-@click.argument("name")
-@plugins_option
-@output_options
-def show(name: str, as_json: bool, quiet: bool) -> None:
-    """Show what a block, effect or optimizer declares."""
-    from pzt_ident.cli.word_tables import show_word
-    from pzt_ident.model.description import description_of
-
-    description = description_of(name)
-    answer(description, lambda: show_word(description), as_json, quiet)
-
-
 def _say_damaged(sentences: tuple[str, ...]) -> None:
     for sentence in sentences:
         click.echo(f"left out: {sentence}", err=True)
-
-
-@main.command()
-@click.option("-o", "--out", type=EXISTING, default=Path("atlas.html"), show_default=True, help="The page to write.")
-@plugins_option
-@output_options
-def atlas(out: Path, as_json: bool, quiet: bool) -> None:
-    """Write the atlas of effects and the manual, one page that needs no network.
-
-    Every word that a job may use has a section: equation, sources, parameters, pictures of what it does, what looks
-    like it, the drive that tells them apart, and the remedy.
-    """
-    from pzt_ident.atlas.page import drawn, write_atlas
-    from pzt_ident.cli.table import tracked
-
-    for _ in tracked(drawn(), "words", as_json or quiet):
-        pass
-    path = write_atlas(out)
-    answer({"atlas": str(path)}, lambda: click.echo(f"atlas: {path}"), as_json, quiet)
 
 
 @main.command()
@@ -357,7 +227,7 @@ def report(folders: tuple[Path, ...], out: Path | None, as_json: bool, quiet: bo
     """
     from pzt_ident.cli.progress import listening
     from pzt_ident.report.figures import write_all_figures
-    from pzt_ident.report.page import write_report
+    from pzt_ident.report.page import write_report as written
     from pzt_ident.report.side_by_side import write_side_by_side
     from pzt_ident.run.results import read_folder
 
@@ -372,7 +242,7 @@ def report(folders: tuple[Path, ...], out: Path | None, as_json: bool, quiet: bo
             continue
         _say_damaged(results.damaged)
         readable.append(folder)
-        pages.append(str(write_report(folder)))
+        pages.append(str(written(folder)))
     with listening(silent=as_json or quiet) as listen:
         write_all_figures(readable, listen=listen)
     if len(readable) > 1:
@@ -380,5 +250,6 @@ def report(folders: tuple[Path, ...], out: Path | None, as_json: bool, quiet: bo
     answer({"reports": pages}, lambda: click.echo("\n".join(pages)), as_json, quiet)
 
 
-for command in (control, drive, tune, export, fleet, init, demo, workbench):
+MORE = (diagnose, improve, control, drive, tune, export, fleet, list_, show, atlas, init, demo, workbench)
+for command in MORE:
     main.add_command(command)

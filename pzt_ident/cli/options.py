@@ -188,3 +188,11 @@ def answer(facts: dict[str, Any], show: Callable[[], None], as_json: bool, quiet
         click.echo(json.dumps(facts, indent=2))
     elif not quiet:
         show()
+
+
+def write_report(folder: Path, no_report: bool) -> None:
+    """Draw the report of a folder of results, unless --no-report."""
+    if not no_report:
+        from pzt_ident.report.page import write_report
+
+        write_report(folder)

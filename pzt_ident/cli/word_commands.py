@@ -1,0 +1,54 @@
+"""The commands on the words that a job may use: `list`, `show`, `atlas`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from pzt_ident.cli.options import EXISTING, answer, output_options, plugins_option
+
+
+@click.command("list")
+@click.argument("kind", type=click.Choice(["blocks", "effects", "optimizers"]))
+@plugins_option
+@output_options
+def list_(kind: str, as_json: bool, quiet: bool) -> None:
+    """List the words that a job may use."""
+    from pzt_ident.cli.table import table
+    from pzt_ident.model.description import words
+
+    docs = words(kind)
+    answer(docs, lambda: table(("word", "what it is"), list(docs.items())), as_json, quiet)
+
+
+@click.command()
+@click.argument("name")
+@plugins_option
+@output_options
+def show(name: str, as_json: bool, quiet: bool) -> None:
+    """Show what a block, effect or optimizer declares."""
+    from pzt_ident.cli.word_tables import show_word
+    from pzt_ident.model.description import description_of
+
+    description = description_of(name)
+    answer(description, lambda: show_word(description), as_json, quiet)
+
+
+@click.command()
+@click.option("-o", "--out", type=EXISTING, default=Path("atlas.html"), show_default=True, help="The page to write.")
+@plugins_option
+@output_options
+def atlas(out: Path, as_json: bool, quiet: bool) -> None:
+    """Write the atlas of effects and the manual, one page that needs no network.
+
+    Every word that a job may use has a section: equation, sources, parameters, pictures of what it does, what looks
+    like it, the drive that tells them apart, and the remedy.
+    """
+    from pzt_ident.atlas.page import drawn, write_atlas
+    from pzt_ident.cli.table import tracked
+
+    for _ in tracked(drawn(), "words", as_json or quiet):
+        pass
+    path = write_atlas(out)
+    answer({"atlas": str(path)}, lambda: click.echo(f"atlas: {path}"), as_json, quiet)
