@@ -79,9 +79,12 @@ def _figures_by_section(results: Results) -> dict[str | None, list[tuple[Plate, 
 
 
 def _template_variables(results: Results, tables: dict[str, Table], figures: dict[str | None, Any]) -> dict[str, Any]:
-    said = {"verdict": verdict(results), "findings": findings(results), "next_step": next_step(results)}
-    return said | {
-        "words": named([said["verdict"], said["next_step"], *said["findings"]], tables),
+    head, following, found = verdict(results), next_step(results), findings(results)
+    return {
+        "verdict": head,
+        "next_step": following,
+        "findings": found,
+        "words": named([head, following, *found], tables),
         "results": results,
         "result": results.result,
         "tables": tables,

@@ -183,7 +183,6 @@ def test_each_word_leads_to_its_section_of_the_atlas(shown):
         shown.keyboard.press("Enter")
     atlas = opened.value
     expect(atlas.get_by_role("status")).to_contain_text("being drawn")
-    assert faults_of(atlas) == []
     expect(atlas.locator("#word-bouc_wen h3")).to_be_in_viewport()
     atlas.close()
     for sheet, word in (("parameters", "bouc_wen"), ("misfit", "quadratic_gain"), ("candidates", "creep")):
