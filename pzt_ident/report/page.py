@@ -11,6 +11,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from pzt_ident.atlas.href import anchor
 from pzt_ident.data import notation as numbers
 from pzt_ident.data.notation import listed
 from pzt_ident.data.over_axes import together
@@ -21,6 +22,7 @@ from pzt_ident.report.sentences import findings, next_step, verdict
 from pzt_ident.report.spectra import printed_spectra
 from pzt_ident.report.tables import Table, make_tables, write_tables
 from pzt_ident.report.traces import packed
+from pzt_ident.report.words import COLUMNS, linked, named, without_links
 from pzt_ident.run.events import step_name
 from pzt_ident.run.results import Results, read_folder
 
@@ -77,16 +79,18 @@ def _figures_by_section(results: Results) -> dict[str | None, list[tuple[Plate, 
 
 
 def _template_variables(results: Results, tables: dict[str, Table], figures: dict[str | None, Any]) -> dict[str, Any]:
+    head, following, found = verdict(results), next_step(results), findings(results)
     return {
+        "verdict": head,
+        "next_step": following,
+        "findings": found,
+        "words": named([head, following, *found], tables),
         "results": results,
         "result": results.result,
         "tables": tables,
         "figures": figures,
         "together": together(results.units),
-        "verdict": verdict(results),
         "misfits": list(results.misfit.get("axes", {}).values()),
-        "findings": findings(results),
-        "next_step": next_step(results),
         "failed_simulations": sum(run["failed_simulations"] for run in results.result.get("runs", ())),
         "optimizers": listed(row["optimizer"] for row in results.result["league"]) if results.result else "",
     }
@@ -148,7 +152,8 @@ def environment() -> Environment:
 
     loader = PackageLoader("pzt_ident", "report")
     env = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    env.globals.update(zip=zip)
+    env.globals.update(zip=zip, anchor=anchor, linked_columns=COLUMNS)
+    env.filters.update(linked=linked, without_links=without_links, listed=listed)
     env.filters.update(quantity=numbers.quantity, count=numbers.count, number=numbers.number)
     env.filters.update(percent=numbers.percent, spelled=numbers.spelled)
     return env

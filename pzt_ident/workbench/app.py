@@ -15,7 +15,7 @@ from typing import Any
 
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import FileResponse, JSONResponse, PlainTextResponse, Response, StreamingResponse
+from starlette.responses import FileResponse, HTMLResponse, JSONResponse, PlainTextResponse, Response, StreamingResponse
 from starlette.routing import Route
 
 from pzt_ident.errors import InputError, RunError
@@ -50,7 +50,7 @@ def make_app(session: Session, hosts: set[str], token: str) -> Guard:
     posts |= {"upload": upload, "reference": reference, "look": inspect, "measurement": measurement}
     posts |= {"simulate": simulate, "report": make_report, "export": make_export}
     pages: dict[str, Handler] = {"/": page, "/favicon.ico": no_content, "/web/{name:path}": web_file}
-    pages |= {"/report/{key}": report, "/file/{key}": given_file}
+    pages |= {"/report/{key}": report, "/file/{key}": given_file, "/atlas": atlas}
     routes = [route(bench, path, handler) for path, handler in pages.items()]
     routes += [route(bench, f"/api/{name}", handler) for name, handler in {**gets.GETS, "events": events}.items()]
     routes += [route(bench, f"/api/{name}", handler, "POST") for name, handler in posts.items()]
@@ -122,6 +122,15 @@ async def report(bench: Bench, request: Request) -> Response:
 async def given_file(bench: Bench, request: Request) -> Response:
     path = bench.given.get(request.path_params["key"])
     return FileResponse(path, filename=path.name) if path else PlainTextResponse("not found", 404)
+
+
+async def atlas(bench: Bench, request: Request) -> Response:
+    """The atlas of effects, or, with status 202, a page that waits for it."""
+    if html := bench.atlas.page():
+        return HTMLResponse(html)
+    waiting = served("waiting.html")
+    waiting.status_code = 202
+    return waiting
 
 
 async def page(bench: Bench, request: Request) -> Response:

@@ -12,6 +12,7 @@ from typing import Any
 from pzt_ident.errors import InputError
 from pzt_ident.files import plain
 from pzt_ident.workbench import adopt, page_state
+from pzt_ident.workbench.atlas import Atlas
 from pzt_ident.workbench.runner import Runner
 from pzt_ident.workbench.session import INTERRUPTED, Session
 from pzt_ident.workbench.step_commands import better_fit
@@ -26,6 +27,7 @@ class Bench:
     def __init__(self, session: Session) -> None:
         self.session = session
         self.runner = Runner(session.root, self.changed)
+        self.atlas = Atlas(session)
         self.lock = asyncio.Lock()
         self.making: tuple[str, str] | None = None
         self.given: dict[str, Path] = {}
@@ -137,3 +139,4 @@ class Bench:
 
     async def close(self) -> None:
         await self.runner.close()
+        await self.atlas.close()

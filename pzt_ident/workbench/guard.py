@@ -24,7 +24,7 @@ HEADERS = {
     "cross-origin-resource-policy": "same-origin",
 }
 LARGEST_UPLOAD = 256 << 20
-REPORT = "/report/"  # the report brings its own content security policy
+OWN_POLICY = ("/report/", "/atlas")  # beginnings of the paths of pages that bring their own content security policy
 
 
 class Guard:
@@ -44,7 +44,7 @@ class Guard:
 
         async def guarded(message: Message) -> None:
             if message["type"] == "http.response.start":
-                added = HEADERS if path.startswith(REPORT) else HEADERS | {"content-security-policy": POLICY}
+                added = HEADERS if path.startswith(OWN_POLICY) else HEADERS | {"content-security-policy": POLICY}
                 message["headers"] = [*message["headers"], *((k.encode(), v.encode()) for k, v in added.items())]
             await send(message)
 

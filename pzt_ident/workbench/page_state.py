@@ -8,6 +8,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from pzt_ident.atlas.href import href
 from pzt_ident.data.notation import spelled, unit
 from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.data.readers.registry import readers
@@ -29,6 +30,7 @@ from pzt_ident.workbench.measurement import WHOLE, encoded
 from pzt_ident.workbench.session import Session
 from pzt_ident.workbench.step_model import model_of
 
+ATLAS = "/atlas"
 PRINTERS = {"unit": unit} | dict.fromkeys(("reason", "why", "said", "sentences"), spelled)
 
 
@@ -56,7 +58,7 @@ def state(session: Session) -> dict[str, Any]:
         "result": read(step / "run" / "result.json") if step else None,
         "misfit": read(step / "run" / "residuals.json") if step else None,
         "diagnosis": diagnosis_of(session, step) if step else None,
-        "parameters": printed(model_of(step, session.plugins).parameters) if step else [],
+        "parameters": parameters(session, step) if step else [],
         "optimizers": optimizers(session),
         "improving": improving(step) if step else None,
         "control": read(step / "control" / "control.json") if step else None,
@@ -119,6 +121,12 @@ def over_axes(session: Session) -> dict[str, str]:
     return {"unit": unit, "together": together(units), "weighed": " ".join(weighed(units))}
 
 
+def parameters(session: Session, step: Path) -> list[dict[str, Any]]:
+    """Those of the model of a step, each with the link to its block in the atlas."""
+    found = printed(model_of(step, session.plugins).parameters)
+    return [item | {"about": href(item["block"], ATLAS)} for item in found]
+
+
 def diagnosis_of(session: Session, step: Path) -> dict[str, Any] | None:
     """The diagnosis with the estimated parameters of each effect as printed text."""
     path = step / "diagnosis" / "diagnosis.json"
@@ -127,6 +135,7 @@ def diagnosis_of(session: Session, step: Path) -> dict[str, Any] | None:
     diagnosis = json.loads(path.read_text(encoding="utf-8"))
     for item in diagnosis["candidates"]:
         item["estimate"] = expected(item["expected"], item["units"])
+        item["about"] = href(item["effect"], ATLAS)
     reason = diagnosis["reason"] + tied_sentences(session)
     return printed(diagnosis) | {"reason": printed_reason(reason, read_results(step / "run"))}
 
@@ -215,6 +224,7 @@ def description(word: str) -> dict[str, Any]:
     place = getattr(blocks[word], "place", None)
     return {
         "name": word,
+        "about": href(word, ATLAS),
         "doc": first_sentence(blocks[word]),
         "place": None if place is None else int(place),
         "kind": blocks.kind_of(word),

@@ -2,6 +2,8 @@
 
 from playwright.sync_api import expect
 
+from browser.conftest import faults_of
+
 PHONE = {"width": 390, "height": 844}
 
 
@@ -43,3 +45,12 @@ def test_small_pictures_are_drawn(page, atlas_page):
     assert page.evaluate(stroke) == "rgb(11, 87, 201)"
     for use in page.locator(".thumbnail use").all()[:6]:
         assert use.bounding_box()["width"] > 20
+
+
+def test_it_is_accessible(page, atlas_page):
+    """The words with pictures, forms, look-alikes and settings; the others are made of the same parts."""
+    page.goto(atlas_page.as_uri())
+    page.evaluate(
+        "document.querySelectorAll('.word:not(#word-creep, #word-bouc_wen, #word-pso)').forEach(word => word.remove())"
+    )
+    assert faults_of(page) == []

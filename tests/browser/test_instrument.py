@@ -86,7 +86,7 @@ def test_each_sheet_is_accessible(shown, sheet):
 
 
 def test_targets_are_large_enough_to_touch(shown):
-    for target in shown.locator(":is(button, select, input, summary):visible").all():
+    for target in shown.locator(":is(a, button, select, input, summary):visible").all():
         box = target.bounding_box()
         assert min(box["width"], box["height"]) >= 23.9, target.evaluate("item => item.outerHTML")
 
@@ -175,6 +175,22 @@ def test_a_proposed_effect_is_shown_before_it_is_added(shown, folder):
     card.locator("summary").click()
     expect(shown.locator("#time .legend").first).not_to_contain_text("with these values")
     assert len(state_of(folder)["steps"]) == 1
+
+
+def test_each_word_leads_to_its_section_of_the_atlas(shown):
+    shown.focus("#blocks a")
+    with shown.context.expect_page() as opened:
+        shown.keyboard.press("Enter")
+    atlas = opened.value
+    expect(atlas.get_by_role("status")).to_contain_text("being drawn")
+    expect(atlas.locator("#word-bouc_wen h3")).to_be_in_viewport()
+    atlas.close()
+    for sheet, word in (("parameters", "bouc_wen"), ("misfit", "quadratic_gain"), ("candidates", "creep")):
+        shown.click(f"#tab-{sheet}")
+        with shown.context.expect_page() as opened:
+            shown.locator(f"#sheet-{sheet} a", has_text=word).first.click()
+        expect(opened.value.locator(f"#word-{word} h3")).to_be_in_viewport()
+        opened.value.close()
 
 
 def test_choosing_an_effect_by_key_starts_nothing(shown, folder):

@@ -29,6 +29,7 @@ SECTIONS = [
     "noise",
     "records",
     "run",
+    "words",
 ]
 
 

@@ -42,7 +42,7 @@ export function keepingFocus(redraw, fallback = null) {
   const focusedName = name(focused);
   redraw();
   if (focused === document.body || visible(focused)) return;
-  const successor = [...document.querySelectorAll("button, select, input, summary")].find((item) => name(item) === focusedName && visible(item));
+  const successor = [...document.querySelectorAll("a, button, select, input, summary")].find((item) => name(item) === focusedName && visible(item));
   (successor ?? fallback?.())?.focus({ preventScroll: true });
 }
 

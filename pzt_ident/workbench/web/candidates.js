@@ -1,3 +1,4 @@
+import { about } from "./about.js";
 import { Figure } from "./figure.js";
 import { percent } from "./misfit.js";
 import { element, USE_NAMES } from "./parts.js";
@@ -43,7 +44,8 @@ export class Candidates {
   card(list, item) {
     const effect = item.item ?? item.effect;
     const card = element(list, "div", { class: `card${item.decision === "missing" ? " missing" : ""}` });
-    const head = element(card, "h3", {}, effect);
+    const head = element(card, "h3");
+    about(head, effect, item.about, item.physics);
     element(head, "span", { class: `tag ${item.decision === "missing" ? "warn" : ""}` }, item.decision);
     element(head, "span", { class: "tag" }, `explains ${percent(item.explained)} of the misfit`);
     const add = element(head, "button", { type: "button", class: `push ${item.decision === "missing" ? "strong" : ""}`, "data-acts": "", "data-effect": effect, "aria-label": `Add ${effect}` }, "Add");

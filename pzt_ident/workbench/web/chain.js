@@ -1,3 +1,4 @@
+import { about } from "./about.js";
 import { element, select } from "./parts.js";
 
 const KINDS = { hysteresis: "Hysteresis", mechanics: "Mechanics" };
@@ -43,14 +44,15 @@ export class Chain {
     const position = (item) => this.known[wordOf(item)]?.place ?? TERM;
     this.root.replaceChildren();
     element(this.root, "li", { class: "end" }, "drive");
-    for (const word of [...model, ...effects].toSorted((a, b) => position(a) - position(b))) this.showBlock(word, this.known[wordOf(word)]?.doc ?? "");
+    for (const word of [...model, ...effects].toSorted((a, b) => position(a) - position(b))) this.showBlock(word, this.known[wordOf(word)]);
     element(this.root, "li", { class: "end" }, "response");
     this.showPalette(catalogue);
   }
 
-  showBlock(word, doc) {
+  showBlock(word, known) {
     const effect = this.effects.includes(word);
-    const item = element(this.root, "li", { title: doc, ...(effect && { class: "effect" }) }, word);
+    const item = element(this.root, "li", effect ? { class: "effect" } : {}, known ? "" : word);
+    if (known) about(item, word, known.about, known.doc);
     if (!effect && this.model.length === 1) return;
     const button = element(item, "button", { type: "button", "aria-label": `Remove ${word}`, title: `Remove ${word}`, ...(this.begun && { "data-acts": "" }) }, "×");
     button.addEventListener("click", () => (effect ? this.remove(word) : this.setModel(this.model.filter((other) => other !== word))));

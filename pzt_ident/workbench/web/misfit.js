@@ -1,3 +1,4 @@
+import { sentence } from "./about.js";
 import { element } from "./parts.js";
 import { number } from "./signals.js";
 
@@ -5,10 +6,10 @@ export const percent = (share) => `${Math.round(100 * share)} %`;
 
 /** Where the model fails: the sentences of misfit and diagnosis, and the worst segments to look at. `reveal(record,
  * axis, from, to)` marks one in the plots. */
-export function showMisfit(root, { misfit, diagnosis, result, weighed }, reveal) {
+export function showMisfit(root, { misfit, diagnosis, result, weighed, ...catalogue }, reveal) {
   root.replaceChildren();
   const axes = Object.values(misfit?.axes ?? {});
-  if (diagnosis) element(root, "p", {}, diagnosis.reason);
+  if (diagnosis) sentence(root, "p", diagnosis.reason, catalogue);
   if (!axes.length && !diagnosis) return void element(root, "p", { class: "quiet" }, "What is left of the measurement is taken apart here when the model has been identified.");
   for (const axis of axes) {
     if (axes.length > 1) element(root, "h2", {}, `Axis ${axis.axis}`);

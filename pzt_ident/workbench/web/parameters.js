@@ -1,3 +1,4 @@
+import { about } from "./about.js";
 import { element } from "./parts.js";
 import { number } from "./signals.js";
 import { plain, slider } from "./slider.js";
@@ -29,10 +30,10 @@ export class Parameters {
   }
 
   entry(parameter) {
-    const { name, unit, low, high, bounds, fixed, at_bound: atBound, determined, physics } = parameter;
+    const { name, about: href, unit, low, high, bounds, fixed, at_bound: atBound, determined, physics } = parameter;
     const entry = element(this.root, "div", { class: "parameter", role: "group", "aria-label": name });
     const head = element(entry, "div", { class: "parameter-head" });
-    element(head, "strong", { title: physics ?? "" }, name);
+    about(element(head, "strong"), name, href, physics);
     const line = element(entry, "div", { class: "slide" });
     const [lowest, highest] = ["lower", "upper"].map((side, i) => [side, bounds[i]]);
     this.bound(line, parameter, lowest, 0);

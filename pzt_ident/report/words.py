@@ -1,0 +1,51 @@
+"""The blocks and effects that a report names: links to what the page says of each, made of its declaration."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Mapping
+from typing import TYPE_CHECKING
+
+from pzt_ident.atlas.href import anchor
+from pzt_ident.atlas.words import Word
+from pzt_ident.model.registry import blocks
+from pzt_ident.report.tables import Table
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+
+COLUMNS = ("effect", "indistinguishable from", "parameter", "step", "supported by the data")
+"""Headings of the columns of tables whose words are linked."""
+NAME = re.compile(r"[A-Za-z]\w*(?:\.\w+)*")  # a word, or one with its form, its parameter or its axis
+
+
+def named(sentences: Iterable[str], tables: Mapping[str, Table]) -> list[Word]:
+    """The blocks and effects in sentences and in columns of tables, in alphabetical order; those that are registered
+    here."""
+    cells = [
+        cell for table in tables.values() for column in COLUMNS if column in table.text for cell in table.text[column]
+    ]
+    names = [name for text in [*sentences, *cells] for name in NAME.findall(text)]
+    known = set(blocks.usable())
+    return [Word(word) for word in sorted({part for name in names for part in name.split(".")} & known)]
+
+
+def linked(text: str, words: Collection[Word]) -> Markup:
+    """A text in which what belongs to one of these words is the link to it."""
+    from markupsafe import Markup, escape
+
+    known = {word.word for word in words}
+
+    def link(name: re.Match[str]) -> str:
+        word = next((part for part in name[0].split(".") if part in known), None)
+        return f'<a href="#{anchor(word)}">{name[0]}</a>' if word else name[0]
+
+    parts = re.split(f"({NAME.pattern})", text)
+    return Markup("".join(NAME.sub(link, part) if place % 2 else escape(part) for place, part in enumerate(parts)))
+
+
+def without_links(html: str) -> Markup:
+    """Of the atlas, whose other sections are not on the page."""
+    from markupsafe import Markup
+
+    return Markup(re.sub(r"</?a\b[^>]*>", "", html))
