@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import json
-import re
 import warnings
 from collections.abc import Callable
 from functools import update_wrapper
@@ -145,17 +144,12 @@ class Seconds(click.ParamType):
     name = "time"
 
     def convert(self, value: Any, param: Any, ctx: Any) -> float:
-        from pzt_ident.data.units import factor, same_kind
+        from pzt_ident.data.units import duration
 
-        found = re.fullmatch(r"\s*(\d+\.?\d*|\.\d+)\s*([a-zA-Zµ]*)\s*", str(value))
-        unit = (found and found[2]) or "s"
         try:
-            seconds = float(found[1]) * factor(unit) if found and same_kind(unit, "s") else 0.0
-        except InputError:
-            seconds = 0.0
-        if not seconds > 0:
-            self.fail(f"{value!r} is no time above zero: write it as 60s or 5min", param, ctx)
-        return seconds
+            return duration(str(value))
+        except InputError as error:
+            self.fail(f"{error.message}: {error.remedy}", param, ctx)
 
 
 def edit_options(metavar: str, **attributes: Any) -> Callable[[Command], Command]:

@@ -146,6 +146,7 @@ def _column(number: int, column: Column) -> dict[str, Any] | None:
         "name": column.name,
         "unit": _unit(column),
         "rows": values.size,
+        "missing": int((~np.isfinite(values)).sum()),
         "first": [float(value) if np.isfinite(value) else None for value in values[:FIRST_VALUES]],
         "low": float(np.nanmin(values)),
         "high": float(np.nanmax(values)),

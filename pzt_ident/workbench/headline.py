@@ -26,7 +26,7 @@ def _headline(state: State) -> tuple[str, str, dict[str, Any] | None]:
     if state["running"]:
         return DOING.get(state["stage"], "The command is being started."), "", act("stop", {}, "Stop")
     if state["failure"]:
-        return state["failure"], "Run it again.", act("run", {}, "Resume")
+        return state["failure"], "", act("run", {}, "Resume")
     result, diagnosis = state["result"], state["diagnosis"]
     if not result or not diagnosis:
         return "The job is ready.", "Identify the model.", act("run", {}, "Identify")

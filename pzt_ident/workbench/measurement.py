@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.control.notes import frequency
 from pzt_ident.data.noise import noise_floor
 from pzt_ident.data.notation import unit as printed_unit
 from pzt_ident.data.record import Record
@@ -24,6 +23,7 @@ Roles = Mapping[str, Mapping[str, Any]]
 
 WHOLE = 20_000  # samples of a channel that are sent as they are; of a longer one its extremes
 SHORTEST_REST = 0.02  # of a record
+PERIODS = 1.5  # of a drive, from which on it has a frequency
 SHORTEST = 8  # samples
 
 
@@ -128,10 +128,18 @@ def guess_of(records: Sequence[Record | None], roles: Roles) -> dict[str, Any]:
     guess["rests"] = [rests(record) if record else [] for record in records]
     axes = list(enumerate(whole[0].axes)) if whole and len({record.axes for record in whole}) == 1 else []
     guess["amplitude"] = {axis: amplitude_of(whole, number) for number, axis in axes}
-    guess["frequency"] = {axis: max(frequency(r.drive[number], r.dt) for r in whole) for number, axis in axes}
+    guess["frequency"] = {axis: max(main_frequency(r.drive[number], r.dt) for r in whole) for number, axis in axes}
     measured_axes = [(number, axis) for number, axis in axes if number in whole[0].measured]
     guess["noise_floor"] = {axis: floor_of(whole, number) for number, axis in measured_axes}
     return guess
+
+
+def main_frequency(drive: Array, dt: float) -> float:
+    """The strongest line of a drive, Hz; 0 where it goes through fewer than one and a half of its periods."""
+    size = 1 << (2 * drive.size).bit_length()
+    lines = np.abs(np.fft.rfft((drive - drive.mean()) * np.hanning(drive.size), size))
+    strongest = float(np.argmax(lines)) / (size * dt)
+    return strongest if strongest * drive.size * dt >= PERIODS else 0.0
 
 
 def amplitude_of(records: Sequence[Record], axis: int) -> dict[str, Any]:

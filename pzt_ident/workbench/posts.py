@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from typing import Any
 
+from pzt_ident.data.units import duration
 from pzt_ident.errors import InputError
 from pzt_ident.workbench import edits
 from pzt_ident.workbench.bench import Bench, Form
@@ -55,8 +56,10 @@ async def go_to(bench: Bench, form: Form) -> None:
 
 
 async def improve(bench: Bench, form: Form) -> None:
-    budget = form.get("budget")
-    bench.improve(str(budget) if budget else None)
+    budget = str(form.get("budget") or "")
+    if budget:
+        duration(budget)
+    bench.improve(budget or None)
 
 
 async def settings(bench: Bench, form: Form) -> None:

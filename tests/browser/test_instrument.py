@@ -258,3 +258,13 @@ def test_it_is_improved_by_mouse_and_the_staircase_falls(shown, folder):
     steps = [step["change"] for step in state_of(folder)["steps"]]
     assert steps[:2] == ["as given", "+ quadratic_gain"] and "+ creep" in steps
     assert shown.locator(".stairs .mark.identify:not(.live)").count() == len(steps)
+
+
+@pytest.mark.parametrize("typed", ["", "abc", "1e400"])
+def test_a_bound_that_is_no_number_changes_nothing(shown, folder, typed):
+    field = shown.get_by_label(re.compile("bouc_wen.alpha, lower bound"))
+    before, steps = field.input_value(), state_of(folder)["steps"]
+    field.fill(typed)
+    field.press("Tab")
+    expect(field).to_have_value(before)
+    assert shown.locator("body.busy").count() == 0 and state_of(folder)["steps"] == steps

@@ -126,6 +126,36 @@ def test_a_reload_at_the_columns_loses_no_choice(workbench, page):
     assert page.get_by_label("Name of the job").input_value() == "bench-7"
 
 
+def test_a_crop_past_the_part_for_validation_leaves_a_job_that_can_be_read(workbench, page, tmp_path):
+    page.goto(workbench())
+    header, *rows = text("identify.csv").splitlines()
+    cells = rows[70].split(",")
+    rows[70] = ",".join([*cells[:-1], ""])
+    page.evaluate(DROP, [["identify.csv"], ["\n".join([header, *rows]) + "\n"]])
+    expect(page.locator("#guess")).to_contain_text("1 of x [um]: crop the record, or fill the gaps in the file")
+    start, end, settle = (page.get_by_label(f"identify.csv: {name}") for name in ("From", "to,", "not scored for"))
+    for field, typed in (start, str(0.8 * float(end.input_value()))), (settle, "1e6"), (start, ""):
+        field.fill(typed)
+        field.press("Tab")
+    assert float(start.input_value()) > 0 and 0 < float(settle.input_value()) < float(end.input_value())
+    page.click("#confirm")
+    expect(page.locator("#stop")).to_be_visible()
+    first, second = load_job(tmp_path / "workbench/steps/1/job.yaml").records
+    assert first.rows[0] == second.rows[0] < first.rows[1] < second.rows[1]
+
+
+def test_nothing_is_said_of_a_session_before_it_is_known(workbench, page):
+    address, held = workbench(), []
+    page.route("**/api/state*", lambda route: held.append(route))
+    page.goto(address)
+    expect(page.locator("#verdict")).to_have_text("The session is being opened.")
+    expect(page.locator("#welcome")).to_be_hidden()
+    for route in held:
+        route.continue_()
+    expect(page.locator("#verdict")).to_contain_text("Drop a measurement")
+    expect(page.locator("#welcome")).to_be_visible()
+
+
 @pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 def test_a_reload_a_killed_worker_and_a_killed_workbench_lose_nothing(workbench, page, tmp_path):
     for name in ("identify.csv", "validate.csv"):

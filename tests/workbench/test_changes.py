@@ -206,3 +206,11 @@ def test_options_of_control_are_those_of_the_command():
     assert line == ["--limits", "-20:150", "--noise-gain", "5"]
     with pytest.raises(InputError, match="unknown option 'out'"):
         control_options({"out": "/etc"})
+
+
+@pytest.mark.parametrize("budget", ["-5", "abc", "1e400", "0s", "3V"])
+def test_a_budget_that_is_no_time_starts_nothing(bench, budget):
+    post(bench, ("job", form()))
+    bench.runner.start = lambda commands: pytest.fail("started")
+    (error,) = post(bench, ("improve", {"at": 1, "budget": budget}))
+    assert "is no time above zero" in error.message

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pzt_ident.workbench.columns import columns_of
-from pzt_ident.workbench.measurement import measured
+from pzt_ident.workbench.measurement import main_frequency, measured
 
 RATE = 200.0
 TIME = np.arange(1200) / RATE
@@ -115,3 +115,22 @@ def test_a_uniform_ramp_is_a_drive_only_in_volts(tmp_path, columns, roles):
     path = table(tmp_path / "a.csv", {header: signals[kind] for header, kind in columns.items()})
     found = [item["role"] for item in columns_of((path, None))["columns"]]
     assert found[1:] == roles[1:] and found[0] in ("", roles[0])
+
+
+@pytest.mark.parametrize(
+    ("drive", "frequency"),
+    [
+        (np.where(TIME < 2, 0.0, 150 * np.sin(2 * np.pi * 2 * TIME + 0.6)), 2.0),  # rests, then steps into a sine
+        (np.abs((5 * TIME) % 2 - 1), 2.5),  # a triangle
+        (20 * TIME, 0.0),  # a ramp has no frequency
+        (np.full(TIME.size, 50.0), 0.0),
+    ],
+)
+def test_the_main_frequency_is_that_of_the_strongest_line(drive, frequency):
+    assert main_frequency(drive, 1 / RATE) == pytest.approx(frequency, rel=0.03)
+
+
+def test_missing_values_are_counted(tmp_path):
+    gap = np.where(TIME == 1, np.nan, RESPONSE)
+    path = table(tmp_path / "a.csv", {"time [s]": TIME, "u [V]": DRIVE, "x [um]": gap})
+    assert [column["missing"] for column in columns_of((path, None))["columns"]] == [0, 0, 1]

@@ -1,6 +1,7 @@
 import { element, keepingFocus, row, select, svgElement } from "./parts.js";
-import { recordName, ROLES, USES } from "./records.js";
+import { crop, recordName, ROLES, USES } from "./records.js";
 import { number } from "./signals.js";
+import { typed } from "./slider.js";
 
 /** The side panel before there is a job: records with rows and use, columns with role and unit, and the button that
  * makes a job of them. `actions` has inspect(files), put(record, place), join(place, record), changed() and confirm(). */
@@ -43,16 +44,16 @@ export class Columns {
     use.addEventListener("change", () => (use.value === "join" ? this.actions.join(place) : (Object.assign(record, { chosen: use.value }), this.records.update(), this.actions.changed())));
     if (!record.dt) return;
     const fields = element(card, "div", { class: "bar" });
-    this.seconds(fields, record, "From", () => record.crop[0] * record.dt, (value) => { record.crop[0] = clamp(Math.round(value / record.dt), 0, record.crop[1] - 10); });
-    this.seconds(fields, record, "to", () => record.crop[1] * record.dt, (value) => { record.crop[1] = clamp(Math.round(value / record.dt), record.crop[0] + 10, record.rows); });
-    this.seconds(fields, record, "not scored for", () => record.settle, (value) => { record.settle = clamp(value, 0, 0.9 * (record.crop[1] - record.crop[0]) * record.dt); });
+    this.seconds(fields, record, "From", () => record.crop[0] * record.dt, (value) => crop(record, { from: Math.round(value / record.dt) }));
+    this.seconds(fields, record, "to", () => record.crop[1] * record.dt, (value) => crop(record, { to: Math.round(value / record.dt) }));
+    this.seconds(fields, record, "not scored for", () => record.settle, (value) => crop(record, { settle: value }));
   }
 
   seconds(parent, record, text, read, write) {
     const label = element(parent, "label", {}, text);
     const field = element(label, "input", { type: "number", step: "any", min: 0, value: Number(read().toPrecision(5)), "aria-label": `${recordName(record)}: ${text}, in ${this.records.timed ? "seconds" : "samples"}`, class: "seconds" });
     label.append(this.records.clock);
-    field.addEventListener("change", () => { write(Number(field.value)); this.actions.changed(); });
+    field.addEventListener("change", () => { write(typed(field) ?? read()); this.actions.changed(); });
   }
 
   /** A choice of the table or sheet of a file, and a button that adds another one as a further record. */
@@ -98,10 +99,6 @@ export class Columns {
     input.addEventListener("change", () => this.actions.changed(key === "rate"));
     input.addEventListener("input", () => { this.records[key] = input.value; });
   }
-}
-
-export function clamp(value, low, high) {
-  return Math.min(Math.max(value, low), high);
 }
 
 /** A small plot of a column. */

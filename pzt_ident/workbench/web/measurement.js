@@ -1,7 +1,7 @@
-import { clamp, Columns } from "./columns.js";
+import { Columns } from "./columns.js";
 import { Handles } from "./handles.js";
 import { element } from "./parts.js";
-import { keyOf, printed, Records, recordName } from "./records.js";
+import { crop, keyOf, printed, Records, recordName } from "./records.js";
 import { requestJson } from "./session.js";
 import { number } from "./signals.js";
 
@@ -154,11 +154,11 @@ export class Measurement {
     if (!record) return this.handles?.show([]);
     const seconds = (i) => record.t0 + i * record.dt, sample = (value) => Math.round((value - record.t0) / record.dt);
     const handles = [
-      { name: "start", kind: "crop", read: () => seconds(record.crop[0]), write: (value) => { record.crop[0] = clamp(sample(value), 0, record.crop[1] - 10); } },
-      { name: "not scored", kind: "settle", read: () => seconds(record.crop[0]) + record.settle, write: (value) => { record.settle = clamp(value - seconds(record.crop[0]), 0, 0.9 * (record.crop[1] - record.crop[0]) * record.dt); } },
-      { name: "end", kind: "crop end", read: () => seconds(record.crop[1]), write: (value) => { record.crop[1] = clamp(sample(value), record.crop[0] + 10, record.rows); } },
+      { name: "start", kind: "crop", read: () => seconds(record.crop[0]), write: (value) => crop(record, { from: sample(value) }) },
+      { name: "not scored", kind: "settle", read: () => seconds(record.crop[0]) + record.settle, write: (value) => crop(record, { settle: value - seconds(record.crop[0]) }) },
+      { name: "end", kind: "crop end", read: () => seconds(record.crop[1]), write: (value) => crop(record, { to: sample(value) }) },
     ];
-    if (record.use === "split") handles.push({ name: "validation from here", kind: "split", read: () => seconds(record.split), write: (value) => { record.split = clamp(sample(value), record.crop[0] + 5, record.crop[1] - 5); } });
+    if (record.use === "split") handles.push({ name: "validation from here", kind: "split", read: () => seconds(record.split), write: (value) => crop(record, { split: sample(value) }) });
     this.handles.show(handles);
   }
 
@@ -182,6 +182,7 @@ export class Measurement {
       }
     const { clock, timed } = this.records;
     fact("samples", `${this.records.list.map(({ rows }) => rows).join(", ")}${record.dt && timed ? `, ${number(record.rows * record.dt, 3)} s` : ""}`);
+    fact("missing values", this.records.columns.filter(({ role, missing }) => role && missing).map((column) => `${column.missing} of ${this.records.columnName(column)}: crop the record, or fill the gaps in the file`).join("; "));
     if (!guess) return;
     fact("sample rate", timed ? `${number(1 / record.dt, 4)} Hz` : "not known: give it below the columns");
     for (const [axis, { value, unit }] of Object.entries(guess.amplitude)) fact(`span of the drive of ${axis}`, `${number(value, 4)} ${unit}`);

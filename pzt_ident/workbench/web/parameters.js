@@ -1,7 +1,7 @@
 import { about } from "./about.js";
 import { element } from "./parts.js";
 import { number } from "./signals.js";
-import { plain, slider } from "./slider.js";
+import { plain, slider, typed } from "./slider.js";
 
 const VERDICTS = { yes: ["determined", "good"], no: ["not determined", "warn"] };
 
@@ -53,8 +53,8 @@ export class Parameters {
     const field = element(line, "input", { type: "text", inputmode: "decimal", value: plain(value, 4), "aria-label": `${name}, ${side} bound${unit ? ` in ${unit}` : ""}` });
     field.addEventListener("change", () => {
       const changed = [...bounds];
-      changed[place] = Number(field.value.replace("−", "-"));
-      if (Number.isFinite(changed[place]) && changed[0] < changed[1]) this.page.settle({ parameter: name, bounds: changed }, () => { field.value = plain(value, 4); });
+      changed[place] = typed(field);
+      if (changed[place] !== null && changed[0] < changed[1]) this.page.settle({ parameter: name, bounds: changed }, () => { field.value = plain(value, 4); });
       else field.value = plain(value, 4);
     });
   }

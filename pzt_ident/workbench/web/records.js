@@ -169,6 +169,21 @@ export class Records {
   }
 }
 
+/** Move the first row of a record that is taken, the last one, the one from which on it is for validation, or the time
+ * that is not scored. All stay within the rows, and two thirds are fitted where the rows leave nothing on one side. */
+export function crop(record, { from = record.crop[0], to = record.crop[1], split = null, settle = record.settle }) {
+  const [first, end] = [clamp(from, 0, record.crop[1] - 10), clamp(to, record.crop[0] + 10, record.rows)];
+  const within = clamp(split ?? record.split, first + 5, end - 5);
+  record.crop = [first, end];
+  record.split = split === null && within !== record.split ? first + Math.floor((2 * (end - first)) / 3) : within;
+  const fitted = (record.use === "split" ? record.split : end) - first;
+  record.settle = clamp(settle, 0, 0.9 * fitted * record.dt);
+}
+
+function clamp(value, low, high) {
+  return Math.min(Math.max(value, low), high);
+}
+
 /** Whether two records of the same length have different roles that make one record together. */
 function complementary(record, other) {
   const [roles, otherRoles] = [record, other].map(({ columns }) => columns.map(({ role }) => role).filter(Boolean));

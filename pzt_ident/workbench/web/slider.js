@@ -26,13 +26,19 @@ export function slider(parent, head, { name, symbol, value, unit, bounds: [low, 
   };
   range.addEventListener("input", () => moved(fromNotch(Number(range.value)), range));
   field.addEventListener("change", () => {
-    const x = Number(field.value.replace("−", "-").replace(",", "."));
-    if (Number.isFinite(x) && field.value.trim()) moved(Math.min(Math.max(x, low), high), null);
+    const x = typed(field);
+    if (x !== null) moved(Math.min(Math.max(x, low), high), null);
     else set(value);
   });
   range.disabled = fixed || value === null;
   field.disabled = value === null;
   return { set, field, range };
+}
+
+/** The number in a field, with a point or a comma; null where it holds none. */
+export function typed({ value }) {
+  const x = Number(value.replace("−", "-").replace(",", "."));
+  return value.trim() && Number.isFinite(x) ? x : null;
 }
 
 /** A number as it is typed. */

@@ -104,6 +104,7 @@ function draw() {
 /** Which parts of the page are there: before the first file, before there is a job, and after. */
 function layOut() {
   const begun = state?.steps.length > 0;
+  document.body.classList.toggle("opening", !state);
   document.body.classList.toggle("empty", !begun && measurement.empty);
   document.body.classList.toggle("begun", begun);
   byId("stairs").hidden = !begun;
