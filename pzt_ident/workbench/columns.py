@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.readers.open import open_table, parts_of
-from pzt_ident.data.readers.table import Column, Table
+from pzt_ident.data.readers.table import Column, Table, unit_of
 from pzt_ident.data.record import Source
 from pzt_ident.data.units import FREQUENCY, TIME, dimension, factor, is_unit
 from pzt_ident.errors import InputError
@@ -144,7 +144,7 @@ def _column(number: int, column: Column) -> dict[str, Any] | None:
         "number": number,
         "header": column.header,
         "name": column.name,
-        "unit": _unit(column),
+        "unit": unit_of(column),
         "rows": values.size,
         "missing": int((~np.isfinite(values)).sum()),
         "first": [float(value) if np.isfinite(value) else None for value in values[:FIRST_VALUES]],
@@ -165,15 +165,6 @@ def _numbers(column: Column) -> NDArray[np.float64] | None:
         return None
     known = values.ndim == 1 and values.size >= MIN_ROWS and np.isfinite(values).any()
     return values if known else None
-
-
-def _unit(column: Column) -> str | None:
-    """The unit from the header, or from the end of the name: nm of `disp_nm`."""
-    if column.unit:
-        return column.unit if is_unit(column.unit) else None
-    end = column.name.rpartition("_")[2]
-    is_suffix = end != column.name and is_unit(end) and dimension(end) in (TIME, _LENGTH, _VOLTAGE)
-    return end if is_suffix else None
 
 
 def _regular(values: np.ndarray) -> bool:

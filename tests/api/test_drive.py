@@ -69,13 +69,15 @@ def test_what_makes_no_sense_is_refused(fit, arguments, options, message):
         fit.drive(*arguments, **options)
 
 
-def test_the_command_writes_the_same_drive(fit, tmp_path):
+@pytest.mark.parametrize("header", ["time [s],x [um]", "time_s,displacement_um", "Zeit (s),x_um"])
+def test_the_command_writes_the_same_drive(fit, tmp_path, header):
+    """Headings are read as those of a measurement are in the workbench."""
     from click.testing import CliRunner
 
     from pzt_ident.cli.commands import main
 
     result, file, out = fit.save(tmp_path / "run"), tmp_path / "ramp.csv", tmp_path / "drive.csv"
-    np.savetxt(file, np.transpose([T, REFERENCE]), "%.17g", ",", header="time [s],x [um]", comments="")
+    np.savetxt(file, np.transpose([T, REFERENCE]), "%.17g", ",", header=header, comments="")
     answer = CliRunner().invoke(main, ["drive", str(result), "--reference", str(file), "-o", str(out), "--json"])
     assert answer.exit_code == 0, answer.output
     assert json.loads(answer.stdout)["peak"]["x"] < 1e-9

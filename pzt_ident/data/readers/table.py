@@ -9,7 +9,9 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from pzt_ident.data.units import split_header
+from pzt_ident.data.units import TIME, dimension, is_unit, split_header
+
+SUFFIXED = TIME, dimension("m"), dimension("V")  # kinds of units that may end a name
 
 
 @dataclass(frozen=True)
@@ -42,3 +44,12 @@ class Table:
     columns: Sequence[Column]
     scalars: Sequence[Column] = ()
     content: bytes | None = None
+
+
+def unit_of(column: Column) -> str | None:
+    """The unit from the header, or from the end of the name: nm of `disp_nm`; None where there is none."""
+    if column.unit:
+        return column.unit if is_unit(column.unit) else None
+    end = column.name.rpartition("_")[2]
+    is_suffix = end != column.name and is_unit(end) and dimension(end) in SUFFIXED
+    return end if is_suffix else None
