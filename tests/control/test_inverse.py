@@ -117,6 +117,13 @@ def test_plays_are_inverted_as_by_the_closed_form(gain, weights, levels):
     assert np.allclose(found.drive[0], closed, atol=1e-9)
 
 
+@pytest.mark.parametrize("late", [0.01, 0.05, 0.1])
+def test_a_delay_of_many_samples_is_seen_ahead(late):
+    late_stage = stage(BOUC_WEN | {"delay.time": late}, ["delay", "bouc_wen"], [[0.0, 100.0]])
+    inverse = Inverse(late_stage, 10.0)
+    assert inverse.actuation.ahead == pytest.approx(late / 1e-4, abs=1)
+
+
 def test_stiffening_spring_is_bent_further():
     drive = swept(600)
     made_up = stage(BOUC_WEN | SPRING, ["bouc_wen", "lumped", "cubic_stiffness"], [drive])

@@ -35,6 +35,10 @@ def read(path):
     return json.loads(path.read_text(encoding="utf-8"))
 
 
+def plain_text(page):
+    return unescape(re.sub(r"<[^>]+>", "", page))
+
+
 @pytest.fixture(scope="module")
 def lagging(tmp_path_factory):
     """A job whose records cannot tell a lag ahead of the stage from one behind it."""
@@ -106,7 +110,7 @@ class TestDiagnose:
     def test_the_page_has_every_candidate_with_its_physics(self, diagnosed):
         page = unescape((diagnosed[1] / "report.html").read_text(encoding="utf-8"))
         found = read(diagnosed[1] / "diagnosis.json")
-        assert f'<p class="lead">{found["reason"]}</p>' in page
+        assert found["reason"] in plain_text(page)
         assert all(item["physics"] in page for item in found["candidates"])
         assert f"apply the drive in {found['next_experiment']['file']}" in page
 
@@ -222,7 +226,7 @@ class TestImprove:
 
     def test_the_page_shows_it_too(self, improved):
         page = (improved[1] / "report.html").read_text(encoding="utf-8")
-        assert '<p class="lead">Added: quadratic_gain.' in page
+        assert "Added: quadratic_gain." in plain_text(page)
         content = json.loads(re.search(r'id="content">(.*?)</script>', page, re.S)[1])
         (stairs,) = content["stairs"]
         assert [step["name"] for step in stairs["steps"]] == ["as given", "+ quadratic_gain"]
