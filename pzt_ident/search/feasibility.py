@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from itertools import product
 from types import SimpleNamespace
@@ -15,7 +14,8 @@ from pzt_ident.data.record import Record
 from pzt_ident.data.units import factor, same_kind
 from pzt_ident.errors import InputError
 from pzt_ident.model.block import Place
-from pzt_ident.model.chain import Chain, Entry
+from pzt_ident.model.chain import Chain
+from pzt_ident.search.scales import unit_of
 
 Array = NDArray[np.float64]
 
@@ -37,16 +37,12 @@ class Identification(Protocol):
 
 CHARGE = ("C", "C/m2")
 SMALL, LARGE = 1e-3, 5.0  # of the drive's span: fields between these can be identified from it
-Unit = Callable[[Entry, Record], str]
 
 
-def check_units(model: Chain, record: Record, unit: Unit) -> None:
-    """Raises InputError if a shared parameter has different kinds of units, or mechanics would move a charge.
-
-    unit: of a parameter on a record, as the user writes it.
-    """
+def check_units(model: Chain, record: Record) -> None:
+    """Raises InputError if a shared parameter has different kinds of units, or mechanics would move a charge."""
     for entry in model.entries:
-        units = [unit(replace(entry, axis=axis), record) for axis in model.measured]
+        units = [unit_of(model, replace(entry, axis=axis), record) for axis in model.measured]
         if f"{entry.block.name}.{entry.word}" in model.shared and not all(
             same_kind(other, units[0]) for other in units
         ):

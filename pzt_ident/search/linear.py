@@ -124,8 +124,8 @@ def solve(residuals: Residuals, units: Array, curves: Sequence[Indices], weights
         visible = sizes > NEGLIGIBLE * sizes.max(initial=0)
         columns[:, ~visible] = 0
         prior = second_differences(np.where(visible, sizes, 0), curves, np.asarray(weights))
-        target = columns @ (values / units) - residual
-        triangle: Array = np.linalg.qr(np.column_stack([columns[:, visible] / sizes[visible], target]), mode="r")  # type: ignore
+        scaled = np.column_stack([columns[:, visible] / sizes[visible], columns @ (values / units) - residual])
+        triangle = np.asarray(np.linalg.qr(scaled, mode="r"))
         system = np.vstack([triangle[:, :-1], prior[:, visible] / sizes[visible]])
         multiples = np.zeros(units.size)
         solution = nnls(system, np.append(triangle[:, -1], np.zeros(len(prior))), maxiter=100 * units.size)[0]

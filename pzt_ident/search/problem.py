@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
@@ -15,14 +14,12 @@ from pzt_ident.data.record import Record, drive_correlation
 from pzt_ident.data.units import factor
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.errors import InputError
-from pzt_ident.model.chain import Chain, Entry
+from pzt_ident.model.chain import Chain
 from pzt_ident.search.feasibility import check_feasible, check_units
 from pzt_ident.search.linear import Linear, Tangent
+from pzt_ident.search.scales import bounds_of, size_of, unit_of
 
 Array = NDArray[np.float64]
-
-
-CLEAR = 0.5  # correlation of drive and response above which the gain is taken as positive
 
 
 class ParameterSpec(Protocol):
@@ -73,8 +70,8 @@ class Problem:
 
     def _assign(self, identify: list[Record], specs: Mapping[str, ParameterSpec]) -> None:
         """Sort the parameters into free ones with bounds, fixed ones and linear ones."""
-        check_units(self.model, identify[0], self._unit)
-        self.all_units = [self._unit(entry, identify[0]) for entry in self.model.entries]
+        check_units(self.model, identify[0])
+        self.all_units = [unit_of(self.model, entry, identify[0]) for entry in self.model.entries]
         self.factors = np.array([factor(unit) for unit in self.all_units])
         self.theta = np.full(len(self.model.entries), np.nan)
         free, lower, upper, linear = [], [], [], []
@@ -84,12 +81,12 @@ class Problem:
             if spec and spec.bounds is None and spec.value is not None:
                 self.theta[column] = spec.value * self.factors[column]
             elif parameter.value is not None and not spec:
-                self.theta[column] = parameter.value * self._size(entry, identify)
+                self.theta[column] = parameter.value * size_of(self.model, entry, identify)
             elif parameter.linear and not spec:
                 linear.append(column)
             else:
                 given_bounds = spec.bounds if spec else None
-                low, high = given_bounds or self._bounds(entry, identify) / self.factors[column]
+                low, high = given_bounds or bounds_of(self.model, entry, identify) / self.factors[column]
                 free.append(column)
                 lower.append(low)
                 upper.append(high)
@@ -110,47 +107,11 @@ class Problem:
         """Columns of theta that are solved for, with the sign of the slope of response over drive."""
         entries = [self.model.entries[column] for column in linear]
         signs = [np.sign(drive_correlation(identify, entry.axis)) or 1.0 for entry in entries]
-        units = np.array([sign * self._size(entry, identify) for sign, entry in zip(signs, entries, strict=True)])
+        units = np.array(
+            [sign * size_of(self.model, entry, identify) for sign, entry in zip(signs, entries, strict=True)]
+        )
         self.linear = Linear(self.model, linear, units, self._scaled)
         self._tangent: Tangent | None = None
-
-    def _unit(self, entry: Entry, record: Record) -> str:
-        """Unit of a parameter as the user writes it: that of the declaration with the units of the record."""
-        first = record.response_units[self.model.measured[0]]
-        response = record.response_units[entry.axis] or first
-        units = {"drive": str(record.drive_units[entry.axis]), "response": str(response), "first": str(first)}
-        divisors = {
-            f"/{word}": f"/({unit})" if re.search(r"[/* ]", unit) else f"/{unit}" for word, unit in units.items()
-        }
-        return re.sub(r"/?(drive|response|first)", lambda match: (units | divisors)[match[0]], entry.parameter.unit)
-
-    def _bounds(self, entry: Entry, records: list[Record]) -> Array:
-        """Declared bounds in SI units; those of a gain include the other sign, unless the response clearly rises with
-        the drive: an inverting amplifier reverses the sign, and so does a drive above the resonance."""
-        low, high = entry.parameter.bounds
-        if entry.parameter.unit == "response/drive" and drive_correlation(records, entry.axis) <= CLEAR:
-            low, high = min(low, -high), max(high, -low)
-        return np.array([low, high]) * self._size(entry, records)
-
-    def _size(self, entry: Entry, records: list[Record]) -> float:
-        """The quantity in SI units that declared bounds are multiples of: spans of the data if the unit names them."""
-        spans = {
-            "drive": max(float(np.ptp(record.drive[entry.axis])) for record in records),
-            "response": max(float(np.ptp(record.response[entry.axis])) for record in records),
-            "first": max(float(np.ptp(record.response[self.model.measured[0]])) for record in records),
-        }
-        named = re.findall(r"drive|response|first", entry.parameter.unit)
-        if not named:
-            return factor(entry.parameter.unit)
-        if "drive" in named and spans["drive"] == 0:
-            message = f"the drive of axis {self.model.axes[entry.axis]} is constant: nothing to scale {entry.name} by"
-            remedy = "is it the right column? Otherwise give the parameter `bounds` or a `value`"
-            raise InputError(message, where=records[0].file or records[0].name, remedy=remedy)
-        size = 1.0
-        for operation, token, power in re.findall(r"([*/]?)([\w.]+)(?:\^(\d+))?", entry.parameter.unit):
-            base = spans[token] if token in spans else factor(token)
-            size *= base ** ((-1 if operation == "/" else 1) * int(power or 1))
-        return size
 
     def parameters_at(self, values: Array) -> Array:
         """All parameters in SI units, the free ones at `values` (free,) in the user's units: (parameters,)."""
@@ -161,7 +122,7 @@ class Problem:
     def declared_bounds(self, column: int) -> tuple[float, float]:
         """Bounds of a parameter where the job gives none, in the user's units."""
         identify = [record for record in self.records if record.use == "identify"]
-        low, high = self._bounds(self.model.entries[column], identify) / self.factors[column]
+        low, high = bounds_of(self.model, self.model.entries[column], identify) / self.factors[column]
         return float(low), float(high)
 
     def range_of(self, column: int) -> tuple[float, float]:
