@@ -126,6 +126,20 @@ def test_a_reload_at_the_columns_loses_no_choice(workbench, page):
     assert page.get_by_label("Name of the job").input_value() == "bench-7"
 
 
+def test_a_handle_keeps_the_focus_when_the_measurement_is_drawn_again(workbench, page):
+    page.goto(workbench())
+    page.evaluate(DROP, [["identify.csv"], [text("identify.csv")]])
+    expect(page.locator("#guess")).to_contain_text("sample rate")
+    page.route("**/measurement", lambda route: (time.sleep(0.3), route.continue_()))
+    with page.expect_response("**/measurement"):
+        page.select_option("[aria-label='Role of u_x [V]']", "y.drive")
+        page.select_option("[aria-label='Role of u_x [V]']", "x.drive")
+        settle = page.locator(".handle.settle")
+        settle.focus()
+    page.wait_for_timeout(300)
+    expect(settle).to_be_focused()
+
+
 def test_a_crop_past_the_part_for_validation_leaves_a_job_that_can_be_read(workbench, page, tmp_path):
     page.goto(workbench())
     header, *rows = text("identify.csv").splitlines()

@@ -9,17 +9,20 @@ export class Handles {
     plot.watchers.push(() => this.place());
   }
 
+  /** Show these and no others. One that stays keeps its element, and with it the keyboard's focus. */
   show(handles) {
-    for (const { node } of this.items) node.remove();
-    this.items = handles.map((handle) => ({ ...handle, node: this.node(handle) }));
+    const before = new Map(this.items.map((item) => [item.kind, item]));
+    this.items = handles.map((handle) => Object.assign(before.get(handle.kind) ?? this.created(handle), handle));
+    for (const item of before.values()) if (!this.items.includes(item)) item.node.remove();
     this.place();
   }
 
-  node({ name, kind, read, write }) {
+  created({ name, kind }) {
+    const item = {};
     const node = element(this.plot.root, "div", { class: `handle ${kind}`, role: "slider", tabindex: 0, "aria-label": name, "aria-orientation": "horizontal" });
     element(node, "span", {}, name);
     let held = false;
-    const move = (value, done) => { write(value); this.place(); this.changed(done); };
+    const move = (value, done) => { item.write(value); this.place(); this.changed(done); };
     node.addEventListener("pointerdown", (event) => { event.stopPropagation(); held = true; node.setPointerCapture(event.pointerId); });
     node.addEventListener("pointermove", (event) => {
       event.stopPropagation();
@@ -33,9 +36,9 @@ export class Handles {
       if (!sign) return;
       event.preventDefault();
       event.stopPropagation();
-      move(read() + (sign * (this.plot.x.high - this.plot.x.low)) / 200, true);
+      move(item.read() + (sign * (this.plot.x.high - this.plot.x.low)) / 200, true);
     });
-    return node;
+    return Object.assign(item, { node });
   }
 
   place() {
