@@ -33,21 +33,20 @@ def fitted(word: str) -> tuple[tuple[str, ...], Values]:
     if (first := _same_parameters(word)) != word:
         chain, values = fitted(first)
         renamed = {name.replace(f"{first}.", f"{word}."): value for name, value in values.items()}
-        return tuple(word if item == first else item for item in chain), renamed
+        return tuple(word if part == first else part for part in chain), renamed
     mechanics = blocks[word].place == Place.MECHANICS
     drive = drives()["sweep" if mechanics else "loops"]
     chains = ((OPERATOR, word), (word,)) if mechanics else ((word, MECHANICS),)
     fits = [fit for chain in chains if (fit := _fit(chain, drive))]
-    _, chain, values = min(fits, key=lambda item: item[0])
+    _, chain, values = min(fits, key=lambda fit: fit[0])
     return chain, values
 
 
 def _same_parameters(word: str) -> str:
     """The first word in the alphabet with the same parameters in the same place: both are shown at the same values."""
     declared = list(blocks[word].parameters())
-    shown = (item for item in blocks if not blocks.is_effect(item.name))
-    alike = (item for item in shown if item.place == blocks[word].place)
-    return next(item.name for item in alike if list(item.parameters()) == declared)
+    hosts = (block for block in blocks if not blocks.is_effect(block.name) and block.place == blocks[word].place)
+    return next(block.name for block in hosts if list(block.parameters()) == declared)
 
 
 def _fit(chain: tuple[str, ...], drive: Drive) -> tuple[float, tuple[str, ...], Values] | None:

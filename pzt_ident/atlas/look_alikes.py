@@ -32,29 +32,31 @@ def look_alikes(word: str) -> list[LookAlike]:
     others = [other for other in blocks.effects() if other != word]
     declared = {other for other in others if other in blocks[word].look_alikes or word in blocks[other].look_alikes}
     compared = [_compared(word, other) for other in others]
-    return sorted((c for c in compared if c.word in declared or c.together >= ALIKE), key=lambda c: -c.together)
+    return sorted(
+        (pair for pair in compared if pair.word in declared or pair.together >= ALIKE), key=lambda pair: -pair.together
+    )
 
 
 def _compared(word: str, other: str) -> LookAlike:
     a, b = traced(word), traced(other)
-    both = [name for name in a.left if name in b.left]
+    common = [name for name in a.left if name in b.left]
     together = cosine(
-        *(np.concatenate([found.left[name] / found.left[name].size ** 0.5 for name in both]) for found in (a, b))
+        *(np.concatenate([traces.left[name] / traces.left[name].size ** 0.5 for name in common]) for traces in (a, b))
     )
-    cosines = {name: _on_drive(a, b, name) for name in both if _visible(a, name) or _visible(b, name)}
+    cosines = {name: _on_drive(a, b, name) for name in common if _visible(a, name) or _visible(b, name)}
     alike, apart = max(cosines, key=lambda name: cosines[name]), min(cosines, key=lambda name: cosines[name])
     parting = drives()[apart].short if cosines[apart] < PARTED else ""
     return LookAlike(other, together, drives()[alike].short, cosines[alike], parting, cosines[apart])
 
 
-def _visible(found: Traced, name: str) -> bool:
-    return found.size(name) > VISIBLE * found.largest
+def _visible(traces: Traced, name: str) -> bool:
+    return traces.size(name) > VISIBLE * traces.largest
 
 
 def _on_drive(a: Traced, b: Traced, name: str) -> float:
     """0 where one of them leaves next to nothing."""
-    seen = min(a.size(name) / a.largest, b.size(name) / b.largest) >= VISIBLE / 10
-    return cosine(a.left[name], b.left[name]) if seen else 0.0
+    visible = min(a.size(name) / a.largest, b.size(name) / b.largest) >= VISIBLE / 10
+    return cosine(a.left[name], b.left[name]) if visible else 0.0
 
 
 def cosine(x: Array, y: Array) -> float:

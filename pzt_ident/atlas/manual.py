@@ -33,7 +33,7 @@ class Code(NamedTuple):
 
 def names() -> list[str]:
     """The files of the chapters, in order."""
-    return sorted(item.name for item in FOLDER.iterdir() if item.name.endswith(".md"))
+    return sorted(file.name for file in FOLDER.iterdir() if file.name.endswith(".md"))
 
 
 def source(name: str) -> str:
@@ -53,13 +53,13 @@ def chapter(text: str, name: str) -> Chapter:
     title = re.match(r"# (.+)\n", text)
     assert title, f"{name} has no title"
     html = MarkdownIt("commonmark").enable("table").render(text)
-    html = re.sub(r"(</?h)(\d)", lambda found: f"{found[1]}{int(found[2]) + 2}", html)
+    html = re.sub(r"(</?h)(\d)", lambda match: f"{match[1]}{int(match[2]) + 2}", html)
     html = html.replace("<pre>", '<pre tabindex="0">')
-    html = re.sub(r"<code>([^<]+)</code>", lambda found: linked(f"`{found[1]}`"), html)
+    html = re.sub(r"<code>([^<]+)</code>", lambda match: linked(f"`{match[1]}`"), html)
     numbers = count(1)
     html = html.replace("</table>", "</table></div>")
-    html = re.sub("<table>", lambda found: f"{_scrolling(f'{title[1]}, table {next(numbers)}')}<table>", html)
-    html = re.sub(r"<p>\{\{ (\w+) \}\}</p>", lambda found: TABLES[found[1]](), html)
+    html = re.sub("<table>", lambda match: f"{_scrolling(f'{title[1]}, table {next(numbers)}')}<table>", html)
+    html = re.sub(r"<p>\{\{ (\w+) \}\}</p>", lambda match: TABLES[match[1]](), html)
     return Chapter(f"manual-{anchor(name)}", title[1], html)
 
 
@@ -69,8 +69,8 @@ def anchor(name: str) -> str:
 
 def code_blocks(text: str) -> list[Code]:
     """In order. A block whose first line is `# file: NAME` is that file."""
-    found = re.findall(r"^```(\w+)\n(?:# file: (\S+)\n)?(.*?)^```$", text, re.S | re.M)
-    return [Code(*block) for block in found]
+    blocks = re.findall(r"^```(\w+)\n(?:# file: (\S+)\n)?(.*?)^```$", text, re.S | re.M)
+    return [Code(*block) for block in blocks]
 
 
 def _scrolling(name: str) -> str:

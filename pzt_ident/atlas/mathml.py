@@ -68,17 +68,17 @@ def lead_and_equation(text: str, symbols: Collection[str] = ()) -> tuple[str, st
 def _parts(text: str, symbols: Collection[str]) -> Iterator[tuple[str, bool]]:
     """The text in pieces: (text, True) and (MathML, False)."""
     text, written, place = " ".join(text.split()), 0, 0
-    starts = [found.start() for found in re.finditer(r"(?<![\w.,'`/-])(?=[A-Za-z(|0-9\[])", text)]
+    starts = [match.start() for match in re.finditer(r"(?<![\w.,'`/-])(?=[A-Za-z(|0-9\[])", text)]
     for place in starts:
         if place < written:
             continue
         try:
-            found, end = _Parser(text, place, symbols).equation()
+            pieces, end = _Parser(text, place, symbols).equation()
         except NoEquation:
             continue
         if written < place:
             yield text[written:place], True
-        yield "<wbr>".join(f"<math>{part}</math>" for piece in found for part in _broken(piece)), False
+        yield "<wbr>".join(f"<math>{part}</math>" for piece in pieces for part in _broken(piece)), False
         written = end
     if written < len(text):
         yield text[written:], True
@@ -87,8 +87,8 @@ def _parts(text: str, symbols: Collection[str]) -> Iterator[tuple[str, bool]]:
 def _broken(piece: str) -> list[str]:
     """At the marks where a line may break too, if they are inside of nothing."""
     parts = piece.split(BREAK)
-    whole = all(part.count("</") + part.count("/>") == part.count("<") - part.count("</") for part in parts)
-    return parts if whole else ["".join(parts)]
+    closed = all(part.count("</") + part.count("/>") == part.count("<") - part.count("</") for part in parts)
+    return parts if closed else ["".join(parts)]
 
 
 def symbol(name: str) -> str:
@@ -98,13 +98,13 @@ def symbol(name: str) -> str:
 
 def _name(name: str) -> str:
     base, _, below = name.partition("_")
-    if not below and (found := re.fullmatch(r"([A-Za-z]|" + "|".join(GREEK) + r")(\d+)", name)):
-        base, below = found.groups()
+    if not below and (match := re.fullmatch(r"([A-Za-z]|" + "|".join(GREEK) + r")(\d+)", name)):
+        base, below = match.groups()
     differential = re.fullmatch(r"d([a-zA-Z]|[A-Z]\w|" + "|".join(GREEK) + ")", base)
-    shown = f'<mi mathvariant="normal">d</mi>{_letter(differential[1])}' if differential else _letter(base)
-    shown = f"<mrow>{shown}</mrow>" if differential else shown
+    markup = f'<mi mathvariant="normal">d</mi>{_letter(differential[1])}' if differential else _letter(base)
+    markup = f"<mrow>{markup}</mrow>" if differential else markup
     index = _letter(below) if len(below) == 1 and below.isalpha() else f"<mtext>{escape(below)}</mtext>"
-    return f"<msub>{shown}{index}</msub>" if below else shown
+    return f"<msub>{markup}{index}</msub>" if below else markup
 
 
 def _letter(base: str) -> str:
@@ -135,11 +135,11 @@ class _Parser:
         return pieces, end
 
     def peek(self) -> Token | None:
-        found = TOKEN.match(self.text, self.place)
-        if not found:
+        match = TOKEN.match(self.text, self.place)
+        if not match:
             return None
-        kind = str(found.lastgroup)
-        return Token(kind, found[kind], bool(found["space"]), found.end())
+        kind = str(match.lastgroup)
+        return Token(kind, match[kind], bool(match["space"]), match.end())
 
     def take(self, text: str = "") -> Token:
         token = self.peek()
@@ -237,10 +237,10 @@ class _Parser:
         follows = bool(token and token.text in CLOSING and not token.spaced)
         if name == "sqrt":
             return f"<msqrt>{_bare(self.factor())}</msqrt>"
-        shown = f'<mi mathvariant="normal">{name}</mi>' if name in FUNCTIONS else _name(name)
+        markup = f'<mi mathvariant="normal">{name}</mi>' if name in FUNCTIONS else _name(name)
         if name in self.symbols and "_" in name and not re.fullmatch(r".*_\d+", name):
-            shown = f"<mi>{name.replace('_', ' ')}</mi>"
-        return f"<mrow>{shown}<mo>&#x2061;</mo>{self.group(self.take().text)}</mrow>" if follows else shown
+            markup = f"<mi>{name.replace('_', ' ')}</mi>"
+        return f"<mrow>{markup}<mo>&#x2061;</mo>{self.group(self.take().text)}</mrow>" if follows else markup
 
     def large(self, sign: str, below: str) -> str:
         above = ""
@@ -267,11 +267,11 @@ class _Parser:
         return f"{left}{inside}{right}" if BREAK in inside else f'<mrow class="group">{left}{inside}{right}</mrow>'
 
     def relations(self) -> str:
-        shown = ""
+        markup = ""
         while (token := self.peek()) and token.text in RELATIONS:
             self.take()
-            shown += f"<mo>{escape(RELATIONS[token.text])}</mo>{self.sum()}"
-        return shown
+            markup += f"<mo>{escape(RELATIONS[token.text])}</mo>{self.sum()}"
+        return markup
 
     def is_symbol(self, name: str) -> bool:
         head = name.partition("_")[0]
@@ -283,10 +283,10 @@ class _Parser:
         )
 
 
-def _bare(shown: str) -> str:
+def _bare(markup: str) -> str:
     """Without the parentheses of a group, for what a fraction bar, root or exponent already holds together."""
-    found = re.fullmatch(r'<mrow class="group"><mo[^>]*>\(</mo>(.*)<mo[^>]*>\)</mo></mrow>', shown)
-    return f"<mrow>{found[1] if found and _balanced(found[1]) else shown}</mrow>"
+    group = re.fullmatch(r'<mrow class="group"><mo[^>]*>\(</mo>(.*)<mo[^>]*>\)</mo></mrow>', markup)
+    return f"<mrow>{group[1] if group and _balanced(group[1]) else markup}</mrow>"
 
 
 def _balanced(inner: str) -> bool:

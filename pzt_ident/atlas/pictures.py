@@ -38,73 +38,73 @@ class Picture(NamedTuple):
 @cache
 def pictures(item: str) -> list[Picture]:
     """Loop, steps and spectrum of an item."""
-    found, effect = traced(item), blocks.is_effect(word_of(item))
-    of_loop, of_steps = _clearest(found, LOOPS), _clearest(found, STEPS, ("tone", "other"))
-    made = [_loop(item, found, of_loop, effect), _steps(item, found, of_steps, effect), _spectrum(item, found)]
-    return [picture for picture in made if picture]
+    traces, effect = traced(item), blocks.is_effect(word_of(item))
+    of_loop, of_steps = _clearest(traces, LOOPS), _clearest(traces, STEPS, ("tone", "other"))
+    drawn = [_loop(item, traces, of_loop, effect), _steps(item, traces, of_steps, effect), _spectrum(item, traces)]
+    return [picture for picture in drawn if picture]
 
 
-def change(found: Traced, name: str) -> float:
-    return float(np.abs(found.with_it[name] - found.bare[name]).max() / STROKE)
+def change(traces: Traced, name: str) -> float:
+    return float(np.abs(traces.with_it[name] - traces.bare[name]).max() / STROKE)
 
 
-def _clearest(found: Traced, names: tuple[str, ...], others: tuple[str, ...] = ()) -> str:
+def _clearest(traces: Traced, names: tuple[str, ...], others: tuple[str, ...] = ()) -> str:
     """The first drive on which the item shows nearly as much as on any; one of the others where it shows on none."""
-    there = [name for name in names if name in found.with_it and _swings(found, name) < DENSE]
-    largest = max((change(found, name) for name in there), default=0.0)
+    drawable = [name for name in names if name in traces.with_it and _swings(traces, name) < DENSE]
+    largest = max((change(traces, name) for name in drawable), default=0.0)
     if largest < HIDDEN and others:
-        return _clearest(found, others)
-    return next(name for name in there if change(found, name) >= NEARLY * largest)
+        return _clearest(traces, others)
+    return next(name for name in drawable if change(traces, name) >= NEARLY * largest)
 
 
-def _swings(found: Traced, name: str) -> int:
-    left = found.with_it[name] - found.bare[name]
-    return int(np.sum(np.diff(np.sign(left[np.abs(left) > 0.1 * np.abs(left).max()])) != 0))
+def _swings(traces: Traced, name: str) -> int:
+    difference = traces.with_it[name] - traces.bare[name]
+    return int(np.sum(np.diff(np.sign(difference[np.abs(difference) > 0.1 * np.abs(difference).max()])) != 0))
 
 
-def _displacements(found: Traced, name: str) -> list[Array]:
+def _displacements(traces: Traced, name: str) -> list[Array]:
     """Without the item and with it, um from where the stage rests without it."""
-    return [1e6 * (y[name] - found.bare[name][0]) for y in (found.bare, found.with_it)]
+    return [1e6 * (y[name] - traces.bare[name][0]) for y in (traces.bare, traces.with_it)]
 
 
-def _strip(found: Traced, name: str, x: Array, effect: bool) -> Panel:
+def _strip(traces: Traced, name: str, x: Array, effect: bool) -> Panel:
     label = "left after a refit, nm" if effect else "difference, nm"
     return Panel(
-        [Curve("zero", x[[0, -1]] if x.size else x, np.zeros(2)), Curve("left", x, 1e9 * found.left[name])],
+        [Curve("zero", x[[0, -1]] if x.size else x, np.zeros(2)), Curve("left", x, 1e9 * traces.left[name])],
         label,
         STRIP,
     )
 
 
-def _loop(item: str, found: Traced, name: str, effect: bool) -> Picture:
+def _loop(item: str, traces: Traced, name: str, effect: bool) -> Picture:
     drive = drives()[name]
-    both = [Curve(style, drive.u, y) for style, y in zip(STYLES, _displacements(found, name), strict=True)]
-    strip = _strip(found, name, drive.u, effect)
+    curves = [Curve(style, drive.u, y) for style, y in zip(STYLES, _displacements(traces, name), strict=True)]
+    strip = _strip(traces, name, drive.u, effect)
     strip = strip._replace(curves=[Curve("zero", np.array([0, SPAN]), np.zeros(2)), strip.curves[1]])
-    svg = drawing([Panel(both, "displacement, µm", MAIN), strip], "drive, V", f"{item}-loop", f"Loop: {drive.title}")
-    return Picture(svg, f"Loop: {drive.title}", change(found, name), f"{item}-loop")
+    svg = drawing([Panel(curves, "displacement, µm", MAIN), strip], "drive, V", f"{item}-loop", f"Loop: {drive.title}")
+    return Picture(svg, f"Loop: {drive.title}", change(traces, name), f"{item}-loop")
 
 
-def _steps(item: str, found: Traced, name: str, effect: bool) -> Picture:
+def _steps(item: str, traces: Traced, name: str, effect: bool) -> Picture:
     drive = drives()[name]
     scale, unit = (1e3, "ms") if drive.time[-1] < 1 else (1.0, "s")
     t = scale * drive.time
-    both = [Curve(style, t, y) for style, y in zip(STYLES, _displacements(found, name), strict=True)]
-    panels = [Panel(both, "displacement, µm", MAIN), _strip(found, name, t, effect)]
+    curves = [Curve(style, t, y) for style, y in zip(STYLES, _displacements(traces, name), strict=True)]
+    panels = [Panel(curves, "displacement, µm", MAIN), _strip(traces, name, t, effect)]
     svg = drawing(panels, f"time, {unit}", f"{item}-steps", f"In time: {drive.title}")
-    return Picture(svg, f"In time: {drive.title}", change(found, name), f"{item}-steps")
+    return Picture(svg, f"In time: {drive.title}", change(traces, name), f"{item}-steps")
 
 
-def _spectrum(item: str, found: Traced) -> Picture | None:
+def _spectrum(item: str, traces: Traced) -> Picture | None:
     """The frequency response on a sweep, or the spectrum under one sine where that tells more."""
-    sweeps = [name for name in SWEEPS[: shown(item).stage.axes] if name in found.with_it]
-    responses = {name: [frequency_response(name, y[name]) for y in (found.bare, found.with_it)] for name in sweeps}
+    sweeps = [name for name in SWEEPS[: shown(item).stage.axes] if name in traces.with_it]
+    responses = {name: [frequency_response(name, y[name]) for y in (traces.bare, traces.with_it)] for name in sweeps}
     changes = {name: _shape_change(*pair) for name, pair in responses.items()}
     best = max(changes, key=lambda name: changes[name], default="")
-    lines = _line_change(found) if "tone" in found.with_it else 0.0
-    if best and changes[best] >= max(lines, FLAT) and _repeats(best, found, changes[best]):
+    lines = _line_change(traces) if "tone" in traces.with_it else 0.0
+    if best and changes[best] >= max(lines, FLAT) and _repeats(best, traces, changes[best]):
         return _bode(item, best, responses[best], changes[best])
-    return _lines(item, found, lines) if lines else None
+    return _lines(item, traces, lines) if lines else None
 
 
 def frequencies(name: str) -> tuple[Array, Complex]:
@@ -129,10 +129,10 @@ def _last_period(name: str, signal: Array, before: int = 0) -> Complex:
     return np.fft.rfft(last[1:] - (last[-1] - last[0]) * np.arange(1, samples + 1) / samples)
 
 
-def _repeats(name: str, found: Traced, size: float) -> bool:
+def _repeats(name: str, traces: Traced, size: float) -> bool:
     """Whether what changes a frequency response by this much is the same in the period before."""
-    now, then = (frequency_response(name, found.with_it[name], before) for before in (0, 1))
-    return bool(np.linalg.norm(now - then) < size / 2 * np.linalg.norm(now))
+    last, previous = (frequency_response(name, traces.with_it[name], before) for before in (0, 1))
+    return bool(np.linalg.norm(last - previous) < size / 2 * np.linalg.norm(last))
 
 
 def _shape_change(bare: Complex, with_it: Complex) -> float:
@@ -157,9 +157,9 @@ def _bode(item: str, name: str, pair: list[Complex], size: float) -> Picture:
     )
 
 
-def _line_change(found: Traced) -> float:
+def _line_change(traces: Traced) -> float:
     """Relative change of the spectrum under a sine, beside its first line."""
-    bare, with_it = (_amplitudes(y["tone"]) for y in (found.bare, found.with_it))
+    bare, with_it = (_amplitudes(y["tone"]) for y in (traces.bare, traces.with_it))
     first = int(np.argmax(bare))
     away = np.abs(np.arange(bare.size) - first) > 4
     return float(np.linalg.norm((with_it - bare)[away]) / bare[first])
@@ -171,10 +171,10 @@ def _amplitudes(y: Array) -> Array:
     return 4 * np.abs(np.fft.rfft((last - last.mean()) * np.hanning(last.size)))[3:251] / last.size
 
 
-def _lines(item: str, found: Traced, size: float) -> Picture:
+def _lines(item: str, traces: Traced, size: float) -> Picture:
     drive, f = drives()["tone"], np.arange(3, 251) / 2
     curves = []
-    for style, y, shift in zip(STYLES, (found.bare, found.with_it), (-0.4, 0.4), strict=True):
+    for style, y, shift in zip(STYLES, (traces.bare, traces.with_it), (-0.4, 0.4), strict=True):
         sizes = 1e9 * _amplitudes(y["tone"])
         tall = np.flatnonzero(sizes > 0.5)
         x, top = np.repeat(f[tall] + shift, 3), np.column_stack([0 * tall + 0.5, sizes[tall], 0 * tall + 0.5]).ravel()

@@ -34,19 +34,19 @@ def search_pictures(word: str) -> list[Picture]:
 
 def _run(word: str, dimensions: int, budget: int, seed: int) -> tuple[list[Array], Array, Array]:
     """The candidates, and the evaluations and best loss after each generation."""
-    seen: list[Array] = []
+    candidates: list[Array] = []
 
-    def look(points: Array) -> Array:
-        seen.append(points)
+    def evaluated_residuals(points: Array) -> Array:
+        candidates.append(points)
         return residuals(points)
 
-    def lost(points: Array) -> Array:
-        seen.append(points)
+    def evaluated_loss(points: Array) -> Array:
+        candidates.append(points)
         return loss(points)
 
     optimizer = optimizers[word].make().with_budget(budget)
-    outcome = optimize(optimizer, dimensions, lost, seed, Stop(budget), look)
-    return seen, np.asarray(outcome.history.evaluations, dtype=float), outcome.history.best
+    outcome = optimize(optimizer, dimensions, evaluated_loss, seed, Stop(budget), evaluated_residuals)
+    return candidates, np.asarray(outcome.history.evaluations, dtype=float), outcome.history.best
 
 
 def _candidates(word: str) -> Picture:

@@ -83,7 +83,7 @@ class Shown:
     def _amounts(self, share: float) -> list[tuple[str, float]]:
         """Of an addition, m."""
         declared = self.block.parameters().items() if issubclass(self.block, Addition) else ()
-        return [(name, share * item.bounds[1] * STROKE) for name, item in declared if item.per_record]
+        return [(name, share * parameter.bounds[1] * STROKE) for name, parameter in declared if parameter.per_record]
 
     def respond(self, drive: Drive) -> Array:
         """The response with the item, m: (samples,)."""
@@ -92,10 +92,10 @@ class Shown:
     def _respond(self, drive: Drive, share: float) -> Array:
         theta = self._theta(share)
         with np.errstate(all="ignore"):
-            found = self.stage.respond(drive, theta)
+            response = self.stage.respond(drive, theta)
         if amounts := [amount for _, amount in self._amounts(share)]:
-            found = found + Additions(self.stage.chain, record(drive)).basis(0, theta)[:, 1:] @ amounts
-        return found
+            response = response + Additions(self.stage.chain, record(drive)).basis(0, theta)[:, 1:] @ amounts
+        return response
 
     def bare(self, drive: Drive) -> Array:
         """The response without the item, m: (samples,). Without an operator, the straight line nearest to it."""

@@ -109,10 +109,10 @@ def sine(frequency: float, seconds: float, dt: float) -> Array:
 
 def record(drive: Drive, axes: int = 1) -> Record:
     """The drive as a record without a response; of two axes the second one is driven, not measured."""
-    both = np.array([drive.u, drive.other][:axes])
+    drive_signals = np.array([drive.u, drive.other][:axes])
     units = ("um", None)[:axes]
     more: dict[str, Any] = {"axes": ("x", "y")[:axes], "drive_units": ("V",) * axes, "response_units": units}
-    return Record(drive.short, "identify", drive.dt, both, np.zeros_like(both), **more)
+    return Record(drive.short, "identify", drive.dt, drive_signals, np.zeros_like(drive_signals), **more)
 
 
 class Stage:
@@ -125,15 +125,15 @@ class Stage:
 
     def respond(self, drive: Drive, theta: Array) -> Array:
         """The response to a drive, without additions: (samples,); of many candidates, (candidates, samples)."""
-        found = Simulator(self.chain, record(drive, self.axes)).simulate(theta)[:, 0]
-        return found if np.ndim(theta) > 1 else found[0]
+        response = Simulator(self.chain, record(drive, self.axes)).simulate(theta)[:, 0]
+        return response if np.ndim(theta) > 1 else response[0]
 
 
 @cache
 def reference(axes: int) -> Record:
     """What bounds in units of drive and response are multiples of: 100 V and 8 um."""
-    made = record(drives()["loops"], axes)
-    made.response[0] = STROKE / SPAN * made.drive[0]
+    loops = record(drives()["loops"], axes)
+    loops.response[0] = STROKE / SPAN * loops.drive[0]
     if axes > 1:
-        made.drive[1] = made.drive[0]
-    return made
+        loops.drive[1] = loops.drive[0]
+    return loops

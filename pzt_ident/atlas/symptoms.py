@@ -21,72 +21,72 @@ class Symptom(NamedTuple):
     strength: Callable[[Traced], float]
 
 
-def rests(found: Traced) -> float:
-    return found.size("rest") / found.largest
+def rests(traces: Traced) -> float:
+    return traces.size("rest") / traces.largest
 
 
-def goes_on(found: Traced) -> float:
+def goes_on(traces: Traced) -> float:
     """The change from the beginning to the end of the holds over that of the whole record."""
-    drive, left = drives()["holds"], found.left["holds"]
+    drive, left = drives()["holds"], traces.left["holds"]
     still = np.flatnonzero(np.diff(drive.u) != 0)
     starts = [group[-1] + 1 for group in np.split(still, np.flatnonzero(np.diff(still) > 1) + 1)]
     hold = int(20 / drive.dt)
     pieces = [left[start : start + hold] for start in starts[: len(LEVELS)]]
     moved = [abs(piece[-50:].mean() - piece[:10].mean()) for piece in pieces if piece.size > 100]
-    return float(min(1.0, 2 * np.mean(moved) / (np.ptp(left) or 1))) * _present(found, "holds")
+    return float(min(1.0, 2 * np.mean(moved) / (np.ptp(left) or 1))) * _present(traces, "holds")
 
 
-def bends(found: Traced) -> float:
+def bends(traces: Traced) -> float:
     """The share of what is left on slow loops that is one function of the drive with few changes of sign."""
-    curve, share = _function_of(drives()["loops"].u, found.left["loops"])
-    return share * (_crossings(curve) < RIPPLES) * _present(found, "loops")
+    curve, share = _function_of(drives()["loops"].u, traces.left["loops"])
+    return share * (_crossings(curve) < RIPPLES) * _present(traces, "loops")
 
 
-def ripples(found: Traced) -> float:
+def ripples(traces: Traced) -> float:
     """The share that is one function of the displacement with many changes of sign."""
-    curve, share = _function_of(found.bare["loops"], found.left["loops"])
-    return share * (_crossings(curve) >= RIPPLES) * _present(found, "loops")
+    curve, share = _function_of(traces.bare["loops"], traces.left["loops"])
+    return share * (_crossings(curve) >= RIPPLES) * _present(traces, "loops")
 
 
-def branches(found: Traced) -> float:
+def branches(traces: Traced) -> float:
     """The share of what is left on the outer loop that has the other sign on the other branch."""
-    loops, left = drives()["loops"].u, found.left["loops"]
+    loops, left = drives()["loops"].u, traces.left["loops"]
     rise, fall = slice(1000, 1500), slice(500, 1000)
     assert loops[1000] == loops.min() and loops[500] == loops[1500] == loops.max()
     up, down = left[rise], left[fall][::-1]
     odd = np.sum((up - down) ** 2) / (2 * np.sum(up**2 + down**2) or 1)
-    return float(odd) * _present(found, "loops")
+    return float(odd) * _present(traces, "loops")
 
 
-def rate(found: Traced) -> float:
+def rate(traces: Traced) -> float:
     """How differently slow loops and fast ones along the same path are left, or how much only steps leave."""
-    if not {"fast", "loops"} <= found.left.keys():
+    if not {"fast", "loops"} <= traces.left.keys():
         return 0.0
-    apart = float(np.sqrt(np.mean((found.left["fast"] - found.left["loops"]) ** 2)) / STROKE)
-    return max(min(1.0, apart / found.largest), _more(found, "steps", "loops"))
+    apart = float(np.sqrt(np.mean((traces.left["fast"] - traces.left["loops"]) ** 2)) / STROKE)
+    return max(min(1.0, apart / traces.largest), _more(traces, "steps", "loops"))
 
 
-def high(found: Traced) -> float:
-    return _more(found, "sweep", "loops")
+def high(traces: Traced) -> float:
+    return _more(traces, "sweep", "loops")
 
 
-def line(found: Traced) -> float:
+def line(traces: Traced) -> float:
     """The share of the spectrum under a sine that is between its harmonics."""
-    left = found.left["tone"]
+    left = traces.left["tone"]
     power = np.abs(np.fft.rfft(left * np.hanning(left.size))) ** 2
     order = np.fft.rfftfreq(left.size, drives()["tone"].dt) / 10
     between = (np.abs(order - np.round(order)) > 0.12) & (order > 0.5)
-    return float(power[between].sum() / (power[order > 0.5].sum() or 1)) * _present(found, "tone")
+    return float(power[between].sum() / (power[order > 0.5].sum() or 1)) * _present(traces, "tone")
 
 
-def other_axis(found: Traced) -> float:
-    return _more(found, "other", "loops")
+def other_axis(traces: Traced) -> float:
+    return _more(traces, "other", "loops")
 
 
-def amplitude(found: Traced) -> float:
+def amplitude(traces: Traced) -> float:
     """How differently the slope of what is left goes with the drive in small loops and in large ones."""
-    small, large = (np.polyfit(drives()[name].u, found.left[name], 1)[0] for name in ("small", "loops"))
-    return float(min(1.0, abs(small - large) * SPAN / (8 * found.largest * STROKE)))
+    small, large = (np.polyfit(drives()[name].u, traces.left[name], 1)[0] for name in ("small", "loops"))
+    return float(min(1.0, abs(small - large) * SPAN / (8 * traces.largest * STROKE)))
 
 
 RIPPLES, BINS = 8, 100  # changes of sign over the range, and bins of it
@@ -115,15 +115,15 @@ def table() -> list[tuple[str, list[tuple[str, float]]]]:
     return rows
 
 
-def _present(found: Traced, drive: str) -> float:
+def _present(traces: Traced, drive: str) -> float:
     """Near 1 where a drive shows the effect about as well as any, near 0 where it hides it."""
-    return min(1.0, 3 * found.size(drive) / found.largest)
+    return min(1.0, 3 * traces.size(drive) / traces.largest)
 
 
-def _more(found: Traced, here: str, there: str) -> float:
+def _more(traces: Traced, drive: str, other: str) -> float:
     """Near 1 where what is left is much larger on one drive than on another."""
-    a, b = found.size(here), found.size(there)
-    return max(0.0, 1 - 1.5 * b / a) * _present(found, here) if a > 0 else 0.0
+    a, b = traces.size(drive), traces.size(other)
+    return max(0.0, 1 - 1.5 * b / a) * _present(traces, drive) if a > 0 else 0.0
 
 
 def _function_of(x: Array, left: Array) -> tuple[Array, float]:

@@ -40,7 +40,9 @@ class Traced(NamedTuple):
 def traced(item: str) -> Traced:
     """Each is made once."""
     subject: Shown = shown(item)
-    with_it = {name: found for name, drive in drives().items() if np.isfinite(found := subject.respond(drive)).all()}
+    with_it = {
+        name: response for name, drive in drives().items() if np.isfinite(response := subject.respond(drive)).all()
+    }
     bare = {name: subject.bare(drives()[name]) for name in with_it}
     change = {name: with_it[name] - bare[name] for name in with_it}
     return Traced(with_it, bare, refitted(change) if subject.effect else change)
@@ -52,9 +54,9 @@ def refitted(change: Traces) -> Traces:
     names = [name for name in change if name not in UNSEEN]
     weights = {name: np.full(change[name].size, change[name].size ** -0.5) for name in names}
     columns = np.hstack([slopes(name) for name in names]) * np.concatenate([weights[name] for name in names])
-    wanted = np.concatenate([weights[name] * (change[name] - change[name].mean()) for name in names])
-    taken = np.linalg.lstsq(columns.T, wanted, rcond=1e-9)[0]
-    left = {name: change[name] - change[name].mean() - taken @ slopes(name) for name in change}
+    target = np.concatenate([weights[name] * (change[name] - change[name].mean()) for name in names])
+    absorbed = np.linalg.lstsq(columns.T, target, rcond=1e-9)[0]
+    left = {name: change[name] - change[name].mean() - absorbed @ slopes(name) for name in change}
     return {name: trace - trace.mean() for name, trace in left.items()}
 
 
@@ -65,5 +67,5 @@ def slopes(name: str) -> Array:
     stage = Stage([blocks[OPERATOR], blocks[MECHANICS]], VALUES)
     theta = stage.problem.theta
     up, down = (stage.respond(drive, theta * (1 + sign * STEP * np.eye(theta.size))) for sign in (1, -1))
-    found = (up - down) / (2 * STEP)
-    return found - found.mean(axis=1, keepdims=True)
+    derivatives = (up - down) / (2 * STEP)
+    return derivatives - derivatives.mean(axis=1, keepdims=True)

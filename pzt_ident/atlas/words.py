@@ -66,15 +66,15 @@ class Word:
     def place(self) -> Place:
         """In the signal chain; of a term, that of the block in whose equation it acts."""
         block = blocks[self.word]
-        holders = [item for item in blocks if item.holds(block)] if issubclass(block, Term) else [block]
-        return min(item.place for item in holders)
+        holders = [holder for holder in blocks if holder.holds(block)] if issubclass(block, Term) else [block]
+        return min(holder.place for holder in holders)
 
     @property
     def headline(self) -> str:
         """What it is, in a few words: the docstring of its file, or else the beginning of its own."""
-        item = blocks[self.word] if self.word in blocks else optimizers[self.word]
-        file = inspect.getdoc(sys.modules[item.__module__]) or ""
-        return escape(file.partition("\n\n")[0], quote=False) or lead_and_equation(headline(item), self.symbols)[0]
+        subject = blocks[self.word] if self.word in blocks else optimizers[self.word]
+        file = inspect.getdoc(sys.modules[subject.__module__]) or ""
+        return escape(file.partition("\n\n")[0], quote=False) or lead_and_equation(headline(subject), self.symbols)[0]
 
     @cached_property
     def symbols(self) -> set[str]:
@@ -146,11 +146,11 @@ class Word:
     @property
     def values(self) -> str:
         """At which it is shown."""
-        made: dict[tuple[str, str], list[str]] = {}
-        for item in shown(self.word).values:
-            name, unit = item.name.partition(".")[2], "" if item.unit == "1" else f" {item.unit}"
-            made.setdefault((re.sub(r"_\d+$", "", name), short(item.value, 3) + unit), []).append(name)
-        return ", ".join(f"{name} = {value}" for (_, value), names in made.items() for name in ranges(names))
+        parameters: dict[tuple[str, str], list[str]] = {}
+        for shown_value in shown(self.word).values:
+            name, unit = shown_value.name.partition(".")[2], "" if shown_value.unit == "1" else f" {shown_value.unit}"
+            parameters.setdefault((re.sub(r"_\d+$", "", name), short(shown_value.value, 3) + unit), []).append(name)
+        return ", ".join(f"{name} = {value}" for (_, value), names in parameters.items() for name in ranges(names))
 
     @property
     def look_alikes(self) -> list[LookAlike]:
@@ -159,7 +159,7 @@ class Word:
 
 def every_word() -> list[Word]:
     """In the order in which the signal flows, then the optimizers."""
-    in_chain = sorted((Word(word) for word in blocks.usable()), key=lambda item: (item.place, item.effect, item.word))
+    in_chain = sorted((Word(word) for word in blocks.usable()), key=lambda word: (word.place, word.effect, word.word))
     return in_chain + [Word(word) for word in optimizers.usable()]
 
 
@@ -174,10 +174,10 @@ def texts_of(doc: str, symbols: Collection[str]) -> tuple[str, str, list[str]]:
 def linked(html: str) -> str:
     """Words in backticks as code, those of the registry as links to their sections."""
 
-    def code(found: re.Match[str]) -> str:
-        text = f"<code>{found[1]}</code>"
-        known = word_of(found[1]) in blocks or found[1] in optimizers
-        return f'<a href="{href(found[1], "")}">{text}</a>' if known else text
+    def code(match: re.Match[str]) -> str:
+        text = f"<code>{match[1]}</code>"
+        registered = word_of(match[1]) in blocks or match[1] in optimizers
+        return f'<a href="{href(match[1], "")}">{text}</a>' if registered else text
 
     return re.sub(r"`([^`<]+)`", code, html)
 
@@ -193,15 +193,15 @@ def cited(html: str) -> str:
 def nulls(item: str) -> list[str]:
     """The parameters of an effect, in a form, and the value of each at which the effect is not there."""
     block = blocks[item]
-    acting = [
+    of_host = [
         (word, declared)
         for host in blocks
         for word, declared in host.parameters().items()
         if declared.effect in (block.name, block.item()) and declared.null is not None and declared.scale != "log"
     ]
-    own = [(word, declared) for word, declared in block.parameters().items() if declared.null is not None]
-    found = {re.sub(r"_\d+$", "", word) if d.count else word: d.null for word, d in own or acting}
-    return [f"{word} = {null:g}" for word, null in found.items() if null is not None]
+    of_block = [(word, declared) for word, declared in block.parameters().items() if declared.null is not None]
+    values = {re.sub(r"_\d+$", "", word) if d.count else word: d.null for word, d in of_block or of_host}
+    return [f"{word} = {null:g}" for word, null in values.items() if null is not None]
 
 
 def grouped(rows: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:

@@ -120,12 +120,12 @@ class Inverse:
         """The inverse of every part for a target, and what the model does under the drive that it gives."""
         force = self.mechanics(target) + bending(self.stage.solvable, target)
         solution = self.material(force, reference, self.bounds)
-        asked = self.command(solution.inputs, reference)
-        drive = self.limits.clip(asked, self.stage.dt)
-        if not np.array_equal(drive, asked):
+        command = self.command(solution.inputs, reference)
+        drive = self.limits.clip(command, self.stage.dt)
+        if not np.array_equal(drive, command):
             least = self.material(force, reference, self.limits)
             drive = self.limits.clip(self.command(least.inputs, reference), self.stage.dt)
-        return Feedforward(reference, drive, asked, self.stage.respond(drive), solution.wrong, solution.missed)
+        return Feedforward(reference, drive, command, self.stage.respond(drive), solution.wrong, solution.missed)
 
     def material(self, force: Array, reference: Array, limits: Limits) -> Solution:
         """Inputs of the material under which it puts out a force; those of an axis that is not measured follow from

@@ -88,8 +88,8 @@ def pulse_responses(stage: Stage, places: frozenset[Place], size: Array, without
         count *= 2
         pulses = np.array([pulse_response(stage, places, size, axis, count, without) for axis in range(len(size))])
         rest = np.abs(pulses[:, :, -count // 4 :]).max()
-        begun = all(np.abs(pulses[axis, axis]).max() > 0 for axis in range(len(size)))  # a delay may be longer
-        decays = bool(begun and rest <= DECAYED * np.abs(pulses).max())
+        responds = all(np.abs(pulses[axis, axis]).max() > 0 for axis in range(len(size)))  # a delay may be longer
+        decays = bool(responds and rest <= DECAYED * np.abs(pulses).max())
         if decays or count >= LONGEST:
             return pulses.transpose(1, 0, 2), decays
 

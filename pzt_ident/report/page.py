@@ -79,12 +79,12 @@ def _figures_by_section(results: Results) -> dict[str | None, list[tuple[Plate, 
 
 
 def _template_variables(results: Results, tables: dict[str, Table], figures: dict[str | None, Any]) -> dict[str, Any]:
-    head, following, found = verdict(results), next_step(results), findings(results)
+    sentence, following, remarks = verdict(results), next_step(results), findings(results)
     return {
-        "verdict": head,
+        "verdict": sentence,
         "next_step": following,
-        "findings": found,
-        "words": named([head, following, *found], tables),
+        "findings": remarks,
+        "words": named([sentence, following, *remarks], tables),
         "results": results,
         "result": results.result,
         "tables": tables,

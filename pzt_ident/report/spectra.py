@@ -30,13 +30,13 @@ def spectra(run: Path) -> dict[str, Any]:
 def printed_spectra(traces: Sequence[Trace]) -> list[dict[str, Any]]:
     """Of each trace, with few points and digits, for a page that holds all it shows."""
     most = max(ON_PAPER // max(len(traces), 1), 60)
-    return [{key: _short(item) for key, item in spectrum_of(trace, most).items()} for trace in traces]
+    return [{key: _rounded(content) for key, content in spectrum_of(trace, most).items()} for trace in traces]
 
 
-def _short(item: Any) -> Any:
-    if isinstance(item, dict):
-        return {key: _short(value) for key, value in item.items()}
-    return [float(f"{value:.4g}") for value in item] if isinstance(item, np.ndarray) else item
+def _rounded(content: Any) -> Any:
+    if isinstance(content, dict):
+        return {key: _rounded(value) for key, value in content.items()}
+    return [float(f"{value:.4g}") for value in content] if isinstance(content, np.ndarray) else content
 
 
 def spectrum_of(trace: Trace, most: int = MOST) -> dict[str, Any]:
@@ -48,31 +48,33 @@ def spectrum_of(trace: Trace, most: int = MOST) -> dict[str, Any]:
     rate = (trace.time.size - 1) / float(trace.time[-1] - trace.time[0])
     options = {"fs": rate, "nperseg": max(8, 2 * residual.size // (SEGMENTS + 1)), "detrend": "linear"}
     frequency, power = welch(drive, **options)
-    _, rest = welch(residual, **options)
+    _, residual_power = welch(residual, **options)
     responses = {"measured": response, "model": model}
-    crossed = {name: csd(drive, values, **options)[1] for name, values in responses.items()}
-    _, own = welch(response, **options)
-    kept = np.unique(np.geomspace(1, frequency.size - 1, min(most, frequency.size - 1)).astype(int))
-    moved = power[kept] > MOVED * power.max()
-    found: dict[str, Any] = {
+    cross_spectra = {name: csd(drive, values, **options)[1] for name, values in responses.items()}
+    _, response_power = welch(response, **options)
+    lines = np.unique(np.geomspace(1, frequency.size - 1, min(most, frequency.size - 1)).astype(int))
+    driven = power[lines] > MOVED * power.max()
+    spectrum: dict[str, Any] = {
         "name": trace.record,
         "use": trace.use,
         "axis": trace.axis,
         "unit": unit(trace.unit),
         "driveUnit": unit(trace.drive_unit),
-        "frequency": frequency[kept],
-        "residual": np.sqrt(rest[kept]),
-        "coherence": among(moved, np.abs(crossed["measured"][kept]) ** 2 / (power * own)[kept].clip(1e-300)),
+        "frequency": frequency[lines],
+        "residual": np.sqrt(residual_power[lines]),
+        "coherence": where(
+            driven, np.abs(cross_spectra["measured"][lines]) ** 2 / (power * response_power)[lines].clip(1e-300)
+        ),
     }
-    for name, cross in crossed.items():
-        quotient = cross[kept] / power[kept].clip(1e-300)
-        found[name] = {
-            "amplitude": among(moved, np.abs(quotient)),
-            "phase": among(moved, np.degrees(np.angle(quotient))),
+    for name, cross in cross_spectra.items():
+        quotient = cross[lines] / power[lines].clip(1e-300)
+        spectrum[name] = {
+            "amplitude": where(driven, np.abs(quotient)),
+            "phase": where(driven, np.degrees(np.angle(quotient))),
         }
-    return found
+    return spectrum
 
 
-def among(moved: NDArray[np.bool_], values: Array) -> Array:
+def where(driven: NDArray[np.bool_], values: Array) -> Array:
     """NaN where the drive has no power."""
-    return np.where(moved, values, np.nan)
+    return np.where(driven, values, np.nan)

@@ -26,19 +26,19 @@ def named(sentences: Iterable[str], tables: Mapping[str, Table]) -> list[Word]:
         cell for table in tables.values() for column in COLUMNS if column in table.text for cell in table.text[column]
     ]
     names = [name for text in [*sentences, *cells] for name in NAME.findall(text)]
-    known = set(blocks.usable())
-    return [Word(word) for word in sorted({part for name in names for part in name.split(".")} & known)]
+    registered = set(blocks.usable())
+    return [Word(word) for word in sorted({part for name in names for part in name.split(".")} & registered)]
 
 
 def linked(text: str, words: Collection[Word]) -> Markup:
     """A text in which what belongs to one of these words is the link to it."""
     from markupsafe import Markup, escape
 
-    known = {word.word for word in words}
+    names = {word.word for word in words}
 
-    def link(name: re.Match[str]) -> str:
-        word = next((part for part in name[0].split(".") if part in known), None)
-        return f'<a href="#{anchor(word)}">{name[0]}</a>' if word else name[0]
+    def link(match: re.Match[str]) -> str:
+        word = next((part for part in match[0].split(".") if part in names), None)
+        return f'<a href="#{anchor(word)}">{match[0]}</a>' if word else match[0]
 
     parts = re.split(f"({NAME.pattern})", text)
     return Markup("".join(NAME.sub(link, part) if place % 2 else escape(part) for place, part in enumerate(parts)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pickle
 import platform
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import islice
@@ -18,8 +18,19 @@ from pzt_ident.errors import InputError, LostError
 from pzt_ident.files import plain
 from pzt_ident.run.computing import computing
 from pzt_ident.run.folder import version_of
-from pzt_ident.run.place import forget
-from pzt_ident.run.pool import SECONDS_DEAF, Done, Entry, Event, Tell, attempt, interrupts_deferred
+from pzt_ident.run.pool import (
+    SECONDS_DEAF,
+    Arguments,
+    Done,
+    Entry,
+    Event,
+    Failures,
+    Tasks,
+    Tell,
+    attempt,
+    forget,
+    interrupts_deferred,
+)
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -44,14 +55,7 @@ class Cluster:
     def client(self) -> Iterator[Client]:
         raise NotImplementedError
 
-    def run_all(
-        self,
-        entry: Entry,
-        common: tuple[Any, ...],
-        tasks: Iterable[tuple[str, tuple[Any, ...]]],
-        tell: Tell,
-        done: Done = forget,
-    ) -> dict[str, str]:
+    def run_all(self, entry: Entry, common: Arguments, tasks: Tasks, tell: Tell, done: Done = forget) -> Failures:
         """As of `Place`. The data of a task stand in Dask's graph, so that they are sent again where they were lost."""
         from distributed.comm import CommClosedError
 
@@ -111,19 +115,17 @@ class Slurm(Cluster):
 class Session:
     """One call of `run_all` on a client."""
 
-    def __init__(
-        self, client: Client, words: str, entry: Entry, common: tuple[Any, ...], tell: Tell, done: Done
-    ) -> None:
+    def __init__(self, client: Client, words: str, entry: Entry, common: Arguments, tell: Tell, done: Done) -> None:
         self.client, self.words, self.entry, self.tell, self.done = client, words, entry, tell, done
         self.arrived: SimpleQueue[Event | tuple[str, Future]] = SimpleQueue()
         self.topic = f"pzt-ident-{uuid4().hex}"
         self.client.subscribe_topic(self.topic, lambda event: self.arrived.put(event[1]))
         self.common = client.submit(bytes, pickle.dumps(common), key=f"{self.topic}-common")
         self.running: dict[str, Future] = {}
-        self.failed: dict[str, str] = {}
-        self.threads, self.counted, self.seen = 0, 0.0, time.monotonic()
+        self.failed: Failures = {}
+        self.threads, self.counted, self.staffed = 0, 0.0, time.monotonic()
 
-    def run(self, tasks: Iterator[tuple[str, tuple[Any, ...]]], check: Callable[[], None]) -> dict[str, str]:
+    def run(self, tasks: Iterator[tuple[str, Arguments]], check: Callable[[], None]) -> Failures:
         try:
             while True:
                 check()
@@ -145,12 +147,12 @@ class Session:
         if now - self.counted > 1:
             self.threads, self.counted = sum(self.client.nthreads().values()), now
         if self.threads:
-            self.seen = now
-        elif now - self.seen > SECONDS_WITHOUT_WORKERS and self.client.cluster is None:
+            self.staffed = now
+        elif now - self.staffed > SECONDS_WITHOUT_WORKERS and self.client.cluster is None:
             raise LostError(f"every worker of {self.words} is gone")
         return AHEAD * max(self.threads, 1) - len(self.running)
 
-    def begin(self, name: str, arguments: tuple[Any, ...]) -> None:
+    def begin(self, name: str, arguments: Arguments) -> None:
         key, raw = f"{self.topic}-{name}", pickle.dumps(arguments)
         future = self.client.submit(attempt_there, self.entry, self.common, raw, self.topic, key=key, pure=False)
         self.running[name] = future
@@ -159,13 +161,13 @@ class Session:
     def take(self, seconds: float) -> None:
         """Deal with what has arrived, and wait for it if nothing has."""
         try:
-            item = self.arrived.get(timeout=seconds)
+            arrival = self.arrived.get(timeout=seconds)
             while True:
-                if isinstance(item, dict):
-                    self.tell(item)
+                if isinstance(arrival, dict):
+                    self.tell(arrival)
                 else:
-                    self.end(*item)
-                item = self.arrived.get_nowait()
+                    self.end(*arrival)
+                arrival = self.arrived.get_nowait()
         except Empty:
             return
 
@@ -211,15 +213,15 @@ def joined(client: Client, words: str) -> Event:
         max(threads.values(), default=1) > 1
     )
     count = f"{len(threads)} workers" if threads else "jobs that wait for their turn"
-    said = f"{count}{shared} at {words}; Dask's dashboard: {client.dashboard_link}"
-    return {"event": "cluster", "said": said, "workers": len(threads), "dashboard": client.dashboard_link}
+    sentence = f"{count}{shared} at {words}; Dask's dashboard: {client.dashboard_link}"
+    return {"event": "cluster", "said": sentence, "workers": len(threads), "dashboard": client.dashboard_link}
 
 
 def check_versions(client: Client, words: str) -> None:
-    mine, remedy = version(), "install the same there: pip install 'pzt-ident[cluster]'"
+    ours, remedy = version(), "install the same there: pip install 'pzt-ident[cluster]'"
     for address, theirs in client.run(version, on_error="return").items():
-        if theirs != mine:
-            problem = f"{theirs} there, {mine} here" if isinstance(theirs, str) else "pzt-ident is not installed there"
+        if theirs != ours:
+            problem = f"{theirs} there, {ours} here" if isinstance(theirs, str) else "pzt-ident is not installed there"
             raise InputError(f"worker {address}: {problem}", where=f"--on {words}", remedy=remedy)
 
 
@@ -245,15 +247,15 @@ def attempt_there(entry: Entry, common: bytes, arguments: bytes, topic: str) -> 
 
 def thinned(tell: Tell) -> Tell:
     """Tells on; of frequent events one a second."""
-    told = 0.0
+    latest = 0.0
 
     def tell_some(event: Event) -> None:
-        nonlocal told
+        nonlocal latest
         now = time.monotonic()
         if event["event"] in FREQUENT:
-            if now - told < SECONDS_BETWEEN_EVENTS:
+            if now - latest < SECONDS_BETWEEN_EVENTS:
                 return
-            told = now
+            latest = now
         tell(event)
 
     return tell_some

@@ -4,21 +4,16 @@ from __future__ import annotations
 
 import re
 import socket
-from collections.abc import Iterable
 from dataclasses import dataclass
 from importlib.util import find_spec
 from shutil import which
-from typing import Any, ClassVar, Protocol
+from typing import ClassVar, Protocol
 
 from pzt_ident.errors import InputError
-from pzt_ident.run.pool import Done, Entry, Tell, run_all
+from pzt_ident.run.pool import Arguments, Done, Entry, Failures, Tasks, Tell, forget, run_all
 
 WORDS = "write local, local:4, tcp://scheduler:8786 or slurm:PARTITION:8"
 SECONDS_TO_ANSWER = 10.0
-
-
-def forget(name: str, result: Any) -> None:
-    """What is done with the results of tasks that write their own."""
 
 
 class Place(Protocol):
@@ -26,14 +21,7 @@ class Place(Protocol):
 
     shares_disk: ClassVar[bool]
 
-    def run_all(
-        self,
-        entry: Entry,
-        common: tuple[Any, ...],
-        tasks: Iterable[tuple[str, tuple[Any, ...]]],
-        tell: Tell,
-        done: Done = forget,
-    ) -> dict[str, str]:
+    def run_all(self, entry: Entry, common: Arguments, tasks: Tasks, tell: Tell, done: Done = forget) -> Failures:
         """Call entry(tell, *common, *arguments) for each named task, give what it returns to done(name, result), and
         return the reason for each that failed. `common` goes to a worker once. What a worker that was killed was at is
         done again. Tasks are taken as there is room, so that a million of them need no more memory than a few.
@@ -49,14 +37,7 @@ class Local:
     shares_disk: ClassVar[bool] = True
     workers: int | None = None
 
-    def run_all(
-        self,
-        entry: Entry,
-        common: tuple[Any, ...],
-        tasks: Iterable[tuple[str, tuple[Any, ...]]],
-        tell: Tell,
-        done: Done = forget,
-    ) -> dict[str, str]:
+    def run_all(self, entry: Entry, common: Arguments, tasks: Tasks, tell: Tell, done: Done = forget) -> Failures:
         return run_all(entry, common, tasks, self.workers, tell, done)
 
 
@@ -65,22 +46,22 @@ HERE = Local()
 
 def place_of(words: str) -> Place:
     """The place that words name. Raises InputError where they name none, nobody answers there, or Dask is missing."""
-    if found := re.fullmatch(r"local(?::([1-9]\d*))?", words):
-        return Local(int(found[1]) if found[1] else None)
-    if found := re.fullmatch(r"(?:tcp|tls)://(\[[^\]]+\]|[^\s/:]+):(\d+)", words):
+    if match := re.fullmatch(r"local(?::([1-9]\d*))?", words):
+        return Local(int(match[1]) if match[1] else None)
+    if match := re.fullmatch(r"(?:tcp|tls)://(\[[^\]]+\]|[^\s/:]+):(\d+)", words):
         _check_dask(words, "distributed")
-        _check_answers(words, found[1].strip("[]"), int(found[2]))
+        _check_answers(words, match[1].strip("[]"), int(match[2]))
         from pzt_ident.run.cluster import Scheduler
 
         return Scheduler(words)
-    if found := re.fullmatch(r"slurm:([\w.,-]+):([1-9]\d*)", words):
+    if match := re.fullmatch(r"slurm:([\w.,-]+):([1-9]\d*)", words):
         _check_dask(words, "dask_jobqueue")
         if not which("sbatch"):
             remedy = "run it on a machine that jobs are submitted from"
             raise InputError("there is no SLURM here (no command sbatch)", where=f"--on {words}", remedy=remedy)
         from pzt_ident.run.cluster import Slurm
 
-        return Slurm(words, found[1], int(found[2]))
+        return Slurm(words, match[1], int(match[2]))
     raise InputError("is no place to run at", where=f"--on {words}", remedy=WORDS)
 
 

@@ -20,9 +20,16 @@ Event = dict[str, Any]
 Tell = Callable[[Event], None]
 Done = Callable[[str, Any], None]
 Entry = Callable[..., Any]
+Arguments = tuple[Any, ...]
+Tasks = Iterable[tuple[str, Arguments]]  # names, with the arguments that each task has of its own
+Failures = dict[str, str]  # reasons by the name of the task
 SECONDS_DEAF = 0.1
 ATTEMPTS = 3
 """How often a task is begun whose processes die."""
+
+
+def forget(name: str, result: Any) -> None:
+    """What is done with the results of tasks that write their own."""
 
 
 def context() -> Any:
@@ -33,15 +40,15 @@ def context() -> Any:
         return multiprocessing.get_context("spawn")
     from multiprocessing import forkserver, resource_tracker
 
-    made = multiprocessing.get_context("forkserver")
-    made.set_forkserver_preload(
+    forking = multiprocessing.get_context("forkserver")
+    forking.set_forkserver_preload(
         ["pzt_ident.run.task", "pzt_ident.job.schema", "pzt_ident.engine.kernel", "scipy.optimize"]
     )
     with without_working_folder():
         resource_tracker.ensure_running()  # it lets Ctrl-C through
         with interrupts_blocked():  # neither does the server hear of it
             forkserver.ensure_running()
-    return made
+    return forking
 
 
 def search_path() -> list[str]:
@@ -84,17 +91,17 @@ def interrupts_blocked() -> Iterator[None]:
 @contextmanager
 def interrupts_deferred() -> Iterator[Callable[[], None]]:
     """An interrupt waits for the next call of what this gives: raised in the middle of an import it can get lost."""
-    asked: list[int] = []
+    received: list[int] = []
 
     def check() -> None:
-        if asked:
+        if received:
             raise KeyboardInterrupt
 
     main = threading.current_thread() is threading.main_thread()
     raising = [n for n in (signal.SIGINT, signal.SIGTERM) if signal.getsignal(n) is signal.default_int_handler]
     changed = raising if main else []
     for number in changed:
-        signal.signal(number, lambda number, frame: asked.append(number))
+        signal.signal(number, lambda number, frame: received.append(number))
     try:
         yield check
     finally:
@@ -110,9 +117,9 @@ class Worker:
     process: Any
     pipe: Any
     name: str = ""
-    arguments: tuple[Any, ...] = ()
+    arguments: Arguments = ()
 
-    def begin(self, name: str, arguments: tuple[Any, ...]) -> None:
+    def begin(self, name: str, arguments: Arguments) -> None:
         self.name, self.arguments = name, arguments
         with suppress(ConnectionError):  # it has died: its pipe will say so
             self.pipe.send(arguments)
@@ -126,7 +133,7 @@ class Worker:
 class Pool:
     """The workers of one call of `run_all`: those that wait for a task, and those that are at one."""
 
-    def __init__(self, entry: Entry, common: tuple[Any, ...], most: int) -> None:
+    def __init__(self, entry: Entry, common: Arguments, most: int) -> None:
         self.entry, self.common, self.most = entry, common, most
         self.context = context()
         self.idle: list[Worker] = []
@@ -136,7 +143,7 @@ class Pool:
     def has_room(self) -> bool:
         return len(self.busy) < self.most
 
-    def begin(self, name: str, arguments: tuple[Any, ...]) -> None:
+    def begin(self, name: str, arguments: Arguments) -> None:
         worker = self.idle.pop() if self.idle else self._started()
         self.busy[worker.pipe] = worker
         worker.begin(name, arguments)
@@ -158,20 +165,15 @@ class Pool:
 
 
 def run_all(
-    entry: Entry,
-    common: tuple[Any, ...],
-    tasks: Iterable[tuple[str, tuple[Any, ...]]],
-    workers: int | None,
-    tell: Tell,
-    done: Done = lambda name, result: None,
-) -> dict[str, str]:
+    entry: Entry, common: Arguments, tasks: Tasks, workers: int | None, tell: Tell, done: Done = forget
+) -> Failures:
     """Call entry(tell, *common, *arguments) for each name in processes, at most `workers` at once. What it tells is
     told on, what it returns is given to done(name, result). `common` goes to a process once; the tasks are taken as
     there is room for them. A task whose process dies is begun again, ATTEMPTS times in all.
 
     Returns the reason for each name that failed. Ends all processes when interrupted.
     """
-    waiting, failed, deaths = iter(tasks), dict[str, str](), dict[str, int]()
+    waiting, failed, deaths = iter(tasks), Failures(), dict[str, int]()
     with interrupts_deferred() as check:
         pool = Pool(entry, common, workers or os.cpu_count() or 1)
         try:
@@ -183,7 +185,7 @@ def run_all(
                     return failed
                 for ready in wait(list(pool.busy), SECONDS_DEAF):
                     worker = pool.busy[ready]
-                    kind, content = said(worker)
+                    kind, content = message_of(worker)
                     if kind == "event":
                         tell(content)
                         continue
@@ -205,7 +207,7 @@ def run_all(
             pool.end()
 
 
-def serve(entry: Entry, common: tuple[Any, ...], pipe: Any) -> None:
+def serve(entry: Entry, common: Arguments, pipe: Any) -> None:
     """The life of a worker: one task after another, until nobody sends any or nobody listens."""
     import numpy as np
 
@@ -216,7 +218,7 @@ def serve(entry: Entry, common: tuple[Any, ...], pipe: Any) -> None:
             pipe.send(attempt(entry, (*common, *pipe.recv()), lambda event: pipe.send(("event", event))))
 
 
-def attempt(entry: Entry, arguments: tuple[Any, ...], tell: Tell) -> tuple[str, Any]:
+def attempt(entry: Entry, arguments: Arguments, tell: Tell) -> tuple[str, Any]:
     """`done` with what the entry returns, or `failed` with the reason."""
     try:
         return "done", entry(tell, *arguments)
@@ -228,7 +230,7 @@ def attempt(entry: Entry, arguments: tuple[Any, ...], tell: Tell) -> tuple[str, 
         return "failed", f"{type(error).__name__}: {error}"
 
 
-def said(worker: Worker) -> tuple[str, Any]:
+def message_of(worker: Worker) -> tuple[str, Any]:
     """What came through the pipe; where it broke, why."""
     try:
         message: tuple[str, Any] = worker.pipe.recv()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -100,8 +101,8 @@ class Results:
         spans = {trace.axis: 0.0 for trace in self.traces}
         for trace in self.traces:
             spans[trace.axis] = max(spans[trace.axis], float(np.ptp(trace.response)))
-        found = [1.0 if floor is None else floor / (spans.get(axis) or 1.0) for axis, floor in self.floors.items()]
-        return max(found, default=1.0)
+        shares = [1.0 if floor is None else floor / (spans.get(axis) or 1.0) for axis, floor in self.floors.items()]
+        return max(shares, default=1.0)
 
     @property
     def rmse(self) -> dict[str, float | None]:
@@ -131,10 +132,74 @@ class Results:
         return tuple(dict.fromkeys(trace.axis for trace in self.traces))
 
 
+@dataclass(frozen=True)
+class Files:
+    """The files of a folder of results. `damages` says of each that could not be read why, as far as it was read."""
+
+    folder: Path
+    damages: list[str] = field(default_factory=list)
+
+    def path(self, name: str) -> Path:
+        """Raises InputError where there is no such file."""
+        path = self.folder / name
+        if not path.is_file():
+            raise InputError("file is missing", where=str(path), remedy="give the folder of a finished run")
+        return path
+
+    def content(self, name: str) -> dict[str, Any]:
+        """The content of a JSON file; nothing where it is not there, or damaged."""
+        try:
+            return read_sealed(self.folder / name, *KEYS.get(name, ())) if (self.folder / name).exists() else {}
+        except DamagedError as error:
+            self.damages.append(str(error).replace("\n ", ";"))
+            return {}
+
+    def result(self, needed: bool) -> dict[str, Any]:
+        """That of a run. Raises InputError where no run finished and, if it is `needed`, where it cannot be read."""
+        name = "result.json"
+        result = read_sealed(self.path(name), *KEYS[name]) if needed else self.content(name)
+        if result and not result.get("best"):
+            raise InputError("no run finished", where=str(self.folder / name), remedy="see `failed_runs` in it")
+        return result
+
+    def history(self, digests: Mapping[str, str]) -> pd.DataFrame:
+        """The losses generation by generation; none where the file is damaged."""
+        import pandas as pd
+
+        path = self.path("history.csv")
+        try:
+            _check_digest(path, digests)
+            return pd.read_csv(path)
+        except ValueError as error:
+            self.damages.append(
+                str(error).replace("\n ", ";") if isinstance(error, DamagedError) else f"{path} is damaged"
+            )
+            return pd.DataFrame()
+
+    def job(self) -> str:
+        path = self.path("job.yaml")
+        try:
+            return path.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            self.damages.append(f"{path} is damaged: it is no text")
+            return ""
+
+    def signals(self, digests: Mapping[str, str]) -> Path:
+        """Raises InputError where there are none, DamagedError where they are not as they were written."""
+        path = self.path("signals.nc")
+        _check_digest(path, digests)
+        return path
+
+
+def _check_digest(path: Path, digests: Mapping[str, str]) -> None:
+    if digests and digest_of(path) != digests.get(path.name):
+        raise damaged(path, "is not as it was written")
+
+
 def read_results(folder: Path) -> Results:
     """Read a finished run's folder. Raises InputError where it holds none, or a file is missing or cannot be read."""
     results = read_folder(folder)
-    _there(results.folder / "result.json")
+    Files(results.folder).path("result.json")
     return results
 
 
@@ -146,64 +211,24 @@ def read_folder(folder: Path) -> Results:
     """
     import pandas as pd
 
-    folder, lost = Path(folder), list[str]()
-
-    def content(name: str) -> dict[str, Any]:
-        """The content of a file that is there; nothing where it is damaged."""
-        try:
-            return read_sealed(folder / name, *KEYS.get(name, ())) if (folder / name).exists() else {}
-        except DamagedError as error:
-            lost.append(str(error).replace("\n ", ";"))
-            return {}
-
-    diagnosis = content("diagnosis.json")
-    result = content("result.json") if diagnosis else read_sealed(_there(folder / "result.json"), *KEYS["result.json"])
-    if result and not result.get("best"):
-        raise InputError("no run finished", where=str(folder / "result.json"), remedy="see `failed_runs` in it")
-    _there(folder / "environment.json")
-    environment = content("environment.json")
-    order = [record["name"] for record in result["records"]] if result else list(environment.get("data", ()))
-    before = folder / "signals_as_given.nc"
+    files = Files(Path(folder))
+    diagnosis = files.content("diagnosis.json")
+    result = files.result(needed=not diagnosis)
+    environment = files.content(files.path("environment.json").name)
     digests = result.get("files", {})
-    history = _history(folder, digests, lost) if result else pd.DataFrame()
-    try:
-        job = _there(folder / "job.yaml").read_text(encoding="utf-8")
-    except UnicodeDecodeError:
-        job = ""
-        lost.append(f"{folder / 'job.yaml'} is damaged: it is no text")
-    signals = _there(folder / "signals.nc")
-    if digests and digest_of(signals) != digests.get(signals.name):
-        raise damaged(signals, "is not as it was written")
+    history = files.history(digests) if result else pd.DataFrame()
+    job, signals, before = files.job(), files.signals(digests), files.folder / "signals_as_given.nc"
+    records = [record["name"] for record in result["records"]] if result else list(environment.get("data", ()))
     return Results(
-        folder,
+        files.folder,
         result,
         history,
-        read_traces(signals, order),
+        read_traces(signals, records),
         environment,
         job,
-        content("residuals.json"),
+        files.content("residuals.json"),
         diagnosis,
-        content("improvement.json"),
-        read_traces(before, order) if before.exists() else (),
-        tuple(lost),
+        files.content("improvement.json"),
+        read_traces(before, records) if before.exists() else (),
+        tuple(files.damages),
     )
-
-
-def _history(folder: Path, digests: dict[str, str], lost: list[str]) -> pd.DataFrame:
-    """The losses generation by generation; none where the file is damaged, which is noted."""
-    import pandas as pd
-
-    path = _there(folder / "history.csv")
-    try:
-        if digests and digest_of(path) != digests.get(path.name):
-            raise damaged(path, "is not as it was written")
-        return pd.read_csv(path)
-    except ValueError as error:
-        lost.append(str(error).replace("\n ", ";") if isinstance(error, DamagedError) else f"{path} is damaged")
-        return pd.DataFrame()
-
-
-def _there(path: Path) -> Path:
-    if not path.is_file():
-        raise InputError("file is missing", where=str(path), remedy="give the folder of a finished run")
-    return path

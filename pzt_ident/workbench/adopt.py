@@ -15,8 +15,8 @@ from pzt_ident.workbench.session import Session
 
 def improvement(session: Session, step: Path) -> list[int]:
     """Make the steps that `improve` took from a step, each with the fit that it found as its start; their numbers."""
-    found = json.loads((step / "improved" / "improvement.json").read_text(encoding="utf-8"))
-    stairs, numbers = found["steps"][1:], list[int]()
+    content = json.loads((step / "improved" / "improvement.json").read_text(encoding="utf-8"))
+    stairs, numbers = content["steps"][1:], list[int]()
     for place, stair in enumerate(stairs, 1):
         folder = session.next_folder
         text = text_of(session, step, stair, folder, last=place == len(stairs))

@@ -50,7 +50,7 @@ def make_app(session: Session, hosts: set[str], token: str) -> Guard:
     posts |= {"upload": upload, "reference": reference, "look": inspect, "measurement": measurement}
     posts |= {"simulate": simulate, "report": make_report, "export": make_export}
     pages: dict[str, Handler] = {"/": page, "/favicon.ico": no_content, "/web/{name:path}": web_file}
-    pages |= {"/report/{key}": report, "/file/{key}": given_file, "/atlas": atlas}
+    pages |= {"/report/{key}": report, "/file/{key}": handout, "/atlas": atlas}
     routes = [route(bench, path, handler) for path, handler in pages.items()]
     routes += [route(bench, f"/api/{name}", handler) for name, handler in {**gets.GETS, "events": events}.items()]
     routes += [route(bench, f"/api/{name}", handler, "POST") for name, handler in posts.items()]
@@ -102,25 +102,25 @@ async def make_report(bench: Bench, request: Request) -> Response:
 
 async def make_export(bench: Bench, request: Request) -> Response:
     """Write the model of the current step for another program, as an archive; returns an address as of a report."""
-    wanted = await form_of(request)
-    path = await asyncio.to_thread(exported, bench.session, wanted)
+    form = await form_of(request)
+    path = await asyncio.to_thread(exported, bench.session, form)
     return JSONResponse({"url": f"/file/{handed_out(bench, path)}", "file": bench.session.relative(path)})
 
 
 def handed_out(bench: Bench, path: Path) -> str:
     """The key of a file that is given away."""
     key = secrets.token_urlsafe(24)
-    bench.given[key] = path
+    bench.handouts[key] = path
     return key
 
 
 async def report(bench: Bench, request: Request) -> Response:
-    path = bench.given.get(request.path_params["key"])
+    path = bench.handouts.get(request.path_params["key"])
     return FileResponse(path, media_type="text/html") if path else PlainTextResponse("not found", 404)
 
 
-async def given_file(bench: Bench, request: Request) -> Response:
-    path = bench.given.get(request.path_params["key"])
+async def handout(bench: Bench, request: Request) -> Response:
+    path = bench.handouts.get(request.path_params["key"])
     return FileResponse(path, filename=path.name) if path else PlainTextResponse("not found", 404)
 
 

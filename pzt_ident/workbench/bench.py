@@ -22,7 +22,7 @@ Change = Callable[["Bench", Form], Awaitable[None]]
 
 
 class Bench:
-    """A session with what is done to it. `given`: files that are given away, by keys that cannot be guessed."""
+    """A session with what is done to it. `handouts`: files that are given away, by keys that cannot be guessed."""
 
     def __init__(self, session: Session) -> None:
         self.session = session
@@ -30,7 +30,7 @@ class Bench:
         self.atlas = Atlas(session)
         self.lock = asyncio.Lock()
         self.making: tuple[str, str] | None = None
-        self.given: dict[str, Path] = {}
+        self.handouts: dict[str, Path] = {}
         if session.interrupted:
             self.runner.failure = INTERRUPTED
 
@@ -44,13 +44,13 @@ class Bench:
     async def change(self, name: str, change: Change, form: Form) -> None:
         """Make one change after the other. A change that was asked for at another step than the current one, or that
         is being made as it is asked for again, is not made again."""
-        asked = name, json.dumps(form, sort_keys=True)
-        twice = self.making == asked
+        request = name, json.dumps(form, sort_keys=True)
+        repeated = self.making == request
         async with self.lock:
-            here = int(form.get("at", self.session.at)) == self.session.at
-            if twice or not here:
+            at_this_step = int(form.get("at", self.session.at)) == self.session.at
+            if repeated or not at_this_step:
                 return
-            self.making = asked
+            self.making = request
             self.changed()
             try:
                 await change(self, form)

@@ -43,13 +43,13 @@ def columns_of(*files: tuple[Path, str | None]) -> dict[str, Any]:
     sources, columns, rate = list[dict[str, Any]](), list[dict[str, Any]](), ""
     for path, part in files:
         source, table, _ = _opened(path, part)
-        columns += [item | {"of": len(sources)} for item in _columns(table)]
+        columns += [column | {"of": len(sources)} for column in _columns(table)]
         rate = rate or _rate(table)
         sources.append(dict(source))
-    rows = {item["rows"] for item in columns}
+    rows = {column["rows"] for column in columns}
     if len(rows) > 1:
         lengths = ", ".join(
-            f"{source['file']} {next(item['rows'] for item in columns if item['of'] == i)}"
+            f"{source['file']} {next(column['rows'] for column in columns if column['of'] == i)}"
             for i, source in enumerate(sources)
         )
         raise InputError(f"the files of a record differ in rows: {lengths}", remedy="drop files of one measurement")
@@ -59,10 +59,10 @@ def columns_of(*files: tuple[Path, str | None]) -> dict[str, Any]:
 
 def values_of(*files: tuple[Path, str | None]) -> dict[tuple[int, int], NDArray[np.float64]]:
     """The numeric columns of the files of one record by index of the file and number of the column."""
-    found = dict[tuple[int, int], NDArray[np.float64]]()
+    columns = dict[tuple[int, int], NDArray[np.float64]]()
     for index, (path, part) in enumerate(files):
-        found |= {(index, number): values for number, values in _opened(path, part)[2].items()}
-    return found
+        columns |= {(index, number): values for number, values in _opened(path, part)[2].items()}
+    return columns
 
 
 def _opened(path: Path, part: str | None) -> tuple[dict[str, Any], Table, dict[int, NDArray[np.float64]]]:
@@ -103,13 +103,13 @@ def _of_file(path: Path, part: str | None) -> tuple[dict[str, Any], Table]:
 def _columns(table: Table) -> list[dict[str, Any]]:
     """The longest numeric columns of a table. Raises InputError if it has none."""
     columns = [
-        item for number, column in enumerate(_split_array(table.columns), 1) if (item := _column(number, column))
+        facts for number, column in enumerate(_split_array(table.columns), 1) if (facts := _column(number, column))
     ]
-    rows = max((item["rows"] for item in columns), default=0)
+    rows = max((facts["rows"] for facts in columns), default=0)
     if not rows:
         remedy = "drop a table of signals; for an array of more than two dimensions write a job file with `index`"
         raise InputError(f"holds no column of at least {MIN_ROWS} numbers", where=table.path.name, remedy=remedy)
-    return [item for item in columns if item["rows"] == rows]
+    return [facts for facts in columns if facts["rows"] == rows]
 
 
 def _rate(table: Table) -> str:
@@ -163,8 +163,8 @@ def _numbers(column: Column) -> NDArray[np.float64] | None:
         values = np.squeeze(np.asarray(column.load(), dtype=float))
     except (ValueError, TypeError):
         return None
-    known = values.ndim == 1 and values.size >= MIN_ROWS and np.isfinite(values).any()
-    return values if known else None
+    numeric = values.ndim == 1 and values.size >= MIN_ROWS and np.isfinite(values).any()
+    return values if numeric else None
 
 
 def _regular(values: np.ndarray) -> bool:
@@ -184,8 +184,8 @@ def _roughness(values: np.ndarray) -> float:
     """Median absolute third difference over the span, large for a noisy sensor; NaN where too few values follow each
     other."""
     span, third = np.nanmax(values) - np.nanmin(values), np.abs(np.diff(values, 3))
-    known = third[np.isfinite(third)]
-    return float(np.median(known) / (span or 1)) if known.size else float("nan")
+    finite = third[np.isfinite(third)]
+    return float(np.median(finite) / (span or 1)) if finite.size else float("nan")
 
 
 def _guess(columns: list[dict[str, Any]]) -> None:
@@ -196,16 +196,16 @@ def _guess(columns: list[dict[str, Any]]) -> None:
     by_evidence = (("time", _is_time), ("x.drive", _is_drive), ("x.response", _is_length), ("x.response", _is_charge))
     for role, fits in by_evidence:
         _assign(columns, role, fits, ramps=role == "time")
-    _assign(columns, "x.drive", lambda item: bool(item["unit"]) and _is_drive(item), ramps=True)
+    _assign(columns, "x.drive", lambda column: bool(column["unit"]) and _is_drive(column), ramps=True)
     for role, fits in by_evidence[1:]:
         _assign(columns, role, fits, still=True)
     for role in ("x.drive", "x.response") if len(columns) > 1 else ():
-        _assign(columns, role, lambda item: True)
-    first = [item for role in ("x.drive", "x.response") for item in columns if item["role"] == role]
+        _assign(columns, role, lambda column: True)
+    first = [column for role in ("x.drive", "x.response") for column in columns if column["role"] == role]
     if len(first) == 2 and not first[0]["name"] and first[0]["rough"] > 2 * first[1]["rough"]:
         first[0]["role"], first[1]["role"] = "x.response", "x.drive"
     for axis in AXES[1:]:
-        pair = [next((item for item in columns if _is_counterpart(item, signal)), None) for signal in first]
+        pair = [next((column for column in columns if _is_counterpart(column, signal)), None) for signal in first]
         if len(pair) == 2 and pair[0] and pair[1]:
             pair[0]["role"], pair[1]["role"] = f"{axis}.drive", f"{axis}.response"
 

@@ -37,15 +37,15 @@ def names(session: Session) -> list[str]:
     if not session.at:
         return []
     step = session.step()
-    found = [name for name, place in PLACES.items() if (step / place).exists()]
-    return found + (list(FOLDERS) if (step / "run" / "result.json").exists() else [])
+    present = [name for name, place in PLACES.items() if (step / place).exists()]
+    return present + (list(FOLDERS) if (step / "run" / "result.json").exists() else [])
 
 
 def path_of(session: Session, name: str) -> Path:
     """The file of a name; figures and tables are drawn first. Raises InputError for what is not there."""
-    known = names(session)
-    if name not in known:
-        raise InputError(f"{name!r} cannot be had of this step", remedy=nearest(name, known) if known else "")
+    present = names(session)
+    if name not in present:
+        raise InputError(f"{name!r} cannot be had of this step", remedy=nearest(name, present) if present else "")
     step = session.step()
     if name in FOLDERS:
         return packed_folder(session, name)
@@ -71,6 +71,6 @@ def packed_folder(session: Session, name: str) -> Path:
 def archive(folder: Path, path: Path) -> Path:
     """A folder as a zip file."""
     with tempfile.TemporaryDirectory(dir=path.parent) as scratch:
-        made = shutil.make_archive(str(Path(scratch) / "packed"), "zip", folder)
-        Path(made).replace(path)
+        packed = shutil.make_archive(str(Path(scratch) / "packed"), "zip", folder)
+        Path(packed).replace(path)
     return path

@@ -17,15 +17,15 @@ from pzt_ident.workbench.step_model import model_of
 def set_parameter(session: Session, form: dict[str, Any]) -> None:
     """A step in which a parameter is fixed at `value`, has `bounds`, or is free within those declared."""
     name = str(form["parameter"])
-    known = {item["name"]: item for item in model_of(session.step(), session.plugins).parameters}
-    if name not in known:
-        raise InputError(f"unknown parameter {name!r}", remedy=nearest(name, known))
-    given, change = given_of(form, known[name])
+    parameters = {parameter["name"]: parameter for parameter in model_of(session.step(), session.plugins).parameters}
+    if name not in parameters:
+        raise InputError(f"unknown parameter {name!r}", remedy=nearest(name, parameters))
+    setting, change = setting_of(form, parameters[name])
     job = session.job()
-    _derived(session, edited(job, job.effects, session.next_folder, parameters={name: given}), f"{name} {change}")
+    _derived(session, edited(job, job.effects, session.next_folder, parameters={name: setting}), f"{name} {change}")
 
 
-def given_of(form: dict[str, Any], parameter: dict[str, Any]) -> tuple[dict[str, Any], str]:
+def setting_of(form: dict[str, Any], parameter: dict[str, Any]) -> tuple[dict[str, Any], str]:
     """What the job is to say of a parameter, and that in words."""
     if form.get("bounds") is not None:
         low, high = map(float, form["bounds"])
@@ -46,7 +46,7 @@ def search(session: Session, form: dict[str, Any]) -> None:
         raise InputError("no optimizer is chosen", remedy="choose one")
     sections = {key: form[key] for key in ("repeats", "seed") if form.get(key) is not None}
     text = edited(job, job.effects, session.next_folder, sections={"optimizers": chosen} | sections)
-    _derived(session, text, f"search by {', '.join(str(item['name']) for item in chosen)}", search=True)
+    _derived(session, text, f"search by {', '.join(str(optimizer['name']) for optimizer in chosen)}", search=True)
 
 
 def polish(session: Session, values: dict[str, float]) -> None:
@@ -56,8 +56,8 @@ def polish(session: Session, values: dict[str, float]) -> None:
     for name in values:
         if name not in units:
             raise InputError(f"unknown parameter {name!r}", remedy=nearest(name, units))
-    now = {item["name"]: item["value"] for item in model.parameters if item["value"] is not None}
-    start = {name: {"value": value, "unit": units[name]} for name, value in (now | values).items()}
+    fitted = {parameter["name"]: parameter["value"] for parameter in model.parameters if parameter["value"] is not None}
+    start = {name: {"value": value, "unit": units[name]} for name, value in (fitted | values).items()}
     folder = session.next_folder
     write_json(folder / "start.json", {"parameters": start})
     text = edited(job, job.effects, folder)

@@ -42,8 +42,8 @@ async def spectrum(bench: Bench, request: Request) -> Response:
 
 async def proposal(bench: Bench, request: Request) -> Response:
     session, effect = bench.session, request.query_params["effect"]
-    found = await asyncio.to_thread(lambda: model_of(session.step(), session.plugins).proposal(effect))
-    return answer({"effect": effect, "parameters": page_state.printed(found)})
+    parameters = await asyncio.to_thread(lambda: model_of(session.step(), session.plugins).proposal(effect))
+    return answer({"effect": effect, "parameters": page_state.printed(parameters)})
 
 
 async def simulate(bench: Bench, form: dict[str, Any]) -> Response:

@@ -30,15 +30,20 @@ SHORTEST = 8  # samples
 def measured(records: Sequence[Files], columns: Roles | None = None) -> dict[str, Any]:
     """The channels of each record, and the guess. columns: by role (`time`, `x.drive`, `x.response`), each with its
     `number` and, among several files, `of`, and its `unit`; as guessed from all records unless given."""
-    found = [columns_of(*files) for files in records]
-    roles = dict(columns) if columns else guessed(found)
-    made = [signals_of(files, facts, roles) for files, facts in zip(records, found, strict=True)]
-    return {"records": [sent(*item) for item in made], "guess": guess_of([item[2] for item in made], roles)}
+    facts_of_records = [columns_of(*files) for files in records]
+    roles = dict(columns) if columns else guessed(facts_of_records)
+    signals = [signals_of(files, facts, roles) for files, facts in zip(records, facts_of_records, strict=True)]
+    return {
+        "records": [sent(*signal) for signal in signals],
+        "guess": guess_of([record for _, _, record in signals], roles),
+    }
 
 
-def guessed(found: Sequence[dict[str, Any]]) -> dict[str, dict[str, Any]]:
+def guessed(facts_of_records: Sequence[dict[str, Any]]) -> dict[str, dict[str, Any]]:
     """The columns by role: those of the record in which most roles are found, since a signal may rest in one."""
-    by_record = [{item["role"]: item for item in facts["columns"] if item["role"]} for facts in found]
+    by_record = [
+        {column["role"]: column for column in facts["columns"] if column["role"]} for facts in facts_of_records
+    ]
     return max(by_record, key=len)
 
 
@@ -83,9 +88,9 @@ def record_of(name: str, channels: dict[str, Array], roles: Roles, facts: dict[s
 
 def bridged(values: Array) -> Array:
     """A signal with its missing values on lines between their neighbours."""
-    known = np.isfinite(values)
-    at = np.arange(values.size)
-    return values if known.all() else np.interp(at, at[known], values[known])
+    finite = np.isfinite(values)
+    samples = np.arange(values.size)
+    return values if finite.all() else np.interp(samples, samples[finite], values[finite])
 
 
 def sample_time(time: Array | None, unit: str, rate: str) -> float:
@@ -98,18 +103,20 @@ def sample_time(time: Array | None, unit: str, rate: str) -> float:
 def sent(name: str, channels: dict[str, Array], record: Record | None) -> dict[str, Any]:
     """Channels as 32-bit floats: `positions` are the samples that were kept, None where all were."""
     samples = max((values.size for values in channels.values()), default=0)
-    kept = None
+    positions = None
     if samples > WHOLE:
         curves = [values for role, values in channels.items() if role != "time"]
-        kept = np.unique(np.concatenate([decimate(values, WHOLE // (2 * max(1, len(curves)))) for values in curves]))
+        positions = np.unique(
+            np.concatenate([decimate(values, WHOLE // (2 * max(1, len(curves)))) for values in curves])
+        )
     return {
         "name": name,
         "t0": record.start if record else 0.0,
         "dt": record.dt if record else 1.0,
         "samples": samples,
-        "positions": None if kept is None else encoded(kept.astype("<i4")),
+        "positions": None if positions is None else encoded(positions.astype("<i4")),
         "channels": {
-            role: {"data": encoded((values if kept is None else values[kept]).astype("<f4"))}
+            role: {"data": encoded((values if positions is None else values[positions]).astype("<f4"))}
             for role, values in channels.items()
         },
     }
@@ -122,15 +129,17 @@ def encoded(values: NDArray[Any]) -> str:
 def guess_of(records: Sequence[Record | None], roles: Roles) -> dict[str, Any]:
     """What the page says of the measurement at the drop: by axis the largest amplitude and frequency of the drive and
     the noise floor; of each record its rests."""
-    whole = [record for record in records if record is not None]
-    columns = {role: {key: item.get(key) for key in ("number", "of", "name", "unit")} for role, item in roles.items()}
-    guess: dict[str, Any] = {"columns": columns, "rate": 1 / whole[0].dt if whole else None}
+    complete = [record for record in records if record is not None]
+    columns = {
+        role: {key: column.get(key) for key in ("number", "of", "name", "unit")} for role, column in roles.items()
+    }
+    guess: dict[str, Any] = {"columns": columns, "rate": 1 / complete[0].dt if complete else None}
     guess["rests"] = [rests(record) if record else [] for record in records]
-    axes = list(enumerate(whole[0].axes)) if whole and len({record.axes for record in whole}) == 1 else []
-    guess["amplitude"] = {axis: amplitude_of(whole, number) for number, axis in axes}
-    guess["frequency"] = {axis: max(main_frequency(r.drive[number], r.dt) for r in whole) for number, axis in axes}
-    measured_axes = [(number, axis) for number, axis in axes if number in whole[0].measured]
-    guess["noise_floor"] = {axis: floor_of(whole, number) for number, axis in measured_axes}
+    axes = list(enumerate(complete[0].axes)) if complete and len({record.axes for record in complete}) == 1 else []
+    guess["amplitude"] = {axis: amplitude_of(complete, number) for number, axis in axes}
+    guess["frequency"] = {axis: max(main_frequency(r.drive[number], r.dt) for r in complete) for number, axis in axes}
+    measured_axes = [(number, axis) for number, axis in axes if number in complete[0].measured]
+    guess["noise_floor"] = {axis: floor_of(complete, number) for number, axis in measured_axes}
     return guess
 
 

@@ -95,8 +95,8 @@ def improving(step: Path) -> dict[str, Any] | None:
     if not path.exists():
         return None
     lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line.endswith("}")]
-    stairs = [item for line in lines if (item := json.loads(line))["event"] == "stair"]
-    return {"steps": [printed(item) for item in stairs]}
+    stairs = [stair for line in lines if (stair := json.loads(line))["event"] == "stair"]
+    return {"steps": [printed(stair) for stair in stairs]}
 
 
 def tracking(path: Path) -> dict[str, Any]:
@@ -107,8 +107,8 @@ def tracking(path: Path) -> dict[str, Any]:
     if not path.exists():
         raise InputError("nothing follows a reference yet", remedy="drop a reference")
     frame = pd.read_csv(path)
-    kept = decimate(frame.iloc[:, 1].to_numpy(float), WHOLE // 2)
-    columns = {name: encoded(frame[name].to_numpy("<f4")[kept]) for name in frame}
+    positions = decimate(frame.iloc[:, 1].to_numpy(float), WHOLE // 2)
+    columns = {name: encoded(frame[name].to_numpy("<f4")[positions]) for name in frame}
     return {"samples": len(frame), "columns": columns}
 
 
@@ -123,8 +123,8 @@ def over_axes(session: Session) -> dict[str, str]:
 
 def parameters(session: Session, step: Path) -> list[dict[str, Any]]:
     """Those of the model of a step, each with the link to its block in the atlas."""
-    found = printed(model_of(step, session.plugins).parameters)
-    return [item | {"about": href(item["block"], ATLAS)} for item in found]
+    rows = printed(model_of(step, session.plugins).parameters)
+    return [row | {"about": href(row["block"], ATLAS)} for row in rows]
 
 
 def diagnosis_of(session: Session, step: Path) -> dict[str, Any] | None:
@@ -133,9 +133,9 @@ def diagnosis_of(session: Session, step: Path) -> dict[str, Any] | None:
     if not path.exists():
         return None
     diagnosis = json.loads(path.read_text(encoding="utf-8"))
-    for item in diagnosis["candidates"]:
-        item["estimate"] = expected(item["expected"], item["units"])
-        item["about"] = href(item["effect"], ATLAS)
+    for candidate in diagnosis["candidates"]:
+        candidate["estimate"] = expected(candidate["expected"], candidate["units"])
+        candidate["about"] = href(candidate["effect"], ATLAS)
     reason = diagnosis["reason"] + tied_sentences(session)
     return printed(diagnosis) | {"reason": printed_reason(reason, read_results(step / "run"))}
 
@@ -169,8 +169,8 @@ def signals(session: Session, numbers: Sequence[int] = ()) -> dict[str, Any]:
     """All samples of the records with the models of the current step and of the one before, or of the steps of these
     numbers."""
     models: dict[str, tuple[Trace, ...]] = {}
-    shown = numbers or [entry["number"] for entry in reversed(session.chain())]
-    for number, name in zip(shown, ("now", "before"), strict=False):
+    steps = numbers or [entry["number"] for entry in reversed(session.chain())]
+    for number, name in zip(steps, ("now", "before"), strict=False):
         run = session.step(number) / "run"
         if (run / "result.json").exists():
             models[name] = read_results(run).traces
@@ -189,9 +189,9 @@ def read(path: Path) -> Any:
 def printed(content: Any, key: str = "") -> Any:
     """JSON content with units as printed, also those in sentences."""
     if isinstance(content, dict):
-        return {name: printed(item, "unit" if key == "units" else name) for name, item in content.items()}
+        return {name: printed(value, "unit" if key == "units" else name) for name, value in content.items()}
     if isinstance(content, list):
-        return [printed(item, key) for item in content]
+        return [printed(value, key) for value in content]
     return PRINTERS[key](content) if key in PRINTERS and isinstance(content, str) else content
 
 
@@ -215,7 +215,7 @@ def optimizer_words() -> list[dict[str, Any]]:
     """The optimizers with the defaults of their settings."""
     settings = {word: description_of(word)["settings"] for word in words("optimizers")}
     return [
-        {"name": word, "doc": doc, "settings": {item["name"]: item["default"] for item in settings[word]}}
+        {"name": word, "doc": doc, "settings": {setting["name"]: setting["default"] for setting in settings[word]}}
         for word, doc in words("optimizers").items()
     ]
 

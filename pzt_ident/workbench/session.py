@@ -49,7 +49,7 @@ class Session:
             return dict(json.loads(path.read_text(encoding="utf-8"))) if path.exists() else {}
         except (OSError, ValueError):
             folders = self.folder / "steps"
-            numbers = [int(item.name) for item in folders.iterdir() if item.name.isdigit()] if folders.is_dir() else []
+            numbers = [int(step.name) for step in folders.iterdir() if step.name.isdigit()] if folders.is_dir() else []
             last = max(numbers, default=0)
             self.warning = f"{self.relative(path)} is damaged: the steps are listed in the order of their folders."
             steps = [{"number": n, "parent": n - 1, "change": f"step {n}"} for n in range(1, last + 1)]
@@ -134,18 +134,20 @@ class Session:
         job = self.job()
         if word_of(effect) in map(word_of, job.effects):
             raise InputError(f"{effect!r} is in the model already")
-        found = self.candidate(effect)
+        candidate = self.candidate(effect)
         diagnosis = self.step() / "diagnosis"
         text = edited(job, (*job.effects, effect), self.next_folder, **tried(diagnosis, effect))
-        source = diagnosis if found else self.step() / "run"
-        self._derive("add", [effect], f"+ {effect}", text, source, promised=found.get("rmse"), tied=found.get("class"))
+        source = diagnosis if candidate else self.step() / "run"
+        self._derive(
+            "add", [effect], f"+ {effect}", text, source, promised=candidate.get("rmse"), tied=candidate.get("class")
+        )
 
     def candidate(self, effect: str) -> dict[str, Any]:
         """What the diagnosis of the current step says of an effect; empty where it was not refitted."""
         path = self.step() / "diagnosis" / "diagnosis.json"
         content = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-        fitted = [item for item in content.get("candidates", ()) if item.get("rmse") and item.get("parameters")]
-        return next((item for item in fitted if effect in (item["effect"], item["item"])), {})
+        fitted = [row for row in content.get("candidates", ()) if row.get("rmse") and row.get("parameters")]
+        return next((row for row in fitted if effect in (row["effect"], row["item"])), {})
 
     def remove(self, effect: str) -> None:
         job = self.job()
@@ -173,14 +175,14 @@ class Session:
     ) -> None:
         """Make a step from the current one, which starts from the fit in the folder `source`, and log the command that
         does the same."""
-        parent, known = self.step(), source is not None and source.exists()
-        facts: dict[str, Any] = {"from": os.path.relpath(source, self.folder)} if known and source else {}
+        parent = self.step()
+        facts: dict[str, Any] = {"from": os.path.relpath(source, self.folder)} if source and source.exists() else {}
         facts |= {"promised": dict(promised)} if promised else {}
         facts |= {"tied": list(tied)} if tied and len(tied) > 1 else {}
         self.make(text, self.at, change, command=command, **facts)
-        given = ["--from", self.again(source)] if command == "add" and promised and source else []
+        start = ["--from", self.again(source)] if command == "add" and promised and source else []
         paths = [self.again(step / "job.yaml") for step in (parent, self.step())]
-        self.log(["pzt-ident", command, paths[0], *arguments, *given, "-o", paths[1], *self.plugins_flag])
+        self.log(["pzt-ident", command, paths[0], *arguments, *start, "-o", paths[1], *self.plugins_flag])
 
     def undo(self) -> None:
         """Go back to the parent step, from the first one to the measurement; no folder is deleted."""

@@ -44,5 +44,5 @@ def better_fit(step: Path) -> bool:
         json.loads((step / name).read_text(encoding="utf-8"))
         for name in ("run/result.json", "diagnosis/diagnosis.json")
     )
-    found = diagnosis.get("rmse", {}).get("identify")
-    return bool(found and diagnosis.get("parameters") and found < BETTER * run["best"]["rmse"]["identify"])
+    rmse = diagnosis.get("rmse", {}).get("identify")
+    return bool(rmse and diagnosis.get("parameters") and rmse < BETTER * run["best"]["rmse"]["identify"])

@@ -70,9 +70,9 @@ class StepModel:
         path = step / "run" / "result.json"
         result = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
         self.best: dict[str, Any] = result.get("best") or {}
-        found = read_start(step / "run", statement.job) if self.best else {}
-        self.theta = theta_of(statement.problem, found)
-        self._extended: dict[str, Moved] = {}
+        start = read_start(step / "run", statement.job) if self.best else {}
+        self.theta = theta_of(statement.problem, start)
+        self._extended: dict[str, AdjustableModel] = {}
 
     @property
     def problem(self) -> Problem:
@@ -89,10 +89,10 @@ class StepModel:
         new = [i for i, name in enumerate(moved.problem.model.names) if name not in self.problem.model.names]
         return [self._facts(moved.problem, i, moved.theta) for i in new]
 
-    def with_effect(self, effect: str) -> Moved:
+    def with_effect(self, effect: str) -> AdjustableModel:
         """The model with an effect more, at its null; without one the model itself."""
         if effect not in self._extended:
-            self._extended[effect] = Moved(self._problem_with(effect), self.theta, self.problem)
+            self._extended[effect] = AdjustableModel(self._problem_with(effect), self.theta, self.problem)
         return self._extended[effect]
 
     def _problem_with(self, effect: str) -> Problem:
@@ -106,11 +106,11 @@ class StepModel:
 
     def _facts(self, problem: Problem, column: int, theta: Array | None) -> dict[str, Any]:
         entry, unit = problem.model.entries[column], problem.all_units[column]
-        found = self.best.get("parameters", {}).get(entry.name, {})
+        fit = self.best.get("parameters", {}).get(entry.name, {})
         free = column in problem.free or column in problem.linear.columns
         low, high = bounds_of(problem, column)
         value = None if theta is None or not np.isfinite(theta[column]) else float(theta[column] / factor(unit))
-        ends = found.get("interval") or interval_of(found)
+        ends = fit.get("interval") or interval_of(fit)
         return {
             "name": entry.name,
             "axis": problem.model.axes[entry.axis],
@@ -124,19 +124,19 @@ class StepModel:
             "scale": entry.parameter.scale if low > 0 else "linear",
             "fixed": not free,
             "solved": column in problem.linear.columns,
-            "at_bound": str(found.get("verdict", "")).startswith("on its"),
-            "determined": determined(found),
+            "at_bound": str(fit.get("verdict", "")).startswith("on its"),
+            "determined": determined(fit),
             "physics": described(entry),
         }
 
 
-class Moved:
+class AdjustableModel:
     """A model whose parameters are moved: its problem, and where they start."""
 
     def __init__(self, problem: Problem, theta: Array, before: Problem) -> None:
         self.problem = problem
-        known = dict(zip(before.model.names, theta, strict=True))
-        start = {name: (value, "1") for name, value in known.items() if np.isfinite(value)}
+        values = dict(zip(before.model.names, theta, strict=True))
+        start = {name: (value, "1") for name, value in values.items() if np.isfinite(value)}
         self.theta = theta_of(problem, start)
 
     @cached_property
@@ -185,11 +185,11 @@ def rmse_of(problem: Problem, squares: Mapping[str, Array], scored: Mapping[str,
     """By use, in the user's unit, as the run has it; None without records and where the simulation failed."""
     from pzt_ident.run.statement import loss_unit
 
-    size, found = factor(loss_unit(problem.records)), dict[str, float | None]()
+    size, rmse = factor(loss_unit(problem.records)), dict[str, float | None]()
     for use, count in scored.items():
         error = np.sqrt(np.mean(squares[use] / count / problem.sizes**2)) / size if count else np.nan
-        found[use] = float(error) if np.isfinite(error) else None
-    return found
+        rmse[use] = float(error) if np.isfinite(error) else None
+    return rmse
 
 
 def kept_samples(simulator: Simulator) -> NDArray[np.intp]:
@@ -211,17 +211,17 @@ def bounds_of(problem: Problem, column: int) -> tuple[float, float]:
         return float("nan"), float("nan")
 
 
-def interval_of(found: Mapping[str, Any]) -> list[float] | None:
+def interval_of(fit: Mapping[str, Any]) -> list[float] | None:
     """Ends of the 95 % interval that a standard error gives."""
-    error = found.get("standard_error")
-    return [found["value"] - 1.96 * error, found["value"] + 1.96 * error] if error else None
+    error = fit.get("standard_error")
+    return [fit["value"] - 1.96 * error, fit["value"] + 1.96 * error] if error else None
 
 
-def determined(found: Mapping[str, Any]) -> str:
+def determined(fit: Mapping[str, Any]) -> str:
     """`yes`, `no`, another verdict or a reservation, or nothing where there is none."""
-    verdict = found.get("verdict", "")
+    verdict = fit.get("verdict", "")
     if verdict == "determined":
-        return str(found.get("note") or "yes")
+        return str(fit.get("note") or "yes")
     return "no" if verdict == "not determined" else str(verdict)
 
 

@@ -73,9 +73,9 @@ def reference_facts(bench: Bench, path: Path, rate: str | None) -> dict[str, Any
     session = bench.session
     identified = read_identified(session.step() / "run", session.plugins)
     record = read_reference(path, identified, rate)
-    wanted, dt, _ = reference_of(identified, record, None)
+    signals, dt, _ = reference_of(identified, record, None)
     axes = {axis: {"unit": record.drive[axis]} for axis in record.axes}
-    return {"file": session.relative(path), "axes": axes, "samples": wanted.shape[1], "rate": 1 / dt}
+    return {"file": session.relative(path), "axes": axes, "samples": signals.shape[1], "rate": 1 / dt}
 
 
 async def stored(folder: Path, request: Request) -> tuple[Path, bool]:
@@ -110,8 +110,8 @@ async def inspect(bench: Bench, request: Request) -> Response:
     return await inspected(bench, *files_of(bench, (await form_of(request))["files"]))
 
 
-def files_of(bench: Bench, items: list[dict[str, Any]]) -> list[tuple[Path, str | None]]:
-    return [(inside(bench.session.root, item["file"]), item.get("part")) for item in items]
+def files_of(bench: Bench, sources: list[dict[str, Any]]) -> list[tuple[Path, str | None]]:
+    return [(inside(bench.session.root, source["file"]), source.get("part")) for source in sources]
 
 
 async def inspected(bench: Bench, *files: tuple[Path, str | None]) -> Response:
@@ -123,7 +123,7 @@ async def inspected(bench: Bench, *files: tuple[Path, str | None]) -> Response:
 
 async def measurement(bench: Bench, request: Request) -> Response:
     """The signals of records before there is a job, and what can be guessed from them."""
-    wanted = await form_of(request)
-    records = wanted.get("records") or [{"files": wanted["files"]}]
+    form = await form_of(request)
+    records = form.get("records") or [{"files": form["files"]}]
     files = [files_of(bench, record["files"]) for record in records]
-    return JSONResponse(plain(await asyncio.to_thread(measured, files, wanted.get("columns"))))
+    return JSONResponse(plain(await asyncio.to_thread(measured, files, form.get("columns"))))

@@ -120,17 +120,17 @@ class CModel:
 
     def inverted(self) -> dict[str, Any]:
         """What the templates ask about the inverse."""
-        one, inverse = self.identified, self.inverse
+        identified, inverse = self.identified, self.inverse
         if inverse.refused:
             return {"inverse": None, "no_inverse": inverse.refused}
         chosen = inverse.operations()
         facts = inverse.facts(self.number)
         material = [self.call(step) for step in self.exported.steps if step.operation in chosen]
-        sizes = [one.scale(axis) for axis in range(self.exported.axes)]
+        sizes = [identified.scale(axis) for axis in range(self.exported.axes)]
         return {
             "inverse": facts | {"material": material or ["(void)t;"]},
             "references": [
-                f"asked[{a}] = reference[{i}] * {self.number(sizes[a][1])};" for i, a in enumerate(one.outputs)
+                f"asked[{a}] = reference[{i}] * {self.number(sizes[a][1])};" for i, a in enumerate(identified.outputs)
             ],
             "drives_out": [f"drive[{a}] = out[{a}] / {self.number(size)};" for a, (size, _) in enumerate(sizes)],
             "signals_each": TILES,

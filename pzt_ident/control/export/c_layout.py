@@ -22,13 +22,13 @@ def headline(kernel: Kernel) -> str:
 
 def notes(identified: Identified) -> list[str]:
     """What is in the model and what is not."""
-    left = [block.name for block in identified.chain.additions]
+    left_out = [block.name for block in identified.chain.additions]
     text = [identified.origin] if identified.origin else []
     axes = zip(identified.chain.axes, identified.drive_units, identified.ends, strict=True)
     ranges = [f"{axis} {low:.6g} to {high:.6g} {unit}" for axis, unit, (low, high) in axes]
     text.append(f"Identified with drives of {', '.join(ranges)}.")
-    if left:
-        text.append(f"Not in it, since they do not follow from the drive: {', '.join(left)}, and the offset.")
+    if left_out:
+        text.append(f"Not in it, since they do not follow from the drive: {', '.join(left_out)}, and the offset.")
     return [line for paragraph in text for line in textwrap.wrap(paragraph, 110)]
 
 
