@@ -19,17 +19,17 @@ class Widened:
     value: None = None
 
 
-def beyond_bounds(case: Case, first: Fit) -> tuple[Case, Fit] | None:
-    """The case with wider bounds where the fit `first` rests on bounds of the job, and the fit in it, if that removes
-    enough; None where it does not."""
-    specs = widened(case, first)
+def beyond_bounds(case: Case, first: Fit, fit: Fit) -> tuple[Case, Fit] | None:
+    """The case with wider bounds where a fit rests on bounds of the job, and the fit in it, if that removes enough;
+    None where it does not."""
+    specs = widened(case, fit)
     if not specs:
         return None
     wide = case.with_specs(specs)
-    problem = wide.problem(first.effects, first.steps, first.measured_only)
-    point = descend(problem, problem.unit_point(first.values), going=case.budget.lasts)
-    fit = refine_steps(wide, fit_at(first.effects, problem, point, first.converged, first.measured_only))
-    return (wide, fit) if removes_enough(case, first, first, fit) else None
+    problem = wide.problem(fit.effects, fit.steps, fit.measured_only)
+    point = descend(problem, problem.unit_point(fit.values), going=case.budget.lasts)
+    after = refine_steps(wide, fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
+    return (wide, after) if removes_enough(case, first, fit, after) else None
 
 
 def stands_in(wide: Case, case: Case, fit: Fit) -> bool:

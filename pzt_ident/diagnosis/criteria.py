@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from pzt_ident.diagnosis import misfit
 from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.diagnosis.score import squared_misfit
 
@@ -13,6 +14,8 @@ DECISIVE = 0.5  # of the misfit: removing less is not yet the account of a model
 NEAR = 1.5  # noise floors, up to which an error may be that of the floor itself
 VALIDATION_FACTOR = 3.0  # times the tolerance that the validation records of an adequate model may be above the noise
 MODEL_FORM = 0.03  # of the initial misfit: less may as well be the form of the effects added as another effect
+FORM_OF_OTHERS = 0.17  # of the initial RMS misfit: what the form of the other effects may leave, as far as it is
+MOST_OF_OTHERS = 1.5  # noise floors at most, so that an effect that takes up more is one of its own
 MOST_FORM = 2.0  # noise floors: what a model leaves above this is not adequate, whatever there was before
 
 
@@ -32,6 +35,20 @@ def threshold(case: Case, first: Fit) -> float:
 def tolerance(case: Case, first: Fit) -> float:
     """How far an adequate model may be above the noise, root mean square."""
     return min(threshold(case, first), MOST_FORM * case.floor)
+
+
+def beyond_form(case: Case, first: Fit, without: Fit, now: Fit) -> bool:
+    """Whether an effect beside others takes up more than the form of these may leave, on the identification and on the
+    validation records; the latter need not show it where they are at the noise with it and without."""
+    shown = removed_rms(without.identify, now.identify) > form_of_others(case, first.identify)
+    if first.validate is None or not_in_validation(case, first, without, now):
+        return shown
+    return shown and removed_rms(without.validate, now.validate) > form_of_others(case, first.validate)
+
+
+def form_of_others(case: Case, given: float) -> float:
+    """What the form of other effects may leave of the RMSE of the model as given, root mean square."""
+    return min(FORM_OF_OTHERS * misfit.squared_misfit(given, case.floor) ** 0.5, MOST_OF_OTHERS * case.floor)
 
 
 def removes_enough(case: Case, first: Fit, before: Fit, after: Fit) -> bool:

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
-from pzt_ident.diagnosis.criteria import near_noise
+from pzt_ident.data.notation import listed
+from pzt_ident.diagnosis.candidates import are_look_alikes
+from pzt_ident.diagnosis.criteria import beyond_form, near_noise
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit
-from pzt_ident.model.registry import phrase_of
+from pzt_ident.diagnosis.step import effects_without
+from pzt_ident.model.registry import phrase_of, word_of
 
 JOINT = 2 / 3  # of the misfit of the model as given: what all that is added must remove together
 ALONE = 1 / 3  # of the misfit without it: what each must remove beside the others
@@ -15,13 +19,21 @@ ALONE = 1 / 3  # of the misfit without it: what each must remove beside the othe
 
 @dataclass(frozen=True)
 class Suspect:
-    """An effect that is not proven: the shares of the misfit that it takes up beside the others, on the identification
-    and on the validation records (None without any), and the fit without it."""
+    """What an effect takes up beside the others: the shares of the misfit on the identification and on the validation
+    records (None without any), the fit without it, whether that is more than the form of the others may leave, and the
+    effects of another kind that fitted as well when it was added."""
 
     effect: str
     identify: float
     validate: float | None
     without: Fit
+    beyond_form: bool
+    strangers: tuple[str, ...] = ()
+
+    @property
+    def rank(self) -> tuple[bool, bool, float]:
+        """The order in which effects are taken out."""
+        return self.beyond_form, not self.strangers, self.share
 
     @property
     def share(self) -> float:
@@ -33,25 +45,39 @@ class Suspect:
         """A sentence on why it is not proven."""
         seen = f"{self.identify:.0%} of the misfit on the identification records"
         unseen = "" if self.validate is None else f" and {max(self.validate, 0):.0%} on the validation records"
-        sentence = f"{phrase_of(self.effect)} takes up {seen}{unseen} of a model that stays above the noise with it"
-        return sentence.replace("%", " %") + ": it may stand in for something else."
+        if self.beyond_form and self.strangers:
+            names = listed(map(phrase_of, self.strangers))
+            rest = f" of a model that stays above the noise with it, and {names} fitted as well when it was added."
+        elif self.beyond_form:
+            rest = " of a model that stays above the noise with it: it may stand in for something else."
+        else:
+            rest = " that the other effects leave: their form may leave as much."
+        return f"{phrase_of(self.effect)} takes up {seen}{unseen}".replace("%", " %") + rest
 
 
-def unproven(case: Case, first: Fit, now: Fit) -> list[Suspect]:
+def unproven(case: Case, first: Fit, now: Fit, rivals: Mapping[str, Collection[str]]) -> list[Suspect]:
     """The effects to be taken out again, the least first.
 
-    Where a model reaches the noise, what it has is needed. Where it does not, effects may stand in for what is not in
-    the catalogue: together they must remove the share JOINT of the misfit as given, and each beside the others the
-    share ALONE, on the identification and on the validation records.
+    Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may stand
+    in for what is not in the catalogue: together they must also remove the share JOINT of the misfit as given, and
+    each beside the others the share ALONE, on the identification and on the validation records, and none may have had
+    rivals that fit as well and are not its look-alikes: what any effect takes up is not that of one.
     """
     suspects: list[Suspect] = []
-    while (added := now.effects[len(first.effects) :]) and not near_noise(case, first, now):
-        least = min((suspect(case, now, effect) for effect in added), key=lambda item: item.share)
-        if least.share >= ALONE and removed_by_all(case, first, now) >= JOINT:
+    while added := now.effects[len(first.effects) :]:
+        accounts = (suspect(case, first, now, effect, strangers(effect, rivals.get(effect, ()))) for effect in added)
+        least = min(accounts, key=lambda account: account.rank)
+        decisive = not least.strangers and least.share >= ALONE and removed_by_all(case, first, now) >= JOINT
+        if least.beyond_form and (decisive or near_noise(case, first, now)):
             break
         suspects.append(least)
         now = least.without
     return suspects
+
+
+def strangers(effect: str, rivals: Collection[str]) -> tuple[str, ...]:
+    """The rivals of an effect that are neither a form of it nor a look-alike."""
+    return tuple(item for item in rivals if word_of(item) != word_of(effect) and not are_look_alikes(effect, item))
 
 
 def removed_by_all(case: Case, first: Fit, now: Fit) -> float:
@@ -60,10 +86,12 @@ def removed_by_all(case: Case, first: Fit, now: Fit) -> float:
     return min(share_explained(before, after, case.floor) for before, after in both if before and after)
 
 
-def suspect(case: Case, now: Fit, effect: str) -> Suspect:
+def suspect(case: Case, first: Fit, now: Fit, effect: str, strangers: tuple[str, ...]) -> Suspect:
     """What an effect of a fit takes up beside the others."""
-    without = refit(case, now, tuple(item for item in now.effects if item != effect), {})
+    others = effects_without(now, effect)
+    without = first if others == first.effects else refit(case, now, others, {})
     validate = None
     if now.validate is not None and without.validate is not None:
         validate = share_explained(without.validate, now.validate, case.floor)
-    return Suspect(effect, share_explained(without.identify, now.identify, case.floor), validate, without)
+    identify = share_explained(without.identify, now.identify, case.floor)
+    return Suspect(effect, identify, validate, without, beyond_form(case, first, without, now), strangers)

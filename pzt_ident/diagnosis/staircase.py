@@ -20,6 +20,7 @@ from pzt_ident.diagnosis.verdict import Diagnosis, best_pair, diagnose, unexplai
 MOST_STEPS = 8
 PATIENCE = 3  # effects that take up less than half of the misfit, after which no other is tried
 FIRST_EFFECTS = 2  # effects that are tried as the first to be added
+WIDER = "wider bounds"  # the step that widens those of the job
 HOPELESS = 5.0  # noise floors: where the first path ends above that, another order of the same effects does not help
 
 
@@ -40,12 +41,12 @@ class Staircase:
 def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
     """The staircase from the model as given to the one with all effects that are proven, and with wider bounds where
     those of the job are too narrow: wider ones are tried first where they remove most of the misfit."""
-    beyond = None if adequate(case, first, first) else beyond_bounds(case, first)
+    beyond = None if adequate(case, first, first) else beyond_bounds(case, first, first)
     if beyond and explained_share(case, first, beyond[1]) >= DECISIVE:
         wide = improve_beyond(case, first, *beyond, on_step)
         if accounts(wide, case):
             return wide
-    given = improve_within(case, first, on_step)
+    given = with_least_bounds(case, improve_within(case, first, on_step))
     if given.last.verdict == "adequate" or not beyond or not case.budget.allows("wider bounds"):
         return given
     wide = improve_beyond(case, first, *beyond, on_step)
@@ -59,16 +60,34 @@ def accounts(wide: Staircase, case: Case) -> bool:
 
 
 def improve_beyond(case: Case, first: Fit, wide: Case, start: Fit, on_step: StepListener) -> Staircase:
-    """The staircase with wider bounds; where its last model comes back to those of the job, in these."""
-    found = improve_within(wide, start, on_step)
-    back = [brought_back(case, step.fit) for step in found.steps[1:]]
-    if back and back[-1] is not None:
-        steps = [replace(step, fit=fit) for step, fit in zip(found.steps[1:], back, strict=True) if fit]
-        return Staircase([Step(first), *steps], found.last, found.suspects, case)
-    found.steps[0] = Step(start, explained=explained_share(case, first, start), change="wider bounds")
-    found.steps.insert(0, Step(first))
-    found.case = wide
-    return found
+    """The staircase with wider bounds."""
+    staircase = improve_within(wide, start, on_step)
+    staircase.steps[0] = Step(start, explained=explained_share(case, first, start), change=WIDER)
+    staircase.steps.insert(0, Step(first))
+    staircase.case = staircase.case or wide
+    return with_least_bounds(case, staircase)
+
+
+def with_least_bounds(case: Case, staircase: Staircase) -> Staircase:
+    """The staircase, within the bounds of the job where its last model is."""
+    if staircase.case is None or brought_back(case, staircase.steps[-1].fit) is None:
+        return staircase
+    kept = [step for step in staircase.steps if step.change != WIDER]
+    steps = [replace(step, fit=brought_back(case, step.fit) or step.fit) for step in kept]
+    return replace(staircase, steps=steps, case=None)
+
+
+def wider_bounds(case: Case, first: Fit, fit: Fit) -> tuple[Case, Step] | None:
+    """The case with wider bounds, and the step to them, where these remove most of what a fit that rests on them
+    leaves, and hold its estimates: an effect would only stand in for what the bounds of the job keep out."""
+    beyond = None if adequate(case, first, fit) else beyond_bounds(case, first, fit)
+    if beyond is None:
+        return None
+    wide, after = beyond
+    share = explained_share(case, fit, after)
+    if share < DECISIVE or stands_in(wide, case, after):
+        return None
+    return wide, Step(after, explained=share, change=WIDER)
 
 
 def improve_within(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
@@ -88,8 +107,8 @@ def improve_within(case: Case, first: Fit, on_step: StepListener = lambda step: 
         if not case.budget.allows("another effect first"):
             break
     best = min(paths, key=lambda path: (path.last.verdict != "adequate", path.steps[-1].fit.total))
-    take_back(case, first, best, on_step)
-    find_rivals(case, first, best.steps)
+    take_back(best.case or case, first, best, on_step)
+    find_rivals(best.case or case, first, best.steps)
     return best
 
 
@@ -114,7 +133,8 @@ def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListene
     now = staircase.steps[-1].fit
     steps = remove_unneeded(case, first, now, newest=0) if near_noise(case, first, now) else []
     now = steps[-1].fit if steps else now
-    staircase.suspects = unproven(case, first, now)
+    rivals = {step.added: step.tied for step in staircase.steps if step.added}
+    staircase.suspects = unproven(case, first, now, rivals)
     for suspect in staircase.suspects:
         share = explained_share(case, now, suspect.without)
         steps.append(Step(suspect.without, None, suspect.effect, {}, share))
@@ -131,8 +151,9 @@ def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListene
 def climb(
     case: Case, first: Fit, diagnosis: Diagnosis, candidate: Candidate | None, on_step: StepListener
 ) -> Staircase:
-    """One path: the candidate is added first, then always the best one."""
-    steps = [Step(first)]
+    """One path: the candidate is added first, then always the best one, within wider bounds where these are a cheaper
+    account."""
+    steps, wide = [Step(first)], None
     on_step(steps[0])
     while len(steps) <= MOST_STEPS and not stuck(steps) and (candidate or case.budget.allows("more effects")):
         new = next_steps(case, first, steps, diagnosis, candidate)
@@ -146,9 +167,14 @@ def climb(
         for step in new:
             on_step(step)
         steps += new
+        if beyond := wider_bounds(case, first, steps[-1].fit):
+            case, step = beyond
+            wide = case
+            on_step(step)
+            steps.append(step)
         diagnosis = diagnose(case, steps[-1].fit, first)
         candidate = diagnosis.best
-    return Staircase(steps, diagnosis)
+    return Staircase(steps, diagnosis, case=wide)
 
 
 def stuck(steps: list[Step]) -> bool:

@@ -52,6 +52,19 @@ def test_an_effect_that_is_small_beside_what_a_narrow_bound_leaves_is_found():
     assert found.last.verdict == "adequate"
 
 
+def test_a_bound_that_only_the_first_effect_reaches_is_widened_before_a_second_one_is_blamed():
+    """The curvature lifts the gain that is fitted without it, far from the bound that keeps out the true one."""
+    case = stage.case({"quadratic_gain.curvature": 2e-3}).with_specs(
+        {"bouc_wen.gain": Widened((1.05 * GAIN, 1.6 * GAIN))}
+    )
+    first = first_fit(case, 0)
+    assert first.on_bounds == ()
+    found = improve(case, first)
+    assert found.last.verdict == "adequate"
+    assert [step.added or step.change for step in found.steps[1:]] == ["quadratic_gain", "wider bounds"]
+    assert found.steps[-1].fit.values["bouc_wen.gain"] == pytest.approx(GAIN, rel=1e-2)
+
+
 def test_bounds_that_hold_the_truth_are_kept():
     case = bounded(0.9, 1.001, ["quadratic_gain"])
     found = improve(case, first_fit(case, 0))
@@ -77,4 +90,5 @@ def test_only_bounds_of_the_job_that_are_reached_are_widened_and_not_beyond_thos
 
 def test_wider_bounds_that_help_too_little_are_no_account():
     case = bounded(0.9, 1.2)
-    assert beyond_bounds(case, first_fit(case, 0)) is None
+    first = first_fit(case, 0)
+    assert beyond_bounds(case, first, first) is None

@@ -20,7 +20,7 @@ def fit(identify, validate, effects=()):
 def taken_out(monkeypatch):
     """The suspects among some effects, given the error of a model without each set of them."""
 
-    def of(errors, validation=None):
+    def of(errors, validation=None, first=30.0, rivals=None):
         validation = validation or errors
 
         def refitted(case, before, effects, guess):
@@ -29,7 +29,7 @@ def taken_out(monkeypatch):
         monkeypatch.setattr(proof, "refit", refitted)
         every = max(errors, key=len)
         now = fit(errors[every], validation[every], sorted(every))
-        return [item.effect for item in unproven(CASE, fit(30.0, 30.0), now)]
+        return [item.effect for item in unproven(CASE, fit(first, first), now, rivals or {})]
 
     return of
 
@@ -49,8 +49,26 @@ def test_together_they_remove_two_thirds_of_what_there_was(taken_out):
     assert taken_out(of(ab=18.0, a=25.0, b=26.0, none=30.0)) == ["b", "a"]
 
 
-def test_all_that_a_model_at_the_noise_has_is_needed(taken_out):
-    assert taken_out(of(ab=1.0, a=1.3, b=1.4, none=30.0)) == []
+def test_what_a_model_at_the_noise_has_is_needed_if_the_form_of_the_others_would_not_leave_as_much(taken_out):
+    assert taken_out(of(ab=1.0, a=1.9, b=6.0, none=30.0)) == []
+    assert taken_out(of(ab=1.0, a=1.7, b=6.0, none=30.0)) == ["b"]
+    assert taken_out(of(ab=1.0, a=1.2, b=2.0, none=2.5), first=2.5) == []
+    assert taken_out(of(ab=1.0, a=1.05, b=2.0, none=2.5), first=2.5) == ["b"]
+
+
+def test_the_form_of_the_others_is_held_against_each_kind_of_record(taken_out):
+    seen = of(ab=1.0, a=1.9, b=6.0, none=30.0)
+    assert taken_out(seen, of(ab=1.0, a=1.9, b=6.0, none=30.0)) == []
+    assert taken_out(seen, of(ab=1.5, a=1.9, b=6.0, none=30.0)) == ["b"]
+    assert taken_out(seen, of(ab=1.0, a=1.0, b=6.0, none=30.0)) == []  # nor can it be seen there
+
+
+def test_what_an_effect_of_another_kind_would_take_up_as_well_is_a_suspect_above_the_noise(taken_out):
+    lag, creep, delay = "amplifier_lag", "creep", "delay"
+    high = {frozenset(): 300.0, frozenset([lag]): 8.0, frozenset([creep]): 29.0, frozenset([lag, creep]): 5.0}
+    assert taken_out(high, rivals={creep: (creep, "drift"), lag: (lag, delay)}) == []
+    assert taken_out(high, rivals={creep: (creep, "friction"), lag: (lag, delay)}) == [creep]
+    assert taken_out(high | {frozenset([lag, creep]): 1.0}, rivals={creep: (creep, "friction")}) == []
 
 
 def test_one_after_the_other_is_taken_out_the_least_first(taken_out):
@@ -63,5 +81,5 @@ def test_records_that_were_kept_back_must_show_it_too(taken_out):
 
 
 def test_what_is_near_the_noise_is_not_held_against_a_floor_that_may_be_too_low(taken_out):
-    assert taken_out(of(ab=1.45, a=1.6, b=1.7, none=30.0)) == []
-    assert taken_out(of(ab=1.55, a=1.6, b=1.7, none=30.0)) != []
+    assert taken_out(of(ab=1.45, a=2.1, b=5.0, none=30.0)) == []
+    assert taken_out(of(ab=1.55, a=1.8, b=5.0, none=30.0)) == ["b"]
