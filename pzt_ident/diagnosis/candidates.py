@@ -106,6 +106,23 @@ def restart_look_alikes(case: Case, first: Fit, before: Fit, candidates: list[Ca
             candidate.fit = candidate.refits[word] = restart(case, fit, word_of(word), LOOK_ALIKE_STARTS)
 
 
+def refit_other_forms(case: Case, before: Fit, best: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
+    """The look-alikes of the effect that was added last in `best`, each in the form that fits best of all it has: in
+    another than its first form one may explain as much."""
+    effect, alike = best.effects[-1], list[Candidate]()
+    for candidate in candidates:
+        if not are_look_alikes(effect, candidate.score.effect) or not case.budget.allows("other forms of look-alikes"):
+            continue
+        missing = [score for score in candidate.forms if score.effect not in candidate.refits]
+        fits = {score.effect: refit(case, before, (*before.effects, score.effect), score.guess) for score in missing}
+        candidate.refits = {**candidate.refits, **fits}
+        form = min(candidate.refits, key=lambda item: candidate.refits[item].total)
+        if candidate.fit is None or removed_rms(candidate.fit.total, candidate.refits[form].total) > TIE * case.floor:
+            candidate.take(form)
+            alike.append(candidate)
+    return alike
+
+
 def are_look_alikes(one: str, other: str) -> bool:
     """Whether one of two effects counts the other among its look-alikes."""
     return word_of(one) in blocks[other].look_alikes or word_of(other) in blocks[one].look_alikes

@@ -17,6 +17,7 @@ from pzt_ident.diagnosis.candidates import (
     is_tied,
     promises_enough,
     refit_all,
+    refit_other_forms,
     restart_look_alikes,
     score_all,
 )
@@ -71,6 +72,9 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     shortlist = refit_all(case, first, before, promising)
     choose_forms(case, first, shortlist)
     restart_look_alikes(case, first, before, shortlist)
+    best = min((item.fit for item in shortlist if item.fit), key=lambda fit: fit.total, default=None)
+    if best and adequate(case, first, best):
+        shortlist += [item for item in refit_other_forms(case, before, best, candidates) if item not in shortlist]
     candidates.sort(key=lambda item: (item.fit.total if item.fit else np.inf, -item.score.explained))
     decide_by_score(case, first, before, candidates)
     passing = [item for item in shortlist if item.fit and removes_enough(case, first, before, item.fit)]

@@ -9,12 +9,19 @@ import pytest
 import rig
 import stage
 from pzt_ident.diagnosis import refit, starts
-from pzt_ident.diagnosis.candidates import Candidate, decide_by_score, restart_look_alikes
+from pzt_ident.diagnosis.candidates import (
+    Candidate,
+    are_look_alikes,
+    decide_by_score,
+    refit_other_forms,
+    restart_look_alikes,
+    score_all,
+)
 from pzt_ident.diagnosis.criteria import removed_rms, removes_enough
-from pzt_ident.diagnosis.score import Score
+from pzt_ident.diagnosis.score import Score, Scorer
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.verdict import diagnose, missing_sentence
-from pzt_ident.model.registry import blocks
+from pzt_ident.model.registry import blocks, word_of
 
 
 def judged(case):
@@ -48,6 +55,20 @@ def test_what_is_missing_is_named_and_its_refit_is_at_the_noise_on_records_that_
     assert best.fit.identify == pytest.approx(stage.NOISE, rel=0.1)
     assert best.fit.validate == pytest.approx(stage.NOISE, rel=0.1)
     assert diagnosis.before.validate > 1.5 * best.fit.validate
+
+
+def test_a_look_alike_is_compared_in_the_form_that_fits_best():
+    case = stage.case({"sensor_lag.tau": 2e-3}, noise=1e-8)
+    before = first_fit(case, 0)
+    best = refit.refit(case, before, ("sensor_lag",), {"sensor_lag.tau": 2e-3})
+    candidates = score_all(case, before, Scorer(case, before))
+    refit_other_forms(case, before, best, candidates)
+    alike = [item for item in candidates if are_look_alikes("sensor_lag", item.score.effect)]
+    assert {"amplifier_lag", "delay"} <= {word_of(item.score.effect) for item in alike}
+    for candidate in alike:
+        assert set(candidate.refits) == {score.effect for score in candidate.forms}
+        assert candidate.fit.total == min(fit.total for fit in candidate.refits.values())
+        assert candidate.score.effect == candidate.fit.effects[-1]
 
 
 def test_look_alikes_that_fit_hardly_worse_are_in_its_class():
