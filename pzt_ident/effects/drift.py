@@ -28,7 +28,7 @@ class Drift(Drifting, Addition):
     Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems. Nearly a ramp for a long tau.
     """
 
-    tau = Parameter("s", (10, 3000), "Thermal time constant.", scale="log")
+    tau = Parameter("s", (1, 3000), "Thermal time constant.", scale="log")
 
     def basis(t, tau):
         return (-np.expm1(-t / tau),)

@@ -18,8 +18,8 @@ class SlewLimit(Block):
 
     place = Place.SLEW
     form = Form("clip", ("clip", "lag"), "How the voltage approaches the command below the limit.")
-    sizes = tuple(1.25**-k for k in range(32))
-    slowness = Parameter("s/drive", (0, 0.1), "Capacitance over the greatest current.", null=0)
+    sizes = tuple(1.25**-k for k in range(42))
+    slowness = Parameter("s/drive", (0, 1), "Capacitance over the greatest current.", null=0)
     look_alikes = ("amplifier_lag", "sensor_lag")
     separate_by = "Sweep the amplitude at one frequency: this sets in where frequency times amplitude exceeds a limit."
     remedy = "Stay below the slew rate, round the corners of the drive, or use an amplifier with more current."
@@ -46,7 +46,7 @@ class SaturatingLag(SlewLimit):
     that is linear between samples, and on the limit.
     """
 
-    tau = Parameter("s", (0, 5e-3), "Time constant below the limit.", null=0)
+    tau = Parameter("s", (0, 0.05), "Time constant below the limit.", null=0)
 
     def prepare(slowness, tau, dt):
         return dt / slowness if slowness != 0 else inf, *decay(tau, dt)
