@@ -15,13 +15,15 @@ from pzt_ident.atlas.pictures import MAIN, STRIP
 from pzt_ident.atlas.symptoms import table
 from pzt_ident.atlas.words import SEARCH, Word, every_word
 from pzt_ident.files import write_text
+from pzt_ident.run.computing import computing
 
 FOLDER = files("pzt_ident.atlas")
 
 
 def write_atlas(path: Path) -> Path:
     """Write the atlas of all words that are registered, and the manual, as one page that needs no network."""
-    write_text(path, atlas())
+    with computing():
+        write_text(path, atlas())
     return path
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from functools import cache
-from typing import NamedTuple
+from dataclasses import dataclass
+from functools import cache, cached_property
 
 import numpy as np
 
@@ -18,7 +18,8 @@ Traces = dict[str, Array]
 """By the name of a drive: (samples,), m."""
 
 
-class Traced(NamedTuple):
+@dataclass(frozen=True)
+class Traced:
     """The response with an item, without it, and what of their difference a refit leaves; drives on which the item
     cannot be simulated are left out."""
 
@@ -28,12 +29,16 @@ class Traced(NamedTuple):
 
     def size(self, drive: str) -> float:
         """Root mean square of what is left on a drive, over the stroke; 0 where there is none."""
-        return float(np.sqrt(np.mean(self.left[drive] ** 2)) / STROKE) if drive in self.left else 0.0
+        return self._sizes.get(drive, 0.0)
 
-    @property
+    @cached_property
     def largest(self) -> float:
         """On the drives that were fitted."""
         return max(self.size(name) for name in self.left if name not in UNSEEN)
+
+    @cached_property
+    def _sizes(self) -> dict[str, float]:
+        return {name: float(np.sqrt(np.mean(trace**2)) / STROKE) for name, trace in self.left.items()}
 
 
 @cache

@@ -57,15 +57,18 @@ def advance(program, scratch, tiles, window, inputs, fresh):
 def respond(program, scratch, tiles, window, drive, substeps, fresh, output):
     """Outputs (axes, samples) to a drive (axes, samples) that is linear between its samples. window[:, -1] holds the
     drive before the first sample unless this is `fresh`, at rest under the first sample."""
+    axes = drive.shape[0]
+    before, inputs = np.empty(axes), np.empty(axes)
     for i in range(drive.shape[1]):
-        before = window[:, -1].copy()
-        for k in range(1, substeps + 1):
-            if fresh and i == 0:
-                if k == 1:
-                    advance(program, scratch, tiles, window, drive[:, 0].copy(), True)
-            else:
-                advance(program, scratch, tiles, window, before + (drive[:, i] - before) * (k / substeps), False)
-        for axis in range(drive.shape[0]):
+        start = fresh and i == 0
+        for axis in range(axes):
+            before[axis] = window[axis, -1]
+        for k in range(1, 2 if start else substeps + 1):
+            for axis in range(axes):
+                share = (drive[axis, i] - before[axis]) * (k / substeps)
+                inputs[axis] = drive[axis, 0] if start else before[axis] + share
+            advance(program, scratch, tiles, window, inputs, start)
+        for axis in range(axes):
             output[axis, i] = tiles[TILES * axis]
 
 
@@ -101,10 +104,12 @@ def regulate(program, scratch, tiles, window, substeps, target, ahead, gains, li
             error = target[axis, i] - reading[axis, i]
             integral[axis] += gains[axis, 1] * error
             asked = ahead[axis, min(i + delay, samples - 1)] + gains[axis, 0] * error + integral[axis]
-            level[axis, :-1] = level[axis, 1:].copy()
+            for k in range(delay):
+                level[axis, k] = level[axis, k + 1]
             level[axis, -1] = limited(asked, level[axis, -1], limits[axis])
             integral[axis] += gains[axis, 2] * (level[axis, -1] - asked)
-            drive[axis, steps * i : steps * (i + 1)] = level[axis, 0]
+            for k in range(steps * i, steps * (i + 1)):
+                drive[axis, k] = level[axis, 0]
         respond(program, scratch, tiles, window, drive[:, steps * i : steps * (i + 1)], substeps, False, output)
 
 
@@ -118,13 +123,23 @@ def beyond(tiles, target, weights):
 
 
 @njit(nogil=True, cache=True)
+def put(scratch, window, saved, kept):
+    """Fill scratch and window with those that were saved, by loops: slices would be half of the compilation."""
+    for i in range(saved.size):
+        scratch[i] = saved[i]
+    for axis in range(kept.shape[0]):
+        for i in range(kept.shape[1]):
+            window[axis, i] = kept[axis, i]
+
+
+@njit(nogil=True, cache=True)
 def seek(program, scratch, tiles, window, saved, kept, target, weights, fresh, search, trial, axis):
     """Move the input of one axis to where the weighted outputs meet their target; the state stays as `saved`."""
     more = True
     while more:
         trial[axis] = search[root.X]
         advance(program, scratch, tiles, window, trial, fresh)
-        scratch[:], window[:] = saved, kept
+        put(scratch, window, saved, kept)
         more = root.propose(search, beyond(tiles, target, weights))
     trial[axis] = search[root.X]
 
@@ -143,7 +158,9 @@ def solve(program, scratch, tiles, window, target, free, limits, move, slopes, m
     saved, kept = scratch.copy(), window.copy()
     scale = np.zeros(target.shape[0])
     for axis in range(target.shape[0]):
-        scale[axis] = EXACT * np.abs(target[axis]).max() + 1e-300
+        for i in range(target.shape[1]):
+            scale[axis] = max(scale[axis], EXACT * abs(target[axis, i]))
+        scale[axis] += 1e-300
     trial = window[:, -1].copy()
     for i in range(target.shape[1]):
         first = fresh and i == 0
@@ -167,10 +184,10 @@ def solve(program, scratch, tiles, window, target, free, limits, move, slopes, m
                 met = met and (not free[axis] or abs(tiles[TILES * axis] - target[axis, i]) <= scale[axis])
             if met:
                 break
-            scratch[:], window[:] = saved, kept
+            put(scratch, window, saved, kept)
         if not met:
             advance(program, scratch, tiles, window, trial, first)
-        saved[:], kept[:] = scratch, window
-        inputs[:, i] = trial
+        put(saved, kept, scratch, window)
         for axis in range(trial.size):
+            inputs[axis, i] = trial[axis]
             missed[axis, i] = tiles[TILES * axis] - target[axis, i]

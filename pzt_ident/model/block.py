@@ -82,6 +82,7 @@ class Block:
                 setattr(cls, word, staticmethod(function))
 
     @classmethod
+    @cache
     def parameters(cls) -> dict[str, Parameter]:
         """Declared parameters by name, in the order of declaration; a counted one appears as `name_1`, `name_2`, ..."""
         parameters = {}
@@ -104,6 +105,7 @@ class Block:
         return any(declared.effect in (effect.name, effect.item()) for declared in cls.parameters().values())
 
     @classmethod
+    @cache
     def settings(cls) -> dict[str, Setting | Form]:
         """The settings that a job may choose, by name."""
         attributes = [item for owner in reversed(cls.__mro__) for item in vars(owner).items()]

@@ -16,6 +16,7 @@ from pzt_ident.control.export.tile import Kernel
 from pzt_ident.control.export.trees import reads
 from pzt_ident.control.identified import Identified
 from pzt_ident.engine import root
+from pzt_ident.engine.lanes import template_of_text
 from pzt_ident.errors import InputError
 from pzt_ident.model.block import TILES
 
@@ -31,8 +32,8 @@ HELPERS = {
 def files(identified: Identified, precision: str = "double", inverse: bool = True) -> dict[str, str]:
     """Text by name of file. inverse: with that of the model, where it has one."""
     model = CModel(identified, precision, inverse)
-    word = identified.word
-    made = {f"{word}.{end}": model.render(f"model.{end}.jinja", **model.facts()) for end in ("h", "c")}
+    word, facts = identified.word, model.facts()
+    made = {f"{word}.{end}": model.render(f"model.{end}.jinja", **facts) for end in ("h", "c")}
     return made | {f"{word}_test.c": model.render("test.c.jinja", **model.test())}
 
 
@@ -63,10 +64,7 @@ class CModel:
                 raise InputError(message, where=kernel.name, remedy="export it in double precision")
 
     def render(self, template: str, **facts: Any) -> str:
-        from jinja2 import Environment, StrictUndefined
-
-        environment = Environment(trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined)
-        made = environment.from_string((TEMPLATES / template).read_text()).render(**facts, **self.common())
+        made = template_of_text((TEMPLATES / template).read_text()).render(**facts, **self.common())
         return "\n".join(line for text in made.splitlines() for line in wrapped(text)).rstrip() + "\n"
 
     def common(self) -> dict[str, Any]:
@@ -87,9 +85,9 @@ class CModel:
         functions = self.authors()
         constants = [self.constant(word, value) for word, value in exported.constants().items()]
         body = "\n".join(functions + kernels)
-        tuples = [
-            f"{kind}{n}" for kind in ("tuple", "exact") for n in range(2, 100) if re.search(rf"\b{kind}{n}\b", body)
-        ]
+        tuples = sorted(
+            set(re.findall(r"\b(?:tuple|exact)\d+\b", body)), key=lambda word: (word[:5] == "exact", int(word[5:]))
+        )
         return {
             "notes": notes(self.identified),
             "dt": self.exact.number(self.identified.dt),

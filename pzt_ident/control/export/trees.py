@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -79,7 +78,13 @@ def assigned(body: Sequence[ast.stmt]) -> dict[str, int]:
 
 
 def copied(node: Any) -> Any:
-    return copy.deepcopy(node)
+    if isinstance(node, list):
+        return [copied(item) for item in node]
+    if not isinstance(node, ast.AST):
+        return node
+    made = type(node).__new__(type(node))
+    vars(made).update({word: copied(value) for word, value in vars(node).items()})
+    return made
 
 
 def in_context(node: ast.expr, ctx: ast.expr_context) -> Any:

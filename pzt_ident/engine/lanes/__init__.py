@@ -14,7 +14,7 @@ import tempfile
 from functools import cache
 from pathlib import Path
 from types import FunctionType
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pzt_ident.engine.lanes.compile_error import compile_error
 from pzt_ident.files import cache_folder
@@ -32,6 +32,9 @@ from pzt_ident.model.block import (
     expm1,
 )
 from pzt_ident.model.contract import try_functions
+
+if TYPE_CHECKING:
+    from jinja2 import Template
 
 TEMPLATES = Path(__file__).parent
 FUNCTIONS = (
@@ -142,12 +145,9 @@ def layout_of(block: type[Block], variant: Variant) -> Layout:
 
 def render(text: str, block: type[Block], layout: Layout, variant: Variant) -> str:
     """The kernel's source; the header of each template names the symbols."""
-    from jinja2 import Environment, StrictUndefined
-
     from pzt_ident.engine import kernel
 
-    template = Environment(trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined).from_string(text)
-    return template.render(
+    return template_of_text(text).render(
         S=[f"s{i}" for i in range(layout.states)],
         K=[f"k{i}" for i in range(layout.coefficients)],
         G=layout.given,
@@ -172,6 +172,14 @@ def render(text: str, block: type[Block], layout: Layout, variant: Variant) -> s
         TILE=1 if variant.single else kernel.TILE,
         UNROLL=1 if variant.single else kernel.UNROLL,
     )
+
+
+@cache
+def template_of_text(text: str) -> Template:
+    """Of lines of code."""
+    from jinja2 import Environment, StrictUndefined
+
+    return Environment(trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined).from_string(text)
 
 
 def write(path: Path, text: str) -> None:
