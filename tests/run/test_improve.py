@@ -4,7 +4,6 @@ import json
 import re
 from html import unescape
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,8 +13,7 @@ import stage
 from pzt_ident.cli.commands import main
 from pzt_ident.diagnosis import refit
 from pzt_ident.diagnosis import staircase as stairs
-from pzt_ident.diagnosis.budget import Budget, sensible
-from pzt_ident.diagnosis.proof import Suspect
+from pzt_ident.diagnosis.budget import sensible
 from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.job.schema import load_job
 from pzt_ident.run import improve as improvement
@@ -298,15 +296,15 @@ def test_the_improved_job_is_the_model_that_was_told_of(coupled, tmp_path, monke
     monkeypatch.setattr(improvement, "first_fit", as_given)
     monkeypatch.setattr(improvement.stairs, "improve", climbed)
     improvement.improve(coupled, out)
-    told, made = read(out / "improvement.json")["steps"][-1], load_job(out / "improved.yaml")
-    problem = Statement(made).problem
-    assert made.effects == effects
+    step, job = read(out / "improvement.json")["steps"][-1], load_job(out / "improved.yaml")
+    problem = Statement(job).problem
+    assert job.effects == effects
     assert tuple(record.steps for record in problem.records) == steps
-    assert problem.names == tuple(told["parameters"])
-    assert ("y.amplifier_lag.tau" in made.parameters) == alone
-    point = problem.unit_point({name: item["value"] for name, item in told["parameters"].items()})
+    assert problem.names == tuple(step["parameters"])
+    assert ("y.amplifier_lag.tau" in job.parameters) == alone
+    point = problem.unit_point({name: parameter["value"] for name, parameter in step["parameters"].items()})
     for use in ("identify", "validate"):
-        assert 1e6 * problem.loss(point, use)[0] == pytest.approx(told["rmse"][use], rel=1e-6)
+        assert 1e6 * problem.loss(point, use)[0] == pytest.approx(step["rmse"][use], rel=1e-6)
 
 
 @pytest.mark.parametrize("command", ["diagnose", "improve"])
@@ -341,30 +339,6 @@ class TestRefusals:
         assert "identify.csv" in answer.stderr and "Traceback" not in answer.output
         assert answer.stdout == ""
         assert list(tmp_path.iterdir()) == [path]
-
-
-@pytest.mark.parametrize("verdict", ["adequate", "unexplained", "refused"])
-def test_an_improvement_says_what_it_added_and_what_it_suspects(verdict, monkeypatch):
-    for name, nothing in (("stair", {}), ("caveats", ""), ("narrow_bounds_sentence", ""), ("units_and_floors", {})):
-        monkeypatch.setattr(improvement, name, lambda *arguments, nothing=nothing: nothing)
-    before, after = SimpleNamespace(effects=("drift",)), SimpleNamespace(effects=("drift", "creep"))
-    steps = [stairs.Step(before), stairs.Step(after, "creep", None, {"creep": after, "thermal_relaxation": after})]
-    job, case = SimpleNamespace(name="job", effects=("drift",)), SimpleNamespace(records=(), budget=Budget())
-    doubted = Suspect("asymmetry.constant", 0.4, -0.02, before)
-    staircase = stairs.Staircase(steps, after, [doubted])
-    found = improvement.improvement_of(job, case, staircase, {"verdict": verdict, "reason": "Said."})
-    assert (found["verdict"], found["effects"]) == (verdict, ["creep"])
-    assert found["forms"] == {"creep": "spread"}
-    (suspect,) = found["suspects"]
-    assert (suspect["effect"], suspect["explained"]) == ("asymmetry", -0.02)
-    assert suspect["why not"] in found["reason"]
-    assert suspect["why not"].startswith(
-        "asymmetry (constant) takes up 40 % of the misfit on the identification records and 0 % on the validation"
-    )
-    assert "These data cannot tell creep from thermal_relaxation." in found["reason"]
-    steps[1].rivals = {"creep": after}
-    found = improvement.improvement_of(job, case, staircase, {"verdict": verdict, "reason": ""})
-    assert "cannot tell" not in found["reason"]
 
 
 def test_a_diagnosis_that_is_killed_leaves_the_best_account_so_far(bent, tmp_path, monkeypatch):

@@ -5,12 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from pzt_ident.diagnosis.refit import fit_at
-from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.errors import InputError
 from pzt_ident.job import edit
 from pzt_ident.job.schema import load_job
-from pzt_ident.run import improve
 from pzt_ident.run.identify import resume, run
 from pzt_ident.run.improve import diagnose
 from pzt_ident.run.place import Local
@@ -123,13 +120,3 @@ def test_what_is_no_fit_is_refused(place, tmp_path, content, said):
     (tmp_path / "start.json").write_text(content)
     with pytest.raises(InputError, match=said):
         read_start(tmp_path / "start.json", load_job(place / "job.yaml"))
-
-
-def test_an_adequate_model_keeps_what_is_to_be_said_of_it(place, monkeypatch, tmp_path):
-    """As `improve` does: sentences on its bounds and on effects with an amount of each record."""
-    monkeypatch.setattr(improve, "caveats", lambda case, fit: f" {fit.effects} ended on its bound.")
-    case = improve.case_of(Statement(load_job(place / "job.yaml")))
-    fit = fit_at((), case.problem(()), np.full(case.problem(()).dimensions, 0.5))
-    found = Diagnosis("adequate", "The model is adequate.", fit, [], [])
-    content = improve.diagnosis_of(load_job(place / "job.yaml"), case, found, tmp_path)
-    assert content["reason"].startswith("The model is adequate. () ended on its bound.")
