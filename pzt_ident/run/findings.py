@@ -27,12 +27,14 @@ from pzt_ident.run.statement import loss_unit
 def improvement_of(job: Job, case: Case, staircase: stairs.Staircase, last: dict[str, Any]) -> dict[str, Any]:
     """The content of `improvement.json`, less the next experiment."""
     steps, suspects = staircase.steps, staircase.suspects
-    reason = last["reason"]
-    added = [effect for effect in steps[-1].fit.effects if effect not in job.effects]
+    reason, end = last["reason"], steps[-1].fit
+    added = [effect for effect in end.effects if effect not in job.effects]
     reason += "".join(f" {suspect.why_not}" for suspect in suspects)
     undecided = dict.fromkeys(step.tied for step in ties(steps))
     reason += "".join(f" These data cannot tell {' from '.join(map(phrase_of, tied))}." for tied in undecided)
-    reason += case.budget.sentence + narrow_bounds_sentence(case, steps[-1].fit) + caveats(case, steps[-1].fit)
+    reason += case.budget.sentence + narrow_bounds_sentence(case, end)
+    of_end = caveats(case, end)
+    reason += "" if of_end in reason else of_end  # the last diagnosis may be of this fit
     return {
         "name": job.name,
         "steps": [stair(case, step) for step in steps],
