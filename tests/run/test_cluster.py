@@ -10,6 +10,7 @@ from threading import Thread
 import numpy as np
 import pytest
 
+import measured
 from experiments.fleet.cluster import TCP
 from pzt_ident.errors import InputError, LostError
 from pzt_ident.job.schema import load_job
@@ -35,21 +36,19 @@ seed: 3
 
 @pytest.fixture(scope="module")
 def job(tmp_path_factory):
-    made = tmp_path_factory.mktemp("job")
+    folder = tmp_path_factory.mktemp("job")
     t = np.arange(1000) / 1000
     u = 50 * (1 - np.cos(6 * np.pi * t))
-    x = 0.08 * (0.7 * u + 0.3 * np.convolve(u, np.ones(40) / 40)[: u.size])
-    table = np.column_stack([t, u, x + np.random.default_rng(0).normal(0, 0.01, u.size)])
-    np.savetxt(made / "identify.csv", table, delimiter=",", header="time [s],u_x [V],x [um]", comments="")
-    (made / "job.yaml").write_text(JOB)
-    return load_job(made / "job.yaml")
+    measured.write(folder / "identify.csv", t, u, measured.lagging(u, np.random.default_rng(0)))
+    (folder / "job.yaml").write_text(JOB)
+    return load_job(folder / "job.yaml")
 
 
 @pytest.fixture(scope="module")
 def cluster():
-    made = TCP(workers=2)
-    yield made
-    made.end()
+    cluster = TCP(workers=2)
+    yield cluster
+    cluster.end()
 
 
 def numbers(out: Path) -> list:

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+import measured
 from pzt_ident.errors import InputError
 from pzt_ident.job import edit
 from pzt_ident.job.schema import load_job
@@ -20,7 +21,7 @@ records:
   - {file: data.csv, use: validate, settle: 9 s}
 channels:
   time: time [s]
-  axes: {x: {drive: "u [V]", response: "x [um]"}}
+  axes: {x: {drive: "u_x [V]", response: "x [um]"}}
 model: [bouc_wen]
 effects: []
 optimizers: [{name: pso, population: 6, generations: 4}, {name: cma_es, budget: 30}]
@@ -38,12 +39,8 @@ def place(tmp_path_factory):
     folder = tmp_path_factory.mktemp("start")
     t = np.arange(1400) / 100
     u = 50 + 50 * np.sin(2 * np.pi * 0.5 * t) * np.where(t % 4 < 2.5, 1, 0.4)
-    creep = np.zeros(t.size)
-    for i in range(1, t.size):
-        creep[i] = creep[i - 1] + 0.01 / 1.2 * (0.1 * 0.1 * u[i] - creep[i - 1])
-    x = 0.1 * u - 0.3 * np.tanh(np.gradient(u) / 3) + creep + np.random.default_rng(0).normal(0, 0.01, t.size)
-    lines = [f"{a:.2f},{b:.5f},{c:.5f}" for a, b, c in zip(t, u, x, strict=True)]
-    (folder / "data.csv").write_text("\n".join(["time [s],u [V],x [um]", *lines]) + "\n")
+    x = measured.creeping(u, 0.01, ratio=0.1, tau=1.2, width=3, height=0.3)
+    measured.write(folder / "data.csv", t, u, x + np.random.default_rng(0).normal(0, 0.01, t.size))
     (folder / "job.yaml").write_text(JOB)
     job = load_job(folder / "job.yaml")
     run(job, folder / "run", place=Local(1))
