@@ -15,7 +15,7 @@ from pzt_ident.job.files import moved
 from pzt_ident.job.schema import Job
 from pzt_ident.run.events import Listen, nobody
 from pzt_ident.run.folder import read_environment, read_job
-from pzt_ident.run.improve import begun, diagnose, improve
+from pzt_ident.run.improve import begin_task, diagnose, improve
 from pzt_ident.run.place import Place
 from pzt_ident.run.pool import Tell
 from pzt_ident.run.start import file_of, read_start
@@ -35,7 +35,7 @@ def improve_at(
     if place.shares_disk:
         return improve(job, out, listen, budget, start)
     known = None if start is None else file_of(read_start(start, job))
-    statement, folder = begun(job, out, budget, start)
+    statement, folder = begin_task(job, out, budget, start)
     task = (job.text, job.folder.resolve(), statement.records, folder.resolve(), budget, known)
 
     def keep(name: str, files: dict[str, bytes]) -> None:

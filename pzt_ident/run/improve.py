@@ -43,7 +43,7 @@ def opened_case(
 
     records: those of the job where they were read already. Raises InputError where job or data are wrong.
     """
-    statement, folder = begun(job, out, budget, start, records, task)
+    statement, folder = begin_task(job, out, budget, start, records, task)
     case = case_of(statement)
     with event_log(folder, listen) as tell, np.errstate(all="ignore"):
         case.on_event = lambda event: tell(worded(case, event))
@@ -52,7 +52,7 @@ def opened_case(
         tell({"event": "done", "folder": str(folder)})
 
 
-def begun(
+def begin_task(
     job: Job,
     out: Path | None,
     budget: float | None,
