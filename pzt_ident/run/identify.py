@@ -59,11 +59,11 @@ def resume(
 
     Raises InputError where the folder holds no run, or its job or data have changed.
     """
-    begun = read_environment(folder)
+    environment = read_environment(folder)
     text = read_job(folder)
-    job = Job.from_text(text, Path(begun["job_folder"]), f"{begun['job_name']}.yaml", plugins)
+    job = Job.from_text(text, Path(environment["job_folder"]), f"{environment['job_name']}.yaml", plugins)
     statement = Statement(job)
-    check_unchanged(job, statement.records, begun, folder)
+    check_unchanged(job, statement.records, environment, folder)
     starts = Starts.kept(folder).and_(start, job)
     starts.keep(folder)
     return _search(statement, folder, tasks_of(statement, folder, starts), place, listen)

@@ -83,9 +83,9 @@ def identification(task: Task, statement: Statement, checkpoint: Checkpoint, tel
     outcome, seconds, cpu_seconds = find(task, problem, size, checkpoint, tell)
     if not np.isfinite(outcome.loss):
         raise RunError(f"the simulation of each of its {outcome.evaluations} candidates failed: narrow the bounds")
-    begun, problem.failed = time.perf_counter(), 0
+    start, problem.failed = time.perf_counter(), 0
     point, polish_evaluations = problem.polish(outcome.point) if task.polish else (outcome.point, 0)
-    polish_seconds = time.perf_counter() - begun
+    polish_seconds = time.perf_counter() - start
     failed = problem.failed + checkpoint.failures
     return {
         "run": task.run,
@@ -123,10 +123,10 @@ def searched(
     optimizer = optimizers[task.optimizer].make(**task.settings).with_budget(task.stop["evaluations"])
     warm_up(optimizer, problem)
     before, known = checkpoint.seconds, [losses for _, losses in checkpoint.generations]
-    begun, cpu, shown = time.perf_counter(), time.process_time(), 0.0
+    start, cpu, shown = time.perf_counter(), time.process_time(), 0.0
 
     def elapsed() -> float:
-        return before + time.perf_counter() - begun
+        return before + time.perf_counter() - start
 
     with checkpoint.appending() as append:
 

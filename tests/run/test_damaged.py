@@ -79,15 +79,15 @@ def call(*words):
     ended = CliRunner().invoke(main, [str(word) for word in words])
     assert ended.exit_code in (0, 2), ended.output
     for name in ("Error:", "Traceback"):
-        said = ended.stderr.removeprefix("Error: ") if ended.exit_code else ended.output
-        assert name not in said, said
+        text = ended.stderr.removeprefix("Error: ") if ended.exit_code else ended.output
+        assert name not in text, text
     return ended
 
 
 def numbers(out):
     result = json.loads((out / "result.json").read_text())
     clock = ("seconds", "cpu_seconds", "polish_seconds")
-    return [{key: value for key, value in item.items() if key not in clock} for item in result["runs"]]
+    return [{key: value for key, value in row.items() if key not in clock} for row in result["runs"]]
 
 
 def hurt(whole, tmp_path, file, damage):

@@ -58,17 +58,17 @@ def test_and_gives_a_better_one_back(place, tmp_path):
     poor.write_text(json.dumps({"parameters": {"bouc_wen.alpha": {"value": 0.9, "unit": "1"}}}))
     folder = run(load_job(place / "job.yaml"), tmp_path / "run", place=Local(1), start=poor, only_start=True)
     before = read(folder / "result.json")
-    assert (before["league"], [item["run"] for item in before["runs"]]) == ([], ["start-0"])
+    assert (before["league"], [row["run"] for row in before["runs"]]) == ([], ["start-0"])
     resume(folder, place=Local(1), start=place / "diagnosis")
-    after, found = read(folder / "result.json"), read(place / "diagnosis/diagnosis.json")
-    assert [item["run"] for item in after["runs"]] == ["start-0", "start-1"]
-    assert after["best"]["rmse"]["identify"] <= found["rmse"]["identify"] * (1 + 1e-9)
+    after, diagnosis = read(folder / "result.json"), read(place / "diagnosis/diagnosis.json")
+    assert [row["run"] for row in after["runs"]] == ["start-0", "start-1"]
+    assert after["best"]["rmse"]["identify"] <= diagnosis["rmse"]["identify"] * (1 + 1e-9)
     assert [start for start, _ in Starts.kept(folder).given] == [str(poor), str(place / "diagnosis")]
 
 
 def test_a_step_gives_what_the_diagnosis_promised(place, tmp_path):
     candidates = read(place / "diagnosis/diagnosis.json")["candidates"]
-    fitted = next(item for item in candidates if item.get("parameters"))
+    fitted = next(candidate for candidate in candidates if candidate.get("parameters"))
     out = tmp_path / "job.yaml"
     edit.add(place / "job.yaml", fitted["item"], out, start=place / "diagnosis")
     folder = run(load_job(out), tmp_path / "run", place=Local(1), start=place / "diagnosis", only_start=True)
@@ -82,9 +82,9 @@ def test_no_optimizer_is_given_it(place, tmp_path):
     folder = run(job, tmp_path / "run", place=Local(1), start=place / "diagnosis")
     beside = read(folder / "result.json")
     assert {row["optimizer"] for row in beside["league"]} == {"pso", "cma_es"}
-    by_run = {item["run"]: item for item in beside["runs"]}
-    for item in without["runs"]:
-        assert by_run[item["run"]]["rmse_before_polish"] == item["rmse_before_polish"]
+    by_run = {row["run"]: row for row in beside["runs"]}
+    for row in without["runs"]:
+        assert by_run[row["run"]]["rmse_before_polish"] == row["rmse_before_polish"]
     assert "start-0" in by_run and "start" not in (folder / "history.csv").read_text()
 
 
@@ -106,14 +106,14 @@ def test_units_are_those_of_the_file(place, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "sentence"),
     [
         ("{", "is not JSON"),
         ("{}", "holds no fit"),
         ('{"parameters": {"a.b": {"value": 1, "unit": "1"}}}', "has no parameter"),
     ],
 )
-def test_what_is_no_fit_is_refused(place, tmp_path, content, said):
+def test_what_is_no_fit_is_refused(place, tmp_path, content, sentence):
     (tmp_path / "start.json").write_text(content)
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=sentence):
         read_start(tmp_path / "start.json", load_job(place / "job.yaml"))
