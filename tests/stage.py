@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+import measured
 import rig
 from pzt_ident.diagnosis.refit import Case
 from pzt_ident.search.problem import FixedValue
@@ -99,9 +100,7 @@ def write(folder, made, job=JOB):
     """The records as CSV and a job beside them; the path of the job."""
     folder.mkdir(parents=True, exist_ok=True)
     for record in made:
-        table = np.column_stack([record.time, record.drive[0], record.response[0] * 1e6])
-        header = "time [s],u_x [V],x [um]"
-        np.savetxt(folder / f"{record.name}.csv", table, delimiter=",", header=header, comments="", fmt="%.9g")
+        measured.write(folder / f"{record.name}.csv", record.time, record.drive[0], record.response[0] * 1e6)
     path = folder / "job.yaml"
     path.write_text(job, encoding="utf-8")
     return path

@@ -48,8 +48,8 @@ def overhead_(tasks: int, seconds: float) -> None:
     cluster = TCP(workers=2)
     try:
         for name, place in (("local:2", Local(2)), ("tcp, 2 workers", place_of(cluster.address))):
-            found = overhead(place, tasks, seconds, 2)
-            click.echo(f"{name}: {1000 * found['overhead']:.1f} ms a task, efficiency {found['efficiency']:.1%}")
+            cost = overhead(place, tasks, seconds, 2)
+            click.echo(f"{name}: {1000 * cost['overhead']:.1f} ms a task, efficiency {cost['efficiency']:.1%}")
     finally:
         cluster.end()
 
@@ -63,11 +63,11 @@ def memory(folder: Path, every: int, budget: float) -> None:
     cluster = TCP(workers=2)
     numbers = {"client": os.getpid(), "scheduler": cluster.scheduler.pid, "worker": cluster.workers[0].pid}
     note = Memory(numbers, every)
-    begun = time.perf_counter()
+    start = time.perf_counter()
 
     def listen(event: dict) -> None:
         note(event)
-        if time.perf_counter() - begun > budget:
+        if time.perf_counter() - start > budget:
             raise KeyboardInterrupt
 
     try:
@@ -96,7 +96,7 @@ def memory(folder: Path, every: int, budget: float) -> None:
 @click.option("--after", type=int, default=20, show_default=True, help="Devices after which a worker is killed.")
 def killed(folder: Path, improve: bool, budget: float | None, after: int) -> None:
     """The lot in FOLDER on two workers on TCP, of which one is killed and replaced; what is found, beside the truth."""
-    cluster, begun = TCP(workers=2), time.perf_counter()
+    cluster, start = TCP(workers=2), time.perf_counter()
 
     def listen(event: dict) -> None:
         if event["event"] == "devices" and event["done"] == after and cluster.workers[0].poll() is None:
@@ -115,7 +115,7 @@ def killed(folder: Path, improve: bool, budget: float | None, after: int) -> Non
         )
     finally:
         cluster.end()
-    click.echo(f"{time.perf_counter() - begun:.0f} s")
+    click.echo(f"{time.perf_counter() - start:.0f} s")
     score(folder, out)
 
 
@@ -125,14 +125,14 @@ def score(folder: Path, out: Path) -> None:
     odd, ill, states = set(lot.odd), set(lot.ill_fitted), {row["device"]: row for row in lot.rows}
     for kind in sorted({facts["kind"] for facts in truth.values()}):
         names = [name for name, facts in truth.items() if facts["kind"] == kind]
-        found = {
+        counts = {
             "done": sum(states[name]["state"] == "done" for name in names),
             "fits worse": sum(name in ill for name in names),
             "parameters out of line": sum(name in odd for name in names),
             "named right": sum(states[name].get("effects") == [kind] for name in names),
             "named": sum(bool(states[name].get("effects")) for name in names),
         }
-        click.echo(f"{kind}: {len(names)}; " + ", ".join(f"{count} {what}" for what, count in found.items() if count))
+        click.echo(f"{kind}: {len(names)}; " + ", ".join(f"{count} {what}" for what, count in counts.items() if count))
 
 
 if __name__ == "__main__":

@@ -87,11 +87,11 @@ def write_lot(
 
 def kinds(rng: np.random.Generator, devices: int, hidden: float, broken: float, outliers: float) -> Iterator[str]:
     """What each device is, in an order by chance."""
-    found = [*(HIDDEN[i % len(HIDDEN)] for i in range(round(hidden * devices)))]
-    found += [BROKEN[i % len(BROKEN)] for i in range(round(broken * devices))]
-    found += ["outlier"] * round(outliers * devices)
-    found += ["plain"] * (devices - len(found))
-    return (found[i] for i in rng.permutation(devices))
+    kinds = [*(HIDDEN[i % len(HIDDEN)] for i in range(round(hidden * devices)))]
+    kinds += [BROKEN[i % len(BROKEN)] for i in range(round(broken * devices))]
+    kinds += ["outlier"] * round(outliers * devices)
+    kinds += ["plain"] * (devices - len(kinds))
+    return (kinds[i] for i in rng.permutation(devices))
 
 
 def known(rng: np.random.Generator, number: int) -> dict[str, Any]:

@@ -18,24 +18,24 @@ MIB = 2**20
 
 def work(tell: Any, seconds: float, data: bytes) -> tuple[float, bytes]:
     """A task that waits, so that it takes no core from what is measured."""
-    begun = time.perf_counter()
+    start = time.perf_counter()
     time.sleep(seconds)
-    return time.perf_counter() - begun, bytes(RESULT)
+    return time.perf_counter() - start, bytes(RESULT)
 
 
 def overhead(place: Place, tasks: int, seconds: float, workers: int) -> dict[str, float]:
     """Seconds beside its own that each task takes from a worker, from the first result to the last; and the share of
     the workers' time that tasks have."""
     ends: list[float] = []
-    own: list[float] = []
+    waits: list[float] = []
 
     def note(name: str, result: tuple[float, bytes]) -> None:
         ends.append(time.perf_counter())
-        own.append(result[0])
+        waits.append(result[0])
 
     todo = ((str(i), (seconds, os.urandom(CARGO))) for i in range(tasks))
     place.run_all(work, (), todo, lambda event: None, note)
-    span, counted = ends[-1] - ends[workers - 1], own[workers:]
+    span, counted = ends[-1] - ends[workers - 1], waits[workers:]
     return {"overhead": (span * workers - sum(counted)) / len(counted), "efficiency": sum(counted) / (span * workers)}
 
 

@@ -90,16 +90,16 @@ def drive(folder: Path, way: str) -> Drive:
 
 
 def rows(out: Path) -> list[Row]:
-    found = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(out.glob("*/tracking.json"))]
-    return sorted(found, key=lambda row: EFFECTS.index(row["effect"]))
+    rows = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(out.glob("*/tracking.json"))]
+    return sorted(rows, key=lambda row: EFFECTS.index(row["effect"]))
 
 
-def table(found: Sequence[Mapping[str, Any]]) -> str:
+def table(rows: Sequence[Mapping[str, Any]]) -> str:
     """Medians over the seeds, the range in parentheses, nm."""
     header = ["hidden effect", "cases", "named", *(f"{way}, RMSE [nm]" for way in WAYS.values()), "won", "noise [nm]"]
     lines = ["| " + " | ".join(header) + " |", "| --- " + "| ---: " * (len(header) - 1) + "|"]
-    for effect in dict.fromkeys(row["effect"] for row in found):
-        chosen = [row for row in found if row["effect"] == effect]
+    for effect in dict.fromkeys(row["effect"] for row in rows):
+        chosen = [row for row in rows if row["effect"] == effect]
         named = sum(row["named"] == [effect] for row in chosen)
         spreads = [spread([1e3 * row[way]["rmse"] for row in chosen]) for way in WAYS]
         won = spread([row["as_given"]["rmse"] / row["improved"]["rmse"] for row in chosen])

@@ -22,9 +22,10 @@ from pzt_ident.diagnosis import staircase
 from pzt_ident.diagnosis import verdict as verdicts
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.starts import first_fit
-from pzt_ident.run import improve as results
 from pzt_ident.run.computing import computing
 from pzt_ident.run.events import step_name, verdict_line
+from pzt_ident.run.findings import diagnosis_of, improvement_of
+from pzt_ident.run.improve import case_of
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -137,7 +138,7 @@ def diagnose(fit: Fit) -> Diagnosis:
     """Which effect the model of a fit misses, by the steps of `pzt-ident diagnose`: every effect scored, the best
     refitted, judged on both kinds of records."""
     with _case(fit) as (case, first, folder):
-        content = results.diagnosis_of(fit.statement.job, case, verdicts.diagnose(case, first), folder)
+        content = diagnosis_of(fit.statement.job, case, verdicts.diagnose(case, first), folder)
         return Diagnosis(
             content["verdict"], content["reason"], content["candidates"], _proposed(content, folder), content
         )
@@ -148,15 +149,14 @@ def improve(fit: Fit, budget: float | None = None) -> Improvement:
     after which the verdict is on what was found by then. Without end if None."""
     with _case(fit) as (case, first, folder):
         case.budget = Budget(budget)
-        found = staircase.improve(case, first)
-        job = fit.statement.job
-        content = results.improvement_of(job, case, found, results.diagnosis_of(job, case, found.last, folder))
-        end = found.case or case
-        stairs = [
-            Step(Fit(*from_refit(fit, end, step.fit)), step.added, step.removed, step.tied, step.explained)
-            for step in found.steps
+        job, stairs = fit.statement.job, staircase.improve(case, first)
+        content = improvement_of(job, case, stairs, diagnosis_of(job, case, stairs.last, folder))
+        last_case = stairs.case or case
+        steps = [
+            Step(Fit(*from_refit(fit, last_case, step.fit)), step.added, step.removed, step.tied, step.explained)
+            for step in stairs.steps
         ]
-        return Improvement(stairs, content["verdict"], content["reason"], content["effects"], content)
+        return Improvement(steps, content["verdict"], content["reason"], content["effects"], content)
 
 
 @contextmanager
@@ -164,7 +164,7 @@ def _case(fit: Fit) -> Iterator[tuple[fits.Case, fits.Fit, Path]]:
     """The case of a fit, the better of it and of a fit from other starts, and a folder for what is written."""
     of_kind(fit, Fit, "fit", "give what pzt_ident.identify or pzt_ident.load returned")
     with computing(), TemporaryDirectory() as folder:
-        case = results.case_of(fit.statement)
+        case = case_of(fit.statement)
         other = first_fit(case, fit.statement.job.seed)
         given = as_given(case, fit)
         yield case, other if other.identify <= given.identify else given, Path(folder)

@@ -35,10 +35,10 @@ class Fleet:
     @property
     def out_of_line(self) -> dict[str, list[str]]:
         """What is unusual about each device that is out of line, the furthest first."""
-        found: dict[str, list[str]] = {}
+        sentences: dict[str, list[str]] = {}
         for finding in self._lot.findings:
-            found.setdefault(finding.device, []).append(finding.sentence)
-        return found
+            sentences.setdefault(finding.device, []).append(finding.sentence)
+        return sentences
 
     def fit(self, device: str, plugins: bool = False) -> Any:
         """That of a device, as `pzt_ident.load` reads it. Raises InputError where it has none."""

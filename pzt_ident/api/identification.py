@@ -90,13 +90,13 @@ def load(folder: str | Path, *, plugins: bool = False) -> Any:
 
 
 def _read(folder: Path, plugins: bool) -> Fit:
-    results, begun = read_results(folder), read_environment(folder)
+    results, environment = read_results(folder), read_environment(folder)
     for sentence in results.damaged:
         raise InputError(sentence.partition(";")[0], remedy=f"`pzt-ident resume {folder}` makes it again where it can")
-    home = folder if (folder / "data").is_dir() else Path(begun["job_folder"])
+    home = folder if (folder / "data").is_dir() else Path(environment["job_folder"])
     job = Job.from_text(results.job, home, str(folder / "job.yaml"), plugins)
     statement = Statement(job)
-    check_unchanged(job, statement.records, begun, folder)
+    check_unchanged(job, statement.records, environment, folder)
     records = {
         use: tuple(Record.of(record) for record in statement.records if record.use == use)
         for use in ("identify", "validate")

@@ -48,14 +48,14 @@ def as_given(case: Case, fit: Fitted) -> diagnosis.Fit:
 
 def from_refit(fit: Fitted, case: Case, refit: diagnosis.Fit) -> Parts:
     """What the diagnosis fitted to the records of a fit, as the parts of a fit."""
-    begun = time.perf_counter()
+    start = time.perf_counter()
     silent = case.unmeasured_nulls(refit.effects) if refit.measured_only else {}
     settings: dict[str, Any] = {name: {"value": value} for name, value in silent.items()}
     settings |= {name: {"bounds": list(bounds)} for name, bounds in wider_bounds(fit.statement.job, case).items()}
     statement, records, sections = restated(fit, refit.effects, refit.steps, settings)
     point = statement.problem.unit_point(refit.values)
     known = what_is_known(statement, point)
-    checkpoint, seconds = Checkpoint(), time.perf_counter() - begun
+    checkpoint, seconds = Checkpoint(), time.perf_counter() - start
     with checkpoint.appending() as append:
         append(seconds, np.array([refit.identify]))
     optimizer = optimizer_of(fit)
@@ -77,7 +77,7 @@ def from_refit(fit: Fitted, case: Case, refit: diagnosis.Fit) -> Parts:
 
 def optimizer_of(fit: Fitted) -> str:
     """The optimizer that found a fit; the first of its job where the fit came from elsewhere."""
-    words = [item["name"] for item in fit.sections["optimizers"]]
+    words = [section["name"] for section in fit.sections["optimizers"]]
     return fit.best["optimizer"] if fit.best["optimizer"] in words else words[0]
 
 
@@ -91,7 +91,7 @@ def restated(
     records = {
         use: tuple(record.with_steps(counts[record.name]) for record in group) for use, group in fit.records.items()
     }
-    chosen = next(item for item in fit.sections["optimizers"] if item["name"] == optimizer_of(fit))
+    chosen = next(section for section in fit.sections["optimizers"] if section["name"] == optimizer_of(fit))
     parameters = fit.sections["parameters"] | (settings or {})
     sections = fit.sections | {"optimizers": [chosen], "repeats": 1, "parameters": parameters}
     text = job_text(fit.statement.job.name, fit.model.with_effects(effects), records, sections)

@@ -108,9 +108,9 @@ def same_kind(a: str, b: str) -> bool:
 
 def duration(text: str) -> float:
     """A time above zero, such as `60s` or `5 min`, in s, which is its unit where none is given. Raises InputError."""
-    found = re.fullmatch(r"\s*(\d+\.?\d*|\.\d+)\s*([a-zA-Zµ]*)\s*", text)
-    unit = (found and found[2]) or "s"
-    seconds = float(found[1]) * factor(unit) if found and is_unit(unit) and same_kind(unit, "s") else 0.0
+    match = re.fullmatch(r"\s*(\d+\.?\d*|\.\d+)\s*([a-zA-Zµ]*)\s*", text)
+    unit = (match and match[2]) or "s"
+    seconds = float(match[1]) * factor(unit) if match and is_unit(unit) and same_kind(unit, "s") else 0.0
     if not 0 < seconds < float("inf"):
         raise InputError(f"{text!r} is no time above zero", remedy="write it as 60s or 5min")
     return seconds

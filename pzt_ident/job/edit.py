@@ -36,9 +36,9 @@ def tried(folder: Path, effect: str) -> dict[str, Any]:
     except (ValueError, KeyError):
         remedy = "run `pzt-ident diagnose` again"
         raise InputError("is not as `pzt-ident diagnose` writes it", where=str(path), remedy=remedy) from None
-    for item in candidates:
-        if item.get("parameters") and effect in (item["effect"], item["item"]):
-            return {key: item[key] for key in ("steps", "values") if item.get(key)}
+    for candidate in candidates:
+        if candidate.get("parameters") and effect in (candidate["effect"], candidate["item"]):
+            return {key: candidate[key] for key in ("steps", "values") if candidate.get(key)}
     return {}
 
 
@@ -113,8 +113,8 @@ def edited(
     for name, (low, high) in (bounds or {}).items():
         document["parameters"][name]["bounds"][:] = [float(f"{low:.6g}"), float(f"{high:.6g}")]
     _drop_parameters(document, job, effects, words)
-    if given := {name: {"value": value} for name, value in (values or {}).items()} | dict(parameters or {}):
-        _set_parameters(document, given)
+    if settings := {name: {"value": value} for name, value in (values or {}).items()} | dict(parameters or {}):
+        _set_parameters(document, settings)
     for name, content in (sections or {}).items():
         document[name] = _flow(content)
     if job.folder.resolve() != folder.resolve():
@@ -154,13 +154,13 @@ def _drop_parameters(document: Any, job: Job, effects: Sequence[str], words: Seq
         del document["parameters"]
 
 
-def _set_parameters(document: Any, given: Mapping[str, Mapping[str, Any]]) -> None:
+def _set_parameters(document: Any, settings: Mapping[str, Mapping[str, Any]]) -> None:
     from ruamel.yaml.comments import CommentedMap
 
     if not document.get("parameters"):
         document.pop("parameters", None)
         document.insert(list(document).index("effects") + 1, "parameters", CommentedMap())
-    for name, content in given.items():
+    for name, content in settings.items():
         document["parameters"][name] = _flow(content)
 
 

@@ -21,14 +21,14 @@ def record_files(job: Job) -> list[str]:
 
 def channel_files(job: Job) -> list[str]:
     """The files that single channels are taken from beside those of the records, each once."""
-    found: list[str] = []
+    files: list[str] = []
 
     def note(file: str) -> str:
-        found.append(file)
+        files.append(file)
         return file
 
     on_files(job, note)
-    return [file for file in dict.fromkeys(found) if file not in record_files(job)]
+    return [file for file in dict.fromkeys(files) if file not in record_files(job)]
 
 
 def on_files(job: Job, name: Callable[[str], str]) -> Job:
@@ -65,19 +65,19 @@ class Template:
         yaml.dump(document, text)
         self.text = text.getvalue()
 
-    def _mark(self, item: Any) -> None:
+    def _mark(self, node: Any) -> None:
         """Put a mark in the place of every file in an item."""
         from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
-        if isinstance(item, list):
-            for part in item:
+        if isinstance(node, list):
+            for part in node:
                 self._mark(part)
-        elif isinstance(item, dict):
-            for key, value in item.items():
+        elif isinstance(node, dict):
+            for key, value in node.items():
                 if key == "file" and isinstance(value, str):
                     if value not in self.files:
                         self.files.append(value)
-                    item[key] = DoubleQuotedScalarString(_mark_of(self.files.index(value)))
+                    node[key] = DoubleQuotedScalarString(_mark_of(self.files.index(value)))
                 else:
                     self._mark(value)
 

@@ -69,14 +69,12 @@ def identify_device(tell: Any, orders: Orders, given: Given) -> dict[str, bytes]
 
     Raises InputError where its data are wrong, RunError where no search came to anything.
     """
-    begun, job = time.process_time(), _job(orders, given)
+    start, job = time.process_time(), _job(orders, given)
     with TemporaryDirectory(prefix="pzt-ident-") as scratch:
-        there = Path(scratch)
-        records = read(job, orders, given, there)
-        folder = there / "device"
+        records, folder = read(job, orders, given, Path(scratch)), Path(scratch) / "device"
         result = identified(job, records, orders, folder)
         improvement = improved(job, records, orders, given, folder / "improved") if orders.improve else {}
-        row = row_of(given, result, improvement) | {"cpu_seconds": time.process_time() - begun}
+        row = row_of(given, result, improvement) | {"cpu_seconds": time.process_time() - start}
         write_sealed(folder / "device.json", row)
         return read_files(folder)
 
@@ -155,22 +153,22 @@ def row_of(given: Given, result: dict[str, Any], improvement: dict[str, Any]) ->
         "reason": improvement.get("reason", ""),
         "verdict": improvement["verdict"] if improvement else verdict_of(best["rmse"], floor),
         "effects": improvement.get("effects", []),
-        "suspects": [item["effect"] for item in improvement.get("suspects", [])],
+        "suspects": [suspect["effect"] for suspect in improvement.get("suspects", [])],
         "unit": result["unit"],
         "rmse": best["rmse"],
         "rmse_improved": last["rmse"] if improvement else None,
         "noise_floor": floor,
-        "parameters": {name: _interval(item) for name, item in best["parameters"].items()},
+        "parameters": {name: _interval(parameter) for name, parameter in best["parameters"].items()},
         "files": {file: str(path) for file, path in given.files.items()},
         "sha256": result["records"][0]["sha256"],
     }
 
 
-def _interval(item: Mapping[str, Any]) -> dict[str, Any]:
+def _interval(parameter: Mapping[str, Any]) -> dict[str, Any]:
     """A parameter with the ends of its interval of 95 %; none where the data do not determine it."""
-    value, error = item["value"], item["standard_error"]
+    value, error = parameter["value"], parameter["standard_error"]
     ends = (None, None) if error is None else (value - WITHIN_95 * error, value + WITHIN_95 * error)
-    return {"value": value, "unit": item["unit"], "low": ends[0], "high": ends[1], "verdict": item["verdict"]}
+    return {"value": value, "unit": parameter["unit"], "low": ends[0], "high": ends[1], "verdict": parameter["verdict"]}
 
 
 def verdict_of(rmse: Mapping[str, float | None], floor: float | None) -> str:

@@ -35,22 +35,22 @@ def devices_of(patterns: Sequence[str], job: Job) -> list[Device]:
     from pzt_ident.lot.listed import is_table, listed_devices
 
     tables = [Path(pattern) for pattern in patterns if is_table(Path(pattern), job)]
-    found = [device for table in tables for device in listed_devices(table, job)]
+    devices = [device for table in tables for device in listed_devices(table, job)]
     paths = matched([pattern for pattern in patterns if Path(pattern) not in tables])
     named = zip(names_of(paths), paths, strict=True)
-    found += [device_at(path, name, {}, job) for name, path in named]
-    _check_twice(found)
-    if not found or all(device.fault for device in found):
-        _reject(patterns, found)
-    return sorted(found, key=lambda device: device.name)
+    devices += [device_at(path, name, {}, job) for name, path in named]
+    _check_twice(devices)
+    if not devices or all(device.fault for device in devices):
+        _reject(patterns, devices)
+    return sorted(devices, key=lambda device: device.name)
 
 
 def matched(patterns: Sequence[str]) -> list[Path]:
     """The folders or files that the patterns match. Raises InputError where one matches nothing, both or twice."""
     by: dict[Path, str] = {}
-    found: list[Path] = []
+    matches: list[Path] = []
     for pattern in patterns:
-        paths = [Path(item) for item in sorted(glob.glob(pattern, recursive=True))]
+        paths = [Path(name) for name in sorted(glob.glob(pattern, recursive=True))]
         if not paths:
             raise InputError("matches nothing", where=repr(pattern), remedy=_nearby(pattern))
         for path in paths:
@@ -58,13 +58,13 @@ def matched(patterns: Sequence[str]) -> list[Path]:
                 problem = f"{path} is there twice: by {by[path.resolve()]!r} and by {pattern!r}"
                 raise InputError(problem, remedy="let one pattern match it")
             by[path.resolve()] = pattern
-        found += paths
-    folders = [path for path in found if path.is_dir()]
-    if folders and len(folders) < len(found):
-        problem = f"{len(folders)} folders and {len(found) - len(folders)} files are matched"
+        matches += paths
+    folders = [path for path in matches if path.is_dir()]
+    if folders and len(folders) < len(matches):
+        problem = f"{len(folders)} folders and {len(matches) - len(folders)} files are matched"
         remedy = "a pattern that ends with / takes the folders alone, one that ends with *.csv the files"
         raise InputError(problem, where=" ".join(map(repr, patterns)), remedy=remedy)
-    return found
+    return matches
 
 
 def _nearby(pattern: str) -> str:
@@ -73,7 +73,7 @@ def _nearby(pattern: str) -> str:
     for count in range(len(parts) - 1, 0, -1):
         place = Path(*parts[:count])
         if glob.glob(str(place)):
-            inside = sorted(item.name for found in glob.glob(str(place)) for item in Path(found).glob("*"))
+            inside = sorted(path.name for match in glob.glob(str(place)) for path in Path(match).glob("*"))
             return f"in {place} there is {', '.join(inside[:5]) or 'nothing'}{', ...' if len(inside) > 5 else ''}"
     return f"there is no {parts[0] if parts else 'such file'} in {Path.cwd()}"
 
@@ -109,7 +109,7 @@ def _in_folder(folder: Path, wanted: Sequence[str]) -> tuple[dict[str, Path], st
     """Where each file is in a folder, by its path in the job or its name alone; and the first that is not there."""
     files: dict[str, Path] = {}
     for file in wanted:
-        path = next((item for item in _places(folder, file) if item.is_file()), None)
+        path = next((place for place in _places(folder, file) if place.is_file()), None)
         if path is None:
             return files, Path(file).name
         files[file] = path
@@ -129,15 +129,15 @@ def _places(folder: Path, file: str) -> Iterator[Path]:
 
 def channels_beside(folder: Path, job: Job) -> dict[str, Path]:
     """Where the files of single channels are: in the device's folder, else where the job has them."""
-    found = {}
+    places = {}
     for file in channel_files(job):
         beside = (path for path in _places(folder, file) if path.is_file())
-        found[file] = next(beside, job.folder / file)
-    return found
+        places[file] = next(beside, job.folder / file)
+    return places
 
 
 def _content(folder: Path) -> str:
-    names = sorted(item.name for item in folder.iterdir())
+    names = sorted(path.name for path in folder.iterdir())
     return ", ".join(names[:5]) + (", ..." if len(names) > 5 else "") if names else "nothing"
 
 
@@ -152,7 +152,9 @@ def _reject(patterns: Sequence[str], devices: Sequence[Device]) -> None:
     if not devices:
         raise InputError("no device", where=" ".join(map(repr, patterns)), remedy=HOW)
     remedy = "in the folder of a device, files have the names that they have in the job"
-    if inside := next((item for item in patterns if any(path.is_dir() for path in Path(item).glob("*"))), None):
+    if inside := next(
+        (pattern for pattern in patterns if any(path.is_dir() for path in Path(pattern).glob("*"))), None
+    ):
         remedy = f"did you mean {f'{Path(inside)}/*/'!r}? {remedy.capitalize()}"
     problem = f"no device has the files of the job. The first: {devices[0].fault}"
     raise InputError(problem, where=" ".join(map(repr, patterns)), remedy=remedy)

@@ -26,7 +26,7 @@ MOST = 12  # panels of what depends on what
 
 def plates(lot: Lot) -> Iterator[Plate]:
     """The figures of the report, each with the section that it is in."""
-    shown = [item for item in lot.quantities if item.usable.sum() > 1]
+    shown = [quantity for quantity in lot.quantities if quantity.usable.sum() > 1]
     if shown:
         yield Plate(
             "spreads",
@@ -65,20 +65,20 @@ def _grid(figure: Figure, count: int) -> list[Axes]:
     return axes[:count]
 
 
-def _far(lot: Lot, item: Quantity) -> np.ndarray:
-    names = {finding.device for finding in lot.findings if finding.quantity == item.name}
+def _far(lot: Lot, quantity: Quantity) -> np.ndarray:
+    names = {finding.device for finding in lot.findings if finding.quantity == quantity.name}
     return np.array([row["device"] in names for row in lot.done])
 
 
 def _draw_spreads(figure: Figure, lot: Lot, shown: Sequence[Quantity]) -> None:
-    for axes, item in zip(_grid(figure, len(shown)), shown, strict=True):
-        values, far = item.values[item.usable], _far(lot, item)[item.usable]
-        middle, half = item.median, FAR * item.spread
+    for axes, quantity in zip(_grid(figure, len(shown)), shown, strict=True):
+        values, far = quantity.values[quantity.usable], _far(lot, quantity)[quantity.usable]
+        middle, half = quantity.median, FAR * quantity.spread
         low, high = np.min(values), np.max(values)
         count = min(40, max(8, round(2 * math.sqrt(values.size))))
-        wide = item.one_sided and low > 0 and high > 5 * middle
+        wide = quantity.one_sided and low > 0 and high > 5 * middle
         edges = np.geomspace(low, high, count) if wide else np.histogram_bin_edges(values, count)
-        below = max(middle - half, low) if item.one_sided else middle - half
+        below = max(middle - half, low) if quantity.one_sided else middle - half
         axes.axvspan(max(below, edges[0]), min(middle + half, edges[-1]), color=SHADE, lw=0)
         axes.axvline(middle, color=QUIET, linewidth=0.6)
         axes.hist(values[~far], bins=edges.tolist(), color=USUAL)
@@ -89,10 +89,10 @@ def _draw_spreads(figure: Figure, lot: Lot, shown: Sequence[Quantity]) -> None:
         axes.locator_params(axis="both", nbins=5)
         if wide:
             axes.set_xscale("log")
-            log_ticks(axes.xaxis, "", item.unit, (low, high))
+            log_ticks(axes.xaxis, "", quantity.unit, (low, high))
         else:
-            label(axes.xaxis, "", item.unit, values)
-        name_panel(axes, item.name)
+            label(axes.xaxis, "", quantity.unit, values)
+        name_panel(axes, quantity.name)
 
 
 def _trend_panels(lot: Lot) -> list[tuple[str, str, Trend | None]]:
@@ -100,43 +100,43 @@ def _trend_panels(lot: Lot) -> list[tuple[str, str, Trend | None]]:
 
 
 def _group_panels(lot: Lot) -> list[tuple[str, str, Trend | None]]:
-    return [(item.quantity, item.column, None) for item in lot.group_differences if item.clear]
+    return [(difference.quantity, difference.column, None) for difference in lot.group_differences if difference.clear]
 
 
 def _draw_columns(figure: Figure, lot: Lot, pairs: Sequence[tuple[str, str, Trend | None]]) -> None:
-    by_name = {item.name: item for item in lot.quantities}
+    by_name = {quantity.name: quantity for quantity in lot.quantities}
     for axes, (name, column, trend) in zip(_grid(figure, len(pairs)), pairs, strict=True):
-        item = by_name[name]
+        quantity = by_name[name]
         if trend:
-            _draw_trend(axes, lot, item, trend)
+            _draw_trend(axes, lot, quantity, trend)
         else:
-            _draw_groups(axes, lot, item, groups(lot.columns, len(lot.done))[column])
-        label(axes.yaxis, "", item.unit, item.values[item.usable])
+            _draw_groups(axes, lot, quantity, groups(lot.columns, len(lot.done))[column])
+        label(axes.yaxis, "", quantity.unit, quantity.values[quantity.usable])
         axes.set_xlabel(column)
         axes.locator_params(axis="y", nbins=5)
         name_panel(axes, name)
 
 
-def _draw_trend(axes: Axes, lot: Lot, item: Quantity, trend: Trend) -> None:
-    x, far = numeric(lot.columns)[trend.column], _far(lot, item)
-    both = item.usable & np.isfinite(x)
-    axes.plot(x[both & ~far], item.values[both & ~far], ".", color=USUAL, markersize=2.5)
-    axes.plot(x[both & far], item.values[both & far], "^", color=FAR_OFF, markersize=3)
-    ends = np.array([x[both].min(), x[both].max()])
+def _draw_trend(axes: Axes, lot: Lot, quantity: Quantity, trend: Trend) -> None:
+    x, far = numeric(lot.columns)[trend.column], _far(lot, quantity)
+    known = quantity.usable & np.isfinite(x)
+    axes.plot(x[known & ~far], quantity.values[known & ~far], ".", color=USUAL, markersize=2.5)
+    axes.plot(x[known & far], quantity.values[known & far], "^", color=FAR_OFF, markersize=3)
+    ends = np.array([x[known].min(), x[known].max()])
     axes.plot(ends, trend.at(ends), color=QUIET, linewidth=0.8)
     axes.margins(x=0.05)
     axes.locator_params(axis="x", nbins=5)
 
 
-def _draw_groups(axes: Axes, lot: Lot, item: Quantity, members: Mapping[str, Any]) -> None:
-    far, shift = _far(lot, item), np.random.default_rng(0).uniform(-0.2, 0.2, item.values.size)
+def _draw_groups(axes: Axes, lot: Lot, quantity: Quantity, members: Mapping[str, Any]) -> None:
+    far, shift = _far(lot, quantity), np.random.default_rng(0).uniform(-0.2, 0.2, quantity.values.size)
     for place, inside in enumerate(members.values()):
-        both = item.usable & inside
-        axes.plot(place + shift[both & ~far], item.values[both & ~far], ".", color=USUAL, markersize=2.5)
-        axes.plot(place + shift[both & far], item.values[both & far], "^", color=FAR_OFF, markersize=3)
+        known = quantity.usable & inside
+        axes.plot(place + shift[known & ~far], quantity.values[known & ~far], ".", color=USUAL, markersize=2.5)
+        axes.plot(place + shift[known & far], quantity.values[known & far], "^", color=FAR_OFF, markersize=3)
         axes.plot(
             [place - 0.3, place + 0.3],
-            [np.median(item.values[both])] * 2 if both.any() else [np.nan] * 2,
+            [np.median(quantity.values[known])] * 2 if known.any() else [np.nan] * 2,
             color=QUIET,
             linewidth=0.8,
         )

@@ -35,24 +35,24 @@ def listed_devices(path: Path, job: Job) -> list[Device]:
     by_file = _file_columns(header, job)
     used = {named, at, *by_file.values()}
     known = _known(header, rows, [place for place in range(len(header)) if place not in used])
-    found = []
+    devices = []
     for (line, row), columns in zip(rows, known, strict=True):
         where = f"{path}:{line}"
         if at is not None:
             device = device_at(_path(path, row[at], where), "", columns, job)
         else:
             files = {file: _path(path, row[place], where) for file, place in by_file.items()}
-            missing = next((f"{item}: no such file" for item in files.values() if not item.is_file()), "")
+            missing = next((f"{place}: no such file" for place in files.values() if not place.is_file()), "")
             device = Device("", files | channels_beside(path.parent, job), columns, missing)
-        found.append(replace(device, name=row[named].strip() if named is not None else ""))
-    _check_rows(path, rows, found)
+        devices.append(replace(device, name=row[named].strip() if named is not None else ""))
+    _check_rows(path, rows, devices)
     if named is None:
         places = [
-            _path(path, row[at], "") if at is not None else next(iter(item.files.values()))
-            for (_, row), item in zip(rows, found, strict=True)
+            _path(path, row[at], "") if at is not None else next(iter(device.files.values()))
+            for (_, row), device in zip(rows, devices, strict=True)
         ]
-        found = [replace(item, name=name) for item, name in zip(found, names_of(places), strict=True)]
-    return found
+        devices = [replace(device, name=name) for device, name in zip(devices, names_of(places), strict=True)]
+    return devices
 
 
 def _rows(path: Path, most: int | None = None) -> tuple[list[str], list[tuple[int, list[str]]]]:
@@ -79,15 +79,15 @@ def _rows(path: Path, most: int | None = None) -> tuple[list[str], list[tuple[in
 def _file_columns(header: Sequence[str], job: Job) -> dict[str, int]:
     """The column of each file of the job: by its path, its name with or without suffix, or the name of a record."""
     places = {name.lower(): place for place, name in enumerate(header)}
-    found = {}
+    columns = {}
     for file in record_files(job):
         records = [source.name or "" for source in job.records if source.file == file]
         words = (file, Path(file).name, Path(file).stem, *records)
         place = next((places[word.lower()] for word in words if word.lower() in places), None)
         if place is None:
             return {}
-        found[file] = place
-    return found
+        columns[file] = place
+    return columns
 
 
 def _path(table: Path, cell: str, where: str) -> Path:
@@ -121,7 +121,7 @@ def _check_rows(path: Path, rows: Sequence[tuple[int, list[str]]], devices: Sequ
     names: dict[str, int] = {}
     files: dict[tuple[Path, ...], int] = {}
     for (line, _), device in zip(rows, devices, strict=True):
-        paths = tuple(item.resolve() for item in device.files.values())
+        paths = tuple(place.resolve() for place in device.files.values())
         if device.name and device.name in names:
             problem = f"the device {device.name!r} is in line {names[device.name]} already"
             remedy = "give each row a name of its own; what rows share belongs into a column such as `serial`"

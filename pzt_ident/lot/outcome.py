@@ -42,32 +42,34 @@ class Lot:
         return [*(self._parameter(name) for name in names), *self._errors()]
 
     def _parameter(self, name: str) -> Quantity:
-        items = [row["parameters"].get(name) for row in self.done]
-        shown = next(item["unit"] for item in items if item)
+        parameters = [row["parameters"].get(name) for row in self.done]
+        shown = next(parameter["unit"] for parameter in parameters if parameter)
 
         def column(key: str) -> np.ndarray:
-            return np.array([_number(item and in_unit(item[key], item["unit"], shown)) for item in items])
+            return np.array(
+                [_number(parameter and in_unit(parameter[key], parameter["unit"], shown)) for parameter in parameters]
+            )
 
-        known = np.array([bool(item) and item["verdict"] == DETERMINED for item in items])
+        known = np.array([bool(parameter) and parameter["verdict"] == DETERMINED for parameter in parameters])
         return Quantity(name, shown, column("value"), column("low"), column("high"), known)
 
     def _errors(self) -> list[Quantity]:
         """Errors and noise are out of line where they are large, not where they are small."""
         shown = next((row["unit"] for row in self.done), "")
-        found = []
+        quantities = []
         for name, get in ERRORS.items():
             values = np.array([_number(in_unit(get(row), row["unit"], shown)) for row in self.done])
             if np.isfinite(values).any():
                 none = np.full(values.size, np.nan)
-                found.append(Quantity(name, shown, values, none, none, np.isfinite(values), one_sided=True))
-        return found
+                quantities.append(Quantity(name, shown, values, none, none, np.isfinite(values), one_sided=True))
+        return quantities
 
     @cached_property
     def columns(self) -> dict[str, list[Any]]:
         """What is known of each device that was done, by column; columns that say nothing are left out."""
         names = dict.fromkeys(name for row in self.done for name in row["columns"])
-        found = {name: [row["columns"].get(name) for row in self.done] for name in names}
-        return {name: values for name, values in found.items() if len(set(values) - {None}) > 1}
+        columns = {name: [row["columns"].get(name) for row in self.done] for name in names}
+        return {name: values for name, values in columns.items() if len(set(values) - {None}) > 1}
 
     @cached_property
     def trends(self) -> list[Trend]:
@@ -123,7 +125,7 @@ class Lot:
             "broken": [{"device": row["device"], "reason": row["reason"]} for row in self.broken],
             "verdicts": self.verdicts,
             "effects": {effect: len(names) for effect, names in self.effects.items()},
-            "out_of_line": [{"device": item.device, "reason": item.sentence} for item in self.findings],
+            "out_of_line": [{"device": finding.device, "reason": finding.sentence} for finding in self.findings],
         }
 
     def sentences(self) -> list[str]:
@@ -167,7 +169,7 @@ def read_lot(folder: Path) -> Lot:
     statement = read_statement(folder)
     try:
         content = read_sealed(folder / "devices.json")
-        known = {item["device"]: dict(item["columns"]) for item in content["devices"]}
+        known = {device["device"]: dict(device["columns"]) for device in content["devices"]}
     except (DamagedError, KeyError, TypeError, ValueError):
         remedy = f"`pzt-ident resume {folder}` goes on with it"
         raise InputError(

@@ -65,7 +65,7 @@ def draw_pages(lot: Lot, place: Place, listen: Listen) -> None:
         shown = [row["device"] for row in lot.done if row["device"] in outside or row["verdict"] != "adequate"]
         shown = shown[:MOST_PAGES]
     folders = [folder_of(lot.folder, name) for name in shown]
-    stale = [item for item in folders if not is_drawn(item)]
+    stale = [path for path in folders if not is_drawn(path)]
     drawn = 0
 
     def tell(done: int) -> None:
@@ -77,7 +77,7 @@ def draw_pages(lot: Lot, place: Place, listen: Listen) -> None:
         tell(drawn)
 
     if stale:
-        place.run_all(draw_page, (), ((str(item), (item,)) for item in stale), nobody, note)
+        place.run_all(draw_page, (), ((str(path), (path,)) for path in stale), nobody, note)
 
 
 def is_drawn(folder: Path) -> bool:
@@ -117,7 +117,7 @@ def page(lot: Lot, figures: dict[str | None, list[tuple[Plate, Markup]]]) -> str
             far=far(lot),
             effects=lot.effects,
             figures=figures,
-            quantities=[quantity_line(lot, item) for item in lot.quantities],
+            quantities=[quantity_line(lot, quantity) for quantity in lot.quantities],
             header=header(lot),
             lines=list(device_lines(lot)),
             page_of={row["device"]: page_of(lot, row["device"]) for row in lot.rows},
@@ -170,21 +170,25 @@ def findings(lot: Lot) -> Iterator[str]:
     for effect, names in lot.effects.items():
         yield f"{effect} is missing in {len(names)} of {len(lot.done)} devices ({percent(len(names) / len(lot.done))})."
     for trend in _distinct(lot.trends):
-        item = next(item for item in lot.quantities if item.name == trend.quantity)
+        quantity = next(quantity for quantity in lot.quantities if quantity.name == trend.quantity)
         sign = "grows" if trend.slope > 0 else "falls"
         column = re.search(r"\[(.+)\]", trend.column)
         per = unit(column[1]) if column else "unit"
-        change = f", by {number(abs(trend.slope / item.median) * 100, 2)}\u00a0% per {per}" if item.median else ""
+        change = (
+            f", by {number(abs(trend.slope / quantity.median) * 100, 2)}\u00a0% per {per}" if quantity.median else ""
+        )
         yield f"{trend.quantity} {sign} with the {trend.column.partition(' [')[0]}{change}."
     for difference in lot.group_differences:
         if difference.clear:
-            item = next(item for item in lot.quantities if item.name == difference.quantity)
+            quantity = next(quantity for quantity in lot.quantities if quantity.name == difference.quantity)
             medians = [f"{word} {number(value)}" for word, value in difference.medians.items()]
-            yield f"{item.name} differs by {difference.column}: {', '.join(medians)} {unit(item.unit)}."
+            yield f"{quantity.name} differs by {difference.column}: {', '.join(medians)} {unit(quantity.unit)}."
     for names in lot.same_data:
         yield f"{listed(names)} have the same data: is one of them a copy?"
     undetermined = [
-        item.name for item in lot.quantities if not item.one_sided and item.usable.sum() < len(lot.done) / 2
+        quantity.name
+        for quantity in lot.quantities
+        if not quantity.one_sided and quantity.usable.sum() < len(lot.done) / 2
     ]
     if undetermined:
         yield f"The data of most devices do not determine {listed(undetermined)}."
@@ -216,20 +220,20 @@ def _misfit(row: Row) -> str:
     return f"may miss {listed(row['suspects'])}" if row["suspects"] else "fits worse"
 
 
-def quantity_line(lot: Lot, item: Quantity) -> list[str]:
+def quantity_line(lot: Lot, quantity: Quantity) -> list[str]:
     """Name, unit, median, spread, its share of the median, extremes, error of a single device, and of how many."""
-    values = item.values[item.usable]
-    relative = percent(item.spread / abs(item.median), 1) if item.usable.any() and item.median else "–"
+    values = quantity.values[quantity.usable]
+    relative = percent(quantity.spread / abs(quantity.median), 1) if quantity.usable.any() and quantity.median else "–"
     ends = [number(values.min()), number(values.max())] if values.size else ["–", "–"]
-    own = number(item.own_error, 2) if item.own_error else "–"
-    cells = [number(item.median), number(item.spread, 2), relative, *ends, own]
-    return [item.name, unit(item.unit) or "1", *cells, f"{values.size} of {len(lot.done)}"]
+    error = number(quantity.own_error, 2) if quantity.own_error else "–"
+    cells = [number(quantity.median), number(quantity.spread, 2), relative, *ends, error]
+    return [quantity.name, unit(quantity.unit) or "1", *cells, f"{values.size} of {len(lot.done)}"]
 
 
 def header(lot: Lot) -> list[str]:
     """The headings of the table of devices."""
     columns = dict.fromkeys(name for row in lot.rows for name in row["columns"])
-    shown = [f"{item.name} [{unit(item.unit) or '1'}]" for item in lot.quantities]
+    shown = [f"{quantity.name} [{unit(quantity.unit) or '1'}]" for quantity in lot.quantities]
     return ["device", *columns, "verdict", *(["effects"] if lot.statement["improve"] else []), *shown]
 
 
@@ -247,12 +251,12 @@ def device_lines(lot: Lot) -> Iterator[dict[str, Any]]:
         words = [row["verdict"], *([", ".join(row["effects"])] if lot.statement["improve"] else [])]
         values = [
             (
-                number(item.values[index]),
-                float(item.values[index]),
-                (name, item.name) in outside,
-                bool(item.usable[index]),
+                number(quantity.values[index]),
+                float(quantity.values[index]),
+                (name, quantity.name) in outside,
+                bool(quantity.usable[index]),
             )
-            for item in lot.quantities
+            for quantity in lot.quantities
         ]
         known = [_cell(row["columns"].get(column)) for column in columns]
         improved = page_of(lot, name, "improved")

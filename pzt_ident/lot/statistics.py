@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.notation import number, quantity
+from pzt_ident.data.notation import number
+from pzt_ident.data.notation import quantity as in_words
 
 Array = NDArray[np.float64]
 
@@ -111,34 +112,34 @@ def spread(values: Array) -> float:
 
 def trends(quantities: Sequence[Quantity], columns: Mapping[str, Sequence[Any]]) -> list[Trend]:
     """Each quantity against each column of numbers, the clearest first."""
-    found = []
-    for item in quantities:
+    trends = []
+    for quantity in quantities:
         for name, x in numeric(columns).items():
-            both = item.usable & np.isfinite(x)
-            if both.sum() >= FEWEST and np.ptp(x[both]) > 0 and np.ptp(item.values[both]) > 0:
-                found.append(_trend(item, name, x[both], item.values[both]))
-    return sorted(found, key=lambda trend: -abs(trend.correlation))
+            known = quantity.usable & np.isfinite(x)
+            if known.sum() >= FEWEST and np.ptp(x[known]) > 0 and np.ptp(quantity.values[known]) > 0:
+                trends.append(_trend(quantity, name, x[known], quantity.values[known]))
+    return sorted(trends, key=lambda trend: -abs(trend.correlation))
 
 
-def _trend(item: Quantity, column: str, x: Array, y: Array) -> Trend:
+def _trend(quantity: Quantity, column: str, x: Array, y: Array) -> Trend:
     from scipy.stats import spearmanr, theilslopes
 
     few = np.random.default_rng(0).permutation(x.size)[:1000]  # slopes are taken of all pairs
     slope = float(theilslopes(y[few], x[few])[0])
     level = float(np.median(y - slope * x))
-    return Trend(item.name, column, slope, level, float(spearmanr(x, y)[0]), x.size)
+    return Trend(quantity.name, column, slope, level, float(spearmanr(x, y)[0]), x.size)
 
 
 def numeric(columns: Mapping[str, Sequence[Any]]) -> dict[str, Array]:
     """The columns of numbers and of dates; dates as days since the first."""
-    found = {}
+    numbers = {}
     for name, values in columns.items():
-        given = [value for value in values if value is not None]
-        if all(isinstance(value, int | float) for value in given):
-            found[name] = np.array([np.nan if value is None else float(value) for value in values])
+        known = [value for value in values if value is not None]
+        if all(isinstance(value, int | float) for value in known):
+            numbers[name] = np.array([np.nan if value is None else float(value) for value in values])
         elif (days := _days(values)) is not None:
-            found[f"{name} [days]"] = days
-    return found
+            numbers[f"{name} [days]"] = days
+    return numbers
 
 
 def _days(values: Sequence[Any]) -> Array | None:
@@ -153,32 +154,34 @@ def _days(values: Sequence[Any]) -> Array | None:
 
 def groups(columns: Mapping[str, Sequence[Any]], devices: int) -> dict[str, dict[str, NDArray[np.bool_]]]:
     """Which devices are in each group of a column of words; of columns that sort them into a few."""
-    found = {}
+    groups = {}
     numbers = {name.removesuffix(" [days]") for name in numeric(columns)}
     for name, values in columns.items():
         words = sorted({str(value) for value in values if value is not None})
         if name not in numbers and 1 < len(words) <= min(12, devices / 3):
-            found[name] = {word: np.array([str(value) == word for value in values]) for word in words}
-    return found
+            groups[name] = {word: np.array([str(value) == word for value in values]) for word in words}
+    return groups
 
 
 def differences(quantities: Sequence[Quantity], columns: Mapping[str, Sequence[Any]], devices: int) -> list[Difference]:
     """Each quantity by each column that sorts the devices into groups, the most certain first."""
-    found = []
-    for item in quantities:
+    differences = []
+    for quantity in quantities:
         for name, members in groups(columns, devices).items():
-            inside = {word: item.values[item.usable & group] for word, group in members.items()}
+            inside = {word: quantity.values[quantity.usable & group] for word, group in members.items()}
             inside = {word: values for word, values in inside.items() if values.size >= 3}
             within = (
                 np.concatenate([values - np.median(values) for values in inside.values()]) if inside else np.empty(0)
             )
             if len(inside) > 1 and (size := spread(within)) > 0:
-                far = {word: np.median(values) - item.median for word, values in inside.items()}
+                far = {word: np.median(values) - quantity.median for word, values in inside.items()}
                 word = max(far, key=lambda key: abs(far[key]) * np.sqrt(inside[key].size))
                 error = 1.25 * size / np.sqrt(inside[word].size)  # of a median
                 medians = {key: float(np.median(values)) for key, values in inside.items()}
-                found.append(Difference(item.name, name, medians, abs(far[word]) / size, abs(far[word]) / error))
-    return sorted(found, key=lambda difference: -difference.certainty)
+                differences.append(
+                    Difference(quantity.name, name, medians, abs(far[word]) / size, abs(far[word]) / error)
+                )
+    return sorted(differences, key=lambda difference: -difference.certainty)
 
 
 def out_of_line(
@@ -189,38 +192,42 @@ def out_of_line(
 ) -> list[Finding]:
     """Devices further from the median than FAR spreads, the furthest first. Where a quantity clearly depends on a
     column, the median is that of devices with the same value in it."""
-    found = []
-    for item in quantities:
-        if item.usable.sum() < FEWEST:
+    findings = []
+    for quantity in quantities:
+        if quantity.usable.sum() < FEWEST:
             continue
-        usual, beside = _usual(item, known, numeric(columns or {}))
-        off = item.values - usual
-        size = max(spread(off[item.usable & np.isfinite(off)]), item.own_error, 1e-9 * abs(item.median))
+        usual, beside = _usual(quantity, known, numeric(columns or {}))
+        off = quantity.values - usual
+        size = max(spread(off[quantity.usable & np.isfinite(off)]), quantity.own_error, 1e-9 * abs(quantity.median))
         distance = off / size if size > 0 else np.zeros(off.size)
-        far = (distance > FAR) & (item.values > WORSE * usual) if item.one_sided else np.abs(distance) > FAR
-        for place in np.flatnonzero(far & item.usable).tolist():
-            sentence = sentence_of(item, float(item.values[place]), float(usual[place]), float(distance[place]), beside)
-            found.append(Finding(devices[place], item.name, float(distance[place]), sentence, item.one_sided))
-    return sorted(found, key=lambda finding: -abs(finding.distance))
+        far = (distance > FAR) & (quantity.values > WORSE * usual) if quantity.one_sided else np.abs(distance) > FAR
+        for place in np.flatnonzero(far & quantity.usable).tolist():
+            sentence = sentence_of(
+                quantity, float(quantity.values[place]), float(usual[place]), float(distance[place]), beside
+            )
+            findings.append(
+                Finding(devices[place], quantity.name, float(distance[place]), sentence, quantity.one_sided)
+            )
+    return sorted(findings, key=lambda finding: -abs(finding.distance))
 
 
-def _usual(item: Quantity, known: Sequence[Trend], columns: Mapping[str, Array]) -> tuple[Array, str]:
+def _usual(quantity: Quantity, known: Sequence[Trend], columns: Mapping[str, Array]) -> tuple[Array, str]:
     """What is usual for each device, and the column that it depends on."""
-    usual = np.full(item.values.size, item.median)
+    usual = np.full(quantity.values.size, quantity.median)
     for trend in known:
-        if trend.quantity == item.name and trend.clear and trend.column in columns:
+        if trend.quantity == quantity.name and trend.clear and trend.column in columns:
             line = trend.at(columns[trend.column])
             return np.where(np.isfinite(line), line, usual), trend.column
     return usual, ""
 
 
-def sentence_of(item: Quantity, value: float, usual: float, distance: float, beside: str) -> str:
+def sentence_of(quantity: Quantity, value: float, usual: float, distance: float, beside: str) -> str:
     """Why a device is out of line."""
-    if item.one_sided:
-        return f"{item.name} {quantity(value, item.unit)}, {number(value / usual, 2)} times the usual"
+    if quantity.one_sided:
+        return f"{quantity.name} {in_words(value, quantity.unit)}, {number(value / usual, 2)} times the usual"
     where = "above" if distance > 0 else "below"
     at = f" at its {beside.partition(' [')[0]}" if beside else ""
     return (
-        f"{item.name} {quantity(value, item.unit)}, usual{at} {quantity(usual, item.unit)}: "
+        f"{quantity.name} {in_words(value, quantity.unit)}, usual{at} {in_words(usual, quantity.unit)}: "
         f"{number(abs(distance), 2)} spreads {where}"
     )

@@ -41,9 +41,9 @@ def read_row(folder: Path) -> Row | None:
 
 def write_table(folder: Path, devices: Sequence[Device]) -> None:
     """Write `devices.json`, which devices there are and what is known of them, and the table as it is by now."""
-    listed = [{"device": item.name, "columns": dict(item.columns)} for item in devices]
+    listed = [{"device": device.name, "columns": dict(device.columns)} for device in devices]
     write_sealed(folder / "devices.json", {"devices": listed})
-    frame = frame_of(rows_of(folder, {item.name: item.columns for item in devices}))
+    frame = frame_of(rows_of(folder, {device.name: device.columns for device in devices}))
     with replaced(folder / "devices.csv") as path:
         frame.to_csv(path, index=False, lineterminator="\n")
     if find_spec("pyarrow"):
@@ -70,8 +70,8 @@ def frame_of(rows: Iterator[Row]) -> pd.DataFrame:
 
 def line_of(row: Row, units: dict[str, str]) -> dict[str, Value]:
     """The cells of a row under their headings. units: that of each quantity so far, which the row adds to."""
-    own = {"device", "state", "verdict", "effects", "suspects", "folder", "reason", "sha256"}
-    columns = {f"{name} (given)" if name in own else name: value for name, value in row["columns"].items()}
+    headings = {"device", "state", "verdict", "effects", "suspects", "folder", "reason", "sha256"}
+    columns = {f"{name} (given)" if name in headings else name: value for name, value in row["columns"].items()}
     line: dict[str, Value] = {"device": row["device"], **columns, "state": row["state"]}
     if row["state"] != "done":
         return line | {"reason": row["reason"]}
@@ -80,10 +80,10 @@ def line_of(row: Row, units: dict[str, str]) -> dict[str, Value]:
         for use, value in (row[key] or {}).items():
             line |= _cell(heading.format(use), "", value, row["unit"], units)
     line |= _cell("noise floor", "", row["noise_floor"], row["unit"], units)
-    for name, item in row["parameters"].items():
+    for name, parameter in row["parameters"].items():
         for end in ("value", "low", "high"):
-            line |= _cell(name, "" if end == "value" else f" {end}", item[end], item["unit"], units)
-        line[f"{name} verdict"] = item["verdict"]
+            line |= _cell(name, "" if end == "value" else f" {end}", parameter[end], parameter["unit"], units)
+        line[f"{name} verdict"] = parameter["verdict"]
     folder = folder_of(Path(), row["device"]).as_posix()
     return line | {"cpu [s]": row["cpu_seconds"], "sha256": row["sha256"], "folder": folder, "reason": row["reason"]}
 

@@ -36,6 +36,8 @@ MODULES = (
     "parts",
     "signals",
     "scale",
+    "colours",
+    "curves",
     "plot",
     "gestures",
     "legend",

@@ -11,16 +11,14 @@ from typing import Any
 from pzt_ident.data.record import Record
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.files import read_files, write_files, write_json, write_text
-from pzt_ident.job.edit import edited
 from pzt_ident.job.files import moved
 from pzt_ident.job.schema import Job
 from pzt_ident.run.events import Listen, nobody
-from pzt_ident.run.folder import begin, read_environment, read_job, results_folder
-from pzt_ident.run.improve import diagnose, improve
+from pzt_ident.run.folder import read_environment, read_job
+from pzt_ident.run.improve import begin_task, diagnose, improve
 from pzt_ident.run.place import Place
 from pzt_ident.run.pool import Tell
 from pzt_ident.run.start import file_of, read_start
-from pzt_ident.run.statement import Statement
 
 OF_THIS_PROCESS = ("job.yaml", "environment.json")
 
@@ -36,10 +34,8 @@ def improve_at(
     """As `improve`, at a place. Raises RunError where it came to nothing there, LostError where the place is gone."""
     if place.shares_disk:
         return improve(job, out, listen, budget, start)
-    statement, folder = Statement(job), results_folder(job, out)
     known = None if start is None else file_of(read_start(start, job))
-    began = {"name": "improve", "budget": budget, "start": start and str(start)}
-    begin(folder, job, edited(job, job.effects, folder), statement.records, began)
+    statement, folder = begin_task(job, out, budget, start)
     task = (job.text, job.folder.resolve(), statement.records, folder.resolve(), budget, known)
 
     def keep(name: str, files: dict[str, bytes]) -> None:
@@ -67,9 +63,9 @@ def improve_there(
         if start:
             write_json(start, known)
         job = Job.from_text(text, job_folder, plugins=True)
-        there = improve(job, Path(scratch) / "improved", tell, budget, start, records)
-        move(there, folder)
-        return read_files(there)
+        results = improve(job, Path(scratch) / "improved", tell, budget, start, records)
+        move(results, folder)
+        return read_files(results)
 
 
 def move(results: Path, folder: Path) -> None:

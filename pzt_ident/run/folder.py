@@ -80,11 +80,11 @@ def read_environment(folder: Path) -> dict[str, Any]:
     if not path.is_file():
         remedy = "give the folder that `pzt-ident run` wrote"
         raise InputError("holds no run", where=str(folder), remedy=remedy)
-    begun = read_sealed(path)
-    texts = all(isinstance(begun.get(key), str) for key in ("command", "job_hash", "job_name", "job_folder"))
-    if not texts or not isinstance(begun.get("data"), dict) or not isinstance(begun.get("task", {}), dict):
+    environment = read_sealed(path)
+    texts = all(isinstance(environment.get(key), str) for key in ("command", "job_hash", "job_name", "job_folder"))
+    if not texts or not isinstance(environment.get("data"), dict) or not isinstance(environment.get("task", {}), dict):
         raise damaged(path, "does not say what this run began with")
-    return begun
+    return environment
 
 
 def read_job(folder: Path, name: str = "job.yaml") -> str:
@@ -97,12 +97,12 @@ def read_job(folder: Path, name: str = "job.yaml") -> str:
         raise InputError("cannot be read", where=str(path), remedy=remedy) from None
 
 
-def check_unchanged(job: Job, records: Sequence[Record], begun: dict[str, Any], folder: Path) -> None:
+def check_unchanged(job: Job, records: Sequence[Record], environment: dict[str, Any], folder: Path) -> None:
     """Raises InputError where job or data are not those of the environment that a run began with."""
     remedy = "undo the change, or start a new run"
-    if job.hash != begun["job_hash"]:
+    if job.hash != environment["job_hash"]:
         raise InputError("is not the job that this run began with", where=str(folder / "job.yaml"), remedy=remedy)
     for record in records:
-        if record.sha256 != begun["data"].get(record.name):
+        if record.sha256 != environment["data"].get(record.name):
             where = str(job.folder / record.file)
             raise InputError("has changed since this run began", where=where, remedy=remedy)

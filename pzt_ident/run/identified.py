@@ -40,13 +40,13 @@ def read_identified(path: Path, plugins: bool = False, as_given: bool = False) -
     if not improved and not (path / "result.json").is_file():
         raise InputError("holds no result", where=str(path), remedy=A_RESULT)
     values, rmse, name = _improved(path, as_given) if improved else _best(path)
-    begun = read_environment(path)
+    environment = read_environment(path)
     beside = improved or (path / "data").is_dir()  # the data are named from where the job lies
-    home = path if beside else Path(begun["job_folder"])
+    home = path if beside else Path(environment["job_folder"])
     job = Job.from_text(read_job(path, name), home, str(path / name), plugins)
     statement = Statement(job)
     if not improved:
-        check_unchanged(job, statement.records, begun, path)
+        check_unchanged(job, statement.records, environment, path)
     errors = {name: item.get("standard_error") for name, item in values.items()}
     return of_statement(statement, _theta(statement, values, path), errors, rmse)
 

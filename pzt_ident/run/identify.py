@@ -59,11 +59,11 @@ def resume(
 
     Raises InputError where the folder holds no run, or its job or data have changed.
     """
-    begun = read_environment(folder)
+    environment = read_environment(folder)
     text = read_job(folder)
-    job = Job.from_text(text, Path(begun["job_folder"]), f"{begun['job_name']}.yaml", plugins)
+    job = Job.from_text(text, Path(environment["job_folder"]), f"{environment['job_name']}.yaml", plugins)
     statement = Statement(job)
-    check_unchanged(job, statement.records, begun, folder)
+    check_unchanged(job, statement.records, environment, folder)
     starts = Starts.kept(folder).and_(start, job)
     starts.keep(folder)
     return _search(statement, folder, tasks_of(statement, folder, starts), place, listen)
@@ -98,12 +98,12 @@ def is_collected(folder: Path, tell: Listen) -> bool:
     if not (folder / "result.json").exists():
         return False
     try:
-        said = list(read_results(folder).damaged)
+        damages = list(read_results(folder).damaged)
     except InputError as error:
-        said = [str(error).replace("\n ", ";")]
-    for sentence in said:
+        damages = [str(error).replace("\n ", ";")]
+    for sentence in damages:
         tell({"event": "damaged", "said": f"{sentence.partition(';')[0]}; it is made again"})
-    return not said
+    return not damages
 
 
 def search_all(statement: Statement, folder: Path, tasks: list[Task], place: Place, tell: Listen) -> dict[str, str]:
@@ -112,8 +112,8 @@ def search_all(statement: Statement, folder: Path, tasks: list[Task], place: Pla
     common = job.text, job.folder.resolve(), statement.records
     if place.shares_disk:
         return place.run_all(work, common, [(task.run, (task,)) for task in tasks], tell)
-    begun = ((task.run, (task, told_so_far(task))) for task in tasks)
-    return place.run_all(work_away, common, begun, tell, lambda name, files: write_files(folder, files))
+    calls = ((task.run, (task, told_so_far(task))) for task in tasks)
+    return place.run_all(work_away, common, calls, tell, lambda name, files: write_files(folder, files))
 
 
 def told_so_far(task: Task) -> bytes:

@@ -26,13 +26,13 @@ def reaches_of(job: Job, case: Case) -> list[DriveLimits]:
     """The job's limits for each axis; where it gives none, what the records themselves did."""
     limits, first = job.limits, case.records[0]
     length = limits.duration or max(60.0, *(record.samples * record.dt for record in case.records))
-    found = []
+    reaches = []
     for axis, unit in enumerate(first.drive_units):
         size, drives = factor(str(unit)), [record.drive[axis] for record in case.records]
         low, high = limits.drive or (min(u.min() for u in drives) / size, max(u.max() for u in drives) / size)
         rates = [float(np.abs(np.diff(u)).max()) / r.dt for u, r in zip(drives, case.records, strict=True)]
-        found.append(DriveLimits(low * size, high * size, limits.slew * size if limits.slew else max(rates), length))
-    return found
+        reaches.append(DriveLimits(low * size, high * size, limits.slew * size if limits.slew else max(rates), length))
+    return reaches
 
 
 def limits_of(job: Job, case: Case) -> str:
@@ -59,7 +59,7 @@ def written(case: Case, proposal: Proposal, folder: Path) -> dict[str, Any]:
     apart = f"{models} differ by {proposal.separation:.1f} noise floors"
     if proposal.separation <= SEPARATED:
         apart = f"some of {models} differ by more than {SEPARATED:g} noise floors"
-    said = f"{proposal.name}, sampled at {1 / proposal.dt:g} Hz, on which {apart}"
+    sentence = f"{proposal.name}, sampled at {1 / proposal.dt:g} Hz, on which {apart}"
     if proposal.separation < WELL_SEPARATED:
-        said += f", which is little. {blocks[proposal.splits[0]].separate_by}".removesuffix(".")
-    return {"splits": list(proposal.splits), "file": path.name, "why": said}
+        sentence += f", which is little. {blocks[proposal.splits[0]].separate_by}".removesuffix(".")
+    return {"splits": list(proposal.splits), "file": path.name, "why": sentence}

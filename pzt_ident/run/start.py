@@ -33,10 +33,10 @@ def read_start(path: Path, job: Job) -> dict[str, tuple[float, str]]:
 
     Raises InputError where there is none, or it has no parameter of the job's model.
     """
-    found = next(filter(None, _fits(path, job)), None)
-    if found is None:
+    parameters = next(filter(None, _fits(path, job)), None)
+    if parameters is None:
         raise InputError("holds no fit", where=str(path), remedy=REMEDY)
-    start = _values(found)
+    start = _values(parameters)
     if not set(start) & set(job.chain.names):
         message = f"has no parameter of the model, which has {', '.join(job.chain.names[:3])}"
         raise InputError(message, where=str(path), remedy=REMEDY)
@@ -55,7 +55,7 @@ class Starts:
     def kept(cls, folder: Path) -> Starts:
         """Those that a run began with, of the file in its folder."""
         content = _json(folder / STARTS)
-        given = ((item["from"], _values(item["parameters"])) for item in content.get("starts", ()))
+        given = ((entry["from"], _values(entry["parameters"])) for entry in content.get("starts", ()))
         return cls(tuple(given), content.get("search", True))
 
     def keep(self, folder: Path) -> None:
@@ -80,11 +80,19 @@ def starts_of(runs: Sequence[Mapping[str, Any]]) -> Starts:
 
 
 def _values(parameters: Mapping[str, Any]) -> dict[str, tuple[float, str]]:
-    return {name: (float(item["value"]), str(item["unit"])) for name, item in parameters.items() if _known(item)}
+    return {
+        name: (float(parameter["value"]), str(parameter["unit"]))
+        for name, parameter in parameters.items()
+        if _known(parameter)
+    }
 
 
-def _known(item: Any) -> bool:
-    return isinstance(item, dict) and isinstance(item.get("value"), int | float) and np.isfinite(item["value"])
+def _known(parameter: Any) -> bool:
+    return (
+        isinstance(parameter, dict)
+        and isinstance(parameter.get("value"), int | float)
+        and np.isfinite(parameter["value"])
+    )
 
 
 def _fits(path: Path, job: Job) -> Iterator[dict[str, Any] | None]:

@@ -59,14 +59,14 @@ def work(tell: Tell, job_text: str, folder: Path, records: Sequence[Record], tas
 
 
 def work_away(
-    tell: Tell, job_text: str, folder: Path, records: Sequence[Record], task: Task, told: bytes
+    tell: Tell, job_text: str, folder: Path, records: Sequence[Record], task: Task, losses: bytes
 ) -> dict[str, bytes]:
-    """Entry of a worker that may be anywhere; returns the files of its result. told: the losses so far, as a file."""
+    """Entry of a worker that may be anywhere; returns the files of its result. losses: those so far, as a file."""
     with TemporaryDirectory() as scratch:
-        there = replace(task, folder=Path(scratch))
-        write_bytes(there.losses, told)
-        work(tell, job_text, folder, records, there)
-        return read_files(there.folder)
+        away = replace(task, folder=Path(scratch))
+        write_bytes(away.losses, losses)
+        work(tell, job_text, folder, records, away)
+        return read_files(away.folder)
 
 
 def search(task: Task, statement: Statement, tell: Tell) -> None:
@@ -83,9 +83,9 @@ def identification(task: Task, statement: Statement, checkpoint: Checkpoint, tel
     outcome, seconds, cpu_seconds = find(task, problem, size, checkpoint, tell)
     if not np.isfinite(outcome.loss):
         raise RunError(f"the simulation of each of its {outcome.evaluations} candidates failed: narrow the bounds")
-    begun, problem.failed = time.perf_counter(), 0
+    start, problem.failed = time.perf_counter(), 0
     point, polish_evaluations = problem.polish(outcome.point) if task.polish else (outcome.point, 0)
-    polish_seconds = time.perf_counter() - begun
+    polish_seconds = time.perf_counter() - start
     failed = problem.failed + checkpoint.failures
     return {
         "run": task.run,
@@ -123,10 +123,10 @@ def searched(
     optimizer = optimizers[task.optimizer].make(**task.settings).with_budget(task.stop["evaluations"])
     warm_up(optimizer, problem)
     before, known = checkpoint.seconds, [losses for _, losses in checkpoint.generations]
-    begun, cpu, shown = time.perf_counter(), time.process_time(), 0.0
+    start, cpu, shown = time.perf_counter(), time.process_time(), 0.0
 
     def elapsed() -> float:
-        return before + time.perf_counter() - begun
+        return before + time.perf_counter() - start
 
     with checkpoint.appending() as append:
 
@@ -157,10 +157,10 @@ def begun_from(
     task: Task, problem: Problem, size: float, checkpoint: Checkpoint, tell: Tell
 ) -> tuple[Outcome, float, float]:
     """A fit from elsewhere in the place of an optimizer's outcome."""
-    begun, cpu = time.perf_counter(), time.process_time()
+    start, cpu = time.perf_counter(), time.process_time()
     point = start_point(problem, task.settings["start"])
     losses = problem.loss(point)
-    seconds = time.perf_counter() - begun
+    seconds = time.perf_counter() - start
     if not checkpoint.generations:
         with checkpoint.appending() as append:
             append(seconds, losses)

@@ -79,12 +79,14 @@ def interval_of(problem: Problem, point: Array, i: int, ends: Array) -> tuple[fl
     """The ends of an interval in the user's units. Of a logarithmic parameter they are not symmetric; beyond the cube,
     where it has none, they are as far from the value as its slope says."""
     slope = (problem.physical(point + 1e-6) - problem.physical(point - 1e-6))[0, i] / 2e-6
-    value, found = problem.physical(point)[0, i], []
+    value, in_units = problem.physical(point)[0, i], []
     for end in ends:
         moved = point.copy()
         moved[i] = np.clip(end, 0, 1)
-        found.append(float(problem.physical(moved)[0, i]) if 0 <= end <= 1 else float(value + slope * (end - point[i])))
-    return min(found), max(found)
+        in_units.append(
+            float(problem.physical(moved)[0, i]) if 0 <= end <= 1 else float(value + slope * (end - point[i]))
+        )
+    return min(in_units), max(in_units)
 
 
 def covariance(problem: Problem, point: Array) -> Array:
@@ -128,31 +130,31 @@ def judged(best: dict[str, Any], runs: Sequence[Mapping[str, Any]]) -> dict[str,
     by more than SCATTER of the search range."""
     same = [run for run in runs if run["rmse"]["identify"] <= SAME * best["rmse"]["identify"]]
     parameters = {}
-    for name, item in best["parameters"].items():
+    for name, parameter in best["parameters"].items():
         values = [run["parameters"][name]["value"] for run in same if name in run["parameters"]]
-        parameters[name] = item if agree(item, values) else item | scattered(item, values)
+        parameters[name] = parameter if agree(parameter, values) else parameter | scattered(parameter, values)
     return best | {"parameters": parameters}
 
 
-def agree(item: Mapping[str, Any], values: Sequence[float]) -> bool:
+def agree(parameter: Mapping[str, Any], values: Sequence[float]) -> bool:
     """Whether the values of a parameter lie within its interval, or close to it. True where it has none."""
-    if item["verdict"] != "determined" or not item.get("interval"):
+    if parameter["verdict"] != "determined" or not parameter.get("interval"):
         return True
-    places = [place_of(item, value) for value in values]
-    low, high = (place_of(item, end) for end in item["interval"])
+    places = [place_of(parameter, value) for value in values]
+    low, high = (place_of(parameter, end) for end in parameter["interval"])
     return all(low - SCATTER < place < high + SCATTER for place in places)
 
 
-def place_of(item: Mapping[str, Any], value: float) -> float:
+def place_of(parameter: Mapping[str, Any], value: float) -> float:
     """Where a value is in the search range, 0 to 1."""
-    low, high = item["lower"], item["upper"]
-    if item["scale"] == "log":
+    low, high = parameter["lower"], parameter["upper"]
+    if parameter["scale"] == "log":
         low, high, value = np.log(low), np.log(high), np.log(max(value, low * 1e-3))
     return float((value - low) / ((high - low) or 1.0))
 
 
-def scattered(item: Mapping[str, Any], values: Sequence[float]) -> dict[str, Any]:
-    unit = f" {item['unit']}".removesuffix(" 1")
+def scattered(parameter: Mapping[str, Any], values: Sequence[float]) -> dict[str, Any]:
+    unit = f" {parameter['unit']}".removesuffix(" 1")
     note = f"runs of the same RMSE put it at {min(values):.3g} to {max(values):.3g}{unit}"
     return {"verdict": "not determined", "note": note, "standard_error": None, "interval": None}
 

@@ -8,35 +8,35 @@ from experiments.fleet.lot import write_lot
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory):
-    made = tmp_path_factory.mktemp("lot")
-    write_lot(made, 3, 1, broken=0.3, samples=300, swarm=(8, 8))
-    return pzt.fleet(made / "job.yaml", f"{made}/lot/*/", made / "out", on="local:1")
+def lot(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("lot")
+    write_lot(folder, 3, 1, broken=0.3, samples=300, swarm=(8, 8))
+    return pzt.fleet(folder / "job.yaml", f"{folder}/lot/*/", folder / "out", on="local:1")
 
 
-def test_it_has_the_table_the_broken_and_the_fit_of_a_device(found):
-    assert list(found.devices["state"]).count("done") == 2
-    (reason,) = found.broken.values()
+def test_it_has_the_table_the_broken_and_the_fit_of_a_device(lot):
+    assert list(lot.devices["state"]).count("done") == 2
+    (reason,) = lot.broken.values()
     assert "the file is empty" in reason
-    row = found.devices[found.devices["state"] == "done"].iloc[0]
-    fit = found.fit(row["device"])
+    row = lot.devices[lot.devices["state"] == "done"].iloc[0]
+    fit = lot.fit(row["device"])
     gain = fit.parameters["bouc_wen.gain"]
     assert gain.value == row["bouc_wen.gain [um/V]"]
     assert gain.value - 1.96 * gain.stderr == pytest.approx(row["bouc_wen.gain low [um/V]"])
     assert np.isfinite(fit.simulate(1000.0, np.zeros(10))).all()
-    assert str(found).startswith("2 of 3 devices identified, 1 broken.")
-    assert found.out_of_line == {}
+    assert str(lot).startswith("2 of 3 devices identified, 1 broken.")
+    assert lot.out_of_line == {}
 
 
-def test_it_draws_its_report(found):
-    assert found.report(processes=1) == found.folder / "report.html"
-    assert "could not be identified" in (found.folder / "report.html").read_text(encoding="utf-8")
+def test_it_draws_its_report(lot):
+    assert lot.report(processes=1) == lot.folder / "report.html"
+    assert "could not be identified" in (lot.folder / "report.html").read_text(encoding="utf-8")
 
 
-def test_mistakes_are_told_with_a_remedy(found, tmp_path):
+def test_mistakes_are_told_with_a_remedy(lot, tmp_path):
     with pytest.raises(pzt.InputError, match="matches nothing"):
-        pzt.fleet(found.folder.parent / "job.yaml", "no/*/", tmp_path)
+        pzt.fleet(lot.folder.parent / "job.yaml", "no/*/", tmp_path)
     with pytest.raises(pzt.InputError, match="3 is no path"):
-        pzt.fleet(found.folder.parent / "job.yaml", [3], tmp_path)
+        pzt.fleet(lot.folder.parent / "job.yaml", [3], tmp_path)
     with pytest.raises(pzt.InputError):
-        found.fit("nobody")
+        lot.fit("nobody")

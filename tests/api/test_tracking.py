@@ -31,19 +31,19 @@ def two_axes():
 def test_each_way_is_better_than_the_one_before(two_axes):
     fine = np.linspace(0, T[-1], 30_000)
     reference = 3 * np.sin(np.pi * fine / fine[-1]) ** 2 * (1 + 0.3 * np.sin(9 * fine / fine[-1]))
-    found = control(two_axes, fine, {"x": reference, "y": reference[::-1]}, kp=0.1, ki=10.0)
-    assert [*found.ways] == [OPEN, ALONE, INVERSE, LOOP]
+    tracking = control(two_axes, fine, {"x": reference, "y": reference[::-1]}, kp=0.1, ki=10.0)
+    assert [*tracking.ways] == [OPEN, ALONE, INVERSE, LOOP]
     for axis in "xy":
-        open_, alone, inverse, _ = (way.rmse[axis] for way in found.ways.values())
+        open_, alone, inverse, _ = (way.rmse[axis] for way in tracking.ways.values())
         assert open_ > alone > 100 * inverse
     left = -0.05 * reference[::-1]
-    assert np.abs(found.ways[ALONE].error["x"] - left).max() < 0.01 * np.abs(left).max()
+    assert np.abs(tracking.ways[ALONE].error["x"] - left).max() < 0.01 * np.abs(left).max()
 
 
 def test_a_held_drive_is_late_by_half_a_sample_at_the_samples(two_axes):
-    found = control(two_axes, T, {"x": REFERENCE, "y": REFERENCE}, kp=0.0, ki=0.0)
+    tracking = control(two_axes, T, {"x": REFERENCE, "y": REFERENCE}, kp=0.0, ki=0.0)
     late = -np.gradient(REFERENCE, T) * (T[1] - T[0]) / 2
-    assert np.abs(found.ways[INVERSE].error["x"] - late).max() < 0.02 * np.abs(late).max()
+    assert np.abs(tracking.ways[INVERSE].error["x"] - late).max() < 0.02 * np.abs(late).max()
 
 
 def test_each_axis_has_the_count_of_its_own_unit(two_axes):
@@ -62,8 +62,8 @@ def test_spectrum_holds_the_whole_error(fit):
 
 
 def test_gains_are_those_of_tune_unless_given(fit):
-    found, tuned = fit.control(T, REFERENCE), fit.tune(200.0, 1)
-    assert found.gains["x"] == (tuned["x"].kp, tuned["x"].ki)
+    tracking, tuned = fit.control(T, REFERENCE), fit.tune(200.0, 1)
+    assert tracking.gains["x"] == (tuned["x"].kp, tuned["x"].ki)
     assert fit.control(T, REFERENCE, kp=0.1, ki=5.0).gains["x"] == (0.1, 5.0)
     with pytest.raises(pzt.InputError, match="one gain without the other"):
         fit.control(T, REFERENCE, kp=0.1)
@@ -71,8 +71,8 @@ def test_gains_are_those_of_tune_unless_given(fit):
 
 def test_a_record_of_the_stage_stands_beside(fit):
     late = pzt.Record(T, REFERENCE + 0.3 + 0.02 * np.sin(40 * T), drive="um")
-    found = fit.control(T, REFERENCE, measured=late)
-    assert found.ways[MEASURED].rmse["x"] == pytest.approx(0.02 / np.sqrt(2), rel=0.05)
+    tracking = fit.control(T, REFERENCE, measured=late)
+    assert tracking.ways[MEASURED].rmse["x"] == pytest.approx(0.02 / np.sqrt(2), rel=0.05)
     short = pzt.Record(T[:300], REFERENCE[:300], drive="um")
     with pytest.raises(pzt.InputError, match="shorter than the reference"):
         fit.control(T, REFERENCE, measured=short)

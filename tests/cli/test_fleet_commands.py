@@ -16,19 +16,19 @@ def call(*words):
 
 @pytest.fixture(scope="module")
 def lot(tmp_path_factory):
-    made = tmp_path_factory.mktemp("lot")
-    write_lot(made, 3, 1, broken=0.3, samples=300, swarm=(8, 8))
-    return made
+    folder = tmp_path_factory.mktemp("lot")
+    write_lot(folder, 3, 1, broken=0.3, samples=300, swarm=(8, 8))
+    return folder
 
 
 @pytest.fixture(scope="module")
 def out(lot, tmp_path_factory):
-    made = tmp_path_factory.mktemp("out") / "fleet"
-    ended = call("fleet", lot / "job.yaml", f"{lot}/lot/*/", "--out", made, "--on", "local:1", "--json")
+    folder = tmp_path_factory.mktemp("out") / "fleet"
+    ended = call("fleet", lot / "job.yaml", f"{lot}/lot/*/", "--out", folder, "--on", "local:1", "--json")
     assert ended.exit_code == 0, ended.output
     facts = json.loads(ended.stdout)
     assert (facts["devices"], facts["done"], len(facts["broken"])) == (3, 2, 1)
-    return made
+    return folder
 
 
 def test_it_says_what_the_lot_came_to_and_what_to_do_next(lot, out):
@@ -50,7 +50,7 @@ def test_report_of_a_fleet(out):
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "sentence"),
     [
         (["fleet", "{lot}/job.yaml"], "Missing argument 'PATTERN...'"),
         (["fleet", "{lot}/job.yaml", "nothing/*/", "--out", "{lot}/x"], "matches nothing"),
@@ -60,10 +60,10 @@ def test_report_of_a_fleet(out):
         (["run", "{lot}/job.yaml", "--on", "local:1", "--workers", "1"], "write --on local:1 alone"),
     ],
 )
-def test_clumsy_use_ends_with_a_sentence(lot, words, said):
+def test_clumsy_use_ends_with_a_sentence(lot, words, sentence):
     ended = call(*(word.format(lot=lot) for word in words))
     assert ended.exit_code == 2
-    assert said in ended.stderr
+    assert sentence in ended.stderr
     assert "Traceback" not in ended.output
 
 
@@ -79,5 +79,5 @@ def test_where_every_device_is_broken_the_command_fails(lot, tmp_path):
 
 
 def test_help_names_both_uses():
-    said = call("fleet", "--help").output
-    assert "fleet JOB PATTERN..." in said and "fleet report DIR" in said and "--improve" in said
+    text = call("fleet", "--help").output
+    assert "fleet JOB PATTERN..." in text and "fleet report DIR" in text and "--improve" in text

@@ -56,31 +56,33 @@ def test_every_block_has_its_equation_set(word):
     assert "<math>" in equation
 
 
-@pytest.mark.parametrize("item", [item for word in EFFECTS for item in blocks.forms(word)])
-def test_every_effect_in_every_form_does_what_can_be_seen(item):
-    found = traced(item)
-    assert max(change(found, name) for name in found.with_it) > 0.01
-    assert found.largest > 1e-3, "and a refit does not hide it"
+@pytest.mark.parametrize("form", [form for word in EFFECTS for form in blocks.forms(word)])
+def test_every_effect_in_every_form_does_what_can_be_seen(form):
+    traces = traced(form)
+    assert max(change(traces, name) for name in traces.with_it) > 0.01
+    assert traces.largest > 1e-3, "and a refit does not hide it"
 
 
 @pytest.mark.parametrize("word", WORDS)
 def test_pictures_have_units_and_differ_from_those_without_the_word(word):
-    made = Word(word).pictures
-    assert len(made) >= 2 and max(picture.change for picture in made) > 0.01
-    for picture in made:
+    pictures = Word(word).pictures
+    assert len(pictures) >= 2 and max(picture.change for picture in pictures) > 0.01
+    for picture in pictures:
         root = ElementTree.fromstring(picture.svg)
         labels = [text.text for text in root if text.get("class") == "label"]
         assert len(labels) >= 2 and all(labels)
         assert not re.search(r"\bnan\b", picture.svg)
     if word in blocks:
-        assert all(", " in label for picture in made for label in re.findall('class="label"[^>]*>([^<]*)', picture.svg))
+        assert all(
+            ", " in label for picture in pictures for label in re.findall('class="label"[^>]*>([^<]*)', picture.svg)
+        )
 
 
 @pytest.mark.parametrize("word", EFFECTS)
 def test_look_alikes_are_linked_both_ways(word):
-    found = look_alikes(word)
-    assert set(blocks[word].look_alikes) <= {other.word for other in found}
-    for other in found:
+    others = look_alikes(word)
+    assert set(blocks[word].look_alikes) <= {other.word for other in others}
+    for other in others:
         assert word in [back.word for back in look_alikes(other.word)]
         assert 0 <= other.least <= other.most <= 1 + 1e-9
 
@@ -97,6 +99,6 @@ def test_every_effect_is_found_from_what_is_seen():
 def test_every_link_has_a_target_and_nothing_is_loaded(html):
     page = Page(html)
     assert len(page.ids) == len(set(page.ids))
-    assert {link for link in page.links if link.startswith("#")} <= {f"#{item}" for item in page.ids}
+    assert {link for link in page.links if link.startswith("#")} <= {f"#{name}" for name in page.ids}
     assert not page.sources and not [link for link in page.links if not link.startswith("#")]
     assert len(html.encode()) < LARGEST_FILE

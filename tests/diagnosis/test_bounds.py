@@ -35,21 +35,21 @@ def test_a_gain_five_percent_beside_its_bounds_is_the_bound_and_no_effect():
 @pytest.mark.parametrize("effect", ["creep", "quadratic_gain"])
 def test_beside_a_narrow_bound_the_effect_is_found_and_alone(effect):
     case = bounded(1.05, 1.3, [effect])
-    found = improve(case, first_fit(case, 0))
-    assert found.last.verdict == "adequate"
-    assert list(map(word_of, found.steps[-1].fit.effects)) == [effect]
+    staircase = improve(case, first_fit(case, 0))
+    assert staircase.last.verdict == "adequate"
+    assert list(map(word_of, staircase.steps[-1].fit.effects)) == [effect]
 
 
 def test_an_effect_that_is_small_beside_what_a_narrow_bound_leaves_is_found():
     """It is measured by what the model leaves within wider bounds."""
     case = bounded(1.14, 1.3, noise=stage.NOISE / 50)
     hidden = stage.case({"quadratic_gain.curvature": 1e-5}, noise=stage.NOISE / 50).with_specs(case.specs)
-    given = first_fit(hidden, 0)
-    found = improve(hidden, given)
-    wide = found.steps[1].fit
-    assert wide.identify < 0.03 * given.identify
-    assert found.steps[-1].fit.effects == ("quadratic_gain",)
-    assert found.last.verdict == "adequate"
+    first = first_fit(hidden, 0)
+    staircase = improve(hidden, first)
+    wide = staircase.steps[1].fit
+    assert wide.identify < 0.03 * first.identify
+    assert staircase.steps[-1].fit.effects == ("quadratic_gain",)
+    assert staircase.last.verdict == "adequate"
 
 
 def test_a_bound_that_only_the_first_effect_reaches_is_widened_before_a_second_one_is_blamed():

@@ -123,9 +123,9 @@ def judged(monkeypatch):
         monkeypatch.setattr(verdict, "restart_look_alikes", lambda case, first, before, items: None)
         monkeypatch.setattr(verdict, "refit_all", lambda case, first, before, items: [given(item) for item in items])
 
-        def given(item):
-            item.refits = {item.score.effect: fits[item.score.effect]}
-            return item
+        def given(candidate):
+            candidate.refits = {candidate.score.effect: fits[candidate.score.effect]}
+            return candidate
 
         return diagnose(CASE, fit(30.0, 30.0))
 

@@ -81,9 +81,9 @@ def test_an_effect_whose_null_is_on_its_bound_goes_one_way_only():
 def test_guesses_are_within_the_bounds():
     case = stage.case(stage.EFFECTS["creep"])
     scorer = Scorer(case, first_fit(case, 0))
-    for item in (item for effect in applicable(case, ()) for item in fitting_forms(case, (), effect)):
-        score = scorer.score(item)
-        problem = case.problem((item,))
+    for form in (form for effect in applicable(case, ()) for form in fitting_forms(case, (), effect)):
+        score = scorer.score(form)
+        problem = case.problem((form,))
         bounds = dict(zip(problem.names, zip(problem.lower, problem.upper, strict=True), strict=True))
         for name, value in score.guess.items():
             low, high = bounds[name]

@@ -13,10 +13,10 @@ X = Axis(gain=0.082, alpha=0.56, beta=0.015, gamma=0.055, mass=0.157, damping=66
 
 def identified(words, **values):
     chain = model("bouc_wen", "lumped", *words)
-    own = {f"bouc_wen.{word}": getattr(X, word) for word in ("alpha", "beta", "gamma")}
-    own |= {f"lumped.{word}": getattr(X, word) for word in ("mass", "damping", "stiffness")}
-    own |= {"bouc_wen.gain": 1e-6 * X.gain} | values
-    theta = np.array([own[name] for name in chain.names])
+    parameters = {f"bouc_wen.{word}": getattr(X, word) for word in ("alpha", "beta", "gamma")}
+    parameters |= {f"lumped.{word}": getattr(X, word) for word in ("mass", "damping", "stiffness")}
+    parameters |= {"bouc_wen.gain": 1e-6 * X.gain} | values
+    theta = np.array([parameters[name] for name in chain.names])
     blank = ("1",) * len(theta), (None,) * len(theta)
     return Identified("x", chain, theta, *blank, 1e-3, np.array([[0.0, 130.0]]), ("V",), ("um",), (20.0,))
 
@@ -25,8 +25,8 @@ def followed(one):
     """Largest error in um of the stage with an amplifier of 2 ms under the drive of a model."""
     time, x, _ = tracking.reference()
     time, x = time[9000:12000] - time[9000], x[9000:12000]
-    found = drive(one, time, x).drive["x"]
-    moved = simulate(Stage(X, X, amplifier_lag=2e-3), time, found, np.zeros_like(found))
+    voltage = drive(one, time, x).drive["x"]
+    moved = simulate(Stage(X, X, amplifier_lag=2e-3), time, voltage, np.zeros_like(voltage))
     return np.abs(moved - moved[0] - (x - x[0])).max()
 
 

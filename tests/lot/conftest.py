@@ -12,10 +12,10 @@ DEVICES = 16
 
 @pytest.fixture(scope="session")
 def lot(tmp_path_factory):
-    made = tmp_path_factory.mktemp("lot")
+    folder = tmp_path_factory.mktemp("lot")
     share = len(BROKEN) / DEVICES
-    write_lot(made, DEVICES, 1, broken=share, outliers=1 / DEVICES, samples=300, swarm=(12, 15))
-    return made
+    write_lot(folder, DEVICES, 1, broken=share, outliers=1 / DEVICES, samples=300, swarm=(12, 15))
+    return folder
 
 
 @pytest.fixture(scope="session")

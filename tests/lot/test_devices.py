@@ -48,7 +48,7 @@ def test_folders_hold_the_files_of_the_records_by_path_or_name(here):
 
 def test_files_are_devices_where_the_job_has_one(here):
     touch(here / "lot/a.csv", here / "lot/b.csv")
-    assert [(item.name, item.files) for item in devices_of(["lot/*.csv"], job(ONE, here))] == [
+    assert [(device.name, device.files) for device in devices_of(["lot/*.csv"], job(ONE, here))] == [
         ("a", {"loops.csv": Path("lot/a.csv")}),
         ("b", {"loops.csv": Path("lot/b.csv")}),
     ]
@@ -56,7 +56,7 @@ def test_files_are_devices_where_the_job_has_one(here):
 
 def test_names_have_as_many_parts_as_make_them_distinct(here):
     touch(here / "may/d1/loops.csv", here / "june/d1/loops.csv")
-    assert [item.name for item in devices_of(["may/*/", "june/*/"], job(ONE, here))] == ["june-d1", "may-d1"]
+    assert [device.name for device in devices_of(["may/*/", "june/*/"], job(ONE, here))] == ["june-d1", "may-d1"]
 
 
 def test_a_file_of_a_single_channel_is_the_jobs_own_where_a_device_has_none(here):
@@ -95,7 +95,7 @@ def test_a_row_without_its_file_is_a_device_with_a_fault(here):
 
 
 @pytest.mark.parametrize(
-    ("text", "patterns", "table", "said"),
+    ("text", "patterns", "table", "sentence"),
     [
         (ONE, ["lto/*/"], "", r"'lto/\*/': matches nothing\n  there is no lto"),
         (ONE, ["lot/x*/"], "", r"matches nothing\n  in lot there is a, b"),
@@ -117,9 +117,9 @@ def test_a_row_without_its_file_is_a_device_with_a_fault(here):
         (ONE, ["t.csv"], "device,file\nd,no.csv\n", "no device has the files of the job. The first: no.csv: no such"),
     ],
 )
-def test_clumsy_use_is_told_with_a_remedy(here, text, patterns, table, said):
+def test_clumsy_use_is_told_with_a_remedy(here, text, patterns, table, sentence):
     touch(here / "lot/a/loops.csv", here / "lot/b/loops.csv", here / "lot/readme.txt")
     (here / "t.csv").write_text(table)
-    with pytest.raises(InputError, match=said) as caught:
+    with pytest.raises(InputError, match=sentence) as caught:
         devices_of(patterns, job(text, here))
     assert caught.value.remedy

@@ -78,17 +78,17 @@ def test_a_device_is_as_if_identified_alone(identified, tmp_path):
     row = next(row for row in read_lot(out).rows if row["state"] == "done")
     home = out / "devices" / row["device"]
     alone = json.loads((run(load_job(home / "job.yaml"), tmp_path / "alone") / "result.json").read_text())
-    there = json.loads((home / "result.json").read_text())
-    assert alone["best"]["parameters"] == there["best"]["parameters"]
-    assert [item["rmse"] for item in alone["records"]] == [item["rmse"] for item in there["records"]]
+    in_lot = json.loads((home / "result.json").read_text())
+    assert alone["best"]["parameters"] == in_lot["best"]["parameters"]
+    assert [record["rmse"] for record in alone["records"]] == [record["rmse"] for record in in_lot["records"]]
     assert not list(out.rglob("*.losses")) and not list(out.rglob("*.tmp"))
 
 
 def copied(lot: Path, identified, tmp_path: Path) -> tuple[Path, Path]:
     """The lot and its fleet, as they would be there."""
-    made, out = shutil.copytree(lot, tmp_path / "lot"), shutil.copytree(identified[0], tmp_path / "out")
-    write_sealed(out / "fleet.json", read_sealed(out / "fleet.json") | {"patterns": [str(made / "lot.csv")]})
-    return made, out
+    copy, out = shutil.copytree(lot, tmp_path / "lot"), shutil.copytree(identified[0], tmp_path / "out")
+    write_sealed(out / "fleet.json", read_sealed(out / "fleet.json") | {"patterns": [str(copy / "lot.csv")]})
+    return copy, out
 
 
 def done_again(out: Path, act) -> set[str]:
@@ -99,21 +99,21 @@ def done_again(out: Path, act) -> set[str]:
 
 
 def test_what_was_done_is_not_done_again_unless_data_or_job_changed(lot, identified, tmp_path):
-    made, out = copied(lot, identified, tmp_path)
+    copy, out = copied(lot, identified, tmp_path)
     done = [name for name, kind in kinds(lot).items() if kind not in BROKEN]
     before = table(out).drop(columns="reason")  # which names the files
     assert done_again(out, lambda: resume(out, place=Local(1))) == set()
     pd.testing.assert_frame_equal(table(out).drop(columns="reason"), before)
-    data = made / "lot" / done[0] / "tones.csv"
+    data = copy / "lot" / done[0] / "tones.csv"
     data.write_text(data.read_text().replace("\n0.00100,", "\n0.001001,"))
     mended = next(name for name, kind in kinds(lot).items() if kind == "missing")
-    shutil.copy(made / "lot" / done[1] / "loops.csv", made / "lot" / mended)
+    shutil.copy(copy / "lot" / done[1] / "loops.csv", copy / "lot" / mended)
     damaged = out / "devices" / done[2] / "device.json"
     damaged.write_text(damaged.read_text()[:100])
     assert done_again(out, lambda: resume(out, place=Local(1))) == {done[0], mended, done[2]}
-    (made / "job.yaml").write_text((made / "job.yaml").read_text().replace("seed: 1", "seed: 2"))
-    job = load_job(made / "job.yaml")
-    again = done_again(out, lambda: fleet(job, [str(made / "lot.csv")], out, place=Local(1)))
+    (copy / "job.yaml").write_text((copy / "job.yaml").read_text().replace("seed: 1", "seed: 2"))
+    job = load_job(copy / "job.yaml")
+    again = done_again(out, lambda: fleet(job, [str(copy / "lot.csv")], out, place=Local(1)))
     assert again == {*done, mended}
 
 

@@ -64,8 +64,8 @@ def test_an_unfinished_fleet_has_a_report(identified, tmp_path):
 def test_names_from_a_table_are_no_markup(identified, tmp_path):
     out = shutil.copytree(identified[0], tmp_path / "out")
     listed = read_sealed(out / "devices.json")
-    for place, item in enumerate(listed["devices"]):
-        item["columns"] |= {EVIL: EVIL + str(place % 2)}
+    for place, device in enumerate(listed["devices"]):
+        device["columns"] |= {EVIL: EVIL + str(place % 2)}
     write_sealed(out / "devices.json", listed)
     text = write_fleet_report(out, place=Local(1)).read_text(encoding="utf-8")
     assert EVIL not in text

@@ -36,7 +36,7 @@ def test_a_planted_device_is_out_of_line_and_no_other():
 def test_what_is_out_of_line_does_not_hang_on_the_unit(scale):
     values = scale * (1 + 0.01 * np.clip(NORMAL, -3, 3))
     values[3], values[5] = 1.07 * scale, 0.9 * scale
-    assert [item.device for item in out_of_line(NAMES, [quantity(values)], [], {})] == ["d5", "d3"]
+    assert [finding.device for finding in out_of_line(NAMES, [quantity(values)], [], {})] == ["d5", "d3"]
 
 
 def test_a_device_within_its_own_error_or_not_determined_is_in_line():
@@ -63,36 +63,36 @@ def test_a_trend_is_found_with_its_slope_and_devices_are_judged_beside_it():
     kelvin = np.repeat([280.0, 300.0, 320.0, 340.0], N // 4)
     values = 1 + 0.002 * (kelvin - 300) + 0.005 * np.clip(NORMAL, -3, 3)
     values[0] = 1.0  # usual in the middle of the lot, not at 280 K
-    item, columns = quantity(values), {"temperature [K]": kelvin.tolist(), "serial": NAMES}
-    (trend,) = trends([item], columns)
+    gain, columns = quantity(values), {"temperature [K]": kelvin.tolist(), "serial": NAMES}
+    (trend,) = trends([gain], columns)
     assert (trend.column, trend.slope) == ("temperature [K]", pytest.approx(0.002, rel=0.05))
     assert trend.clear and trend.correlation > 0.9
-    assert out_of_line(NAMES, [item], [], columns) == []
-    (finding,) = out_of_line(NAMES, [item], [trend], columns)
+    assert out_of_line(NAMES, [gain], [], columns) == []
+    (finding,) = out_of_line(NAMES, [gain], [trend], columns)
     assert finding.device == "d0"
     assert "usual at its temperature 0.96" in finding.sentence
 
 
 def test_chance_is_no_trend_and_no_difference():
     """Of 200 columns by chance."""
-    item, rng = quantity(NORMAL), np.random.default_rng(2)
+    gain, rng = quantity(NORMAL), np.random.default_rng(2)
     columns = {f"c{i}": rng.standard_normal(N).tolist() for i in range(100)}
     words = {f"w{i}": rng.choice(["A", "B", "C"], N).tolist() for i in range(100)}
-    assert not any(trend.clear for trend in trends([item], columns))
-    assert not any(difference.clear for difference in differences([item], words, N))
+    assert not any(trend.clear for trend in trends([gain], columns))
+    assert not any(difference.clear for difference in differences([gain], words, N))
 
 
 def test_groups_that_differ_are_found():
     batch = ["A", "B"] * (N // 2)
     values = 1 + 0.01 * NORMAL + 0.02 * (np.array(batch) == "B")
-    (found,) = differences([quantity(values)], {"batch": batch, "serial": NAMES}, N)
-    assert found.clear
-    assert found.medians == {"A": pytest.approx(1.0, abs=0.003), "B": pytest.approx(1.02, abs=0.003)}
+    (difference,) = differences([quantity(values)], {"batch": batch, "serial": NAMES}, N)
+    assert difference.clear
+    assert difference.medians == {"A": pytest.approx(1.0, abs=0.003), "B": pytest.approx(1.02, abs=0.003)}
 
 
 def test_dates_are_days_and_words_are_groups():
     columns = {"date": ["2026-03-02", None, "2026-03-05"], "batch": ["A", "B", "A"], "K": [1.0, None, 2.0]}
-    found = numeric(columns)
-    np.testing.assert_array_equal(found["date [days]"], [0, np.nan, 3])
-    np.testing.assert_array_equal(found["K"], [1, np.nan, 2])
+    numbers = numeric(columns)
+    np.testing.assert_array_equal(numbers["date [days]"], [0, np.nan, 3])
+    np.testing.assert_array_equal(numbers["K"], [1, np.nan, 2])
     assert list(groups(columns | {"batch": ["A", "B", "A"]}, 6)) == ["batch"]

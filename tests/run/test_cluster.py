@@ -10,6 +10,7 @@ from threading import Thread
 import numpy as np
 import pytest
 
+import measured
 from experiments.fleet.cluster import TCP
 from pzt_ident.errors import InputError, LostError
 from pzt_ident.job.schema import load_job
@@ -35,45 +36,43 @@ seed: 3
 
 @pytest.fixture(scope="module")
 def job(tmp_path_factory):
-    made = tmp_path_factory.mktemp("job")
+    folder = tmp_path_factory.mktemp("job")
     t = np.arange(1000) / 1000
     u = 50 * (1 - np.cos(6 * np.pi * t))
-    x = 0.08 * (0.7 * u + 0.3 * np.convolve(u, np.ones(40) / 40)[: u.size])
-    table = np.column_stack([t, u, x + np.random.default_rng(0).normal(0, 0.01, u.size)])
-    np.savetxt(made / "identify.csv", table, delimiter=",", header="time [s],u_x [V],x [um]", comments="")
-    (made / "job.yaml").write_text(JOB)
-    return load_job(made / "job.yaml")
+    measured.write(folder / "identify.csv", t, u, measured.lagging(u, np.random.default_rng(0)))
+    (folder / "job.yaml").write_text(JOB)
+    return load_job(folder / "job.yaml")
 
 
 @pytest.fixture(scope="module")
 def cluster():
-    made = TCP(workers=2)
-    yield made
-    made.end()
+    cluster = TCP(workers=2)
+    yield cluster
+    cluster.end()
 
 
 def numbers(out: Path) -> list:
     """All that must not differ between two runs of a job: everything but the clock."""
     result = json.loads((out / "result.json").read_text())
     clock = ("seconds", "cpu_seconds", "polish_seconds")
-    return [{key: value for key, value in item.items() if key not in clock} for item in result["runs"]]
+    return [{key: value for key, value in row.items() if key not in clock} for row in result["runs"]]
 
 
 def test_the_same_result_bit_for_bit_on_a_cluster(job, cluster, tmp_path):
     events = []
     here = run(job, tmp_path / "here", place=Local(1))
-    there = run(job, tmp_path / "there", place=place_of(cluster.address), listen=events.append)
-    assert numbers(there) == numbers(here)
+    away = run(job, tmp_path / "there", place=place_of(cluster.address), listen=events.append)
+    assert numbers(away) == numbers(here)
     assert "2 workers at " + cluster.address in next(e["said"] for e in events if e["event"] == "cluster")
     assert {event["run"] for event in events if event["event"] == "run"} == {f"pso-{i}" for i in range(4)}
-    assert len(list((there / "runs").glob("*.losses"))) == 4
+    assert len(list((away / "runs").glob("*.losses"))) == 4
 
 
 def slow_once(tell, folder, number):
     """Task 0 names its process and waits to be killed."""
-    begun = folder / "begun"
-    if number == 0 and not begun.exists():
-        begun.write_text(str(os.getpid()))
+    note = folder / "begun"
+    if number == 0 and not note.exists():
+        note.write_text(str(os.getpid()))
         time.sleep(600)
     return number**2
 
@@ -88,10 +87,10 @@ def test_what_a_killed_worker_was_at_is_done_again(tmp_path):
         os.kill(int((tmp_path / "begun").read_text()), signal.SIGKILL)
 
     results: dict = {}
-    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as made:
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
         Thread(target=kill, daemon=True).start()
         tasks = ((str(i), (i,)) for i in range(12))
-        failed = place_of(made.scheduler_address).run_all(
+        failed = place_of(cluster.scheduler_address).run_all(
             slow_once, (tmp_path,), tasks, lambda event: None, results.__setitem__
         )
     assert failed == {}
@@ -99,17 +98,17 @@ def test_what_a_killed_worker_was_at_is_done_again(tmp_path):
 
 
 def test_a_lost_scheduler_ends_in_a_folder_that_resume_goes_on_with(job, tmp_path):
-    made, out = TCP(workers=1), tmp_path / "out"
+    cluster, out = TCP(workers=1), tmp_path / "out"
     try:
 
         def kill_scheduler(event):
             if event["event"] == "run":
-                made.scheduler.kill()
+                cluster.scheduler.kill()
 
-        with pytest.raises(LostError, match=f"the scheduler {made.address} is gone"):
-            run(job, out, place=place_of(made.address), listen=kill_scheduler)
+        with pytest.raises(LostError, match=f"the scheduler {cluster.address} is gone"):
+            run(job, out, place=place_of(cluster.address), listen=kill_scheduler)
     finally:
-        made.end()
+        cluster.end()
     assert not (out / "result.json").exists()
     resume(out, place=Local(1))
     assert numbers(out) == numbers(run(job, tmp_path / "here", place=Local(1)))
@@ -119,15 +118,15 @@ def test_slurm_is_asked_for_jobs_of_one_core(monkeypatch):
     pytest.importorskip("dask_jobqueue")
     monkeypatch.setattr("pzt_ident.run.place.which", lambda name: f"/usr/bin/{name}")
     place = place_of("slurm:long.q:8")
-    with place.cluster() as made:
-        script = made.job_script()
+    with place.cluster() as cluster:
+        script = cluster.job_script()
     assert place.jobs == 8
     assert "#SBATCH -p long.q" in script
     assert "--nthreads 1" in script
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "sentence"),
     [
         ("lokal:2", "is no place to run at"),
         ("local:0", "is no place to run at"),
@@ -138,9 +137,9 @@ def test_slurm_is_asked_for_jobs_of_one_core(monkeypatch):
         ("tcp://nowhere.invalid:8786", "no scheduler answers"),
     ],
 )
-def test_wrong_words_are_told_with_a_remedy(words, said, monkeypatch):
+def test_wrong_words_are_told_with_a_remedy(words, sentence, monkeypatch):
     monkeypatch.setattr("pzt_ident.run.place.which", lambda name: None)
-    with pytest.raises(InputError, match=said) as caught:
+    with pytest.raises(InputError, match=sentence) as caught:
         place_of(words)
     assert caught.value.where == f"--on {words}"
     assert caught.value.remedy

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+import measured
 from pzt_ident.cli.commands import main
 from pzt_ident.job.schema import load_job
 from pzt_ident.run.identify import run
@@ -46,8 +47,8 @@ def other_bytes(raw: bytes) -> bytes:
 
 
 def another_word(raw: bytes) -> bytes:
-    """The first letter of a word in the middle."""
-    place = next(i for i in range(len(raw) // 2, len(raw)) if bytes([raw[i]]).isalpha())
+    """Another first letter of a word in the middle."""
+    place = next(i for i in range(len(raw) // 2, len(raw)) if bytes([raw[i]]).isalpha() and raw[i : i + 1] != b"Q")
     return raw[:place] + b"Q" + raw[place + 1 :]
 
 
@@ -65,29 +66,28 @@ DAMAGES = {
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
-    made = tmp_path_factory.mktemp("job")
+    folder = tmp_path_factory.mktemp("job")
     t = np.arange(300) / 300
     u = 50 * (1 - np.cos(6 * np.pi * t))
     x = 0.08 * u + np.random.default_rng(0).normal(0, 0.01, u.size)
-    table = np.column_stack([t, u, x])
-    np.savetxt(made / "identify.csv", table, delimiter=",", header="time [s],u_x [V],x [um]", comments="")
-    (made / "job.yaml").write_text(JOB)
-    return run(load_job(made / "job.yaml"), made / "out", place=Local(1))
+    measured.write(folder / "identify.csv", t, u, x)
+    (folder / "job.yaml").write_text(JOB)
+    return run(load_job(folder / "job.yaml"), folder / "out", place=Local(1))
 
 
 def call(*words):
     ended = CliRunner().invoke(main, [str(word) for word in words])
     assert ended.exit_code in (0, 2), ended.output
     for name in ("Error:", "Traceback"):
-        said = ended.stderr.removeprefix("Error: ") if ended.exit_code else ended.output
-        assert name not in said, said
+        text = ended.stderr.removeprefix("Error: ") if ended.exit_code else ended.output
+        assert name not in text, text
     return ended
 
 
 def numbers(out):
     result = json.loads((out / "result.json").read_text())
     clock = ("seconds", "cpu_seconds", "polish_seconds")
-    return [{key: value for key, value in item.items() if key not in clock} for item in result["runs"]]
+    return [{key: value for key, value in row.items() if key not in clock} for row in result["runs"]]
 
 
 def hurt(whole, tmp_path, file, damage):

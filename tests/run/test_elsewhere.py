@@ -15,12 +15,12 @@ from pzt_ident.run.place import HERE, place_of
 @pytest.fixture(scope="module")
 def job(tmp_path_factory):
     """A stage whose gain grows with the voltage, and few effects to choose from."""
-    made = tmp_path_factory.mktemp("job")
-    write_lot(made, 2, 3, hidden=1.0, samples=600)
-    truth = json.loads((made / "truth.json").read_text())
-    home = made / "lot" / next(name for name, facts in truth.items() if facts["kind"] == "quadratic_gain")
+    folder = tmp_path_factory.mktemp("job")
+    write_lot(folder, 2, 3, hidden=1.0, samples=600)
+    truth = json.loads((folder / "truth.json").read_text())
+    home = folder / "lot" / next(name for name, facts in truth.items() if facts["kind"] == "quadratic_gain")
     others = [word for word in blocks.effects() if word not in ("creep", "quadratic_gain")]
-    text = (made / "job.yaml").read_text()
+    text = (folder / "job.yaml").read_text()
     (home / "job.yaml").write_text(f"{text}rule_out: [{', '.join(others)}]\n")
     return load_job(home / "job.yaml")
 
@@ -36,15 +36,15 @@ def test_the_same_improvement_on_a_cluster(job, here, tmp_path):
 
     cluster, events = TCP(workers=1), []
     try:
-        there = improve_at(place_of(cluster.address), job, tmp_path / "out", events.append)
+        away = improve_at(place_of(cluster.address), job, tmp_path / "out", events.append)
     finally:
         cluster.end()
-    assert (there / "improvement.json").read_bytes() == (here / "improvement.json").read_bytes()
-    assert load_job(there / "improved.yaml").hash != job.hash
-    for source in load_job(there / "improved.yaml").records:
-        assert (there / source.file).is_file()
+    assert (away / "improvement.json").read_bytes() == (here / "improvement.json").read_bytes()
+    assert load_job(away / "improved.yaml").hash != job.hash
+    for source in load_job(away / "improved.yaml").records:
+        assert (away / source.file).is_file()
     assert "quadratic_gain" in [event["added"] for event in events if event["event"] == "stair"]
-    assert task_of(there) == "improve"
+    assert task_of(away) == "improve"
 
 
 def test_an_improvement_that_was_killed_is_begun_again(here, tmp_path):

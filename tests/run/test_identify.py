@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import measured
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.job.schema import Job, load_job
 from pzt_ident.model.chain import Chain
@@ -42,16 +43,13 @@ seed: 3
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    made = tmp_path_factory.mktemp("job")
+    folder = tmp_path_factory.mktemp("job")
     t = np.arange(1000) / 1000
     rng = np.random.default_rng(0)
     for name, u in {"identify": 50 * (1 - np.cos(6 * np.pi * t)), "validate": 80 * np.abs(np.sin(9 * t)) * t}.items():
-        lag = np.convolve(u, np.ones(40) / 40)[: u.size]
-        x = 0.08 * (0.7 * u + 0.3 * lag) + rng.normal(0, 0.01, u.size)
-        table = np.column_stack([t, u, x])
-        np.savetxt(made / f"{name}.csv", table, delimiter=",", header="time [s],u_x [V],x [um]", comments="")
-    (made / "job.yaml").write_text(JOB)
-    return made
+        measured.write(folder / f"{name}.csv", t, u, measured.lagging(u, rng))
+    (folder / "job.yaml").write_text(JOB)
+    return folder
 
 
 @pytest.fixture(scope="module")
@@ -253,7 +251,7 @@ def test_resume_counts_only_what_is_missing(finished, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("file", "old", "new"), [("identify.csv", "1.000000", "1.000001"), ("out/job.yaml", "seed: 3", "seed: 4")]
+    ("file", "old", "new"), [("identify.csv", "\n0.001,", "\n0.0010001,"), ("out/job.yaml", "seed: 3", "seed: 4")]
 )
 def test_resume_refuses_another_job_or_other_data(folder, finished, tmp_path, file, old, new):
     made = shutil.copytree(folder, tmp_path / "job")

@@ -40,9 +40,9 @@ def test_a_worker_that_dies_again_and_again_is_named_and_the_others_finish():
 
 
 def once(tell, folder, number):
-    begun = folder / str(number)
-    if number == 3 and not begun.exists():
-        begun.touch()
+    note = folder / str(number)
+    if number == 3 and not note.exists():
+        note.touch()
         os.kill(os.getpid(), signal.SIGKILL)
     return number**2
 

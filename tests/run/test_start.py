@@ -5,12 +5,10 @@ import json
 import numpy as np
 import pytest
 
-from pzt_ident.diagnosis.refit import fit_at
-from pzt_ident.diagnosis.verdict import Diagnosis
+import measured
 from pzt_ident.errors import InputError
 from pzt_ident.job import edit
 from pzt_ident.job.schema import load_job
-from pzt_ident.run import improve
 from pzt_ident.run.identify import resume, run
 from pzt_ident.run.improve import diagnose
 from pzt_ident.run.place import Local
@@ -23,7 +21,7 @@ records:
   - {file: data.csv, use: validate, settle: 9 s}
 channels:
   time: time [s]
-  axes: {x: {drive: "u [V]", response: "x [um]"}}
+  axes: {x: {drive: "u_x [V]", response: "x [um]"}}
 model: [bouc_wen]
 effects: []
 optimizers: [{name: pso, population: 6, generations: 4}, {name: cma_es, budget: 30}]
@@ -41,12 +39,8 @@ def place(tmp_path_factory):
     folder = tmp_path_factory.mktemp("start")
     t = np.arange(1400) / 100
     u = 50 + 50 * np.sin(2 * np.pi * 0.5 * t) * np.where(t % 4 < 2.5, 1, 0.4)
-    creep = np.zeros(t.size)
-    for i in range(1, t.size):
-        creep[i] = creep[i - 1] + 0.01 / 1.2 * (0.1 * 0.1 * u[i] - creep[i - 1])
-    x = 0.1 * u - 0.3 * np.tanh(np.gradient(u) / 3) + creep + np.random.default_rng(0).normal(0, 0.01, t.size)
-    lines = [f"{a:.2f},{b:.5f},{c:.5f}" for a, b, c in zip(t, u, x, strict=True)]
-    (folder / "data.csv").write_text("\n".join(["time [s],u [V],x [um]", *lines]) + "\n")
+    x = measured.creeping(u, 0.01, ratio=0.1, tau=1.2, width=3, height=0.3)
+    measured.write(folder / "data.csv", t, u, x + np.random.default_rng(0).normal(0, 0.01, t.size))
     (folder / "job.yaml").write_text(JOB)
     job = load_job(folder / "job.yaml")
     run(job, folder / "run", place=Local(1))
@@ -64,17 +58,17 @@ def test_and_gives_a_better_one_back(place, tmp_path):
     poor.write_text(json.dumps({"parameters": {"bouc_wen.alpha": {"value": 0.9, "unit": "1"}}}))
     folder = run(load_job(place / "job.yaml"), tmp_path / "run", place=Local(1), start=poor, only_start=True)
     before = read(folder / "result.json")
-    assert (before["league"], [item["run"] for item in before["runs"]]) == ([], ["start-0"])
+    assert (before["league"], [row["run"] for row in before["runs"]]) == ([], ["start-0"])
     resume(folder, place=Local(1), start=place / "diagnosis")
-    after, found = read(folder / "result.json"), read(place / "diagnosis/diagnosis.json")
-    assert [item["run"] for item in after["runs"]] == ["start-0", "start-1"]
-    assert after["best"]["rmse"]["identify"] <= found["rmse"]["identify"] * (1 + 1e-9)
+    after, diagnosis = read(folder / "result.json"), read(place / "diagnosis/diagnosis.json")
+    assert [row["run"] for row in after["runs"]] == ["start-0", "start-1"]
+    assert after["best"]["rmse"]["identify"] <= diagnosis["rmse"]["identify"] * (1 + 1e-9)
     assert [start for start, _ in Starts.kept(folder).given] == [str(poor), str(place / "diagnosis")]
 
 
 def test_a_step_gives_what_the_diagnosis_promised(place, tmp_path):
     candidates = read(place / "diagnosis/diagnosis.json")["candidates"]
-    fitted = next(item for item in candidates if item.get("parameters"))
+    fitted = next(candidate for candidate in candidates if candidate.get("parameters"))
     out = tmp_path / "job.yaml"
     edit.add(place / "job.yaml", fitted["item"], out, start=place / "diagnosis")
     folder = run(load_job(out), tmp_path / "run", place=Local(1), start=place / "diagnosis", only_start=True)
@@ -88,9 +82,9 @@ def test_no_optimizer_is_given_it(place, tmp_path):
     folder = run(job, tmp_path / "run", place=Local(1), start=place / "diagnosis")
     beside = read(folder / "result.json")
     assert {row["optimizer"] for row in beside["league"]} == {"pso", "cma_es"}
-    by_run = {item["run"]: item for item in beside["runs"]}
-    for item in without["runs"]:
-        assert by_run[item["run"]]["rmse_before_polish"] == item["rmse_before_polish"]
+    by_run = {row["run"]: row for row in beside["runs"]}
+    for row in without["runs"]:
+        assert by_run[row["run"]]["rmse_before_polish"] == row["rmse_before_polish"]
     assert "start-0" in by_run and "start" not in (folder / "history.csv").read_text()
 
 
@@ -112,24 +106,14 @@ def test_units_are_those_of_the_file(place, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "sentence"),
     [
         ("{", "is not JSON"),
         ("{}", "holds no fit"),
         ('{"parameters": {"a.b": {"value": 1, "unit": "1"}}}', "has no parameter"),
     ],
 )
-def test_what_is_no_fit_is_refused(place, tmp_path, content, said):
+def test_what_is_no_fit_is_refused(place, tmp_path, content, sentence):
     (tmp_path / "start.json").write_text(content)
-    with pytest.raises(InputError, match=said):
+    with pytest.raises(InputError, match=sentence):
         read_start(tmp_path / "start.json", load_job(place / "job.yaml"))
-
-
-def test_an_adequate_model_keeps_what_is_to_be_said_of_it(place, monkeypatch, tmp_path):
-    """As `improve` does: sentences on its bounds and on effects with an amount of each record."""
-    monkeypatch.setattr(improve, "caveats", lambda case, fit: f" {fit.effects} ended on its bound.")
-    case = improve.case_of(Statement(load_job(place / "job.yaml")))
-    fit = fit_at((), case.problem(()), np.full(case.problem(()).dimensions, 0.5))
-    found = Diagnosis("adequate", "The model is adequate.", fit, [], [])
-    content = improve.diagnosis_of(load_job(place / "job.yaml"), case, found, tmp_path)
-    assert content["reason"].startswith("The model is adequate. () ended on its bound.")

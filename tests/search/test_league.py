@@ -26,18 +26,18 @@ def test_only_repeats_that_both_have_are_paired():
 
 
 def test_the_leader_against_itself_says_nothing():
-    own = {0: 1.0, 1: 2.0}
-    assert paired_comparison(own, own) == {"leader_ahead": 0, "pairs": 0, "sign_test": 1.0}
+    row = {0: 1.0, 1: 2.0}
+    assert paired_comparison(row, row) == {"leader_ahead": 0, "pairs": 0, "sign_test": 1.0}
 
 
-def run(optimizer, repeat, own, polished=None, **more):
-    polished = own if polished is None else polished
+def run(optimizer, repeat, row, polished=None, **more):
+    polished = row if polished is None else polished
     costs = {"seconds": 1.0, "cpu_seconds": 1.0, "evaluations": 100}
     return {
         "run": f"{optimizer}-{repeat}",
         "optimizer": optimizer,
         "repeat": repeat,
-        "rmse_before_polish": {"identify": own, "validate": 99.0},
+        "rmse_before_polish": {"identify": row, "validate": 99.0},
         "rmse": {"identify": polished, "validate": 0.01},
         **costs,
         **more,
@@ -53,7 +53,7 @@ def test_quartiles_of_five_are_the_second_and_the_fourth():
     """Of what the optimizers found themselves; the polish has a column of its own."""
     found = summary_of(
         "pso",
-        [run("pso", i, own, 1.0 + i / 10, evaluations_to_1_percent=None) for i, own in enumerate([5.0, 1, 9, 3, 2])],
+        [run("pso", i, row, 1.0 + i / 10, evaluations_to_1_percent=None) for i, row in enumerate([5.0, 1, 9, 3, 2])],
     )
     assert (found["runs"], found["rmse_best"]) == (5, 1)
     assert [found[f"rmse_{word}"] for word in ("lower_quartile", "median", "upper_quartile")] == [2, 3, 5]
@@ -62,7 +62,7 @@ def test_quartiles_of_five_are_the_second_and_the_fourth():
 
 def test_quartiles_between_runs_are_interpolated():
     found = summary_of(
-        "pso", [run("pso", i, own, evaluations_to_1_percent=None) for i, own in enumerate([4.0, 1, 3, 2])]
+        "pso", [run("pso", i, row, evaluations_to_1_percent=None) for i, row in enumerate([4.0, 1, 3, 2])]
     )
     assert [found[f"rmse_{word}"] for word in ("lower_quartile", "median", "upper_quartile")] == [1.75, 2.5, 3.25]
 
@@ -103,7 +103,7 @@ def test_one_percent_is_of_the_best_that_any_run_found_polished_or_not():
         "pso-1": history((10, 1.02), (20, 1.0101), (30, 1.0099), (40, 1.009)),
     }
     first, second = rank(runs, histories)
-    assert [own["evaluations_to_1_percent"] for own in runs] == [None, None, None, 30]
+    assert [row["evaluations_to_1_percent"] for row in runs] == [None, None, None, 30]
     assert (first["optimizer"], first["success"], first["evaluations_to_1_percent_median"]) == ("pso", 0.5, None)
     assert (second["optimizer"], second["success"]) == ("rga", 0)
 
@@ -111,7 +111,7 @@ def test_one_percent_is_of_the_best_that_any_run_found_polished_or_not():
 def test_success_is_counted_before_the_polish_and_after_it():
     """Of four runs that agree once polished, one was there before."""
     runs = [run("pso", 0, 1.5, 1.0), run("pso", 1, 1.004, 1.0), run("rga", 0, 2.0, 1.001), run("rga", 1, 3.0, 2.5)]
-    first, second = rank(runs, {each["run"]: history((10, each["rmse_before_polish"]["identify"])) for each in runs})
+    first, second = rank(runs, {row["run"]: history((10, row["rmse_before_polish"]["identify"])) for row in runs})
     assert [row["optimizer"] for row in (first, second)] == ["pso", "rga"]
     assert (first["success"], first["polished_success"]) == (0.5, 1.0)
     assert (second["success"], second["polished_success"]) == (0.0, 0.5)
@@ -128,15 +128,15 @@ def test_a_fit_from_elsewhere_is_no_optimizer():
 def test_the_best_may_be_unpolished():
     runs = [run("pso", 0, 1.0, 1.5), run("rga", 0, 1.2)]
     rank(runs, {"pso-0": history((10, 1.0)), "rga-0": history((10, 1.2))})
-    assert [own["evaluations_to_1_percent"] for own in runs] == [10, None]
+    assert [row["evaluations_to_1_percent"] for row in runs] == [10, None]
 
 
 def test_the_leader_has_the_least_median_of_its_own_results_and_is_what_all_are_compared_with():
     """rga has the best single run and the best after the polish, pso leads by its median and two of three repeats."""
-    own = {"rga": (1.0, 7.0, 8.0), "pso": (2.0, 3.0, 4.0)}
+    row = {"rga": (1.0, 7.0, 8.0), "pso": (2.0, 3.0, 4.0)}
     runs = [
         run(name, i, value, 0.5 if name == "rga" else None)
-        for name, each in own.items()
+        for name, each in row.items()
         for i, value in enumerate(each)
     ]
     rows = rank(runs, {each["run"]: history((1, 9.0)) for each in runs})

@@ -254,13 +254,13 @@ def test_a_free_density_on_two_axes_has_a_smoothness_of_each():
 
 def test_what_is_solved_for_follows_to_first_order(measured):
     """Half the way from a point, a quarter of the error."""
-    made = problem(measured)
-    point = at(made, 5000)
-    near = made.along(made.tangent(point))
-    assert near.residuals(point) == pytest.approx(made.residuals(point), abs=1e-9 * made.loss(point)[0])
+    exact = problem(measured)
+    point = at(exact, 5000)
+    near = exact.along(exact.tangent(point))
+    assert near.residuals(point) == pytest.approx(exact.residuals(point), abs=1e-9 * exact.loss(point)[0])
 
     def error(step):
         moved = point + step * np.ones(point.size)
-        return np.linalg.norm(near.residuals(moved) - made.residuals(moved))
+        return np.linalg.norm(near.residuals(moved) - exact.residuals(moved))
 
     assert error(5e-3) / error(2.5e-3) == pytest.approx(4, rel=0.3)

@@ -35,33 +35,33 @@ def ends(residual, point, errors):
 
 def test_of_a_line_they_are_those_of_the_standard_error():
     matrix = np.random.default_rng(0).normal(size=(50, 2))
-    found = ends(lambda p: np.append(matrix @ (p - [0.4, 0.5]), 3), [0.4, 0.5], [0.02, 0.05])
-    np.testing.assert_allclose(found, [[0.4 - 1.96 * 0.02, 0.4 + 1.96 * 0.02], [0.5 - 1.96 * 0.05, 0.5 + 1.96 * 0.05]])
+    bounds = ends(lambda p: np.append(matrix @ (p - [0.4, 0.5]), 3), [0.4, 0.5], [0.02, 0.05])
+    np.testing.assert_allclose(bounds, [[0.4 - 1.96 * 0.02, 0.4 + 1.96 * 0.02], [0.5 - 1.96 * 0.05, 0.5 + 1.96 * 0.05]])
 
 
 def test_a_side_on_which_the_loss_stays_flat_is_open():
     """A response that saturates: no larger value is told from another."""
-    found = ends(lambda p: np.array([np.tanh(8 * (p[0] - 0.3)) - np.tanh(2.4), 0.5]), [0.6], [0.08])
-    assert found[0, 0] == pytest.approx(0.6 - 1.96 * 0.08) and found[0, 1] > 1
+    bounds = ends(lambda p: np.array([np.tanh(8 * (p[0] - 0.3)) - np.tanh(2.4), 0.5]), [0.6], [0.08])
+    assert bounds[0, 0] == pytest.approx(0.6 - 1.96 * 0.08) and bounds[0, 1] > 1
 
 
 def test_the_others_are_fitted_again():
     """Along the valley y = x^2 the loss rises as its curvature says, though it rises steeply on the line beside it."""
-    found = ends(lambda p: np.array([20 * (p[1] - p[0] ** 2), 0.1 * (p[0] - 0.5), 1.0]), [0.5, 0.25], [0.06, 0.06])
-    assert found[0] == pytest.approx([0.5 - 1.96 * 0.06, 0.5 + 1.96 * 0.06])
+    bounds = ends(lambda p: np.array([20 * (p[1] - p[0] ** 2), 0.1 * (p[0] - 0.5), 1.0]), [0.5, 0.25], [0.06, 0.06])
+    assert bounds[0] == pytest.approx([0.5 - 1.96 * 0.06, 0.5 + 1.96 * 0.06])
 
 
 def run(rmse, value, **more):
     facts = {"unit": "s", "lower": 1e-3, "upper": 10.0, "scale": "log", "verdict": "determined", "note": ""}
-    item = facts | {"value": value, "standard_error": 0.02, "interval": [value - 0.04, value + 0.04]} | more
-    return {"rmse": {"identify": rmse, "validate": None}, "parameters": {"creep.tau": item}}
+    parameter = facts | {"value": value, "standard_error": 0.02, "interval": [value - 0.04, value + 0.04]} | more
+    return {"rmse": {"identify": rmse, "validate": None}, "parameters": {"creep.tau": parameter}}
 
 
 def test_runs_of_one_rmse_that_scatter_a_value_do_not_determine_it():
     best = run(1.0, 0.062)
-    found = judged(best, [best, run(1.0002, 1.46), run(1.3, 9.0)])["parameters"]["creep.tau"]
-    assert found["verdict"] == "not determined" and found["standard_error"] is None
-    assert found["note"] == "runs of the same RMSE put it at 0.062 to 1.46 s"
+    tau = judged(best, [best, run(1.0002, 1.46), run(1.3, 9.0)])["parameters"]["creep.tau"]
+    assert tau["verdict"] == "not determined" and tau["standard_error"] is None
+    assert tau["note"] == "runs of the same RMSE put it at 0.062 to 1.46 s"
     assert best["parameters"]["creep.tau"]["verdict"] == "determined"
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from starlette.testclient import TestClient
 
+import measured
 from pzt_ident.job.schema import load_job
 from pzt_ident.run.identify import run
 from pzt_ident.run.improve import diagnose
@@ -29,12 +30,8 @@ def filled(tmp_path_factory):
     root = tmp_path_factory.mktemp("filled")
     t = np.arange(1500) / 100
     u = 50 + 45 * np.sin(2 * np.pi * 0.4 * t) * np.where(t % 5 < 3, 1, 0.4)
-    slow = np.zeros(t.size)
-    for i in range(1, t.size):
-        slow[i] = slow[i - 1] + 0.01 / 1.5 * (0.008 * u[i] - slow[i - 1])
-    x = 0.1 * u - 0.2 * np.tanh(np.gradient(u) / 2) + slow + np.random.default_rng(1).normal(0, 0.005, t.size)
-    rows = [f"{a:.2f},{b:.5f},{c:.5f}" for a, b, c in zip(t, u, x, strict=True)]
-    (root / "data.csv").write_text("\n".join(["time [s],u_x [V],x [um]", *rows]) + "\n")
+    x = measured.creeping(u, 0.01, ratio=0.08, tau=1.5, width=2, height=0.2)
+    measured.write(root / "data.csv", t, u, x + np.random.default_rng(1).normal(0, 0.005, t.size))
     session = Session(root, root / "workbench")
     session.begin(form(records=[{"file": "data.csv", "use": "split", "rows": 1500, "span": t[-1]}]))
     path = session.step() / "job.yaml"

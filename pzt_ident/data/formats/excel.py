@@ -60,7 +60,9 @@ def _xml_of(path: Path, sheet: str) -> bytes:
     with zipfile.ZipFile(path) as book:
         if "xl/workbook.xml" not in book.namelist():
             return b""
-        named = {item.get("name"): item for item in ElementTree.fromstring(book.read("xl/workbook.xml")).iter()}
+        named = {
+            element.get("name"): element for element in ElementTree.fromstring(book.read("xl/workbook.xml")).iter()
+        }
         place = next((value for key, value in named[sheet].items() if key.endswith("}id")), None)
         links = ElementTree.fromstring(book.read("xl/_rels/workbook.xml.rels"))
         target = next((str(link.get("Target")) for link in links if link.get("Id") == place), "")

@@ -1,16 +1,8 @@
+import { colour } from "./colours.js";
+import { drawCells, drawPath, drawSeries } from "./curves.js";
 import { isPrinting } from "./parts.js";
 import { padded, Scale, tick } from "./scale.js";
 import { lowerBound } from "./signals.js";
-
-const NEAR = 0.7; // px: shorter steps of a curve are invisible
-const APART = 4; // px between neighbouring dots, so that they are seen as dots
-const MANY = 5000; // points of a loop, above which the dots would hide it
-const HEAT = ["#30123b", "#4559cb", "#3e9bfe", "#18d7cc", "#46f783", "#a4fc3b", "#e1dc37", "#fda330", "#ef5911", "#b81f02", "#7a0402"];
-
-/** A colour of the page's style sheet, such as "--model". */
-export function colour(name) {
-  return name.startsWith("--") ? getComputedStyle(document.documentElement).getPropertyValue(name).trim() : name;
-}
 
 /** A plot on three canvases: axes and what stays, what moves, and marks with the cursor.
  *
@@ -18,8 +10,8 @@ export function colour(name) {
  * perhaps `cells`, `strips` ({from, to, colour}), `floor` (half the height of a band about 0), `marks` and `track`
  * ({xs, ys} that the cursor and the marks follow). Where `along` is set, xs ascend and y fits what is in view. */
 export class Plot {
-  constructor(parent, { label, along = false, follow = null, plain = false }) {
-    Object.assign(this, { along, follow, plain, view: { x: null, y: null }, x: new Scale(), y: new Scale(), watchers: [] });
+  constructor(parent, { label, along = false }) {
+    Object.assign(this, { along, view: { x: null, y: null }, x: new Scale(), y: new Scale(), watchers: [] });
     this.root = parent.appendChild(document.createElement("div"));
     this.root.className = "plot";
     this.root.tabIndex = 0;
@@ -105,14 +97,14 @@ export class Plot {
     this.within(pen, () => this.backdrop(pen));
     this.axes(pen);
     this.within(pen, () => {
-      if (this.scene.cells) this.cells(pen);
-      for (const series of this.scene.series) if (!series.over) this.line(pen, series);
+      if (this.scene.cells) drawCells(this, pen);
+      for (const series of this.scene.series) if (!series.over) drawSeries(this, pen, series);
     });
   }
 
   drawMoving() {
     const pen = this.pen(1);
-    this.within(pen, () => { for (const series of this.scene.series) if (series.over) this.line(pen, series); });
+    this.within(pen, () => { for (const series of this.scene.series) if (series.over) drawSeries(this, pen, series); });
   }
 
   backdrop(pen) {
@@ -149,98 +141,6 @@ export class Plot {
     pen.fillText(`${this.scene.y.label}${this.clipped ? ", peaks cut off" : ""}`, 2, 0.95 * size);
   }
 
-  line(pen, series) {
-    if (series.hidden || !series.xs.length) return;
-    [pen.strokeStyle, pen.fillStyle] = [colour(series.colour ?? "--model"), colour(series.colour ?? "--model")];
-    [pen.lineWidth, pen.lineJoin] = [series.width ?? 1.5, "round"];
-    pen.setLineDash(series.dash ?? []);
-    if (series.heat) this.heated(pen, series);
-    else if (this.along) this.graph(pen, series);
-    else if (series.dots) this.dots(pen, series);
-    else this.path(pen, series, 0, series.xs.length);
-    pen.setLineDash([]);
-  }
-
-  /** A curve over ascending xs: the lowest and highest value of each pixel. */
-  graph(pen, series) {
-    const { xs, ys } = series;
-    const first = Math.max(0, lowerBound(xs, this.x.low) - 1), end = Math.min(xs.length, lowerBound(xs, this.x.high) + 2);
-    const bins = this.width - this.edge.left - this.edge.right, count = end - first;
-    if (series.dots && count < bins / 3) return this.dots(pen, series, first, end, 0);
-    if (series.dots) pen.lineWidth = 3.4;
-    pen.beginPath();
-    if (count <= 3 * bins || this.scene.x.log) {
-      for (let i = first; i < end; i++) pen.lineTo(this.x.px(xs[i]), this.y.px(ys[i]));
-    } else
-      for (let bin = 0; bin < bins; bin++) {
-        const from = first + Math.floor((bin * count) / bins), to = first + Math.floor(((bin + 1) * count) / bins);
-        let low = from, high = from;
-        for (let i = from + 1; i < to; i++) {
-          if (ys[i] < ys[low]) low = i;
-          if (ys[i] > ys[high]) high = i;
-        }
-        const [one, two] = low < high ? [low, high] : [high, low];
-        pen.lineTo(this.x.px(xs[one]), this.y.px(ys[one]));
-        if (two !== one) pen.lineTo(this.x.px(xs[two]), this.y.px(ys[two]));
-      }
-    pen.stroke();
-  }
-
-  /** Dots that are told apart; of very many, smaller ones. */
-  dots(pen, { xs, ys }, first = 0, end = xs.length, apart = APART) {
-    const size = end - first > MANY ? 1.6 : 3.2;
-    let [left, top] = [-99, -99];
-    for (let i = first; i < end; i++) {
-      const x = this.x.px(xs[i]), y = this.y.px(ys[i]);
-      if (Math.abs(x - left) + Math.abs(y - top) < apart) continue;
-      pen.fillRect(x - size / 2, y - size / 2, size, size);
-      [left, top] = [x, y];
-    }
-  }
-
-  heated(pen, { xs, ys, heat, heatRange: [low, high] }) {
-    const sorted = HEAT.map(() => []);
-    let [left, top] = [-99, -99];
-    for (let i = 0; i < xs.length; i++) {
-      const x = this.x.px(xs[i]), y = this.y.px(ys[i]);
-      if (Math.abs(x - left) + Math.abs(y - top) < 1.5) continue;
-      sorted[Math.min(HEAT.length - 1, Math.max(0, Math.floor(((heat[i] - low) / (high - low || 1)) * HEAT.length)))].push(x, y);
-      [left, top] = [x, y];
-    }
-    sorted.forEach((points, place) => {
-      pen.fillStyle = HEAT[place];
-      for (let i = 0; i < points.length; i += 2) pen.fillRect(points[i] - 1.3, points[i + 1] - 1.3, 2.6, 2.6);
-    });
-  }
-
-  path(pen, { xs, ys }, first, end) {
-    pen.beginPath();
-    let [left, top, inside] = [-1e9, -1e9, false];
-    for (let i = first; i < end; i++) {
-      const x = this.x.px(xs[i]), y = this.y.px(ys[i]);
-      if (Math.abs(x - left) + Math.abs(y - top) < NEAR && i !== end - 1) continue;
-      const visible = x > -50 && y > -50 && x < this.width + 50 && y < this.height + 50;
-      if (i === first || !(visible || inside)) pen.moveTo(x, y);
-      else pen.lineTo(x, y);
-      [left, top, inside] = [x, y, visible];
-    }
-    pen.stroke();
-  }
-
-  /** Draw the mean value of each cell as a colour on a diverging scale. */
-  cells(pen) {
-    const { columns, rows, largest, means, x: [left, right], y: [low, high] } = this.scene.cells;
-    const width = (this.x.px(right) - this.x.px(left)) / columns, height = (this.y.px(low) - this.y.px(high)) / rows;
-    const [middle, below, above] = ["--zero", "--below", "--above"].map((name) => rgb(colour(name)));
-    means.forEach((mean, cell) => {
-      if (Number.isNaN(mean)) return;
-      const share = Math.min(1, Math.abs(mean) / largest), side = mean < 0 ? below : above;
-      pen.fillStyle = `rgb(${middle.map((part, i) => Math.round(part + share * (side[i] - part))).join(" ")})`;
-      const [column, row] = [cell % columns, Math.floor(cell / columns)];
-      pen.fillRect(this.x.px(left) + column * width, this.y.px(low) - (row + 1) * height, width + 0.6, height + 0.6);
-    });
-  }
-
   /** Show marked segments, the cursor at a point of the track, and a box that is being drawn. */
   drawTop() {
     const pen = this.pen(2);
@@ -265,7 +165,7 @@ export class Plot {
       pen.fillRect(from, 0, Math.max(1, this.x.px(xs[end - 1]) - from), this.height);
     } else {
       [pen.strokeStyle, pen.lineWidth] = [colour("--mark"), 2.5];
-      this.path(pen, { xs, ys }, first, end);
+      drawPath(this, pen, { xs, ys }, first, end);
     }
   }
 
@@ -311,8 +211,4 @@ function rule(pen, x0, y0, x1, y1) {
   pen.moveTo(x0, y0);
   pen.lineTo(x1, y1);
   pen.stroke();
-}
-
-function rgb(hex) {
-  return [1, 3, 5].map((start) => parseInt(hex.slice(start, start + 2), 16));
 }

@@ -1,0 +1,157 @@
+"""What a diagnosis and an improvement found, as the contents of `diagnosis.json` and `improvement.json`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pzt_ident.data.noise import units_and_floors
+from pzt_ident.data.units import factor
+from pzt_ident.diagnosis import staircase as stairs
+from pzt_ident.diagnosis.bounds import narrow_bounds_sentence
+from pzt_ident.diagnosis.candidates import Candidate
+from pzt_ident.diagnosis.caveats import broken_conditions, caveats, misfit_sentences
+from pzt_ident.diagnosis.refit import Case, Fit
+from pzt_ident.diagnosis.verdict import Diagnosis
+from pzt_ident.job.schema import Job
+from pzt_ident.model.description import headline
+from pzt_ident.model.registry import blocks, form_of, phrase_of, word_of
+from pzt_ident.run.collect import errors_in
+from pzt_ident.run.next_drive import limits_of, separating
+from pzt_ident.run.statement import loss_unit
+
+
+def improvement_of(job: Job, case: Case, staircase: stairs.Staircase, last: dict[str, Any]) -> dict[str, Any]:
+    """The content of `improvement.json`, less the next experiment."""
+    steps, suspects = staircase.steps, staircase.suspects
+    reason, end = last["reason"], steps[-1].fit
+    added = [effect for effect in end.effects if effect not in job.effects]
+    reason += "".join(f" {suspect.why_not}" for suspect in suspects)
+    undecided = dict.fromkeys(step.tied for step in ties(steps))
+    reason += "".join(f" These data cannot tell {' from '.join(map(phrase_of, tied))}." for tied in undecided)
+    reason += case.budget.sentence + narrow_bounds_sentence(case, end)
+    of_end = caveats(case, end)
+    reason += "" if of_end in reason else of_end  # the last diagnosis may be of this fit
+    return {
+        "name": job.name,
+        "steps": [stair(case, step) for step in steps],
+        "verdict": last["verdict"],
+        "reason": reason,
+        "effects": list(map(word_of, added)),
+        "forms": forms_of(added),
+        "suspects": [
+            {"effect": word_of(suspect.effect), "explained": suspect.share, "why not": suspect.why_not}
+            for suspect in suspects
+        ],
+        **units_and_floors(list(case.records)),
+    }
+
+
+def forms_of(effects: Iterable[str]) -> dict[str, str]:
+    """The forms of the effects that have several, by word."""
+    several = [effect for effect in effects if len(blocks.forms(effect)) > 1]
+    return {word_of(effect): blocks[effect].item().partition(".")[2] for effect in several}
+
+
+def size_of(case: Case) -> float:
+    """The unit of the errors of a case, in SI units."""
+    return factor(loss_unit(case.records))
+
+
+def ties(steps: list[stairs.Step]) -> list[stairs.Step]:
+    """The stairs of effects that the last model has and these data cannot tell from others."""
+    return [step for step in steps if len(step.rivals) > 1 and step.added in steps[-1].fit.effects]
+
+
+def errors_of(case: Case, fit: Fit) -> dict[str, float | None]:
+    size = size_of(case)
+    return {"identify": fit.identify / size, "validate": None if fit.validate is None else fit.validate / size}
+
+
+def by_record(case: Case, fit: Fit) -> list[dict[str, Any]]:
+    return [errors_in(record, fit.problem, fit.point) for record in fit.problem.records]
+
+
+def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
+    return {
+        "added": step.added and word_of(step.added),
+        "removed": step.removed and word_of(step.removed),
+        "form": step.added and form_of(step.added),
+        "change": step.change or None,
+        "class": list(map(word_of, step.tied)),
+        "rmse": errors_of(case, step.fit),
+        "records": by_record(case, step.fit),
+        "explained": step.explained,
+        "expected": step.expected,
+        "parameters": parameters_of(step.fit),
+        "effects": list(step.fit.effects),
+        "steps": list(step.fit.steps),
+    }
+
+
+def parameters_of(fit: Fit) -> dict[str, dict[str, Any]]:
+    """The free parameters of a fit with their units and standard errors, None where the data do not determine them."""
+    return {
+        estimate.name: {"value": estimate.value, "unit": estimate.unit, "standard_error": estimate.standard_error}
+        for estimate in fit.estimates
+    }
+
+
+def refitted(case: Case, fit: Fit) -> dict[str, Any]:
+    """What the job of a refit is to have, so that a run of it starts there and finds no less."""
+    units = zip(fit.values.items(), fit.problem.units, strict=True)
+    return {
+        "parameters": {name: {"value": value, "unit": unit} for (name, value), unit in units},
+        "steps": list(fit.steps),
+        "values": case.unmeasured_nulls(fit.effects) if fit.measured_only else {},
+    }
+
+
+def diagnosis_of(job: Job, case: Case, diagnosis: Diagnosis, folder: Path) -> dict[str, Any]:
+    """The content of `diagnosis.json`; the drive that it proposes is written into the folder."""
+    before, best = diagnosis.before, diagnosis.best
+    rivals = stairs.rivals_of(diagnosis)
+    proposed = separating(job, case, rivals, folder)
+    reason = diagnosis.reason
+    if diagnosis.verdict == "unexplained":
+        reason += f" {misfit_sentences(case, before)}"
+    if len(rivals) > 1 and not proposed:
+        reason += f" No drive within {limits_of(job, case)} tells them apart: allow more under `limits`."
+    return {
+        "verdict": diagnosis.verdict,
+        "reason": reason + caveats(case, best.fit if best and best.fit else before) + broken_conditions(before),
+        **units_and_floors(list(case.records)),
+        "rmse": errors_of(case, before),
+        "records": by_record(case, before),
+        "effects": list(before.effects),
+        "parameters": parameters_of(before),
+        "candidates": [candidate_of(case, candidate, diagnosis.tied) for candidate in diagnosis.candidates],
+        "next_experiment": proposed,
+    }
+
+
+def candidate_of(case: Case, candidate: Candidate, tied: Sequence[str]) -> dict[str, Any]:
+    """An effect that was scored, and its refit where there was one. tied: the effects that fit equally well."""
+    score, fit, block = candidate.score, candidate.fit, blocks[candidate.score.effect]
+    return {
+        "effect": word_of(score.effect),
+        "form": form_of(score.effect),
+        "item": score.effect,
+        "class": list(map(word_of, tied if score.effect in tied else [score.effect])),
+        "explained": min(score.explained_in_bounds, 1.0),
+        "expected": score.guess,
+        "units": score.units,
+        "visibility": score.visibility,
+        "power": score.power if np.isfinite(score.power) else None,
+        "rmse": errors_of(case, fit) if fit else None,
+        "records": by_record(case, fit) if fit else None,
+        **(refitted(case, fit) if fit else {}),
+        "decision": candidate.decision,
+        "physics": headline(block),
+        "look_alikes": list(block.look_alikes),
+        "separate_by": block.separate_by,
+        "remedy": block.remedy,
+    }

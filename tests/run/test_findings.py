@@ -1,0 +1,55 @@
+"""What a diagnosis and an improvement found, as their files say it."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import stage
+from pzt_ident.diagnosis import staircase as stairs
+from pzt_ident.diagnosis.budget import Budget
+from pzt_ident.diagnosis.proof import Suspect
+from pzt_ident.diagnosis.refit import fit_at
+from pzt_ident.diagnosis.verdict import Diagnosis
+from pzt_ident.job.schema import load_job
+from pzt_ident.run import findings
+from pzt_ident.run.improve import case_of
+from pzt_ident.run.statement import Statement
+
+
+@pytest.mark.parametrize("verdict", ["adequate", "unexplained", "refused"])
+def test_an_improvement_says_what_it_added_and_what_it_suspects(verdict, monkeypatch):
+    for name, nothing in (("stair", {}), ("caveats", ""), ("narrow_bounds_sentence", ""), ("units_and_floors", {})):
+        monkeypatch.setattr(findings, name, lambda *arguments, nothing=nothing: nothing)
+    before, after = SimpleNamespace(effects=("drift",)), SimpleNamespace(effects=("drift", "creep"))
+    steps = [stairs.Step(before), stairs.Step(after, "creep", None, {"creep": after, "thermal_relaxation": after})]
+    job, case = SimpleNamespace(name="job", effects=("drift",)), SimpleNamespace(records=(), budget=Budget())
+    doubted = Suspect("asymmetry.constant", 0.4, -0.02, before)
+    staircase = stairs.Staircase(steps, after, [doubted])
+    content = findings.improvement_of(job, case, staircase, {"verdict": verdict, "reason": "Nothing is missing."})
+    assert (content["verdict"], content["effects"]) == (verdict, ["creep"])
+    assert content["forms"] == {"creep": "spread"}
+    (suspect,) = content["suspects"]
+    assert (suspect["effect"], suspect["explained"]) == ("asymmetry", -0.02)
+    assert suspect["why not"] in content["reason"]
+    assert suspect["why not"].startswith(
+        "asymmetry (constant) takes up 40 % of the misfit on the identification records and 0 % on the validation"
+    )
+    assert "These data cannot tell creep from thermal_relaxation." in content["reason"]
+    steps[1].rivals = {"creep": after}
+    content = findings.improvement_of(job, case, staircase, {"verdict": verdict, "reason": ""})
+    assert "cannot tell" not in content["reason"]
+
+
+def test_what_is_to_be_said_of_the_last_fit_is_said_once(monkeypatch, tmp_path):
+    """Sentences on its bounds and on effects with an amount of each record, with a diagnosis and an improvement."""
+    monkeypatch.setattr(findings, "caveats", lambda case, fit: f" {fit.effects} ended on its bound.")
+    job = load_job(stage.write(tmp_path, stage.case().records))
+    case = case_of(Statement(job))
+    fit = fit_at((), case.problem(()), np.full(case.problem(()).dimensions, 0.5))
+    last = findings.diagnosis_of(job, case, Diagnosis("adequate", "The model is adequate.", fit, [], []), tmp_path)
+    assert last["reason"].startswith("The model is adequate. () ended on its bound.")
+    staircase = stairs.Staircase([stairs.Step(fit)], last)
+    assert findings.improvement_of(job, case, staircase, last)["reason"].count("ended on its bound") == 1
+    unfinished = {"verdict": "unfinished", "reason": "It did not come to its end."}
+    assert findings.improvement_of(job, case, staircase, unfinished)["reason"].count("ended on its bound") == 1
