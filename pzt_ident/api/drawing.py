@@ -12,6 +12,7 @@ from pzt_ident.data.units import factor
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.report import signal_figures, staircase_figures
 from pzt_ident.report.figures import Plate, drawn
+from pzt_ident.report.style import style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,7 +31,8 @@ def shown(plate: Plate, width: float) -> Figure:
     class Shown(Figure):
         def _repr_png_(self) -> bytes:
             content = BytesIO()
-            self.savefig(content, format="png", dpi=DPI)
+            with style():
+                self.savefig(content, format="png", dpi=DPI)
             return content.getvalue()
 
     return drawn(plate, width, Shown)

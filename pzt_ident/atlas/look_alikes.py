@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -38,15 +39,21 @@ def look_alikes(word: str) -> list[LookAlike]:
 
 
 def _compared(word: str, other: str) -> LookAlike:
+    together, cosines = _cosines(*sorted((word, other)))
+    alike, apart = max(cosines, key=lambda name: cosines[name]), min(cosines, key=lambda name: cosines[name])
+    parting = drives()[apart].short if cosines[apart] < PARTED else ""
+    return LookAlike(other, together, drives()[alike].short, cosines[alike], parting, cosines[apart])
+
+
+@cache
+def _cosines(word: str, other: str) -> tuple[float, dict[str, float]]:
+    """On all drives together, and on each one on which either is visible."""
     a, b = traced(word), traced(other)
     common = [name for name in a.left if name in b.left]
     together = cosine(
         *(np.concatenate([traces.left[name] / traces.left[name].size ** 0.5 for name in common]) for traces in (a, b))
     )
-    cosines = {name: _on_drive(a, b, name) for name in common if _visible(a, name) or _visible(b, name)}
-    alike, apart = max(cosines, key=lambda name: cosines[name]), min(cosines, key=lambda name: cosines[name])
-    parting = drives()[apart].short if cosines[apart] < PARTED else ""
-    return LookAlike(other, together, drives()[alike].short, cosines[alike], parting, cosines[apart])
+    return together, {name: _on_drive(a, b, name) for name in common if _visible(a, name) or _visible(b, name)}
 
 
 def _visible(traces: Traced, name: str) -> bool:

@@ -56,13 +56,13 @@ class Word:
             self.facts["kind"], self.facts["kind"]
         )
 
-    @property
+    @cached_property
     def group(self) -> str:
         if self.word not in blocks:
             return SEARCH
         return [title for place, title in FROM_PLACE.items() if place <= self.place][-1]
 
-    @property
+    @cached_property
     def place(self) -> Place:
         """In the signal chain; of a term, that of the block in whose equation it acts."""
         block = blocks[self.word]

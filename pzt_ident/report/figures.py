@@ -18,6 +18,7 @@ from pzt_ident.report import residual_figures as residual
 from pzt_ident.report import search_figures as search
 from pzt_ident.report import signal_figures as signal
 from pzt_ident.report import staircase_figures as staircase
+from pzt_ident.report.room import make_room
 from pzt_ident.report.sentences import USE_NAMES, distributed_parameters
 from pzt_ident.report.style import COLUMN, PAGE, file_content, style
 from pzt_ident.run.events import Listen, nobody
@@ -58,6 +59,7 @@ def drawn(plate: Plate, width: float, kind: type[Figure] | None = None) -> Figur
     with style():
         figure = (kind or Figure)(figsize=(width / 25.4, plate.height(width) / 25.4))
         plate.draw(figure)
+        make_room(figure)
     return figure
 
 

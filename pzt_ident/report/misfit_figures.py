@@ -11,6 +11,7 @@ import numpy as np
 from pzt_ident.data.notation import percent, unit
 from pzt_ident.data.signals import Array, Trace
 from pzt_ident.report.residual_figures import colour_bar
+from pzt_ident.report.room import fit
 from pzt_ident.report.sentences import USE_NAMES
 from pzt_ident.report.style import (
     COLUMN,
@@ -21,7 +22,6 @@ from pzt_ident.report.style import (
     Frame,
     decimate,
     decimate_curve,
-    fit,
     heading,
     key,
     label,

@@ -39,7 +39,7 @@ _USE_COLOURS = (("identify", PALETTE[0]), ("validate", PALETTE[1]))
 def draw_branches(figure: Figure, traces: Sequence[Trace], noise: float | None) -> None:
     """Residual against rising and falling drive: the median, and the band that contains 90 % of the samples."""
     keys = [key(name, color=colour) for name, _, colour in _BRANCHES]
-    keys += [patch("± noise floor", **NOISE)] * bool(noise)
+    keys += [patch("± noise floor (RMS)", **NOISE)] * bool(noise)
     top = heading(figure, f"Residual against drive, axis {traces[0].axis}: median and 90 % band", keys)
     for axes, trace in zip(record_panels(figure, traces, Frame(top + 4)), traces, strict=True):
         signs = branches(trace.drive)
@@ -93,7 +93,7 @@ def draw_histogram(figure: Figure, traces: Sequence[Trace], noise: Mapping[str, 
     uses = [(use, colour) for use, colour in _USE_COLOURS if any(trace.use == use for trace in traces)]
     keys = [key(USE_NAMES[use], color=colour) for use, colour in uses]
     top = heading(
-        figure, "Distribution of the residual", keys + [patch("± noise floor", **NOISE)] * any(noise.values())
+        figure, "Distribution of the residual", keys + [patch("± noise floor (RMS)", **NOISE)] * any(noise.values())
     )
     shape = (len(names), 1) if width_of(figure) == COLUMN else (1, len(names))
     for place, (axes, name) in enumerate(zip(panels(figure, *shape, Frame(top + 4)).ravel(), names, strict=True)):

@@ -12,6 +12,7 @@ from pzt_ident.data.notation import bounds, unit
 from pzt_ident.data.over_axes import together
 from pzt_ident.data.signals import Array
 from pzt_ident.report.residual_figures import colour_bar
+from pzt_ident.report.room import fit
 from pzt_ident.report.style import (
     COLUMN,
     DASHES,
@@ -109,9 +110,8 @@ def draw_estimates(figure: Figure, results: Results) -> None:
     ring = {"marker": "o", "markersize": 5.5, "markerfacecolor": "none", "markeredgecolor": INK, "markeredgewidth": 0.7}
     top = heading(figure, "Estimates of all runs within their bounds", [*keys, key("best run", linestyle="", **ring)])
     best = [results.best["parameters"][name] for name in names]
-    right = 3 + max(len(_bounds(entry)) for entry in best)  # mm, one per letter
-    frame = Frame(top + 1, left=_names_width(max(map(len, names))), right=right)
-    axes = panels(figure, 1, 1, frame)[0, 0]
+    most = width_of(figure) / 3  # of the names, and of the bounds
+    axes = panels(figure, 1, 1, Frame(top + 1))[0, 0]
     for place, (optimizer, style) in enumerate(styles.items()):
         estimates = [run["parameters"] for run in results.result["runs"] if run["optimizer"] == optimizer]
         shift = 0.36 * (place / max(len(styles) - 1, 1) - 0.5)
@@ -120,9 +120,10 @@ def draw_estimates(figure: Figure, results: Results) -> None:
     axes.plot([within(entry) for entry in best], range(len(names)), linestyle="", clip_on=False, **ring)
     for row, entry in enumerate(best):
         axes.axhline(row, color=SHADE, linewidth=0.5, zorder=0)
-        axes.annotate(_bounds(entry), (1.02, row), (6, 0), textcoords="offset points", va="center", size=5.5)
+        text = fit(_bounds(entry), most, 5.5)
+        axes.annotate(text, (1.02, row), (6, 0), textcoords="offset points", va="center", size=5.5)
     axes.set_ylim(len(names) - 0.4, -0.6)
-    axes.set_yticks(range(len(names)), names)
+    axes.set_yticks(range(len(names)), [fit(name, most, 6) for name in names])
     axes.set_xlim(-0.02, 1.02)
     axes.set_xticks([0, 0.5, 1], ["lower", "middle", "upper"])
     axes.set_xlabel("position within the bounds")

@@ -42,7 +42,9 @@ def time_height(width: float) -> float:
 def draw_time(figure: Figure, trace: Trace, noise: float | None, bins: int) -> None:
     """Measured and modelled response over time, the residual below; samples that are not scored are shaded."""
     keys = [key(name, **style) for name, style in _CURVES]
-    keys += [patch("± noise floor", **NOISE)] * bool(noise) + [patch("not scored", color=SHADE)] * (trace.settle > 0)
+    keys += [patch("± noise floor (RMS)", **NOISE)] * bool(noise) + [patch("not scored", color=SHADE)] * (
+        trace.settle > 0
+    )
     top = heading(figure, f"Model and measurement, axis {trace.axis}", keys)
     upper, lower = panels(figure, 2, 1, Frame(top + 4, down=3.5), sharex=True, height_ratios=(1.8, 1))[:, 0]
     name_panel(upper, trace.record, USE_NAMES[trace.use])
@@ -56,6 +58,8 @@ def draw_time(figure: Figure, trace: Trace, noise: float | None, bins: int) -> N
         if trace.settle > 0 and style is not MODEL:
             axes.axvspan(trace.time[0], trace.time[0] + trace.settle, color=SHADE, linewidth=0)
     lower.axhspan(-(noise or 0), noise or 0, linewidth=0, **NOISE)
+    for edge in (-noise, noise) if noise else ():
+        lower.axhline(edge, color=NOISE["color"], linewidth=0.6, zorder=3)
     lower.set_ylim(*_limits(trace, noise or 0.0))
     lower.set_xlim(trace.time[0], trace.time[-1])
     label(upper.yaxis, "response", trace.unit, trace.response)

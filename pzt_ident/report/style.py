@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.notation import power_of_ten, short, unit
+from pzt_ident.report.room import fit, text_width
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,6 +39,7 @@ _STYLE: Any = {
     "font.sans-serif": ["Arial", "Helvetica", "Liberation Sans", "DejaVu Sans"],
     "font.size": 6.5,
     "text.parse_math": False,
+    "text.hinting": "none",  # widths as in the SVG
     "axes.titlesize": 6.5,
     "axes.titlelocation": "left",
     "axes.titlepad": 3,
@@ -133,7 +135,7 @@ def height_of(figure: Figure) -> float:
 def heading(figure: Figure, text: str, handles: Sequence[Any] = ()) -> float:
     """Write the title at the top left and the legend below it; returns their height in mm."""
     width, height = width_of(figure), height_of(figure)
-    figure.text(2 / width, 1 - 1.5 / height, fit(text, width - 4), va="top", weight="bold", size=7)
+    figure.text(2 / width, 1 - 1.5 / height, fit(text, width - 4, 7, "bold"), va="top", weight="bold", size=7)
     if not handles:
         return 6.0
     columns = _legend_columns([handle.get_label() for handle in handles], width - 4)
@@ -145,8 +147,8 @@ def heading(figure: Figure, text: str, handles: Sequence[Any] = ()) -> float:
 def _legend_columns(labels: list[str], width: float) -> int:
     """The largest number of columns that fits; a legend fills its columns one after the other."""
     for columns in range(len(labels), 1, -1):
-        stacks = np.array_split([len(label) for label in labels], columns)
-        if sum(8.5 + 1.15 * max(stack) for stack in stacks) <= width:
+        stacks = np.array_split([text_width(label, 6.5) for label in labels], columns)
+        if sum(9.2 + max(stack) for stack in stacks) <= width:
             return columns
     return 1
 
@@ -163,14 +165,6 @@ def patch(label: str, **style: Any) -> Any:
     from matplotlib.patches import Patch
 
     return Patch(label=label, linewidth=0, **style)
-
-
-def fit(text: str, width: float, size: float = 7.0) -> str:
-    """`text`, its middle replaced by an ellipsis where it does not fit into `width` mm at `size` pt."""
-    letters = int(width / (0.185 * size))
-    if len(text) <= letters:
-        return text
-    return f"{text[: letters - letters // 3 - 1]}…{text[-(letters // 3) :]}"
 
 
 def label(axis: Axis, name: str, raw_unit: str, values: Sequence[float] | NDArray[np.float64]) -> None:
@@ -241,4 +235,4 @@ def name_panel(axes: Axes, name: str, remark: str = "", place: int | None = None
     width = axes.get_position().width * width_of(axes.figure) + 2  # type: ignore[arg-type]
     letter = "" if place is None else f"({chr(97 + place % 26)}) "
     suffix = f" ({remark})" if remark else ""
-    axes.set_title(letter + fit(name, width - 1.2 * len(letter + suffix), 6.5) + suffix)
+    axes.set_title(letter + fit(name, width - text_width(letter + suffix, 6.5), 6.5) + suffix)

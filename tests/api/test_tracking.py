@@ -8,6 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 import pzt_ident as pzt
+from cut_texts import cut_texts
 from pzt_ident.api.tracking import ALONE, INVERSE, LOOP, MEASURED, OPEN, Following, control
 from pzt_ident.cli.commands import main
 from pzt_ident.control.identified import Identified
@@ -95,5 +96,6 @@ def test_the_command_writes_table_signals_and_figure(fit, tmp_path):
 
 
 def test_figures_are_drawn(fit):
-    assert fit.control(T, REFERENCE).plot()._repr_png_().startswith(b"\x89PNG")
-    assert fit.drive(T, REFERENCE).plot()._repr_png_().startswith(b"\x89PNG")
+    for subject in (fit.control(T, REFERENCE), fit.drive(T, REFERENCE)):
+        assert subject.plot()._repr_png_().startswith(b"\x89PNG")
+        assert not cut_texts(subject.plot(88)) + cut_texts(subject.plot(180))

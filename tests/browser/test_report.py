@@ -53,6 +53,24 @@ def test_it_opens_without_a_network_or_an_error(opened, folder):
     assert faults_of(opened) == []
 
 
+def test_the_edges_of_the_noise_band_are_over_the_residual(opened):
+    """Rows of the plot that have the colour of the noise floor from end to end."""
+    rows = opened.evaluate(
+        """() => {
+          const canvas = document.querySelector(".lower canvas.moving"), left = Math.round(0.2 * canvas.width);
+          const floor = getComputedStyle(document.documentElement).getPropertyValue("--floor").trim();
+          const wanted = [1, 3, 5].map((start) => parseInt(floor.slice(start, start + 2), 16)).concat(255);
+          const { data, width, height } = canvas.getContext("2d").getImageData(left, 0, 3 * left, canvas.height);
+          const columns = [...Array(width).keys()], rows = [...Array(height).keys()];
+          const green = (x, y) => wanted.every((part, k) => data[4 * (y * width + x) + k] === part);
+          return rows.filter((y) => columns.every((x) => green(x, y)));
+        }"""
+    )
+    assert len(rows) == 4 and rows[1] - rows[0] == rows[3] - rows[2] == 1 and rows[2] - rows[1] > 2
+    expect(opened.locator(".lower .legend")).to_contain_text("noise floor (RMS)")
+    expect(opened.locator("#model")).to_contain_text("about a third of it lies outside the band")
+
+
 def test_in_the_dark_the_paper_is(opened):
     paper = "getComputedStyle(document.body).backgroundColor"
     assert opened.evaluate(paper) == "rgb(255, 255, 255)"

@@ -6,9 +6,13 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
+from cut_texts import cut_texts
 from pzt_ident.cli.commands import main
 from pzt_ident.errors import InputError
 from pzt_ident.job.demo import hidden, show_in_browser, write_demo
+from pzt_ident.report.figures import drawn, plates
+from pzt_ident.report.style import COLUMN, PAGE
+from pzt_ident.run.results import read_folder
 
 
 def test_the_demo_finds_what_is_hidden(tmp_path, monkeypatch):
@@ -24,6 +28,8 @@ def test_the_demo_finds_what_is_hidden(tmp_path, monkeypatch):
     assert opened == [tmp_path / "demo" / "improved" / "report.html"]
     assert opened[0].stat().st_size < 300 * 1024
     assert "hidden effects: " in answer.stdout
+    for plate in plates(read_folder(opened[0].parent)):
+        assert not cut_texts(drawn(plate, COLUMN)) + cut_texts(drawn(plate, PAGE)), plate.name
 
 
 def test_the_truth_is_not_beside_the_job(tmp_path):

@@ -7,10 +7,14 @@ from urllib.parse import unquote
 
 import pytest
 
+from cut_texts import cut_texts
 from pzt_ident.errors import InputError
 from pzt_ident.files import read_sealed, write_sealed
+from pzt_ident.lot.figures import plates
 from pzt_ident.lot.outcome import read_lot
 from pzt_ident.lot.report import write_fleet_report
+from pzt_ident.report.figures import drawn
+from pzt_ident.report.style import COLUMN, PAGE
 from pzt_ident.run.place import Local
 
 EVIL = "<script>alert('x')</script>"
@@ -45,11 +49,17 @@ def test_it_names_what_is_broken_and_what_is_out_of_line(page):
         assert finding.device in text
 
 
+@pytest.mark.parametrize("width", [COLUMN, PAGE])
+def test_no_text_of_a_figure_is_cut(page, width):
+    drawings = [drawn(plate, width) for plate in plates(read_lot(page.parent))]
+    assert drawings and not [text for drawing in drawings for text in cut_texts(drawing)]
+
+
 def test_pages_are_drawn_once(page):
-    drawn = {path: path.stat().st_mtime_ns for path in page.parent.glob("devices/*/report.html")}
-    assert drawn
+    times = {path: path.stat().st_mtime_ns for path in page.parent.glob("devices/*/report.html")}
+    assert times
     write_fleet_report(page.parent, place=Local(1))
-    assert {path: path.stat().st_mtime_ns for path in drawn} == drawn
+    assert {path: path.stat().st_mtime_ns for path in times} == times
 
 
 def test_an_unfinished_fleet_has_a_report(identified, tmp_path):

@@ -7,10 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from pzt_ident.report.figures import draw_figure, plates, render, write_all_figures, write_page_figures
+from cut_texts import cut_texts
+from pzt_ident.report.figures import draw_figure, drawn, plates, render, write_all_figures, write_page_figures
 from pzt_ident.report.residual_figures import branches, cell_means, quantile_band
 from pzt_ident.report.search_figures import convergence, within
-from pzt_ident.report.style import COLUMN, PAGE, decimate, decimate_curve, fit
+from pzt_ident.report.style import COLUMN, PAGE, decimate, decimate_curve
 from pzt_ident.run.place import Local
 from pzt_ident.run.results import Trace, read_results
 
@@ -92,20 +93,14 @@ def test_place_within_wide_bounds_is_logarithmic():
     assert within({"value": 1.0, "lower": 0.01, "upper": 100.0}) == pytest.approx(0.5)
 
 
-def test_names_too_long_lose_their_middle():
-    assert fit("short", 80) == "short"
-    cut = fit("a" * 50 + "b" * 50, 40)
-    assert cut.startswith("a") and cut.endswith("b") and "…" in cut and len(cut) <= 40 / (0.185 * 7)
-
-
 @pytest.fixture(scope="module")
-def drawn(weird):
+def written(weird):
     return {plate.name: svg for plate, svg in write_page_figures(read_results(weird), weird / "figures")}
 
 
-def test_every_figure_of_the_page_is_a_file_of_valid_svg_at_its_width(weird, drawn):
-    assert list(drawn) == [plate.name for plate in plates(read_results(weird)) if plate.section]
-    for name, svg in drawn.items():
+def test_every_figure_of_the_page_is_a_file_of_valid_svg_at_its_width(weird, written):
+    assert list(written) == [plate.name for plate in plates(read_results(weird)) if plate.section]
+    for name, svg in written.items():
         assert (weird / "figures" / f"{name}-180mm.svg").read_bytes() == svg
         root = ElementTree.fromstring(svg)
         assert float(root.attrib["width"].removesuffix("pt")) == pytest.approx(PAGE / 25.4 * 72, rel=1e-4)
@@ -143,6 +138,26 @@ def test_small_numbers_put_a_power_of_ten_to_the_unit(plain):
     metres = replace(trace, unit="m", **{kind: 1e-6 * getattr(trace, kind) for kind in kinds})
     plate = replace(plates(read_results(plain))[0], draw=partial(draw_time, trace=metres, noise=None, bins=200))
     assert "response [10⁻⁶ m]" in render(plate, COLUMN, ("svg",))["svg"].decode()
+
+
+@pytest.mark.parametrize("width", [COLUMN, PAGE])
+@pytest.mark.parametrize("folder", ["plain", "weird"])
+def test_no_text_is_cut(folder, width, request):
+    for plate in plates(read_results(request.getfixturevalue(folder))):
+        assert not cut_texts(drawn(plate, width)), plate.name
+
+
+@pytest.mark.parametrize("width", [COLUMN, PAGE])
+@pytest.mark.parametrize("letters", [1, 30, 300])
+def test_no_name_and_no_bounds_are_too_long(plain, letters, width):
+    results = read_results(plain)
+    for run in (results.best, *results.result["runs"]):
+        entries = run["parameters"].values()
+        run["parameters"] = {f"{number}_{letters * 'W'}": entry for number, entry in enumerate(entries)}
+        for entry in entries:
+            entry.update(unit=letters * "m", lower=-0.2308)
+    (plate,) = (plate for plate in plates(results) if plate.name == "estimates")
+    assert not cut_texts(drawn(plate, width))
 
 
 def test_all_figures_of_several_results_are_drawn_side_by_side_and_told(plain, weird):

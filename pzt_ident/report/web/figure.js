@@ -22,17 +22,17 @@ export class Figure {
 
   show(scene, unit = "") {
     [this.message.hidden, this.plot.root.hidden] = [true, false];
-    this.legend.show(scene.series, unit);
+    this.legend.show(keysOf(scene), unit);
     this.plot.show(scene);
     const ranges = [scene.x, scene.y].map(({ label, range }, i) => [label || "time", i && scene.fit ? scene.fit(...scene.x.range) : range]);
-    this.summary.textContent = `${scene.caption ?? ""} ${ranges.map(([name, [low, high]]) => `${name} from ${tick(Number(low.toPrecision(4)))} to ${tick(Number(high.toPrecision(4)))}`).join("; ")}. Shown: ${scene.series.map(({ label }) => label).join(", ")}.`;
+    this.summary.textContent = `${scene.caption ?? ""} ${ranges.map(([name, [low, high]]) => `${name} from ${tick(Number(low.toPrecision(4)))} to ${tick(Number(high.toPrecision(4)))}`).join("; ")}. Shown: ${keysOf(scene).map(({ label }) => label).join(", ")}.`;
     this.summary.classList.toggle("unseen", !scene.caption);
     if (scene.caption) this.summary.textContent = scene.caption;
   }
 
   /** As `show`, where only what follows a slider has moved. */
   move(scene) {
-    this.legend.series = scene.series.filter(({ label, hidden }) => label && !hidden);
+    this.legend.series = keysOf(scene).filter(({ label, hidden }) => label && !hidden);
     this.plot.move(scene);
   }
 
@@ -45,4 +45,9 @@ export class Figure {
     this.plot.pointAt(point);
     this.legend.pointAt(point);
   }
+}
+
+/** What a legend names: the series, and the band about 0. */
+function keysOf({ series, floor }) {
+  return floor ? [...series, { label: "± noise floor (RMS)", colour: "--floor", ys: [] }] : series;
 }

@@ -104,7 +104,19 @@ export class Plot {
 
   drawMoving() {
     const pen = this.pen(1);
-    this.within(pen, () => { for (const series of this.scene.series) if (series.over) drawSeries(this, pen, series); });
+    this.within(pen, () => {
+      for (const series of this.scene.series) if (series.over) drawSeries(this, pen, series);
+      this.bandEdges(pen);
+    });
+  }
+
+  /** The edges of the band about 0, over the curve that may hide it; none where they would be one line. */
+  bandEdges(pen) {
+    const { scene: { floor }, edge: { left, right } } = this;
+    const edges = floor ? [floor, -floor].map((edge) => Math.round(this.y.px(edge))) : [];
+    if (!(edges[1] - edges[0] > 4)) return;
+    pen.fillStyle = colour("--floor");
+    for (const y of edges) pen.fillRect(left, y - 1, this.width - left - right, 2);
   }
 
   backdrop(pen) {
