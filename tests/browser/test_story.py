@@ -180,7 +180,7 @@ def test_a_reload_a_killed_worker_and_a_killed_workbench_lose_nothing(workbench,
     expect(page.locator("#status")).to_contain_text("best RMSE 0.0")
 
     page.reload()
-    expect(page.locator("#status")).to_contain_text(re.compile(r"Identifying: \d+ s, \d+ %, best RMSE 0\.0"))
+    expect(page.locator("#status")).to_contain_text(re.compile(r"Identifying: \d+ s, \d+ %, best RMSE 0\.0\d+ µm"))
     expect(page.locator("#convergence canvas").first).to_be_attached()
 
     for pid, parents in [(pid, running(tmp_path)) for pid in running(tmp_path)]:

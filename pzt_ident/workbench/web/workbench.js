@@ -133,7 +133,9 @@ function showHeader() {
   const [verdict, next, action] = begun
     ? [headline.verdict, headline.next, headline.action ?? (state.result && !isBusy() ? { name: "", label: "Follow a reference" } : null)]
     : measurement.empty ? ["Drop a measurement with voltage and displacement.", "Or choose a file of this folder.", null] : ["Check what was read from the measurement.", "Then identify a model of it.", { label: "Confirm and identify" }];
-  byId("verdict").textContent = byId("verdict").title = verdict;
+  const [first, ...others] = verdict.split(/(?<=[.?!]) (?=[A-Z])/);
+  byId("verdict").replaceChildren(first);
+  if (others.length) element(byId("verdict"), "span", {}, ` ${others.join(" ")}`);
   byId("next").textContent = next;
   byId("action").hidden = !action || action.name === "stop";
   byId("action").textContent = action?.label ?? "";
@@ -158,8 +160,8 @@ function showStatus() {
   if (byId("announced").textContent !== doing) byId("announced").textContent = doing;
   if (!stage) return void (byId("status").textContent = asking ? "Working …" : "");
   const seconds = Math.max(0, Math.round(Date.now() / 1000 - since));
-  const { best, done, budget, together } = convergence;
-  const searched = stage === "run" && Number.isFinite(best) ? `, ${Math.min(100, Math.round((100 * done) / budget))} %, best RMSE${together} ${number(best)}` : "";
+  const { best, done, budget, unit, together } = convergence;
+  const searched = stage === "run" && Number.isFinite(best) ? `, ${Math.min(100, Math.round((100 * done) / budget))} %, best RMSE${together} ${number(best)} ${state.unit || unit}` : "";
   const said = ["diagnose", "improve"].includes(stage) && progress.sentence ? `; ${progress.sentence}` : "";
   byId("status").textContent = `${STAGES[stage] ?? stage}: ${seconds} s${searched}${said}`;
 }
