@@ -13,6 +13,7 @@ from pzt_ident.errors import InputError
 from pzt_ident.files import plain
 from pzt_ident.workbench import adopt, page_state
 from pzt_ident.workbench.atlas import Atlas
+from pzt_ident.workbench.headline import error, headline
 from pzt_ident.workbench.runner import Runner
 from pzt_ident.workbench.session import INTERRUPTED, Session
 from pzt_ident.workbench.step_commands import better_fit
@@ -134,7 +135,7 @@ class Bench:
         doing = {"stage": runner.stage, "since": runner.since, "busy": self.busy, "running": runner.running}
         failure = self.session.readable(runner.failure)
         state = page_state.state(self.session) | doing | {"failure": failure}
-        state["headline"] = page_state.headline(state)
+        state |= {"headline": headline(state), "error": error(state)}
         return dict(plain(state))
 
     async def close(self) -> None:

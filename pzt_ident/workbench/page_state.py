@@ -25,7 +25,6 @@ from pzt_ident.report.traces import packed
 from pzt_ident.run.results import read_results
 from pzt_ident.workbench import downloads
 from pzt_ident.workbench.guard import LARGEST_UPLOAD
-from pzt_ident.workbench.headline import headline as headline
 from pzt_ident.workbench.measurement import WHOLE, encoded
 from pzt_ident.workbench.session import Session
 from pzt_ident.workbench.step_model import model_of

@@ -5,6 +5,7 @@ import itertools
 import json
 import math
 import re
+from contextlib import contextmanager
 from importlib.resources import files
 
 import pytest
@@ -81,6 +82,28 @@ def test_all_is_on_one_screen(shown, size):
     shown.set_viewport_size({"width": 1280, "height": 800})
 
 
+@contextmanager
+def state_with(page, change):
+    """The page with a state that is changed on its way to it."""
+    with page.expect_response("**/api/state") as answer:
+        page.reload()
+    state = answer.value.json()
+    change(state)
+    page.route("**/api/state", lambda route: route.fulfill(json=state))
+    page.reload()
+    yield
+    page.unroute("**/api/state")
+    page.reload()
+    expect(page.locator("#loop canvas.drawn")).to_be_visible()
+
+
+def test_a_command_that_is_being_started_can_be_stopped(shown):
+    starting = {"running": True, "busy": True, "stage": "", "since": 0.0}
+    with state_with(shown, lambda state: state.update(starting)):
+        expect(shown.locator("#stop")).to_be_visible()
+    expect(shown.locator("#stop")).to_be_hidden()
+
+
 CUT = """() => [...document.querySelectorAll("header p, .readout, .legend, #sheets *, #blocks *")].filter((item) => {
   const { overflowX, overflowY } = getComputedStyle(item);
   const wide = overflowX !== "visible" && item.scrollWidth > item.clientWidth + 1;
@@ -113,33 +136,30 @@ CHANGES = ["+ distributed_memory.even_terms", "+ distributed_memory.odd_terms", 
 @pytest.mark.parametrize("width", [1280, 1920])
 @pytest.mark.parametrize("count", [3, 9])
 def test_nothing_is_cut_parted_or_written_over_however_long_it_is(shown, width, count):
-    with shown.expect_response("**/api/state") as answer:
-        shown.reload()
-    state = answer.value.json()
-    state["headline"]["verdict"] = " ".join(["Effects of the catalogue would explain what is left of it."] * 4)
-    (first,) = state["steps"]
-    more = [{"number": n, "change": CHANGES[n % 4], "identify": 0.9**n * first["identify"]} for n in range(2, count)]
-    state["steps"] += [first | item for item in more]
-    for parameter in state["parameters"]:
-        parameter |= {"name": "distributed_memory.weight_1", "value": -0.00096705}
+    def lengthen(state):
+        state["headline"]["verdict"] = " ".join(["Effects of the catalogue would explain what is left of it."] * 4)
+        (first,) = state["steps"]
+        more = [
+            {"number": n, "change": CHANGES[n % 4], "identify": 0.9**n * first["identify"]} for n in range(2, count)
+        ]
+        state["steps"] += [first | item for item in more]
+        for parameter in state["parameters"]:
+            parameter |= {"name": "distributed_memory.weight_1", "value": -0.00096705}
+
     shown.set_viewport_size({"width": width, "height": 800})
-    shown.route("**/api/state", lambda route: route.fulfill(json=state))
-    shown.reload()
-    expect(shown.locator(".stairs text.name")).to_have_count(count - 1)
-    expect(shown.locator("#loop canvas.drawn")).to_be_visible()
-    assert shown.evaluate(CUT) == [] and shown.evaluate(PARTED) == []
-    names = shown.evaluate(NAMES)
+    with state_with(shown, lengthen):
+        expect(shown.locator(".stairs text.name")).to_have_count(count - 1)
+        expect(shown.locator("#loop canvas.drawn")).to_be_visible()
+        assert shown.evaluate(CUT) == [] and shown.evaluate(PARTED) == []
+        names, values = shown.evaluate(NAMES), shown.evaluate(VALUES)
+    shown.set_viewport_size({"width": 1280, "height": 800})
     assert len({name["text"] for name in names}) == min(count - 1, 5)
     for one, other in itertools.pairwise(names):
         apart = (other["x"] - one["x"]) * math.sin(one["angle"]) >= one["size"]
         assert apart or one["right"] <= other["left"]
-    for one, other in itertools.combinations(shown.evaluate(VALUES), 2):
+    for one, other in itertools.combinations(values, 2):
         beside = one["right"] <= other["left"] or other["right"] <= one["left"]
         assert beside or abs(one["top"] - other["top"]) > 9
-    shown.unroute("**/api/state")
-    shown.set_viewport_size({"width": 1280, "height": 800})
-    shown.reload()
-    expect(shown.locator(".stairs text.name")).to_have_count(1)
 
 
 @pytest.mark.parametrize("sheet", SHEETS)
