@@ -187,7 +187,7 @@ def improvement_of(job: Job, case: Case, staircase: stairs.Staircase, last: dict
     reason += "".join(f" {suspect.why_not}" for suspect in suspects)
     undecided = dict.fromkeys(step.tied for step in ties(steps))
     reason += "".join(f" These data cannot tell {' from '.join(map(phrase_of, tied))}." for tied in undecided)
-    reason += case.budget.sentence + narrow_bounds_sentence(case, steps[-1].fit) + caveats(case, steps[-1].fit)
+    reason += narrow_bounds_sentence(case, steps[-1].fit) + caveats(case, steps[-1].fit)
     return {
         "name": job.name,
         "steps": [stair(case, step) for step in steps],
@@ -272,7 +272,8 @@ def diagnosis_of(job: Job, case: Case, found: Diagnosis, folder: Path) -> dict[s
         "verdict": found.verdict,
         "reason": reason
         + caveats(case, found.best.fit if found.best and found.best.fit else found.before)
-        + broken_conditions(found.before),
+        + broken_conditions(found.before)
+        + case.budget.sentence,
         **units_and_floors(list(case.records)),
         "rmse": errors_of(case, found.before),
         "records": by_record(case, found.before),

@@ -107,12 +107,12 @@ class Bench:
         more = ["--budget", budget] if budget else []
         flags = ["--no-report", *session.plugins_flag]
         await self.command("improve", ["improve", job, *start, "--out", folder, *more, *flags])
-        for number in await asyncio.to_thread(adopt.improvement, session, step):
-            await self._fill(session.step(number)) if number == session.at else await self._run(session.step(number))
-
-    async def _run(self, step: Path) -> None:
-        first = self.session.commands(step)[0]
-        await self.command(first.name, first.arguments)
+        numbers = await asyncio.to_thread(adopt.improvement, session, step)
+        for number in numbers:
+            first, _ = session.commands(session.step(number))
+            await self.command(first.name, first.arguments)
+        if numbers:
+            adopt.diagnosis(session, step, numbers[-1])
 
     def put_to_work(self, reference: Path, options: list[str]) -> None:
         """Run `control` and `drive` on the current step."""

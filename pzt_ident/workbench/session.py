@@ -213,9 +213,9 @@ class Session:
         self.at = number
         self.store()
 
-    def note(self, number: int, text: str) -> None:
-        """Keep a text with a step."""
-        self.entry(number)["note"] = text
+    def keep(self, number: int, **facts: Any) -> None:
+        """Keep facts with a step, such as a `note`."""
+        self.entry(number).update(facts)
         self.store()
 
     def keep_draft(self, draft: dict[str, Any]) -> None:
@@ -266,6 +266,8 @@ class Session:
         """Where a listed command writes what the workbench wrote into `steps`: a folder beside it, so that the commands
         can be run where the session is. A job that no command makes is read where it is."""
         steps = self.folder / "steps"
+        if path.name == "diagnosis" and path.parent.parent == steps:
+            path = self.folder / self.entry(int(path.parent.name)).get("diagnosed", path)
         made_here = path.name == "start.json" or (path.name == "job.yaml" and not self._has_command(path.parent))
         if made_here or not path.is_relative_to(steps):
             return self.relative(path)

@@ -50,6 +50,8 @@ REMEDIES = (
     (r"missing key '(drive|response)'", r"there is no \1"),
     (r"add `(drive|response): \.\.\.`", r"choose its column"),
     (r"or give --rate", "or type the rate"),
+    (r"give more with --budget", "give more CPU time under “Optimizers”"),
+    (r"under `limits`", "in the job file"),
     (r"give another folder with --out", "start the workbench in another folder"),
 )
 OTHERS = (

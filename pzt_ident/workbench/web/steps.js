@@ -43,6 +43,7 @@ export class Steps {
     });
     element(card, "p", {}, step.identify === null ? "Not run." : `RMSE ${this.errors(step)}`);
     if (step.promised) element(card, "p", { class: "quiet" }, `Expected before: ${this.errors(step.promised)}`);
+    if (step.tried?.length) element(card, "p", { class: "quiet" }, `Tried from here and taken back: ${step.tried.join(", ")}.`);
     const line = element(card, "div", { class: "bar" });
     if (!current) element(line, "button", { type: "button", "data-acts": "" }, "Go to this step").addEventListener("click", () => this.page.back(step.number));
     element(line, "button", { type: "button" }, "Job file").addEventListener("click", () => this.showJob(step, card));
