@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import unicodedata
 from collections.abc import Sequence
@@ -171,9 +172,15 @@ def _parsed(unit: str) -> tuple[float, Dimension]:
         if not match:
             raise _unknown(unit, text[position:])
         scale, dim, power = _single(unit, match)
-        size *= scale ** (sign * power)
+        try:
+            size *= scale ** (sign * power)
+        except (OverflowError, ZeroDivisionError):
+            size = math.inf
         powers = [old + sign * power * new for old, new in zip(powers, dim, strict=True)]
         if match.end() == len(text):
+            if not 0 < abs(size) < math.inf:
+                problem = f"the unit {unit!r} is {'infinite' if size else 'zero'}"
+                raise InputError(problem, remedy="give a scale such as 20 in `20 V`")
             return size, (powers[0], powers[1], powers[2], powers[3], powers[4])
         operator = re.compile(r"\s*([*/])\s*|\s+").match(text, match.end())
         if not operator:

@@ -32,7 +32,7 @@ def improvement_of(job: Job, case: Case, staircase: stairs.Staircase, last: dict
     reason += "".join(f" {suspect.why_not}" for suspect in suspects)
     undecided = dict.fromkeys(step.tied for step in ties(steps))
     reason += "".join(f" These data cannot tell {' from '.join(map(phrase_of, tied))}." for tied in undecided)
-    reason += case.budget.sentence + narrow_bounds_sentence(case, end)
+    reason += narrow_bounds_sentence(case, end)
     of_end = caveats(case, end)
     reason += "" if of_end in reason else of_end  # the last diagnosis may be of this fit
     return {
@@ -122,7 +122,10 @@ def diagnosis_of(job: Job, case: Case, diagnosis: Diagnosis, folder: Path) -> di
         reason += f" No drive within {limits_of(job, case)} tells them apart: allow more under `limits`."
     return {
         "verdict": diagnosis.verdict,
-        "reason": reason + caveats(case, best.fit if best and best.fit else before) + broken_conditions(before),
+        "reason": reason
+        + caveats(case, best.fit if best and best.fit else before)
+        + broken_conditions(before)
+        + case.budget.sentence,
         **units_and_floors(list(case.records)),
         "rmse": errors_of(case, before),
         "records": by_record(case, before),

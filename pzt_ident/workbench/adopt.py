@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import shutil
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,19 +16,49 @@ from pzt_ident.workbench.session import Session
 
 
 def improvement(session: Session, step: Path) -> list[int]:
-    """Make the steps that `improve` took from a step, each with the fit that it found as its start; their numbers."""
+    """Make the steps that `improve` took from a step and did not take back, each with the fit that it found as its
+    start; their numbers."""
     content = json.loads((step / "improved" / "improvement.json").read_text(encoding="utf-8"))
-    stairs, numbers = content["steps"][1:], list[int]()
+    first, *stairs = without_detours(content["steps"])
+    numbers = list[int]()
+    session.keep(int(step.name), tried=first["tried"])
     for place, stair in enumerate(stairs, 1):
         folder = session.next_folder
         text = text_of(session, step, stair, folder, last=place == len(stairs))
         write_json(folder / "start.json", {"parameters": stair["parameters"]})
         change = step_name(stair).replace("- ", "− ")
         source = session.start_of(folder)
-        tied = {"tied": stair["class"]} if len(stair["class"]) > 1 else {}
-        session.make(text, session.at, change, promised=stair["rmse"], **{"from": source}, **tied)
+        facts = {"from": source, "promised": stair["rmse"], "tried": stair["tried"]}
+        facts |= {"tied": stair["class"]} if len(stair["class"]) > 1 else {}
+        session.make(text, session.at, change, **facts)
         numbers.append(session.at)
     return numbers
+
+
+def without_detours(stairs: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The stairs of an improvement less those that it took back. One that a removal leads back to has the fit that was
+    found then; `tried`: the effects that were added in between."""
+    path = list[dict[str, Any]]()
+    for stair in stairs:
+        same = [place for place, before in enumerate(path) if set(before["effects"]) == set(stair["effects"])]
+        if stair["removed"] and same:
+            back, detour = path[same[-1]], path[same[-1] + 1 :]
+            words = [*back["tried"], *(word for one in detour for word in (one["added"], *one["tried"]) if word)]
+            found = {key: stair[key] for key in ("rmse", "parameters", "effects", "steps")}
+            path = [*path[: same[-1]], back | found | {"tried": list(dict.fromkeys(words))}]
+        else:
+            path.append(stair | {"tried": []})
+    return path
+
+
+def diagnosis(session: Session, step: Path, last: int) -> None:
+    """Give the last step of an improvement the diagnosis with which it ended."""
+    folder = session.step(last) / "diagnosis"
+    folder.mkdir(exist_ok=True)
+    for name in ("next_experiment.csv", "diagnosis.json"):
+        if (step / "improved" / name).exists():
+            shutil.copy(step / "improved" / name, folder / name)
+    session.keep(last, diagnosed=str((step / "improved").relative_to(session.folder)))
 
 
 def text_of(session: Session, step: Path, stair: dict[str, Any], folder: Path, last: bool) -> str:

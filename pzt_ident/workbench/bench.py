@@ -13,6 +13,7 @@ from pzt_ident.errors import InputError
 from pzt_ident.files import plain
 from pzt_ident.workbench import adopt, page_state
 from pzt_ident.workbench.atlas import Atlas
+from pzt_ident.workbench.headline import error, headline
 from pzt_ident.workbench.runner import Runner
 from pzt_ident.workbench.session import INTERRUPTED, Session
 from pzt_ident.workbench.step_commands import better_fit
@@ -106,12 +107,12 @@ class Bench:
         more = ["--budget", budget] if budget else []
         flags = ["--no-report", *session.plugins_flag]
         await self.command("improve", ["improve", job, *start, "--out", folder, *more, *flags])
-        for number in await asyncio.to_thread(adopt.improvement, session, step):
-            await self._fill(session.step(number)) if number == session.at else await self._run(session.step(number))
-
-    async def _run(self, step: Path) -> None:
-        first = self.session.commands(step)[0]
-        await self.command(first.name, first.arguments)
+        numbers = await asyncio.to_thread(adopt.improvement, session, step)
+        for number in numbers:
+            first, _ = session.commands(session.step(number))
+            await self.command(first.name, first.arguments)
+        if numbers:
+            adopt.diagnosis(session, step, numbers[-1])
 
     def put_to_work(self, reference: Path, options: list[str]) -> None:
         """Run `control` and `drive` on the current step."""
@@ -134,7 +135,7 @@ class Bench:
         doing = {"stage": runner.stage, "since": runner.since, "busy": self.busy, "running": runner.running}
         failure = self.session.readable(runner.failure)
         state = page_state.state(self.session) | doing | {"failure": failure}
-        state["headline"] = page_state.headline(state)
+        state |= {"headline": headline(state), "error": error(state)}
         return dict(plain(state))
 
     async def close(self) -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from pzt_ident.workbench.runner import RESUME
+
 DOING = {
     "run": "The model is being fitted.",
     "diagnose": "Each effect of the catalogue is being tried.",
@@ -12,6 +14,11 @@ DOING = {
     "control": "The drive for the reference is being computed.",
 }
 State = Mapping[str, Any]
+
+
+def error(state: State) -> str:
+    """What is shown as an error: a warning, or a failure that the headline does not say."""
+    return str(state["warning"] or ("" if state["failure"].endswith(RESUME) else state["failure"]))
 
 
 def headline(state: State) -> dict[str, Any]:
@@ -26,7 +33,9 @@ def _headline(state: State) -> tuple[str, str, dict[str, Any] | None]:
     if state["running"]:
         return DOING.get(state["stage"], "The command is being started."), "", act("stop", {}, "Stop")
     if state["failure"]:
-        return state["failure"], "", act("run", {}, "Resume")
+        what, resumes, _ = state["failure"].partition(f" {RESUME}")
+        verdict, following = (what, RESUME) if resumes else ("The last command failed.", "Resume tries it again.")
+        return verdict, following, act("run", {}, "Resume")
     result, diagnosis = state["result"], state["diagnosis"]
     if not result or not diagnosis:
         return "The job is ready.", "Identify the model.", act("run", {}, "Identify")

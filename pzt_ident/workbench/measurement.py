@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,14 @@ Array = NDArray[np.float64]
 Files = Sequence[tuple[Path, str | None]]
 Roles = Mapping[str, Mapping[str, Any]]
 
+
+class Clock(NamedTuple):
+    """The first time stamp and the sample time, s."""
+
+    start: float
+    dt: float
+
+
 WHOLE = 20_000  # samples of a channel that are sent as they are; of a longer one its extremes
 SHORTEST_REST = 0.02  # of a record
 PERIODS = 1.5  # of a drive, from which on it has a frequency
@@ -34,8 +42,8 @@ def measured(records: Sequence[Files], columns: Roles | None = None) -> dict[str
     roles = dict(columns) if columns else guessed(facts_of_records)
     signals = [signals_of(files, facts, roles) for files, facts in zip(records, facts_of_records, strict=True)]
     return {
-        "records": [sent(*signal) for signal in signals],
-        "guess": guess_of([record for _, _, record in signals], roles),
+        "records": [sent(name, channels, clock) for name, channels, clock, _ in signals],
+        "guess": guess_of([record for *_, record in signals], roles),
     }
 
 
@@ -47,8 +55,9 @@ def guessed(facts_of_records: Sequence[dict[str, Any]]) -> dict[str, dict[str, A
     return max(by_record, key=len)
 
 
-def signals_of(files: Files, facts: dict[str, Any], roles: Roles) -> tuple[str, dict[str, Array], Record | None]:
-    """Name, channels by role in the user's units, and the record that they make in SI units, if they make one."""
+def signals_of(files: Files, facts: dict[str, Any], roles: Roles) -> tuple[str, dict[str, Array], Clock, Record | None]:
+    """Name, channels by role in the user's units, their times, and the record that they make in SI units, if they make
+    one."""
     columns = values_of(*files)
     channels = {
         role: columns[int(column.get("of", 0)), int(column["number"])]
@@ -56,10 +65,19 @@ def signals_of(files: Files, facts: dict[str, Any], roles: Roles) -> tuple[str, 
         if (int(column.get("of", 0)), int(column["number"])) in columns
     }
     name = files[0][0].stem + (f" {files[0][1]}" if files[0][1] else "")
-    return name, channels, record_of(name, channels, roles, facts)
+    clock = clock_of(channels.get("time"), roles.get("time", {}).get("unit") or "s", facts["rate"])
+    return name, channels, clock, record_of(name, channels, roles, clock)
 
 
-def record_of(name: str, channels: dict[str, Array], roles: Roles, facts: dict[str, Any]) -> Record | None:
+def clock_of(time: Array | None, unit: str, rate: str) -> Clock:
+    """Of a column of time or a sample rate; sample times of 1 s where neither is there."""
+    if time is None:
+        return Clock(0.0, 1 / hertz(rate) if rate else 1.0)
+    span = float(np.nanmax(time) - np.nanmin(time)) / max(1, time.size - 1)
+    return Clock(float(bridged(time)[0]) * factor(unit), span * factor(unit) or 1.0)
+
+
+def record_of(name: str, channels: dict[str, Array], roles: Roles, clock: Clock) -> Record | None:
     """The record of channels, gaps bridged by lines; None without a drive, or with hardly any samples."""
     axes = [role.partition(".")[0] for role in channels if role.endswith(".drive")]
     samples = next((values.size for values in channels.values()), 0)
@@ -72,14 +90,13 @@ def record_of(name: str, channels: dict[str, Array], roles: Roles, facts: dict[s
         names = [f"{axis}.{side}" for axis in axes]
         return np.array([bridged(channels[n]) * factor(units[n]) if n in channels else unmeasured for n in names])
 
-    time, time_unit = channels.get("time"), roles.get("time", {}).get("unit") or "s"
     return Record(
         name,
         "identify",
-        sample_time(time, time_unit, facts["rate"]),
+        clock.dt,
         rows("drive"),
         rows("response"),
-        start=float(bridged(time)[0]) * factor(time_unit) if time is not None else 0.0,
+        start=clock.start,
         axes=tuple(axes),
         drive_units=tuple(units[f"{axis}.drive"] for axis in axes),
         response_units=tuple(units.get(f"{axis}.response") for axis in axes),
@@ -93,14 +110,7 @@ def bridged(values: Array) -> Array:
     return values if finite.all() else np.interp(samples, samples[finite], values[finite])
 
 
-def sample_time(time: Array | None, unit: str, rate: str) -> float:
-    """s; 1 where neither a column of time nor a rate is there."""
-    if time is not None:
-        return float(np.nanmax(time) - np.nanmin(time)) / max(1, time.size - 1) * factor(unit) or 1.0
-    return 1 / hertz(rate) if rate else 1.0
-
-
-def sent(name: str, channels: dict[str, Array], record: Record | None) -> dict[str, Any]:
+def sent(name: str, channels: dict[str, Array], clock: Clock) -> dict[str, Any]:
     """Channels as 32-bit floats: `positions` are the samples that were kept, None where all were."""
     samples = max((values.size for values in channels.values()), default=0)
     positions = None
@@ -111,8 +121,8 @@ def sent(name: str, channels: dict[str, Array], record: Record | None) -> dict[s
         )
     return {
         "name": name,
-        "t0": record.start if record else 0.0,
-        "dt": record.dt if record else 1.0,
+        "t0": clock.start,
+        "dt": clock.dt,
         "samples": samples,
         "positions": None if positions is None else encoded(positions.astype("<i4")),
         "channels": {

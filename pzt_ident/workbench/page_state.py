@@ -25,10 +25,10 @@ from pzt_ident.report.traces import packed
 from pzt_ident.run.results import read_results
 from pzt_ident.workbench import downloads
 from pzt_ident.workbench.guard import LARGEST_UPLOAD
-from pzt_ident.workbench.headline import headline as headline
 from pzt_ident.workbench.measurement import WHOLE, encoded
 from pzt_ident.workbench.session import Session
 from pzt_ident.workbench.step_model import model_of
+from pzt_ident.workbench.wording import in_page_words
 
 ATLAS = "/atlas"
 PRINTERS = {"unit": unit} | dict.fromkeys(("reason", "why", "said", "sentences"), spelled)
@@ -136,8 +136,8 @@ def diagnosis_of(session: Session, step: Path) -> dict[str, Any] | None:
     for candidate in diagnosis["candidates"]:
         candidate["estimate"] = expected(candidate["expected"], candidate["units"])
         candidate["about"] = href(candidate["effect"], ATLAS)
-    reason = diagnosis["reason"] + tied_sentences(session)
-    return printed(diagnosis) | {"reason": printed_reason(reason, read_results(step / "run"))}
+    reason = printed_reason(diagnosis["reason"] + tied_sentences(session), read_results(step / "run"))
+    return printed(diagnosis) | {"reason": in_page_words(reason)}
 
 
 def tied_sentences(session: Session) -> str:

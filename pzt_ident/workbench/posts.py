@@ -77,7 +77,7 @@ async def polish(bench: Bench, form: Form) -> None:
 
 
 async def note(bench: Bench, form: Form) -> None:
-    bench.session.note(int(form.get("step", bench.session.at)), str(form["text"]))
+    bench.session.keep(int(form.get("step", bench.session.at)), note=str(form["text"]))
 
 
 async def draft(bench: Bench, form: Form) -> None:

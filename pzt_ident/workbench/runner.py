@@ -17,7 +17,8 @@ from pzt_ident.errors import InputError, RunError
 from pzt_ident.run.pool import search_path
 
 SECONDS_TO_STOP = 8.0
-STOPPED = "Stopped. Resume continues from here."
+RESUME = "Resume continues from here."
+STOPPED = f"Stopped. {RESUME}"
 Process = asyncio.subprocess.Process
 
 
@@ -58,7 +59,7 @@ class Runner:
     def warm(self, searching: bool = False) -> None:
         """Have a process there that has everything imported and waits for its arguments; `searching`: with the server
         from which searches are forked."""
-        if self.waiting is None:
+        if self.waiting is None or (self.waiting.done() and self.waiting.exception()):
             self.waiting = asyncio.create_task(self._spawned(searching))
 
     async def run(self, name: str, arguments: Sequence[str]) -> None:
@@ -73,23 +74,24 @@ class Runner:
         if code == 130 or code == -signal.SIGTERM:
             raise RunError(STOPPED)
         if code < 0:
-            raise RunError(f"pzt-ident {name} was killed by signal {-code}. Resume continues from here.")
+            raise RunError(f"The command was killed by signal {-code}. {RESUME}")
         if code:
             lines = errors.decode(errors="replace").strip().splitlines()
             raise RunError("\n".join(lines[-12:]).removeprefix("Error: ") or f"pzt-ident {name} failed")
 
     async def _handed(self, arguments: list[str]) -> Process:
         """A process that has been handed its arguments: the waiting one unless it has ended."""
-        waiting, self.waiting = self.waiting, None
-        for ready in (waiting, None):
-            process = await asyncio.shield(ready) if ready else await self._spawned()
+        while True:
+            self.warm()
+            assert self.waiting
+            process = await asyncio.shield(self.waiting)  # which a stop leaves to the next command
+            self.waiting = None
             assert process.stdin
             with suppress(ConnectionError):
                 process.stdin.write(json.dumps(arguments).encode() + b"\n")
                 await process.stdin.drain()
                 if process.returncode is None:
-                    break
-        return process
+                    return process
 
     async def _spawned(self, searching: bool = False) -> Process:
         return await asyncio.create_subprocess_exec(

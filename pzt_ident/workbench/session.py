@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import re
 from collections.abc import Callable, Mapping, Sequence
 from copy import deepcopy
 from pathlib import Path
@@ -17,10 +16,12 @@ from pzt_ident.job.edit import edited, tried
 from pzt_ident.job.schema import Job, load_job
 from pzt_ident.model.registry import word_of
 from pzt_ident.workbench.job_form import file_sources, job_text
+from pzt_ident.workbench.runner import RESUME
 from pzt_ident.workbench.step_commands import Command, commands_of
 from pzt_ident.workbench.step_model import job_in, stated
+from pzt_ident.workbench.wording import in_page_words
 
-INTERRUPTED = "The run was interrupted before it finished. Resume continues from here."
+INTERRUPTED = f"The run was interrupted before it finished. {RESUME}"
 Step = dict[str, Any]
 
 
@@ -91,6 +92,8 @@ class Session:
         """The folder of a step, by default of the current one. Raises InputError if there is no step yet."""
         if not (number or self.at):
             raise InputError("there is no job yet", remedy="drop a measurement and confirm its columns")
+        if not 0 <= (number or 0) <= len(self.steps):
+            raise InputError(f"there is no step {number}")
         return self.folder / "steps" / str(number or self.at)
 
     def entry(self, number: int | None = None) -> Step:
@@ -210,9 +213,9 @@ class Session:
         self.at = number
         self.store()
 
-    def note(self, number: int, text: str) -> None:
-        """Keep a text with a step."""
-        self.entry(number)["note"] = text
+    def keep(self, number: int, **facts: Any) -> None:
+        """Keep facts with a step, such as a `note`."""
+        self.entry(number).update(facts)
         self.store()
 
     def keep_draft(self, draft: dict[str, Any]) -> None:
@@ -242,9 +245,8 @@ class Session:
         self.version += 1
 
     def readable(self, text: str) -> str:
-        """A message with its paths relative to the root and normalised."""
-        shortened = text.replace(f"{self.root}{os.sep}", "")
-        return re.sub(r"\S+/\.\./\S+", lambda match: os.path.normpath(match[0]), shortened)
+        """A message in the words of the page, of files the names alone."""
+        return in_page_words(text.replace(f"{self.root}{os.sep}", ""))
 
     def relative(self, path: Path) -> str:
         return os.path.relpath(path, self.root)
@@ -264,6 +266,8 @@ class Session:
         """Where a listed command writes what the workbench wrote into `steps`: a folder beside it, so that the commands
         can be run where the session is. A job that no command makes is read where it is."""
         steps = self.folder / "steps"
+        if path.name == "diagnosis" and path.parent.parent == steps:
+            path = self.folder / self.entry(int(path.parent.name)).get("diagnosed", path)
         made_here = path.name == "start.json" or (path.name == "job.yaml" and not self._has_command(path.parent))
         if made_here or not path.is_relative_to(steps):
             return self.relative(path)

@@ -25,6 +25,7 @@ from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
 POINTS = 6000  # of a record, at most, that a moved slider answers
+ROUNDING = 1e-9  # of the range of a parameter
 KEPT = 4  # steps whose records stay in memory
 
 _statements: dict[tuple[str, str], Statement] = {}
@@ -109,7 +110,8 @@ class StepModel:
         fit = self.best.get("parameters", {}).get(entry.name, {})
         free = column in problem.free or column in problem.linear.columns
         low, high = bounds_of(problem, column)
-        value = None if theta is None or not np.isfinite(theta[column]) else float(theta[column] / factor(unit))
+        scale = entry.parameter.scale if low > 0 else "linear"
+        found = None if theta is None or not np.isfinite(theta[column]) else float(theta[column] / factor(unit))
         ends = fit.get("interval") or interval_of(fit)
         return {
             "name": entry.name,
@@ -117,14 +119,13 @@ class StepModel:
             "block": entry.block.name,
             "symbol": entry.name.rpartition(".")[2],
             "unit": printed_unit(unit),
-            "value": value,
-            "low": ends and ends[0],
-            "high": ends and ends[1],
+            "value": found if found is None else to_bound(found, low, high, scale),
+            "low": ends and max(ends[0], low),
+            "high": ends and min(ends[1], high),
             "bounds": [low, high],
-            "scale": entry.parameter.scale if low > 0 else "linear",
+            "scale": scale,
             "fixed": not free,
             "solved": column in problem.linear.columns,
-            "at_bound": str(fit.get("verdict", "")).startswith("on its"),
             "determined": determined(fit),
             "physics": described(entry),
         }
@@ -209,6 +210,12 @@ def bounds_of(problem: Problem, column: int) -> tuple[float, float]:
         return problem.declared_bounds(column)
     except InputError:
         return float("nan"), float("nan")
+
+
+def to_bound(value: float, low: float, high: float, scale: str) -> float:
+    """A bound in the place of a value that rounding alone keeps from it."""
+    near = (abs(value - bound) <= ROUNDING * (bound if scale == "log" else high - low) for bound in (low, high))
+    return next((bound for bound, is_near in zip((low, high), near, strict=True) if is_near), value)
 
 
 def interval_of(fit: Mapping[str, Any]) -> list[float] | None:

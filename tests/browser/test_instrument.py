@@ -1,8 +1,11 @@
 """The workbench as an instrument: one fitted demo, looked at, touched and asked for everything, by mouse and keys."""
 
 import csv
+import itertools
 import json
+import math
 import re
+from contextlib import contextmanager
 from importlib.resources import files
 
 import pytest
@@ -77,6 +80,86 @@ def test_all_is_on_one_screen(shown, size):
         box = shown.locator(part).first.bounding_box()
         assert box["height"] > 20 and box["y"] + box["height"] <= size[1] and box["x"] + box["width"] <= size[0]
     shown.set_viewport_size({"width": 1280, "height": 800})
+
+
+@contextmanager
+def state_with(page, change):
+    """The page with a state that is changed on its way to it."""
+    with page.expect_response("**/api/state") as answer:
+        page.reload()
+    state = answer.value.json()
+    change(state)
+    page.route("**/api/state", lambda route: route.fulfill(json=state))
+    page.reload()
+    yield
+    page.unroute("**/api/state")
+    page.reload()
+    expect(page.locator("#loop canvas.drawn")).to_be_visible()
+
+
+def test_a_command_that_is_being_started_can_be_stopped(shown):
+    starting = {"running": True, "busy": True, "stage": "", "since": 0.0}
+    with state_with(shown, lambda state: state.update(starting)):
+        expect(shown.locator("#stop")).to_be_visible()
+    expect(shown.locator("#stop")).to_be_hidden()
+
+
+CUT = """() => [...document.querySelectorAll("header p, .readout, .legend, #sheets *, #blocks *")].filter((item) => {
+  const { overflowX, overflowY } = getComputedStyle(item);
+  const wide = overflowX !== "visible" && item.scrollWidth > item.clientWidth + 1;
+  return wide || (overflowY !== "visible" && !item.matches("pre") && item.scrollHeight > item.clientHeight + 1);
+}).map((item) => item.outerHTML)"""
+PARTED = """() => {
+  const walker = document.createTreeWalker(document.querySelector("#sheets"), NodeFilter.SHOW_TEXT), found = [];
+  const place = (node, i) => {
+    const range = document.createRange();
+    range.setStart(node, i); range.setEnd(node, i + 1);
+    return range.getBoundingClientRect().top;
+  };
+  while (walker.nextNode()) {
+    const node = walker.currentNode, text = node.data;
+    if (!node.parentElement.closest("pre, option, select"))
+      for (let i = 1; i < text.length; i++)
+        if (/\\w\\w/.test(text.slice(i - 1, i + 1)) && place(node, i) - place(node, i - 1) > 8) found.push(text);
+  }
+  return found;
+}"""
+NAMES = """() => [...document.querySelectorAll(".stairs text.name")].map((item) => {
+  const { left, right } = item.getBoundingClientRect(), turned = item.getAttribute("transform") ?? "rotate(0)";
+  const angle = (Math.abs(parseFloat(turned.slice(7))) * Math.PI) / 180;
+  return { text: item.textContent, x: Number(item.getAttribute("x")), left, right, angle, size: 11 };
+})"""
+VALUES = "[...document.querySelectorAll('.stairs text.value')].map((item) => item.getBoundingClientRect().toJSON())"
+CHANGES = ["+ distributed_memory.even_terms", "+ distributed_memory.odd_terms", "+ friction", "+ rate_dependence"]
+
+
+@pytest.mark.parametrize("width", [1280, 1920])
+@pytest.mark.parametrize("count", [3, 9])
+def test_nothing_is_cut_parted_or_written_over_however_long_it_is(shown, width, count):
+    def lengthen(state):
+        state["headline"]["verdict"] = " ".join(["Effects of the catalogue would explain what is left of it."] * 4)
+        (first,) = state["steps"]
+        more = [
+            {"number": n, "change": CHANGES[n % 4], "identify": 0.9**n * first["identify"]} for n in range(2, count)
+        ]
+        state["steps"] += [first | item for item in more]
+        for parameter in state["parameters"]:
+            parameter |= {"name": "distributed_memory.weight_1", "value": -0.00096705}
+
+    shown.set_viewport_size({"width": width, "height": 800})
+    with state_with(shown, lengthen):
+        expect(shown.locator(".stairs text.name")).to_have_count(count - 1)
+        expect(shown.locator("#loop canvas.drawn")).to_be_visible()
+        assert shown.evaluate(CUT) == [] and shown.evaluate(PARTED) == []
+        names, values = shown.evaluate(NAMES), shown.evaluate(VALUES)
+    shown.set_viewport_size({"width": 1280, "height": 800})
+    assert len({name["text"] for name in names}) == min(count - 1, 5)
+    for one, other in itertools.pairwise(names):
+        apart = (other["x"] - one["x"]) * math.sin(one["angle"]) >= one["size"]
+        assert apart or one["right"] <= other["left"]
+    for one, other in itertools.combinations(values, 2):
+        beside = one["right"] <= other["left"] or other["right"] <= one["left"]
+        assert beside or abs(one["top"] - other["top"]) > 9
 
 
 @pytest.mark.parametrize("sheet", SHEETS)
@@ -206,9 +289,9 @@ def test_a_note_stays_with_its_step(shown):
     shown.click("#tab-steps")
     shown.fill("[aria-label='Note to step 1']", "cold stage")
     shown.keyboard.press("Tab")
-    expect(shown.locator(".stairs text.note")).to_have_text("cold stage")
+    expect(shown.locator(".stairs .note")).to_have_text("cold stage")
     shown.reload()
-    expect(shown.locator(".stairs text.note")).to_have_text("cold stage")
+    expect(shown.locator(".stairs .note")).to_have_text("cold stage")
 
 
 def test_a_reference_is_followed(shown, folder):

@@ -145,7 +145,21 @@ def test_a_crop_past_the_part_for_validation_leaves_a_job_that_can_be_read(workb
     header, *rows = text("identify.csv").splitlines()
     cells = rows[70].split(",")
     rows[70] = ",".join([*cells[:-1], ""])
+    still = [
+        ",".join([time, "50", x])
+        for time, _, x in (row.split(",") for row in thinned(text("identify.csv")).splitlines()[1:])
+    ]
+    page.evaluate(DROP, [["still.csv"], ["\n".join([header, *still]) + "\n"]])
+    constant = "u_x [V] is constant at 50.00 V: give the drive of x another column, or drop a record in which it moves."
+    expect(page.locator("#next")).to_have_text(constant)
+    expect(page.locator("#action")).to_be_hidden()
+    assert "drive of x" not in page.locator("[aria-label='Role of u_x [V]']").text_content()
+    page.click("#confirm")
+    expect(page.locator("#error p")).to_have_text(constant)
     page.evaluate(DROP, [["identify.csv"], ["\n".join([header, *rows]) + "\n"]])
+    expect(page.locator("#next")).to_contain_text("choose a record in which it moves for identification")
+    page.click("[aria-label='Remove still.csv']")
+    expect(page.locator("#action")).to_have_text("Confirm and identify")
     expect(page.locator("#guess")).to_contain_text("1 of x [um]: crop the record, or fill the gaps in the file")
     start, end, settle = (page.get_by_label(f"identify.csv: {name}") for name in ("From", "to,", "not scored for"))
     for field, typed in (start, str(0.8 * float(end.input_value()))), (settle, "1e6"), (start, ""):
@@ -180,7 +194,7 @@ def test_a_reload_a_killed_worker_and_a_killed_workbench_lose_nothing(workbench,
     expect(page.locator("#status")).to_contain_text("best RMSE 0.0")
 
     page.reload()
-    expect(page.locator("#status")).to_contain_text(re.compile(r"Identifying: \d+ s, \d+ %, best RMSE 0\.0"))
+    expect(page.locator("#status")).to_contain_text(re.compile(r"Identifying: \d+ s, \d+ %, best RMSE 0\.0\d+ µm"))
     expect(page.locator("#convergence canvas").first).to_be_attached()
 
     for pid, parents in [(pid, running(tmp_path)) for pid in running(tmp_path)]:
@@ -194,13 +208,16 @@ def test_a_reload_a_killed_worker_and_a_killed_workbench_lose_nothing(workbench,
     os.kill(next(pid for pid in running(tmp_path) if depth(pid, running(tmp_path)) == 0), signal.SIGKILL)
     assert ended(tmp_path)  # the command and its workers, too, by themselves
     page.goto(workbench("job.yaml"))
-    expect(page.locator("#error")).to_contain_text("interrupted before it finished. Resume continues from here.")
+    expect(page.locator("#verdict")).to_have_text("The run was interrupted before it finished.")
+    expect(page.get_by_text("Resume continues from here.")).to_have_count(1)
     expect(page.locator("#action")).to_have_text("Resume")
     page.click("#action")
     expect(page.locator("#status")).to_contain_text("best RMSE 0.0")
 
     page.click("#stop")
-    expect(page.locator("#error")).to_contain_text("Stopped. Resume continues from here.")
+    expect(page.locator("#verdict")).to_have_text("Stopped.")
+    expect(page.get_by_text("Resume continues from here.")).to_have_count(1)
+    expect(page.locator("#error")).to_be_hidden()
     assert load_job(tmp_path / "workbench/steps/1/job.yaml").text.startswith("# a search that does not end")
     assert {depth(pid, running(tmp_path)) for pid in running(tmp_path)} <= {0, 1}  # one waits to be asked
 
@@ -298,3 +315,9 @@ def test_signals_in_files_of_their_own_and_a_block_drawn_onto_the_chain(workbenc
     expect(page.locator("#blocks li")).to_have_text(["drive", "prandtl_ishlinskii×", "lumped×", "response"])
     page.click("#confirm")
     expect(page.locator("#error p")).to_have_text("Which column is the time? Or give the sample rate, such as 5 kHz.")
+    page.get_by_label("Sample rate").fill("1 kHz")
+    page.get_by_label("Name of the job").fill("../../x")
+    page.get_by_label("Unit of drive.csv").fill("1e400")
+    page.click("#confirm")
+    expect(page.locator("#error p")).to_contain_text("name of the job: '../../x' is not a name for a folder")
+    expect(page.locator("#error p")).to_contain_text("unit of the drive of x: the unit '1e400' is infinite")

@@ -1,8 +1,10 @@
+import re
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pzt_ident.data.units import dimension, factor, same_kind, split_header, unscaled
+from pzt_ident.data.units import dimension, factor, is_unit, same_kind, split_header, unscaled
 from pzt_ident.errors import InputError
 
 NAMED = {
@@ -38,6 +40,16 @@ NAMED = {
     "1/(kV/mm)^2": 1e-12,
     "uC/cm2/(V/m)": 1e-2,
 }
+
+
+@pytest.mark.parametrize(
+    ("unit", "fault"),
+    [("1e400", "infinite"), ("1e400 V", "infinite"), ("0 V", "zero"), ("V/0", "infinite"), ("um^-99", "infinite")],
+)
+def test_a_unit_is_finite_and_not_zero(unit, fault):
+    assert not is_unit(unit)
+    with pytest.raises(InputError, match=f"the unit {re.escape(repr(unit))} is {fault}"):
+        factor(unit)
 
 
 @pytest.mark.parametrize("unit", NAMED)

@@ -35,19 +35,21 @@ def improved(session):
         stair([]),
         stair(["creep"], added="creep", tied=("creep", "drift"), steps=(2,)),
         stair(["creep", "friction"], added="friction"),
-        stair(["creep"], removed="friction"),
+        stair(["creep"], removed="friction", steps=(2,)),
+        stair(["creep", "saturation"], added="saturation"),
     ]
     (out / "improvement.json").write_text(json.dumps({"steps": stairs}))
     job = session.job()
-    (out / "improved.yaml").write_text(edited(job, ("creep",), out, steps=[4]))
+    (out / "improved.yaml").write_text(edited(job, ("creep", "saturation"), out, steps=[4]))
     return session
 
 
 def test_each_step_has_its_job_and_starts_from_the_fit_that_was_found(improved):
-    assert adopt.improvement(improved, improved.step()) == [2, 3, 4]
-    assert [entry["change"] for entry in improved.chain()] == ["as given", "+ creep", "+ friction", "− friction"]
-    assert [improved.job(n).effects for n in (2, 3, 4)] == [("creep",), ("creep", "friction"), ("creep",)]
-    assert [improved.job(n).records[0].steps for n in (2, 4)] == [2, 4]
+    assert adopt.improvement(improved, improved.step()) == [2, 3]
+    assert [entry["change"] for entry in improved.chain()] == ["as given", "+ creep", "+ saturation"]
+    assert [improved.job(n).effects for n in (2, 3)] == [("creep",), ("creep", "saturation")]
+    assert [improved.job(n).records[0].steps for n in (2, 3)] == [2, 4]
+    assert [entry["tried"] for entry in improved.chain()] == [[], ["friction"], []]
     for entry in improved.chain()[1:]:
         start = json.loads((improved.folder / entry["from"]).read_text())
         assert start["parameters"]["bouc_wen.alpha"]["value"] == 0.3 and entry["promised"]["identify"] == 0.5
@@ -60,6 +62,30 @@ def test_what_could_not_be_told_apart_is_said_while_it_is_in_the_model(improved)
     assert page_state.tied_sentences(improved) == " These data cannot tell creep from drift."
     improved.remove("creep")
     assert page_state.tied_sentences(improved) == ""
+
+
+def test_a_detour_leaves_the_fit_that_was_found_after_it():
+    words = [[], ["a"], ["a", "b"], ["a", "b", "c"], ["b", "c", "a"], ["a", "c"], ["a"]]
+    steps = [stair(effects, steps=(n,)) for n, effects in enumerate(words)]
+    for place, added in (1, "a"), (2, "b"), (3, "c"):
+        steps[place]["added"] = added
+    steps[4]["change"] = "finer steps"
+    steps[5]["removed"], steps[6]["removed"] = "b", "c"
+    found = adopt.without_detours(steps)
+    assert [item["effects"] for item in found] == [[], ["a"]]
+    assert (found[1]["steps"], found[1]["tried"]) == ([6], ["b", "c"])
+    assert [item["effects"] for item in adopt.without_detours(steps[:6])] == words[:6]
+
+
+def test_the_last_step_has_the_diagnosis_of_the_improvement(improved):
+    out = improved.step() / "improved"
+    (out / "diagnosis.json").write_text("{}")
+    *_, last = adopt.improvement(improved, improved.step())
+    adopt.diagnosis(improved, out.parent, last)
+    folder = improved.step(last) / "diagnosis"
+    assert (folder / "diagnosis.json").exists() and improved.again(folder) == "workbench/again/1/improved"
+    (_, diagnose) = improved.commands(improved.step(last))
+    assert diagnose.last.exists()
 
 
 def test_steps_that_come_are_shown(improved):

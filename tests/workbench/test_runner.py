@@ -1,9 +1,11 @@
 """Commands as processes: the next one waits, and one that has ended is replaced."""
 
+import asyncio
+
 import pytest
 
 from pzt_ident.errors import RunError
-from pzt_ident.workbench.runner import Runner
+from pzt_ident.workbench.runner import STOPPED, Runner
 
 from .conftest import alone
 
@@ -23,5 +25,22 @@ def test_the_waiting_process_takes_the_command_and_a_dead_one_is_replaced(tmp_pa
             await runner.run("check", ["check", "nothing.yaml"])
         await runner.close()
         assert (await runner.waiting).returncode is not None
+
+    alone(story())
+
+
+def test_a_command_that_is_being_started_is_stopped_and_the_next_one_takes_its_process(tmp_path):
+    async def story():
+        runner = Runner(tmp_path, lambda: None)
+        runner.start(runner.run("init", ["init", "there"]))
+        await asyncio.sleep(0)
+        assert runner.running and runner.process is None
+        await runner.stop()
+        assert (runner.running, runner.stage, runner.failure) == (False, "", STOPPED)
+        waiting = await runner.waiting
+        await runner.run("init", ["init", "elsewhere"])
+        assert runner.process is waiting
+        assert (tmp_path / "elsewhere").exists() and not (tmp_path / "there").exists()
+        await runner.close()
 
     alone(story())

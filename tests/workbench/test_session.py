@@ -16,7 +16,7 @@ from pzt_ident.model.registry import blocks
 from pzt_ident.workbench.bench import Bench
 from pzt_ident.workbench.job_form import job_text
 from pzt_ident.workbench.page_state import state
-from pzt_ident.workbench.runner import command_line
+from pzt_ident.workbench.runner import RESUME, command_line
 from pzt_ident.workbench.session import INTERRUPTED, Session
 from pzt_ident.workbench.step_commands import Command
 
@@ -188,10 +188,14 @@ def test_a_run_that_was_cut_off_goes_on(begun):
 def test_a_command_that_fails_says_why_and_one_that_is_stopped_says_so(begun, monkeypatch):
     async def story():
         bench = Bench(begun)
+        job = (begun.step() / "job.yaml").read_text()
         (begun.step() / "job.yaml").write_text("name: broken\n")
         bench.fill()
         await bench.runner.task
         assert "missing key 'records'" in bench.runner.failure and "Traceback" not in bench.runner.failure
+        (begun.step() / "job.yaml").write_text(job)
+        shown = bench.state()
+        assert "missing key" in shown["error"] and shown["headline"]["verdict"] == "The last command failed."
         endless = Command("run", begun.step() / "never", ["workbench", "--no-browser"])
         monkeypatch.setattr(begun, "commands", lambda step: [endless])
         bench.fill()
@@ -202,6 +206,8 @@ def test_a_command_that_fails_says_why_and_one_that_is_stopped_says_so(begun, mo
             await asyncio.sleep(0.02)
         await bench.runner.stop()
         assert bench.runner.failure.startswith("Stopped")
+        shown = bench.state()
+        assert (shown["headline"]["verdict"], shown["headline"]["next"], shown["error"]) == ("Stopped.", RESUME, "")
         assert not bench.runner.running and bench.runner.stage == ""
         await bench.close()
 

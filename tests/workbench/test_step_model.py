@@ -19,7 +19,7 @@ from pzt_ident.run.results import read_results
 from pzt_ident.workbench.app import make_app
 from pzt_ident.workbench.session import Session
 from pzt_ident.workbench.step_commands import better_fit
-from pzt_ident.workbench.step_model import POINTS, determined, interval_of, kept_samples, model_of
+from pzt_ident.workbench.step_model import POINTS, determined, interval_of, kept_samples, model_of, to_bound
 
 from .conftest import GOOD, HOST, TOKEN, form
 
@@ -62,6 +62,38 @@ def test_every_parameter_has_value_interval_bounds_and_verdict(client):
     assert (gain["axis"], gain["block"], gain["symbol"], gain["unit"]) == ("x", "bouc_wen", "gain", "µm/V")
     assert gain["bounds"][0] <= gain["low"] < gain["value"] < gain["high"] <= gain["bounds"][1]
     assert gain["determined"] and gain["physics"] and not gain["fixed"]
+
+
+def test_a_parameter_on_its_bound_has_the_bound_as_its_value_and_an_interval_within(filled):
+    model = model_of(filled.step(), False)
+    before = dict(model.best["parameters"])
+    name, fit = next(item for item in before.items() if item[0] == "bouc_wen.alpha")
+    row = [item["name"] for item in model.parameters].index(name)
+    low, high = model.parameters[row]["bounds"]
+    ends = {"verdict": "on its lower bound", "interval": [low - 0.1, low + 0.1]}
+    theta = model.theta.copy()
+    try:
+        model.best["parameters"][name] = fit | ends
+        model.theta[row] = low + 2.6e-26
+        found = model.parameters[row]
+    finally:
+        model.best["parameters"], model.theta = before, theta
+    assert (found["value"], found["low"], found["high"]) == (low, low, low + 0.1)
+    assert found["determined"] == "on its lower bound" and high > low
+
+
+@pytest.mark.parametrize(
+    ("value", "bounds", "scale", "shown"),
+    [
+        (2.6e-26, (0, 0.5), "linear", 0),
+        (0.5 - 1e-12, (0, 0.5), "linear", 0.5),
+        (0.25, (0, 0.5), "linear", 0.25),
+        (2e-12, (1e-12, 1), "log", 2e-12),
+        (1.0000000000001e-12, (1e-12, 1), "log", 1e-12),
+    ],
+)
+def test_what_rounding_keeps_from_a_bound_is_the_bound(value, bounds, scale, shown):
+    assert to_bound(value, *bounds, scale) == shown
 
 
 def test_before_a_run_parameters_have_bounds_and_no_value(filled, tmp_path):

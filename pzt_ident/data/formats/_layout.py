@@ -54,7 +54,7 @@ class Layout:
 def detect_layout(lines: Sequence[str], where: str, delimiter: str | None = None) -> Layout:
     """The layout of the table in `lines`, judged by up to 100 lines from the middle of the file on.
 
-    Raises InputError where there are no two lines of numbers.
+    Raises InputError where there are no two lines of numbers, and says so where there is one.
     """
     filled = [i for i, line in enumerate(lines) if line.strip()]
     sample = [lines[i] for i in filled[len(filled) // 2 :][:100] if not lines[i].startswith(COMMENTS)]
@@ -63,9 +63,13 @@ def detect_layout(lines: Sequence[str], where: str, delimiter: str | None = None
     width = Counter(map(len, rows)).most_common(1)[0][0] if rows else 0
     full = [row for row in rows if len(row) == width]
     numeric = [k for k in range(width) if 2 * sum(layout.is_number(row[k]) for row in full) > len(full)]
-    start = _start(lines, filled, layout, width, numeric)
+    data = [i for i in filled if not lines[i].startswith(COMMENTS)]
+    start = _start(lines, data, layout, width, numeric)
     if start is None:
-        raise InputError("holds no table of numbers", where=where, remedy="is it the right file, sheet or table?")
+        alone = any(_is_complete(layout.split(lines[i]), layout, width, range(width)) for i in data)
+        problem = "holds one row of numbers" if alone else "holds no table of numbers"
+        remedy = "was the recording stopped before it was saved?" if alone else "is it the right file, sheet or table?"
+        raise InputError(problem, where=where, remedy=remedy)
     above = [lines[i].lstrip("".join(COMMENTS) + " ") for i in filled if i < start]
     return Layout(layout.delimiter, layout.decimal, start, width, _names(above, layout, width))
 
@@ -80,18 +84,17 @@ def _punctuation(sample: Sequence[str], delimiter: str | None) -> Layout:
     return max((layout for layout in layouts if layout.delimiter != layout.decimal), key=numbers_minus_words)
 
 
-def _start(
-    lines: Sequence[str], filled: Sequence[int], layout: Layout, width: int, numeric: Sequence[int]
-) -> int | None:
-    """The first of two lines of numbers, or a line above it that is no header."""
+def _is_complete(row: Sequence[str], layout: Layout, width: int, numeric: Sequence[int]) -> bool:
+    """Whether a line holds numbers, gaps included, in all columns of numbers."""
+    filled = len(row) == width and any(row[k].strip() for k in numeric)
+    return filled and all(layout.is_number(row[k]) for k in numeric)
+
+
+def _start(lines: Sequence[str], data: Sequence[int], layout: Layout, width: int, numeric: Sequence[int]) -> int | None:
+    """The first of two lines of numbers, or a line above it that is no header. data: the lines that are no comments."""
 
     def is_complete(i: int) -> bool:
-        row = layout.split(lines[i])
-        return (
-            len(row) == width
-            and any(row[k].strip() for k in numeric)
-            and all(layout.is_number(row[k]) for k in numeric)
-        )
+        return _is_complete(layout.split(lines[i]), layout, width, numeric)
 
     def is_partial(i: int) -> bool:
         row = layout.split(lines[i])
@@ -99,7 +102,7 @@ def _start(
         return len(row) == width and any(numbers) and not _are_units(row)
 
     rows: list[int] = []
-    for i in (i for i in filled if not lines[i].startswith(COMMENTS)):
+    for i in data:
         rows.append(i)
         if len(rows) > 1 and is_complete(rows[-1]) and is_complete(rows[-2]):
             break

@@ -10,6 +10,13 @@ export function element(parent, tag, attributes = {}, text = "") {
   return append(parent, document.createElement(tag), attributes, text);
 }
 
+/** A new element with a name in it, which is parted, where it must be, after a dot or an underscore. */
+export function named(parent, tag, attributes, name) {
+  const node = element(parent, tag, attributes);
+  name.split(/(?<=[a-z\d][._])(?=[a-z])/i).forEach((part, place) => node.append(...(place ? [document.createElement("wbr")] : []), part));
+  return node;
+}
+
 /** A new SVG element inside another. */
 export function svgElement(parent, tag, attributes, text = "") {
   return append(parent, document.createElementNS(SVG, tag), attributes, text);

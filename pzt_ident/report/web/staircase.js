@@ -3,7 +3,10 @@ import { decades, tick } from "./scale.js";
 import { number } from "./signals.js";
 
 const USES = Object.keys(USE_NAMES);
-const NARROW = 5.2; // em a step, below which the names are turned
+const LINES = 3; // of a name that is not turned
+const LINE = 1.2; // em
+const FLATTEST = Math.PI / 5; // angle of names that are turned
+const pen = document.createElement("canvas").getContext("2d");
 
 /** The RMSE after each of `steps` ({name, identify, validate, note, promised, current, live}) as stairs on a logarithmic
  * axis that ends at the noise floor. `choose(step)` is called for a step that is clicked. */
@@ -27,12 +30,13 @@ export class Staircase {
     const size = Math.max(11, 0.74 * parseFloat(getComputedStyle(document.documentElement).fontSize));
     this.svg = svgElement(this.holder, "svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: "img", "aria-label": description(content), "font-size": size });
     const pitch = (width - 5 * size) / Math.max(content.steps.length, 1);
-    const turned = pitch < NARROW * size;
-    const area = { left: 4.2 * size, right: width - 0.8 * size, top: 2.4 * size, bottom: height - (turned ? 5.4 : 3) * size, size, turned };
+    const texts = namesOf(content.steps, pitch, size, 0.32 * height, getComputedStyle(this.holder).fontFamily);
+    const area = { left: 4.2 * size, right: width - 0.8 * size, top: 2.4 * size, bottom: height - texts.height - 0.6 * size, size };
     this.scale(content);
     if (this.range) this.axis(area);
     for (const use of USES.toReversed()) this.stairs(use, area, pitch);
-    content.steps.forEach((step, place) => this.name(step, place, area, pitch));
+    this.values(area, pitch);
+    content.steps.forEach((step, place) => this.name(step, place, area, pitch, texts));
   }
 
   scale({ steps, floor }) {
@@ -78,42 +82,91 @@ export class Staircase {
     svgElement(this.svg, "rect", { x: area.left, y, width: area.right - area.left, height: Math.max(2, area.bottom - y), class: "floor" });
   }
 
-  /** The levels of one kind of records, joined to stairs, with their values. */
+  /** The levels of one kind of records, joined to stairs. */
   stairs(use, area, pitch) {
     const { size } = area;
     const levels = this.content.steps.map((step, place) => ({ step, value: step[use], from: area.left + place * pitch, middle: area.left + (place + 0.5) * pitch })).filter(({ value }) => value > 0);
     const path = levels.map(({ value, from }, i) => `${i ? "L" : "M"}${from + (i ? 0 : 0.1 * pitch)},${this.toY(value, area)}h${pitch * (i ? 1 : 0.9)}`).join("");
     if (levels.length) svgElement(this.svg, "path", { d: path, class: use });
     for (const { step, value, middle } of levels) {
-      const y = this.toY(value, area), other = step[use === "identify" ? "validate" : "identify"];
-      const above = other > 0 ? value > other || (value === other && use === "validate") : true;
       if (step.promised?.[use] > 0) svgElement(this.svg, "circle", { cx: middle - 0.32 * pitch, cy: this.toY(step.promised[use], area), r: 0.4 * size, class: `promised ${use}` });
-      mark(this.svg, `${use}${step.live ? " live" : ""}`, middle, y, 0.38 * size);
-      svgElement(this.svg, "text", { x: middle, y: above ? y - 0.7 * size : y + 1.35 * size, class: `value ${use}` }, number(value));
+      mark(this.svg, `${use}${step.live ? " live" : ""}`, middle, this.toY(value, area), 0.38 * size);
     }
   }
 
-  name(step, place, area, pitch) {
-    const { size, turned } = area;
+  /** The values beside the levels as far as they have room: those of the current step, of the first one and of the
+   * others from the last one back. */
+  values(area, pitch) {
+    const { size } = area, { steps } = this.content, taken = [];
+    const rank = ({ step, place }) => (step.current ? -2 : place ? -place / steps.length : -1.5);
+    for (const { step, place } of steps.map((step, place) => ({ step, place })).toSorted((a, b) => rank(a) - rank(b)))
+      for (const use of USES.filter((word) => step[word] > 0)) {
+        const value = step[use], other = step[use === "identify" ? "validate" : "identify"];
+        const above = other > 0 ? value > other || (value === other && use === "validate") : true;
+        const x = area.left + (place + 0.5) * pitch, y = this.toY(value, area) + (above ? -0.7 : 1.35) * size;
+        const text = svgElement(this.svg, "text", { x, y, class: `value ${use}` }, number(value));
+        const half = text.getComputedTextLength() / 2 + 0.2 * size;
+        if (taken.some((box) => Math.abs(box.x - x) < box.half + half && Math.abs(box.y - y) < size)) text.remove();
+        else taken.push({ x, y, half });
+      }
+  }
+
+  name(step, place, area, pitch, { angle, lines }) {
+    const { size } = area;
     const x = area.left + (place + 0.5) * pitch, y = area.bottom + 1.3 * size;
     const group = svgElement(this.svg, "g", { class: `step${step.current ? " current" : ""}` });
-    const room = turned ? 12 : Math.floor(pitch / (0.56 * size));
-    svgElement(group, "text", { x, y, class: turned ? "name turned" : "name", ...(turned && { transform: `rotate(-35 ${x} ${y})` }) }, shortened(step.name, room));
-    if (step.note && !turned) svgElement(group, "text", { x, y: y + 1.2 * size, class: "note" }, shortened(step.note, room));
+    const turned = angle && { transform: `rotate(${(-180 * angle) / Math.PI} ${x} ${y})` };
+    const text = svgElement(group, "text", { x, y, class: angle ? "name turned" : "name", ...turned });
+    const { named, note } = lines[place];
+    named.forEach((line, i) => svgElement(text, "tspan", { x, dy: i ? LINE * size : 0 }, line));
+    if (note) svgElement(group, "text", { x, y: y + named.length * LINE * size, class: "note" }, note);
     svgElement(group, "title", {}, `${step.name}${step.note ? `: ${step.note}` : ""}`);
     const hit = svgElement(group, "rect", { x: area.left + place * pitch, y: 0, width: pitch, height: area.bottom + 3 * size, class: "hit" });
     if (this.choose) hit.addEventListener("click", () => this.choose(step));
   }
 }
 
+/** The lines of the name of each step, its note, and the angle at which they are written: within the width of a step
+ * where their parts have room there, else turned until they pass each other, without notes and no higher than `room`. */
+function namesOf(steps, pitch, size, room, family) {
+  pen.font = `bold ${size}px ${family}`;
+  const width = (text) => pen.measureText(text).width;
+  const fits = (text) => width(text) <= pitch - 0.5 * size;
+  const lines = steps.map(({ name, note }) => ({ named: wrapped(name, fits), note: note && shortened(note, fits) }));
+  if (lines.every(({ named }) => named.length <= LINES && named.every((line) => fits(line.trimEnd()))))
+    return { angle: 0, lines, height: (Math.max(1, ...lines.map(({ named, note }) => named.length + Boolean(note))) * LINE + 0.3) * size };
+  const angle = Math.max(FLATTEST, Math.asin(Math.min(1, (LINE * size) / pitch)));
+  const turned = steps.map(({ name }, place) => {
+    const long = Math.min(room / Math.sin(angle), (4.2 * size + (place + 0.5) * pitch) / Math.max(0.01, Math.cos(angle))) - size;
+    return shortened(name, (text) => width(text) <= long);
+  });
+  const longest = Math.max(...turned.map((text) => width(text)));
+  return { angle, lines: turned.map((text) => ({ named: [text] })), height: Math.sin(angle) * longest + 1.6 * size };
+}
+
+/** A name in lines that fit, parted after a space, a dot or an underscore. */
+function wrapped(name, fits) {
+  const lines = [];
+  for (const part of name.match(/[^ ._]+[ ._]*/g) ?? [name]) {
+    const longer = `${lines.at(-1) ?? ""}${part}`;
+    if (lines.length && (fits(longer.trimEnd()) || lines.at(-1).length < 3)) lines[lines.length - 1] = longer;
+    else lines.push(part);
+  }
+  return lines;
+}
+
+/** A text that fits, its middle left out where it must be: names often differ at their ends. */
+function shortened(text, fits) {
+  let kept = text.length;
+  const cut = () => (kept === text.length ? text : `${text.slice(0, Math.ceil(0.4 * kept))}…${text.slice(text.length - Math.floor(0.6 * kept))}`);
+  while (kept > 3 && !fits(cut())) kept--;
+  return cut();
+}
+
 /** A disc for identification, a square on its corner for validation: told apart without colour. */
 function mark(svg, style, x, y, r) {
   if (style.startsWith("identify")) svgElement(svg, "circle", { cx: x, cy: y, r, class: `mark ${style}` });
   else svgElement(svg, "path", { d: `M${x - 1.3 * r},${y}L${x},${y - 1.3 * r}L${x + 1.3 * r},${y}L${x},${y + 1.3 * r}Z`, class: `mark ${style}` });
-}
-
-function shortened(text, letters) {
-  return text.length <= letters ? text : `${text.slice(0, Math.max(3, letters - 1))}…`;
 }
 
 function description({ steps, unit, together, floor }) {

@@ -1,8 +1,8 @@
-import { element } from "./parts.js";
+import { element, named } from "./parts.js";
 
 /** A word as the link to its section in the atlas, `href`, in a tab of its own; `doc` says what it is. */
 export function about(parent, word, href, doc = "") {
-  return element(parent, "a", { class: "about", href, target: "_blank", title: `${doc} More about ${word} in a new tab.`.trim() }, word);
+  return named(parent, "a", { class: "about", href, target: "_blank", title: `${doc} More about ${word} in a new tab.`.trim() }, word);
 }
 
 /** A sentence in which each word of the catalogue is, where it is first named, the link to its section. */

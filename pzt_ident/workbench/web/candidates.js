@@ -1,7 +1,7 @@
 import { about } from "./about.js";
 import { Figure } from "./figure.js";
 import { percent } from "./misfit.js";
-import { element, USE_NAMES } from "./parts.js";
+import { element, named, USE_NAMES } from "./parts.js";
 import { request, requestJson, save } from "./session.js";
 import { extent, number } from "./signals.js";
 import { slider } from "./slider.js";
@@ -36,7 +36,7 @@ export class Candidates {
     const body = element(table, "tbody");
     for (const { effect, explained } of scored.toSorted((a, b) => b.explained - a.explained)) {
       const line = element(body, "tr");
-      element(line, "td", {}, effect);
+      named(line, "td", {}, effect);
       element(line, "td", { class: "number" }, percent(explained));
     }
   }
@@ -75,7 +75,7 @@ export class Candidates {
         values[parameter.name] = parameter.value;
         const entry = element(root, "div", { class: "parameter", role: "group", "aria-label": parameter.name });
         const head = element(entry, "div", { class: "parameter-head" });
-        element(head, "strong", { title: parameter.physics ?? "" }, parameter.name.slice(parameter.name.indexOf(".") + 1));
+        named(head, "strong", { title: parameter.physics ?? "" }, parameter.name.slice(parameter.name.indexOf(".") + 1));
         slider(entry, head, parameter, (value) => { values[parameter.name] = value; this.page.move({ ...values }, effect); });
       }
     } catch (error) { this.page.fail(error); }

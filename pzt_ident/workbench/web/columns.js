@@ -1,5 +1,5 @@
 import { element, keepingFocus, row, select, svgElement } from "./parts.js";
-import { crop, recordName, ROLES, USES } from "./records.js";
+import { crop, recordName, USES } from "./records.js";
 import { number } from "./signals.js";
 import { typed } from "./slider.js";
 
@@ -77,8 +77,8 @@ export class Columns {
     const body = element(table, "tbody");
     for (const column of this.records.columns) {
       const name = this.records.columnName(column);
-      const cells = row(body, "td", [name, "", "", `${number(column.low, 3)} to ${number(column.high, 3)}`]);
-      const role = select(cells[1], ROLES, column.role, `Role of ${name}`);
+      const cells = row(body, "td", [name, "", "", this.records.constant(column) ? `constant ${number(column.low, 3)}` : this.records.range(column).map((value) => number(value, 3)).join(" to ")]);
+      const role = select(cells[1], this.records.rolesOf(column), this.records.roleOf(column), `Role of ${name}`);
       const unit = element(cells[2], "input", { "aria-label": `Unit of ${name}`, value: column.unit, placeholder: "unit", size: 4 });
       preview(cells[3], column.shape, name);
       role.addEventListener("change", () => { this.records.setRole(column, role.value); this.actions.changed(); });

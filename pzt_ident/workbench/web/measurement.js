@@ -1,7 +1,7 @@
 import { Columns } from "./columns.js";
 import { Handles } from "./handles.js";
 import { element } from "./parts.js";
-import { crop, keyOf, printed, Records, recordName } from "./records.js";
+import { crop, keyOf, printed, Records, recordName, said } from "./records.js";
 import { requestJson } from "./session.js";
 import { number } from "./signals.js";
 
@@ -57,7 +57,7 @@ export class Measurement {
   async measure() {
     const asked = JSON.stringify({
       records: this.records.list.map(({ files }) => ({ files: files.map(({ file, part }) => ({ file, part })) })),
-      columns: Object.fromEntries(this.records.columns.filter(({ role }) => role).map(({ role, number: place, of, unit }) => [role, { number: place, of, unit }])),
+      columns: Object.fromEntries(this.records.columns.filter((column) => this.records.roleOf(column)).map(({ role, number: place, of, unit }) => [role, { number: place, of, unit }])),
     });
     if (this.empty) return;
     if (asked === this.asked) return this.time();
@@ -178,17 +178,18 @@ export class Measurement {
     for (const axis of this.records.axes())
       for (const role of ["drive", "response"]) {
         const column = this.records.columnOf(`${axis}.${role}`);
-        fact(`${role} of ${axis}`, `${this.records.columnName(column)}, ${number(column.low, 4)} to ${number(column.high, 4)} ${printed(column.unit)}`);
+        fact(`${role} of ${axis}`, `${this.records.columnName(column)}, ${this.records.range(column).map((value) => number(value, 4)).join(" to ")} ${printed(column.unit)}`);
       }
+    for (const column of this.records.still) fact(said(column.role), `${this.records.columnName(column)} is constant at ${this.records.level(column)}`);
     const { clock, timed } = this.records;
     fact("samples", `${this.records.list.map(({ rows }) => rows).join(", ")}${record.dt && timed ? `, ${number(record.rows * record.dt, 3)} s` : ""}`);
-    fact("missing values", this.records.columns.filter(({ role, missing }) => role && missing).map((column) => `${column.missing} of ${this.records.columnName(column)}: crop the record, or fill the gaps in the file`).join("; "));
+    fact("missing values", this.records.columns.filter((column) => this.records.roleOf(column) && column.missing).map((column) => `${column.missing} of ${this.records.columnName(column)}: crop the record, or fill the gaps in the file`).join("; "));
     if (!guess) return;
     fact("sample rate", timed ? `${number(1 / record.dt, 4)} Hz` : "not known: give it below the columns");
     for (const [axis, { value, unit }] of Object.entries(guess.amplitude)) fact(`span of the drive of ${axis}`, `${number(value, 4)} ${unit}`);
     for (const [axis, value] of Object.entries(guess.frequency)) fact(`main frequency of ${axis}`, value && timed ? `${number(guess.rate ? value / guess.rate / record.dt : value, 3)} Hz` : "");
     const rests = guess.rests.flat();
-    fact("rests", rests.length ? rests.slice(0, 3).map(([a, b]) => `${number(a, 3)} to ${number(b, 3)} ${clock}`).join("; ") + (rests.length > 3 ? ` and ${rests.length - 3} more` : "") : "none");
+    if (this.records.axes().length) fact("rests", rests.length ? rests.slice(0, 3).map(([a, b]) => `${number(a, 3)} to ${number(b, 3)} ${clock}`).join("; ") + (rests.length > 3 ? ` and ${rests.length - 3} more` : "") : "none");
     for (const [axis, floor] of Object.entries(guess.noise_floor)) fact(`noise floor of ${axis}`, floor?.value ? `${number(floor.value, 2)} ${floor.unit}, from ${floor.source}` : "not known");
   }
 
@@ -199,9 +200,9 @@ export class Measurement {
   }
 
   confirm() {
-    try {
-      this.page.confirm(this.records.form());
-    } catch (error) { this.page.fail(error); }
+    const { missing } = this.records;
+    if (missing) this.page.fail({ message: missing });
+    else this.page.confirm(this.records.form());
   }
 }
 

@@ -1,5 +1,5 @@
 import { Convergence } from "./convergence.js";
-import { element, select } from "./parts.js";
+import { element, named, select } from "./parts.js";
 import { number } from "./signals.js";
 
 const BUDGET = { population: "Population", generations: "Generations", budget: "Evaluations" };
@@ -36,7 +36,7 @@ export class Optimizers {
     for (const text of ["own", "polished", "runs", "CPU"]) element(head, "th", { scope: "col", class: "number" }, text);
     for (const row of rows) {
       const body = element(table, "tbody");
-      const name = element(element(body, "tr"), "th", { scope: "rowgroup", colspan: 4 }, row.optimizer);
+      const name = named(element(body, "tr"), "th", { scope: "rowgroup", colspan: 4 }, row.optimizer);
       if (row.equal) element(name, "span", { class: "tag good" }, "within the noise of the best");
       const line = element(body, "tr");
       for (const text of [number(row.rmse_best), number(row.polished_rmse_median), String(row.runs), `${number(row.cpu_seconds_median, 2)} s`]) element(line, "td", { class: "number" }, text);

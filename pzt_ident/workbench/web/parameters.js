@@ -30,7 +30,7 @@ export class Parameters {
   }
 
   entry(parameter) {
-    const { name, about: href, unit, low, high, bounds, fixed, at_bound: atBound, determined, physics } = parameter;
+    const { name, about: href, unit, low, high, bounds, fixed, determined, physics } = parameter;
     const entry = element(this.root, "div", { class: "parameter", role: "group", "aria-label": name });
     const head = element(entry, "div", { class: "parameter-head" });
     about(element(head, "strong"), name, href, physics);
@@ -46,7 +46,6 @@ export class Parameters {
     const facts = element(entry, "small", {}, low !== null && low !== undefined && !fixed ? `95 %: ${number(low, 4)} to ${number(high, 4)} ${unit ?? ""} ` : "");
     const [text, style] = fixed ? ["fixed", ""] : VERDICTS[determined] ?? [determined ?? "", "warn"];
     if (text) element(facts, "span", { class: `tag ${style}` }, text);
-    if (atBound) element(facts, "span", { class: "tag warn" }, "at its bound");
   }
 
   bound(line, { name, bounds, unit }, [side, value], place) {

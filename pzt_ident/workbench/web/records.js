@@ -1,5 +1,7 @@
 // The records of a measurement before there is a job: files, columns with their roles, rows and use. Nothing here draws.
 
+import { number } from "./signals.js";
+
 export const AXES = ["x", "y", "z"];
 export const ROLES = [["", "not used"], ["time", "time"], ...AXES.flatMap((axis) => [[`${axis}.drive`, `drive of ${axis}`], [`${axis}.response`, `response of ${axis}`]])];
 export const USES = [["identify", "identification (fitted)"], ["validate", "validation (not fitted)"], ["split", "both: the end for validation"]];
@@ -10,6 +12,9 @@ export const usualUnit = (role) => USUAL_UNITS[role.split(".").at(-1)] ?? "";
 /** A unit as it is printed. */
 export const printed = (unit) => unit.replace(/^u(?=[a-zA-Z])/, "µ");
 export const fileName = (path) => path.split("/").at(-1);
+
+/** A role such as "x.drive" as it is said. */
+export const said = (role) => Object.fromEntries(ROLES)[role];
 
 /** The name of a record: its files, and the table or sheet. */
 export function recordName({ files }) {
@@ -63,7 +68,46 @@ export class Records {
     this.rate = this.first?.rate || this.rate;
   }
 
-  columnOf(role) { return this.columns.find((column) => column.role === role); }
+  columnOf(role) { return this.columns.find((column) => this.roleOf(column) === role); }
+
+  /** The role of a column; one that is constant in every record is neither drive nor response. */
+  roleOf(column) { return column.role.includes(".") && this.constant(column) ? "" : column.role; }
+
+  /** The lowest and the highest value of a column in some records, all of them unless told. */
+  range({ header, number: place, of }, records = this.list) {
+    const same = (other) => (header ? other.header === header : other.number === place && other.of === of);
+    const columns = records.flatMap((record) => record.columns.filter(same));
+    return [Math.min(...columns.map(({ low }) => low)), Math.max(...columns.map(({ high }) => high))];
+  }
+
+  constant(column, records = this.list) {
+    const [low, high] = this.range(column, records);
+    return !(low < high);
+  }
+
+  /** The columns that would be drive or response if they moved. */
+  get still() { return this.columns.filter((column) => column.role && !this.roleOf(column)); }
+
+  level({ low, unit }) { return `${number(low, 4)} ${printed(unit)}`.trim(); }
+
+  /** The roles that a column may be given. */
+  rolesOf(column) { return this.constant(column) ? ROLES.filter(([role]) => !role.includes(".")) : ROLES; }
+
+  /** What is missing before a job can be made, as a sentence; empty where nothing is. */
+  get missing() {
+    const needed = ({ role }) => !this.axes().length || (role.endsWith(".drive") && this.columnOf(`${role[0]}.response`));
+    const still = this.still.find(needed);
+    if (still) return `${this.columnName(still)} is constant at ${this.level(still)}: give the ${said(still.role)} another column, or drop a record in which it moves.`;
+    for (const axis of AXES) if (this.columnOf(`${axis}.response`) && !this.columnOf(`${axis}.drive`)) return `Which column is the drive of ${axis}?`;
+    if (!this.axes().length) return "Which columns are the drive and the response? At least one axis needs both. If they are in separate files, drop these too.";
+    if (!this.timed) return "Which column is the time? Or give the sample rate, such as 5 kHz.";
+    const fitted = this.list.filter(({ use }) => use !== "validate");
+    if (!fitted.length) return "There is no identification record: choose one.";
+    for (const axis of this.axes())
+      for (const column of ["drive", "response"].map((signal) => this.columnOf(`${axis}.${signal}`)))
+        if (this.constant(column, fitted)) return `${this.columnName(column)} is constant in the identification records: choose a record in which it moves for identification.`;
+    return "";
+  }
 
   /** The sample rate in Hz of records without a column of time, as it is typed; null if it is not given. */
   get hertz() {
@@ -123,18 +167,14 @@ export class Records {
     Object.assign(this, { name, rate });
   }
 
-  /** The form that the server makes a job of, without the model. Throws an Error if something is missing. */
+  /** The form that the server makes a job of, without the model. */
   form() {
     const axes = {};
     for (const axis of AXES) {
       const [drive, response] = [this.columnOf(`${axis}.drive`), this.columnOf(`${axis}.response`)];
       if (drive) axes[axis] = { drive: this.channel(drive), ...(response && { response: this.channel(response) }) };
-      else if (response) throw new Error(`Which column is the drive of ${axis}?`);
     }
-    if (!Object.values(axes).some(({ response }) => response)) throw new Error("Which columns are the drive and the response? At least one axis needs both. If they are in separate files, drop these too.");
     const time = this.columnOf("time");
-    if (!this.timed) throw new Error("Which column is the time? Or give the sample rate, such as 5 kHz.");
-    if (this.list.every(({ use }) => use === "validate")) throw new Error("There is no identification record: choose one.");
     return {
       name: this.name || "my-stage",
       records: this.list.flatMap((record) => this.recordForms(record)),
@@ -157,7 +197,7 @@ export class Records {
     const [{ file, kind, part }] = files;
     const time = this.columnOf("time");
     const stamps = time && columns.find(({ number, of }) => number === time.number && of === time.of);
-    const channels = files.length > 1 ? this.columns.filter(({ role }) => role).map(({ role, number, of }) => [role, { file: files[of]?.file ?? "", number }]) : [];
+    const channels = files.length > 1 ? this.columns.filter((column) => this.roleOf(column)).map(({ role, number, of }) => [role, { file: files[of]?.file ?? "", number }]) : [];
     const form = { file, rows, ...(stamps && { span: stamps.high - stamps.low }), ...(kind && { [kind]: part }), channels: Object.fromEntries(channels) };
     const whole = from === 0 && to === rows;
     const cropped = (first, end) => (whole && end === rows ? {} : { crop: [first, end] });

@@ -1,4 +1,4 @@
-import { element } from "./parts.js";
+import { element, named } from "./parts.js";
 import { request, requestJson } from "./session.js";
 import { number } from "./signals.js";
 
@@ -31,7 +31,8 @@ export class Steps {
   card(list, step) {
     const current = step.number === this.at;
     const card = element(list, "div", { class: `card${current ? " chosen" : ""}`, id: `step-${step.number}`, tabindex: -1 });
-    const head = element(card, "h3", {}, `${step.number}: ${step.change}`);
+    const head = element(card, "h3");
+    named(head, "span", {}, `${step.number}: ${step.change}`);
     if (current) element(head, "span", { class: "tag" }, "shown");
     const compare = element(element(head, "label", { class: "push" }, ""), "input", { type: "checkbox", "aria-label": `Compare step ${step.number}`, ...(this.chosen.has(step.number) && { checked: "" }) });
     compare.after("compare");
@@ -42,6 +43,7 @@ export class Steps {
     });
     element(card, "p", {}, step.identify === null ? "Not run." : `RMSE ${this.errors(step)}`);
     if (step.promised) element(card, "p", { class: "quiet" }, `Expected before: ${this.errors(step.promised)}`);
+    if (step.tried?.length) element(card, "p", { class: "quiet" }, `Tried from here and taken back: ${step.tried.join(", ")}.`);
     const line = element(card, "div", { class: "bar" });
     if (!current) element(line, "button", { type: "button", "data-acts": "" }, "Go to this step").addEventListener("click", () => this.page.back(step.number));
     element(line, "button", { type: "button" }, "Job file").addEventListener("click", () => this.showJob(step, card));

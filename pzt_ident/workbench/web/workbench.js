@@ -86,9 +86,8 @@ function show(newState) {
 
 function draw() {
   const begun = state.steps.length > 0;
-  const told = state.failure || state.warning || "";
-  if (told !== failure) {
-    failure = told;
+  if (state.error !== failure) {
+    failure = state.error;
     if (failure) showError({ message: failure });
     else hideError();
   }
@@ -132,8 +131,10 @@ function showHeader() {
   byId("name").title = begun ? state.job.folder : state.folder;
   const [verdict, next, action] = begun
     ? [headline.verdict, headline.next, headline.action ?? (state.result && !isBusy() ? { name: "", label: "Follow a reference" } : null)]
-    : measurement.empty ? ["Drop a measurement with voltage and displacement.", "Or choose a file of this folder.", null] : ["Check what was read from the measurement.", "Then identify a model of it.", { label: "Confirm and identify" }];
-  byId("verdict").textContent = byId("verdict").title = verdict;
+    : measurement.empty ? ["Drop a measurement with voltage and displacement.", "Or choose a file of this folder.", null] : ["Check what was read from the measurement.", measurement.records.missing || "Then identify a model of it.", measurement.records.missing ? null : { label: "Confirm and identify" }];
+  const [first, ...others] = verdict.split(/(?<=[.?!]) (?=[A-Z])/);
+  byId("verdict").replaceChildren(first);
+  if (others.length) element(byId("verdict"), "span", {}, ` ${others.join(" ")}`);
   byId("next").textContent = next;
   byId("action").hidden = !action || action.name === "stop";
   byId("action").textContent = action?.label ?? "";
@@ -148,7 +149,7 @@ function showBusy() {
   const busy = isBusy();
   document.body.classList.toggle("busy", busy);
   for (const button of document.querySelectorAll(ACTS)) if (button.id !== "report") button.setAttribute("aria-disabled", String(busy));
-  byId("stop").hidden = !state?.stage;
+  byId("stop").hidden = !state?.running;
   showStatus();
 }
 
@@ -156,10 +157,10 @@ function showStatus() {
   const { stage, since } = state ?? {};
   const doing = STAGES[stage] ?? "";
   if (byId("announced").textContent !== doing) byId("announced").textContent = doing;
-  if (!stage) return void (byId("status").textContent = asking ? "Working …" : "");
+  if (!stage) return void (byId("status").textContent = isBusy() ? "Working …" : "");
   const seconds = Math.max(0, Math.round(Date.now() / 1000 - since));
-  const { best, done, budget, together } = convergence;
-  const searched = stage === "run" && Number.isFinite(best) ? `, ${Math.min(100, Math.round((100 * done) / budget))} %, best RMSE${together} ${number(best)}` : "";
+  const { best, done, budget, unit, together } = convergence;
+  const searched = stage === "run" && Number.isFinite(best) ? `, ${Math.min(100, Math.round((100 * done) / budget))} %, best RMSE${together} ${number(best)} ${state.unit || unit}` : "";
   const said = ["diagnose", "improve"].includes(stage) && progress.sentence ? `; ${progress.sentence}` : "";
   byId("status").textContent = `${STAGES[stage] ?? stage}: ${seconds} s${searched}${said}`;
 }

@@ -26,7 +26,14 @@ def test_missing_file_names_the_nearest(tmp_path, problem):
 
 
 @pytest.mark.parametrize(
-    ("text", "message"), [("", "the file is empty"), ("\n\n", "no table of numbers"), (HEADER, "no table")]
+    ("text", "message"),
+    [
+        ("", "the file is empty"),
+        ("\n\n", "no table of numbers"),
+        (HEADER, "no table"),
+        (f"{HEADER}0,1,2\n", "holds one row of numbers"),
+        ("0;1,5;2\n", "holds one row of numbers"),
+    ],
 )
 def test_empty_file(tmp_path, problem, text, message):
     assert message in problem(write(tmp_path, header=text)).message
