@@ -18,6 +18,7 @@ from pzt_ident.model.registry import blocks, form_of, word_of
 TIE = 0.2  # noise floors between two refits: less does not distinguish them; of look-alikes twice that
 LOOK_ALIKE_TIE = 0.01  # of the total RMSE: less does not distinguish refits of look-alikes far above the noise
 FORM_GAIN = 0.02  # of the misfit, by which another form of an effect explains more than the first one
+NEARLY_ALL = 0.9  # of the misfit: what explains as much may be a look-alike of what is missing, in another form
 LOOK_ALIKE_STARTS = 8  # starts of a look-alike's own parameters
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
 
@@ -106,21 +107,21 @@ def restart_look_alikes(case: Case, first: Fit, before: Fit, candidates: list[Ca
             candidate.fit = candidate.refits[word] = restart(case, fit, word_of(word), LOOK_ALIKE_STARTS)
 
 
-def refit_other_forms(case: Case, before: Fit, best: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
-    """The look-alikes of the effect that was added last in `best`, each in the form that fits best of all it has: in
-    another than its first form one may explain as much."""
-    effect, alike = best.effects[-1], list[Candidate]()
+def refit_other_forms(case: Case, before: Fit, candidates: Sequence[Candidate], shortlist: list[Candidate]) -> None:
+    """Refit the look-alikes of an effect that explains nearly all in every form they have, and put them on the short
+    list: in another form than its first or the one that scores best, one may explain more."""
+    fits = [fit for item in shortlist for fit in item.refits.values()]
+    best = min(fits, key=lambda fit: fit.total, default=before)
+    if share_explained(before.identify, best.identify, case.floor) < NEARLY_ALL:
+        return
     for candidate in candidates:
-        if not are_look_alikes(effect, candidate.score.effect) or not case.budget.allows("other forms of look-alikes"):
+        if not are_look_alikes(best.effects[-1], candidate.score.effect) or not case.budget.allows("other forms"):
             continue
         missing = [score for score in candidate.forms if score.effect not in candidate.refits]
-        fits = {score.effect: refit(case, before, (*before.effects, score.effect), score.guess) for score in missing}
-        candidate.refits = {**candidate.refits, **fits}
-        form = min(candidate.refits, key=lambda item: candidate.refits[item].total)
-        if candidate.fit is None or removed_rms(candidate.fit.total, candidate.refits[form].total) > TIE * case.floor:
-            candidate.take(form)
-            alike.append(candidate)
-    return alike
+        new = {score.effect: refit(case, before, (*before.effects, score.effect), score.guess) for score in missing}
+        candidate.refits = {**candidate.refits, **new}
+        if candidate not in shortlist:
+            shortlist.append(candidate)
 
 
 def are_look_alikes(one: str, other: str) -> bool:

@@ -70,11 +70,9 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
         return without_effect(case, first, before, candidates)
     promising = [item for item in candidates if item.score.explained > LEAST_SCORE][:SHORTLIST]
     shortlist = refit_all(case, first, before, promising)
+    refit_other_forms(case, before, candidates, shortlist)
     choose_forms(case, first, shortlist)
     restart_look_alikes(case, first, before, shortlist)
-    best = min((item.fit for item in shortlist if item.fit), key=lambda fit: fit.total, default=None)
-    if best and adequate(case, first, best):
-        shortlist += [item for item in refit_other_forms(case, before, best, candidates) if item not in shortlist]
     candidates.sort(key=lambda item: (item.fit.total if item.fit else np.inf, -item.score.explained))
     decide_by_score(case, first, before, candidates)
     passing = [item for item in shortlist if item.fit and removes_enough(case, first, before, item.fit)]
