@@ -109,7 +109,9 @@ def what_is_known(statement: Statement, point: np.ndarray) -> dict[str, Any]:
     parameters, correlation = estimates(problem, point)
     return {
         "rmse": rmse(problem, point, factor(statement.unit)),
-        "parameters": {item.name: {k: v for k, v in item._asdict().items() if k != "name"} for item in parameters},
+        "parameters": {
+            estimate.name: {k: v for k, v in estimate._asdict().items() if k != "name"} for estimate in parameters
+        },
         "fixed": fixed(problem),
         "correlation": {"names": list(problem.names), "matrix": correlation},
         "point": point,

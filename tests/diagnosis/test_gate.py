@@ -120,8 +120,10 @@ def judged(monkeypatch):
         monkeypatch.setattr(verdict, "Scorer", lambda case, before: None)
         monkeypatch.setattr(verdict, "score_all", lambda case, before, scorer: scores)
         monkeypatch.setattr(verdict, "refusal", lambda case, first, before: "")
-        monkeypatch.setattr(verdict, "restart_look_alikes", lambda case, first, before, items: None)
-        monkeypatch.setattr(verdict, "refit_all", lambda case, first, before, items: [given(item) for item in items])
+        monkeypatch.setattr(verdict, "restart_look_alikes", lambda case, first, before, candidates: None)
+        monkeypatch.setattr(
+            verdict, "refit_all", lambda case, first, before, candidates: [given(candidate) for candidate in candidates]
+        )
 
         def given(candidate):
             candidate.refits = {candidate.score.effect: fits[candidate.score.effect]}

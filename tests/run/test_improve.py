@@ -73,12 +73,12 @@ class TestDiagnose:
         assert content["unit"] == "um"
         assert content["noise_floor"] == {"x": pytest.approx(0.005, rel=0.1)}
         assert set(content["rmse"]) == {"identify", "validate"}
-        for item in content["candidates"]:
-            assert set(item) >= CANDIDATE
-            assert item["decision"] in DECISIONS
-            assert item["effect"] in item["class"]
-            assert item["rmse"] is None or set(item["rmse"]) == {"identify", "validate"}
-            assert all(isinstance(value, float) for value in item["expected"].values())
+        for candidate in content["candidates"]:
+            assert set(candidate) >= CANDIDATE
+            assert candidate["decision"] in DECISIONS
+            assert candidate["effect"] in candidate["class"]
+            assert candidate["rmse"] is None or set(candidate["rmse"]) == {"identify", "validate"}
+            assert all(isinstance(value, float) for value in candidate["expected"].values())
 
     def test_a_tie_is_a_class_and_is_said(self, diagnosed):
         content = read(diagnosed[1] / "diagnosis.json")
@@ -86,9 +86,9 @@ class TestDiagnose:
         best = content["candidates"][0]
         assert best["decision"] == "missing"
         assert {"amplifier_lag", "sensor_lag"} <= set(best["class"])
-        assert {item["effect"] for item in content["candidates"] if set(item["class"]) == set(best["class"])} == set(
-            best["class"]
-        )
+        assert {
+            candidate["effect"] for candidate in content["candidates"] if set(candidate["class"]) == set(best["class"])
+        } == set(best["class"])
         assert "cannot tell them apart" in diagnosed[0].stdout
 
     def test_the_drive_to_run_next_stays_within_the_limits(self, diagnosed):
@@ -109,7 +109,7 @@ class TestDiagnose:
         page = unescape((diagnosed[1] / "report.html").read_text(encoding="utf-8"))
         content = read(diagnosed[1] / "diagnosis.json")
         assert content["reason"] in plain_text(page)
-        assert all(item["physics"] in page for item in content["candidates"])
+        assert all(candidate["physics"] in page for candidate in content["candidates"])
         assert f"apply the drive in {content['next_experiment']['file']}" in page
 
     def test_says_what_to_do_on_the_rig(self, diagnosed):
@@ -124,7 +124,7 @@ class TestDiagnose:
         lines = [json.loads(line) for line in (diagnosed[1] / "events.jsonl").read_text().splitlines()]
         content = read(diagnosed[1] / "diagnosis.json")
         scored = [line for line in lines if line["event"] == "scored"]
-        assert {line["effect"] for line in scored} == {item["effect"] for item in content["candidates"]}
+        assert {line["effect"] for line in scored} == {candidate["effect"] for candidate in content["candidates"]}
         assert [line["done"] for line in scored] == list(range(1, scored[0]["of"] + 1))
         refitted = {tuple(line["effects"]): line["identify"] for line in lines if line["event"] == "refitted"}
         best = content["candidates"][0]
@@ -196,7 +196,7 @@ class TestImprove:
         last = read(improved[1] / "improvement.json")["steps"][-1]
         assert content["verdict"] == "adequate"
         assert content["rmse"] == last["rmse"]
-        assert "quadratic_gain" not in [item["effect"] for item in content["candidates"]]
+        assert "quadratic_gain" not in [candidate["effect"] for candidate in content["candidates"]]
 
     def test_the_improved_job_checks(self, improved):
         path = improved[1] / "improved.yaml"

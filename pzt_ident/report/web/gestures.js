@@ -7,66 +7,77 @@ const FLAT = 15; // px: a box of less height zooms in time only
  * The wheel over a plot along time zooms in time, with Ctrl or Alt in height. `moved(plot)` follows a new view, `point(i)` the cursor, `mark(xs, ys)` a box (null, null: none), `reset()` a double
  * click. `wheel`: "focused" leaves the wheel to the page unless the plot has the focus. */
 export function listen(plot, { mode = () => "pan", moved = () => {}, point = () => {}, mark = () => {}, reset = () => {}, wheel = "always" }) {
-  const { root } = plot;
-  const fingers = new Map();
-  let start = null, last = null, pinch = 0;
-
-  const place = (event) => {
-    const box = root.getBoundingClientRect();
-    return [event.clientX - box.left, event.clientY - box.top];
-  };
-  const go = (x, y) => { plot.look(x, y); moved(plot); };
-  const boxMode = (event) => (event.shiftKey ? "zoom" : mode());
-
+  const { root } = plot, pointers = new Pointers(plot, { mode, moved, point, mark });
+  const go = (x, y) => pointers.go(x, y);
   root.addEventListener("wheel", (event) => {
     if (!plot.scene || (wheel === "focused" && document.activeElement !== root)) return;
     event.preventDefault();
     const factor = Math.exp(0.0015 * Math.max(-300, Math.min(300, event.deltaY * (event.deltaMode ? 30 : 1))));
-    if (plot.along && (event.ctrlKey || event.altKey)) go(plot.view.x, around(plot.y, place(event)[1], factor));
-    else zoom(plot, factor, ...place(event), go);
+    if (plot.along && (event.ctrlKey || event.altKey)) go(plot.view.x, around(plot.y, pointers.place(event)[1], factor));
+    else zoom(plot, factor, ...pointers.place(event), go);
   }, { passive: false });
+  root.addEventListener("pointerdown", (event) => plot.scene && event.button <= 0 && pointers.down(event));
+  root.addEventListener("pointermove", (event) => plot.scene?.series && pointers.move(event));
+  for (const kind of ["pointerup", "pointercancel"]) root.addEventListener(kind, (event) => pointers.up(event));
+  root.addEventListener("pointerleave", () => !pointers.start && point(null));
+  root.addEventListener("dblclick", () => reset());
+  root.addEventListener("keydown", (event) => key(plot, event, go, reset));
+}
 
-  root.addEventListener("pointerdown", (event) => {
-    if (!plot.scene || event.button > 0) return;
-    fingers.set(event.pointerId, place(event));
-    if (fingers.size === 2) [pinch, start] = [apart(fingers), null];
-    else [start, last] = [place(event), place(event)];
-    root.setPointerCapture(event.pointerId);
-  });
-  root.addEventListener("pointermove", (event) => {
-    if (!plot.scene?.series) return;
-    const [px, py] = place(event);
+/** Mouse and fingers on a plot: one drags or points, two pinch. */
+class Pointers {
+  constructor(plot, { mode, moved, point, mark }) {
+    Object.assign(this, { plot, mode, moved, point, mark, fingers: new Map(), start: null, last: null, pinch: 0 });
+  }
+
+  place(event) {
+    const box = this.plot.root.getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top];
+  }
+
+  go(x, y) {
+    this.plot.look(x, y);
+    this.moved(this.plot);
+  }
+
+  modeOf(event) { return event.shiftKey ? "zoom" : this.mode(); }
+
+  down(event) {
+    this.fingers.set(event.pointerId, this.place(event));
+    if (this.fingers.size === 2) [this.pinch, this.start] = [apart(this.fingers), null];
+    else [this.start, this.last] = [this.place(event), this.place(event)];
+    this.plot.root.setPointerCapture(event.pointerId);
+  }
+
+  move(event) {
+    const { plot, fingers } = this, [px, py] = this.place(event), go = (x, y) => this.go(x, y);
     if (fingers.has(event.pointerId)) fingers.set(event.pointerId, [px, py]);
     if (fingers.size === 2) {
       const [[x0, y0], [x1, y1]] = [...fingers.values()];
-      zoom(plot, pinch / apart(fingers), (x0 + x1) / 2, (y0 + y1) / 2, go);
-      pinch = apart(fingers);
-    } else if (!start) point(plot.nearest(px, py));
-    else if (boxMode(event) === "pan") {
-      pan(plot, px - last[0], py - last[1], go);
-      last = [px, py];
+      zoom(plot, this.pinch / apart(fingers), (x0 + x1) / 2, (y0 + y1) / 2, go);
+      this.pinch = apart(fingers);
+    } else if (!this.start) this.point(plot.nearest(px, py));
+    else if (this.modeOf(event) === "pan") {
+      pan(plot, px - this.last[0], py - this.last[1], go);
+      this.last = [px, py];
     } else {
-      plot.boxAcross = plot.along && (boxMode(event) === "mark" || Math.abs(py - start[1]) < FLAT);
-      plot.box = [...start, px, py];
+      plot.boxAcross = plot.along && (this.modeOf(event) === "mark" || Math.abs(py - this.start[1]) < FLAT);
+      plot.box = [...this.start, px, py];
       plot.drawTop();
     }
-  });
-  const end = (event) => {
-    fingers.delete(event.pointerId);
-    const box = plot.box;
-    [start, plot.box] = [null, null];
+  }
+
+  up(event) {
+    const { plot } = this, { box } = plot;
+    this.fingers.delete(event.pointerId);
+    [this.start, plot.box] = [null, null];
     if (!box || event.type === "pointercancel") return;
     const sorted = (a, b) => (a < b ? [a, b] : [b, a]);
     const dragged = Math.hypot(box[2] - box[0], box[3] - box[1]) > 4;
     const xs = sorted(plot.x.value(box[0]), plot.x.value(box[2])), ys = sorted(plot.y.value(box[1]), plot.y.value(box[3]));
-    if (boxMode(event) === "zoom") dragged ? go(xs, plot.boxAcross ? plot.view.y : ys) : plot.drawTop();
-    else dragged ? mark(xs, ys) : mark(null, null);
-  };
-  root.addEventListener("pointerup", end);
-  root.addEventListener("pointercancel", end);
-  root.addEventListener("pointerleave", () => !start && point(null));
-  root.addEventListener("dblclick", () => reset());
-  root.addEventListener("keydown", (event) => key(plot, event, go, reset));
+    if (this.modeOf(event) === "zoom") dragged ? this.go(xs, plot.boxAcross ? plot.view.y : ys) : plot.drawTop();
+    else dragged ? this.mark(xs, ys) : this.mark(null, null);
+  }
 }
 
 function apart(fingers) {
