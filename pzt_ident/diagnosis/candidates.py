@@ -108,20 +108,23 @@ def restart_look_alikes(case: Case, first: Fit, before: Fit, candidates: list[Ca
 
 
 def refit_other_forms(case: Case, before: Fit, candidates: Sequence[Candidate], shortlist: list[Candidate]) -> None:
-    """Refit the look-alikes of an effect that explains nearly all in every form they have, and put them on the short
-    list: in another form than its first or the one that scores best, one may explain more."""
+    """Refit effects of the short list in every form they have where none explains most of the misfit: a form may leave
+    little of it and yet score low. Where one explains nearly all, refit so its look-alikes, which join the short list:
+    one may explain more in another form."""
     fits = [fit for item in shortlist for fit in item.refits.values()]
     best = min(fits, key=lambda fit: fit.total, default=before)
-    if share_explained(before.identify, best.identify, case.floor) < NEARLY_ALL:
-        return
-    for candidate in candidates:
-        if not are_look_alikes(best.effects[-1], candidate.score.effect) or not case.budget.allows("other forms"):
-            continue
+    share = share_explained(before.identify, best.identify, case.floor)
+    if share >= NEARLY_ALL:
+        wanted = [item for item in candidates if are_look_alikes(best.effects[-1], item.score.effect)]
+    else:
+        wanted = shortlist if share < DECISIVE else []
+    for candidate in wanted:
         missing = [score for score in candidate.forms if score.effect not in candidate.refits]
+        if missing and not case.budget.allows("other forms"):
+            break
         new = {score.effect: refit(case, before, (*before.effects, score.effect), score.guess) for score in missing}
         candidate.refits = {**candidate.refits, **new}
-        if candidate not in shortlist:
-            shortlist.append(candidate)
+    shortlist += [item for item in wanted if item.refits and item not in shortlist]
 
 
 def are_look_alikes(one: str, other: str) -> bool:

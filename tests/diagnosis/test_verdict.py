@@ -72,6 +72,18 @@ def test_look_alikes_of_what_explains_nearly_all_are_compared_in_every_form():
         assert set(candidate.refits) == {score.effect for score in candidate.forms}
 
 
+def test_where_no_effect_explains_most_the_short_list_is_tried_in_every_form():
+    case = stage.case(stage.EFFECTS["creep"])
+    before = first_fit(case, 0)
+    candidates = score_all(case, before, Scorer(case, before))
+    shortlist = [item for item in candidates if item.score.effect in ("drift", "saturation")]
+    for candidate in shortlist:
+        candidate.refits = {candidate.score.effect: before}
+    refit_other_forms(case, before, candidates, shortlist)
+    for candidate in shortlist:
+        assert set(candidate.refits) == {score.effect for score in candidate.forms}
+
+
 def test_look_alikes_that_fit_hardly_worse_are_in_its_class():
     case = stage.case(stage.EFFECTS["amplifier_lag"], noise=1e-8)
     diagnosis = judged(case)
