@@ -11,6 +11,7 @@ from pzt_ident.diagnosis.bounds import beyond_bounds, brought_back, stands_in
 from pzt_ident.diagnosis.candidates import Candidate
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removes_enough
 from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, find_rivals, remove_unneeded
+from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.proof import Suspect, unproven
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.starts import restart
@@ -42,21 +43,32 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
     """The staircase from the model as given to the one with all effects that are proven, and with wider bounds where
     those of the job are too narrow: wider ones are tried first where they remove most of the misfit."""
     beyond = None if adequate(case, first, first) else beyond_bounds(case, first, first)
+    wide = None
     if beyond and explained_share(case, first, beyond[1]) >= DECISIVE:
         wide = improve_beyond(case, first, *beyond, on_step)
-        if accounts(wide, case):
+        if accounts(wide, case, first):
             return wide
     given = with_least_bounds(case, improve_within(case, first, on_step))
-    if given.last.verdict == "adequate" or not beyond or not case.budget.allows("wider bounds"):
+    if given.last.verdict == "adequate" or not beyond:
         return given
-    wide = improve_beyond(case, first, *beyond, on_step)
-    return wide if accounts(wide, case) else given
+    if wide is None and case.budget.allows("wider bounds"):
+        wide = improve_beyond(case, first, *beyond, on_step)
+    return wide if wide and (accounts(wide, case, first) or clearly_better(wide, given, case)) else given
 
 
-def accounts(wide: Staircase, case: Case) -> bool:
-    """Whether wider bounds lead to an adequate model, in which none of them is reached."""
-    within = wide.case is None or not stands_in(wide.case, case, wide.steps[-1].fit)
-    return wide.last.verdict == "adequate" and within
+def accounts(wide: Staircase, case: Case, first: Fit) -> bool:
+    """Whether wider bounds lead near the noise, to a model in which none of them is reached."""
+    return near_noise(case, first, wide.steps[-1].fit) and keeps_within(wide, case)
+
+
+def clearly_better(wide: Staircase, given: Staircase, case: Case) -> bool:
+    """Whether wider bounds, none of which is reached, remove most of what the staircase within the given ones leaves."""
+    share = share_explained(given.steps[-1].fit.total, wide.steps[-1].fit.total, case.floor)
+    return share >= DECISIVE and keeps_within(wide, case)
+
+
+def keeps_within(wide: Staircase, case: Case) -> bool:
+    return wide.case is None or not stands_in(wide.case, case, wide.steps[-1].fit)
 
 
 def improve_beyond(case: Case, first: Fit, wide: Case, start: Fit, on_step: StepListener) -> Staircase:
