@@ -135,6 +135,11 @@ class Part:
         self._fresh = False
         return outputs
 
+    def respond_from_rest(self, inputs: Array) -> Array:
+        """The same from rest under the first input."""
+        self._fresh = True
+        return self.respond(inputs)
+
     def solve(self, outputs: Array, held: Array, limits: Array, move: Array, slopes: Array) -> Solution:
         """Inputs of the measured axes under which the outputs (axes, samples) are as given, within limits (axes, 2) and
         at most `move` (axes,) a sample; the others have those of `held`. slopes: (axes, axes), rough ones of the

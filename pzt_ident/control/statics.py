@@ -42,4 +42,5 @@ def statics(stage: Stage, axis: int, force: Array) -> Array:
     """Displacements of an axis at rest under row force, the others being free of force."""
     forces = np.zeros((force.size, len(stage.model.axes), 1))
     forces[:, axis, 0] = force
-    return np.array([stage.respond(row, MECHANICS)[axis, 0] for row in forces])
+    mechanics = stage.part(MECHANICS)
+    return np.array([mechanics.respond_from_rest(row)[axis, 0] for row in forces])

@@ -217,8 +217,23 @@ def decimate_curve(xs: NDArray[np.float64], ys: NDArray[np.float64], points: int
 def file_content(figure: Figure, form: str) -> bytes:
     """The figure as the content of a file in the format `form` (svg, pdf); the same figure gives the same bytes."""
     file = io.BytesIO()
-    figure.savefig(file, format=form, metadata={"Date": None} if form == "svg" else {"CreationDate": None})
+    with _fonts_without_shaping():
+        figure.savefig(file, format=form, metadata={"Date": None} if form == "svg" else {"CreationDate": None})
     return file.getvalue() if form == "pdf" else _rounded(file.getvalue().decode()).encode()
+
+
+@contextmanager
+def _fonts_without_shaping() -> Iterator[None]:
+    """Fonts in a PDF are embedded without the tables that shape text, which no viewer reads: to subset them is most of
+    the time in which a PDF is written."""
+    from fontTools.subset import Options
+
+    usual = Options._drop_tables_default
+    Options._drop_tables_default = [*usual, "GDEF", "GPOS", "GSUB", "MATH"]
+    try:
+        yield
+    finally:
+        Options._drop_tables_default = usual
 
 
 def _rounded(svg: str) -> str:

@@ -7,31 +7,42 @@ import sys
 from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 from pzt_ident.atlas.manual import chapter, code_blocks, names, source
+from pzt_ident.cli.commands import main
 
 ROOT = str(Path(__file__).parents[2])
 
 
-def run(command, folder):
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join([ROOT, str(folder)])}
-    ran = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, encoding="utf-8")
+def run(*command):
+    """In a process of its own, since a word that is registered stays so."""
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([ROOT, os.getcwd()])}
+    ran = subprocess.run([sys.executable, *command], env=environment, capture_output=True, text=True, encoding="utf-8")
     assert ran.returncode == 0, (command, ran.stdout, ran.stderr)
 
 
+def run_here(*command):
+    ran = CliRunner().invoke(main, command)
+    assert ran.exit_code == 0, (command, ran.output, ran.exception)
+
+
 @pytest.mark.parametrize("name", names())
-def test_code_runs(name, tmp_path):
-    for block in code_blocks(source(name)):
+def test_code_runs(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    blocks = code_blocks(source(name))
+    registers = any(block.file.endswith(".py") for block in blocks)
+    for block in blocks:
         if block.file:
-            (tmp_path / block.file).write_text(block.text, encoding="utf-8")
+            Path(block.file).write_text(block.text, encoding="utf-8")
         elif block.language == "sh":
             for line in block.text.splitlines():
                 command, *arguments = shlex.split(line)
                 assert command == "pzt-ident"
-                run([sys.executable, "-m", "pzt_ident", *arguments], tmp_path)
+                run("-m", "pzt_ident", *arguments) if registers else run_here(*arguments)
         else:
             assert block.language == "python", "give a file its name, `# file: NAME`"
-            run([sys.executable, "-c", block.text], tmp_path)
+            run("-c", block.text) if registers else exec(block.text, {"__name__": "__main__"})
 
 
 def test_a_chapter_is_a_part_of_the_page():

@@ -41,7 +41,7 @@ def dynamic(words):
 
 
 def errors_of(words, gain):
-    """Errors over the span of the displacement, of candidates that the inverse does not call wrong."""
+    """Errors over the span of the displacement, of three candidates of eight that the inverse does not call wrong."""
     chain, measured, thetas = made(words, swept(600), count=8, dt=1e-3)
     errors = []
     for theta in thetas:
@@ -52,6 +52,8 @@ def errors_of(words, gain):
         found = Inverse(stage, 100.0, gain=gain)(displacement)
         if not found.wrong.any():
             errors.append(np.abs(found.error).max() / np.ptp(displacement))
+        if len(errors) == 3:
+            break
     return errors
 
 
