@@ -1,3 +1,4 @@
+import { spell } from "./about.js";
 import { Candidates } from "./candidates.js";
 import { Chain } from "./chain.js";
 import { Commands } from "./commands.js";
@@ -133,8 +134,9 @@ function showHeader() {
   const [verdict, next, action] = begun
     ? [headline.verdict, headline.next, headline.action ?? (state.result && !isBusy() ? { name: "", label: "Follow a reference" } : null)]
     : measurement.empty ? ["Drop a measurement with voltage and displacement.", "Or choose a file of this folder.", null] : ["Check what was read from the measurement.", "Then identify a model of it.", { label: "Confirm and identify" }];
-  byId("verdict").textContent = byId("verdict").title = verdict;
-  byId("next").textContent = next;
+  byId("verdict").title = verdict;
+  spell(byId("verdict"), verdict, state);
+  spell(byId("next"), next, state);
   byId("action").hidden = !action || action.name === "stop";
   byId("action").textContent = action?.label ?? "";
   byId("action").onclick = () => (!begun ? measurement.confirm() : action.name ? act(action.name, action.body) : tabs.open("control"));
