@@ -32,7 +32,8 @@ export class Steps {
   card(list, step) {
     const current = step.number === this.at;
     const card = element(list, "div", { class: `card${current ? " chosen" : ""}`, id: `step-${step.number}`, tabindex: -1 });
-    const head = sentence(card, "h3", `${step.number}: ${step.change}`, this.catalogue);
+    const head = element(card, "h3");
+    sentence(head, "span", `${step.number}: ${step.change}`, this.catalogue);
     if (current) element(head, "span", { class: "tag" }, "shown");
     const compare = element(element(head, "label", { class: "push" }, ""), "input", { type: "checkbox", "aria-label": `Compare step ${step.number}`, ...(this.chosen.has(step.number) && { checked: "" }) });
     compare.after("compare");
