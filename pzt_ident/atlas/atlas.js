@@ -32,5 +32,5 @@ document.addEventListener("keydown", (event) => {
 });
 window.addEventListener("hashchange", () => {
   const target = document.getElementById(location.hash.slice(1));
-  if (target?.hidden) { find.value = ""; show(); target.scrollIntoView(); }
+  if (target?.closest("[hidden]")) { find.value = ""; show(); target.scrollIntoView(); }
 });

@@ -64,33 +64,32 @@ class Axis:
         return [float(step * k) for k in range(int(np.ceil(self.low / step)), int(np.floor(self.high / step)) + 1)]
 
 
-def drawing(panels: Sequence[Panel], x_label: str, name: str, title: str, log: bool = False) -> str:
-    """Panels above each other over one axis. name: prefix of the ids of the curves of the first panel."""
-    x_axis = Axis([c.x for panel in panels for c in panel.curves], LEFT, WIDTH - RIGHT, log)
+def drawing(panels: Sequence[Panel], x_label: str, name: str, title: str, log: bool = False, width: int = WIDTH) -> str:
+    """Panels above each other over one axis. name: prefix of the ids of the curves of the first panel, "" for none."""
+    x_axis = Axis([c.x for panel in panels for c in panel.curves], LEFT, width - RIGHT, log)
     top, parts = TOP, []
     for number, panel in enumerate(panels):
         parts.append(_panel(panel, x_axis, top, name if not number else ""))
         top += panel.height + TOP + 6
     bottom = top - TOP - 6
-    for value in x_axis.ticks(5):
+    for value in _x_ticks(x_axis):
         x = _number(float(x_axis(np.array(value))))
         parts.append(f'<text x="{x}" y="{bottom + 14}" text-anchor="middle">{_tick(value)}</text>')
     parts.append(
-        f'<text class="label" x="{WIDTH - RIGHT}" y="{bottom + 28}" text-anchor="end">{escape(x_label)}</text>'
+        f'<text class="label" x="{width - RIGHT}" y="{bottom + 28}" text-anchor="end">{escape(x_label)}</text>'
     )
-    size = f'viewBox="0 0 {WIDTH} {bottom + 34}"'
+    size = f'viewBox="0 0 {width} {bottom + 34}"'
     return f'<svg {size} role="img" aria-label="{escape(title)}">{"".join(parts)}</svg>'
 
 
 def _panel(panel: Panel, x_axis: Axis, top: int, name: str) -> str:
     bottom = top + panel.height
     y_axis = Axis([c.y for c in panel.curves], bottom, top, panel.log, 0.06)
-    grid = "".join(
-        f"M{LEFT} {y}H{WIDTH - RIGHT}" for y in (_number(float(y_axis(np.array(v)))) for v in y_axis.ticks(4))
-    )
-    grid += "".join(f"M{x} {top}V{bottom}" for x in (_number(float(x_axis(np.array(v)))) for v in x_axis.ticks(5)))
+    y_ticks = y_axis.ticks(4 if panel.height > 50 else 3)
+    grid = "".join(f"M{LEFT} {y}H{_number(x_axis.end)}" for y in (_number(float(y_axis(np.array(v)))) for v in y_ticks))
+    grid += "".join(f"M{x} {top}V{bottom}" for x in (_number(float(x_axis(np.array(v)))) for v in _x_ticks(x_axis)))
     parts = [f'<path class="grid" d="{grid}"/>']
-    for value in y_axis.ticks(4):
+    for value in y_ticks:
         y = _number(float(y_axis(np.array(value))) + 3.5)
         parts.append(f'<text x="{LEFT - 4}" y="{y}" text-anchor="end">{_tick(value)}</text>')
     for curve in panel.curves:
@@ -99,6 +98,10 @@ def _panel(panel: Panel, x_axis: Axis, top: int, name: str) -> str:
         parts.append(f'<path{identity} class="{curve.style}" d="{draw(x_axis(curve.x), y_axis(curve.y))}"/>')
     label = f'<text class="label" x="{LEFT}" y="{top - 5}">{escape(panel.label)}</text>'
     return "".join(parts) + label
+
+
+def _x_ticks(axis: Axis) -> list[float]:
+    return axis.ticks(int(axis.end - axis.start) // 50)
 
 
 def thumbnail(name: str, styles: Sequence[str], height: int) -> str:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from pzt_ident.model.registry import word_of
+from pzt_ident.model.registry import blocks, word_of
 
 PAGE = "atlas.html"
 
 
 def href(item: str, page: str = PAGE) -> str:
-    """The link to the section of a word, or of an effect in a form (`creep.voltage`): `atlas.html#creep`."""
+    """The link to a word, or to an effect in a form (`creep.voltage`): `atlas.html#word-creep`."""
     return f"{page}#{anchor(item)}"
 
 
 def anchor(item: str) -> str:
-    """The id of a word's section; a form is in the section of its word."""
-    return f"word-{word_of(item)}"
+    """The id of the section of a word, or of what that says of a form; a parameter is in the section of its block."""
+    word = word_of(item)
+    forms = blocks.forms(word) if word in blocks else [word]
+    return f"word-{item if item in forms else word}"

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.atlas.drawing import Curve, Panel, drawing
+from pzt_ident.atlas.drawing import WIDTH, Curve, Panel, drawing
 from pzt_ident.atlas.shown import shown
 from pzt_ident.atlas.stage import PERIOD, SPAN, STROKE, Array, drives
 from pzt_ident.atlas.traces import Traced, traced
@@ -18,6 +18,7 @@ Complex = NDArray[np.complex128]
 
 LOOPS, STEPS, SWEEPS = ("loops", "fast", "other"), ("holds", "steps", "rest"), ("sweep", "other_sweep")
 MAIN, STRIP = 150, 62
+SMALL, LOWER = 236, 0.65  # width of a small picture, and share of the heights of a large one
 STYLES = ("bare", "with")
 ROUNDING = 1e-9  # of the usual gain
 FLAT = 0.02  # least change of a frequency response, or of the lines of a spectrum, that is worth its picture
@@ -26,8 +27,19 @@ HIDDEN = 1e-3  # of the stroke: a change that is not seen
 DENSE = 200  # swings in one picture that the eye no longer tells apart
 
 
+class View(NamedTuple):
+    """What a picture shows; change: how much the word changes it, 1 for all of it."""
+
+    name: str
+    caption: str
+    change: float
+    panels: list[Panel]
+    x_label: str
+    log: bool = False
+
+
 class Picture(NamedTuple):
-    """An SVG with its caption; change: how much the word changes what it shows, 1 for all of it."""
+    """An SVG with its caption; name: prefix of the ids of its curves; change: as of its view."""
 
     svg: str
     caption: str
@@ -38,10 +50,31 @@ class Picture(NamedTuple):
 @cache
 def pictures(item: str) -> list[Picture]:
     """Loop, steps and spectrum of an item."""
+    return [_picture(view, f"{item}-{view.name}") for view in views(item)]
+
+
+@cache
+def small_pictures(item: str) -> list[Picture]:
+    """The same, small; their curves have no ids."""
+    low = [
+        view._replace(panels=[panel._replace(height=round(LOWER * panel.height)) for panel in view.panels])
+        for view in views(item)
+    ]
+    return [_picture(view, "", SMALL) for view in low]
+
+
+def _picture(view: View, name: str, width: int = WIDTH) -> Picture:
+    svg = drawing(view.panels, view.x_label, name, view.caption, view.log, width)
+    return Picture(svg, view.caption, view.change, name)
+
+
+@cache
+def views(item: str) -> list[View]:
+    """Loop, steps and spectrum of an item."""
     traces, effect = traced(item), blocks.is_effect(word_of(item))
     of_loop, of_steps = _clearest(traces, LOOPS), _clearest(traces, STEPS, ("tone", "other"))
-    drawn = [_loop(item, traces, of_loop, effect), _steps(item, traces, of_steps, effect), _spectrum(item, traces)]
-    return [picture for picture in drawn if picture]
+    found = [_loop(traces, of_loop, effect), _steps(traces, of_steps, effect), _spectrum(item, traces)]
+    return [view for view in found if view]
 
 
 def change(traces: Traced, name: str) -> float:
@@ -76,26 +109,25 @@ def _strip(traces: Traced, name: str, x: Array, effect: bool) -> Panel:
     )
 
 
-def _loop(item: str, traces: Traced, name: str, effect: bool) -> Picture:
+def _loop(traces: Traced, name: str, effect: bool) -> View:
     drive = drives()[name]
     curves = [Curve(style, drive.u, y) for style, y in zip(STYLES, _displacements(traces, name), strict=True)]
     strip = _strip(traces, name, drive.u, effect)
     strip = strip._replace(curves=[Curve("zero", np.array([0, SPAN]), np.zeros(2)), strip.curves[1]])
-    svg = drawing([Panel(curves, "displacement, µm", MAIN), strip], "drive, V", f"{item}-loop", f"Loop: {drive.title}")
-    return Picture(svg, f"Loop: {drive.title}", change(traces, name), f"{item}-loop")
+    panels = [Panel(curves, "displacement, µm", MAIN), strip]
+    return View("loop", f"Loop: {drive.title}", change(traces, name), panels, "drive, V")
 
 
-def _steps(item: str, traces: Traced, name: str, effect: bool) -> Picture:
+def _steps(traces: Traced, name: str, effect: bool) -> View:
     drive = drives()[name]
     scale, unit = (1e3, "ms") if drive.time[-1] < 1 else (1.0, "s")
     t = scale * drive.time
     curves = [Curve(style, t, y) for style, y in zip(STYLES, _displacements(traces, name), strict=True)]
     panels = [Panel(curves, "displacement, µm", MAIN), _strip(traces, name, t, effect)]
-    svg = drawing(panels, f"time, {unit}", f"{item}-steps", f"In time: {drive.title}")
-    return Picture(svg, f"In time: {drive.title}", change(traces, name), f"{item}-steps")
+    return View("steps", f"In time: {drive.title}", change(traces, name), panels, f"time, {unit}")
 
 
-def _spectrum(item: str, traces: Traced) -> Picture | None:
+def _spectrum(item: str, traces: Traced) -> View | None:
     """The frequency response on a sweep, or the spectrum under one sine where that tells more."""
     sweeps = [name for name in SWEEPS[: shown(item).stage.axes] if name in traces.with_it]
     responses = {name: [frequency_response(name, y[name]) for y in (traces.bare, traces.with_it)] for name in sweeps}
@@ -103,8 +135,8 @@ def _spectrum(item: str, traces: Traced) -> Picture | None:
     best = max(changes, key=lambda name: changes[name], default="")
     lines = _line_change(traces) if "tone" in traces.with_it else 0.0
     if best and changes[best] >= max(lines, FLAT) and _repeats(best, traces, changes[best]):
-        return _bode(item, best, responses[best], changes[best])
-    return _lines(item, traces, lines) if lines else None
+        return _bode(best, responses[best], changes[best])
+    return _lines(traces, lines) if lines else None
 
 
 def frequencies(name: str) -> tuple[Array, Complex]:
@@ -143,7 +175,7 @@ def _shape_change(bare: Complex, with_it: Complex) -> float:
     return float(np.linalg.norm(with_it - gain * bare) / np.linalg.norm(bare))
 
 
-def _bode(item: str, name: str, pair: list[Complex], size: float) -> Picture:
+def _bode(name: str, pair: list[Complex], size: float) -> View:
     drive, f = drives()[name], frequencies(name)[0]
     gains, phases = [], []
     for style, response in zip(STYLES, pair, strict=True):
@@ -151,10 +183,7 @@ def _bode(item: str, name: str, pair: list[Complex], size: float) -> Picture:
         gains.append(Curve(style, f[known], 1e9 * np.abs(response[known])))
         phases.append(Curve(style, f[known], np.degrees(np.unwrap(np.angle(response[known])))))
     panels = [Panel(gains, "gain, nm/V", MAIN, True), Panel(phases, "phase, degrees", STRIP)]
-    caption = f"Frequency response: {drive.title}"
-    return Picture(
-        drawing(panels, "frequency, Hz", f"{item}-spectrum", caption, True), caption, size, f"{item}-spectrum"
-    )
+    return View("spectrum", f"Frequency response: {drive.title}", size, panels, "frequency, Hz", True)
 
 
 def _line_change(traces: Traced) -> float:
@@ -171,7 +200,7 @@ def _amplitudes(y: Array) -> Array:
     return 4 * np.abs(np.fft.rfft((last - last.mean()) * np.hanning(last.size)))[3:251] / last.size
 
 
-def _lines(item: str, traces: Traced, size: float) -> Picture:
+def _lines(traces: Traced, size: float) -> View:
     drive, f = drives()["tone"], np.arange(3, 251) / 2
     curves = []
     for style, y, shift in zip(STYLES, (traces.bare, traces.with_it), (-0.4, 0.4), strict=True):
@@ -179,6 +208,5 @@ def _lines(item: str, traces: Traced, size: float) -> Picture:
         tall = np.flatnonzero(sizes > 0.5)
         x, top = np.repeat(f[tall] + shift, 3), np.column_stack([0 * tall + 0.5, sizes[tall], 0 * tall + 0.5]).ravel()
         curves.append(Curve(style, np.concatenate([[0], x, [126]]), np.concatenate([[0.5], top, [0.5]])))
-    caption = f"Spectrum: {drive.title}"
     panel = Panel(curves, "amplitude, nm", MAIN + STRIP + 10, True)
-    return Picture(drawing([panel], "frequency, Hz", f"{item}-spectrum", caption), caption, size, f"{item}-spectrum")
+    return View("spectrum", f"Spectrum: {drive.title}", size, [panel], "frequency, Hz")

@@ -14,10 +14,10 @@ from typing import Any, NamedTuple
 from pzt_ident.atlas.href import href
 from pzt_ident.atlas.look_alikes import LookAlike, look_alikes
 from pzt_ident.atlas.mathml import GREEK, lead_and_equation, marked_up, symbol
-from pzt_ident.atlas.pictures import STYLES, Picture, pictures
+from pzt_ident.atlas.pictures import STYLES, Picture, pictures, small_pictures
 from pzt_ident.atlas.search_pictures import search_pictures
 from pzt_ident.atlas.shown import shown
-from pzt_ident.data.notation import ranges, short
+from pzt_ident.data.notation import ranges, short, unit
 from pzt_ident.model.block import Place, Term
 from pzt_ident.model.description import description_of, headline
 from pzt_ident.model.registry import blocks, optimizers, word_of
@@ -36,13 +36,16 @@ SEARCH = "Optimizers: how the parameters are found"
 
 
 class Form(NamedTuple):
-    """An effect in one of its forms: as a job has it, what it is, and which parameters at which value are nothing."""
+    """An effect in one of its forms: as a job has it, what it is, which parameters at which value are nothing, and the
+    form at work at the values that are shown."""
 
     item: str
     lead: str
     equation: str
     more: list[str]
     null: str
+    pictures: list[Picture]
+    values: str
 
 
 class Word:
@@ -90,14 +93,14 @@ class Word:
     def source(self) -> str:
         return cited(escape(self.facts.get("source", ""), quote=False))
 
-    @property
+    @cached_property
     def forms(self) -> list[Form]:
         items = blocks.forms(self.word) if self.effect else []
         return [self._form(item) for item in items] if len(items) > 1 else []
 
     def _form(self, item: str) -> Form:
         lead, equation, more = texts_of(inspect.getdoc(blocks[item]) or "", self.symbols)
-        return Form(item, lead, equation, more, ", ".join(nulls(item)))
+        return Form(item, lead, equation, more, ", ".join(nulls(item)), small_pictures(item), values(item))
 
     @property
     def null(self) -> str:
@@ -107,7 +110,9 @@ class Word:
     def parameters(self) -> list[dict[str, Any]]:
         rows = grouped(self.facts.get("parameters", ()))
         return [
-            row | {"symbol": self.symbol_of(row), "bounds": "{} to {}".format(*map(short, row["bounds"]))}
+            row
+            | {"symbol": self.symbol_of(row), "unit": unit(row["unit"]) or "1"}
+            | {"bounds": "{} to {}".format(*map(short, row["bounds"]))}
             for row in rows
         ]
 
@@ -145,12 +150,7 @@ class Word:
 
     @property
     def values(self) -> str:
-        """At which it is shown."""
-        parameters: dict[tuple[str, str], list[str]] = {}
-        for shown_value in shown(self.word).values:
-            name, unit = shown_value.name.partition(".")[2], "" if shown_value.unit == "1" else f" {shown_value.unit}"
-            parameters.setdefault((re.sub(r"_\d+$", "", name), short(shown_value.value, 3) + unit), []).append(name)
-        return ", ".join(f"{name} = {value}" for (_, value), names in parameters.items() for name in ranges(names))
+        return values(self.word)
 
     @property
     def look_alikes(self) -> list[LookAlike]:
@@ -188,6 +188,15 @@ def cited(html: str) -> str:
     name = rf"{particle}[A-Z][\w'’-]+(?: {particle}[A-Z][\w-]+)*"
     authors = rf"{name}(?:, {name})*(?: &amp; {name}| et al\.)?"
     return re.sub(rf"({authors}(?:, Model Development[^,.]*| \(\d{{4}}\)))", r"<cite>\1</cite>", html)
+
+
+def values(item: str) -> str:
+    """At which an item is shown."""
+    parameters: dict[tuple[str, str], list[str]] = {}
+    for shown_value in shown(item).values:
+        name, value = shown_value.name.partition(".")[2], f"{short(shown_value.value, 3)} {unit(shown_value.unit)}"
+        parameters.setdefault((re.sub(r"_\d+$", "", name), value.rstrip()), []).append(name)
+    return ", ".join(f"{name} = {value}" for (_, value), names in parameters.items() for name in ranges(names))
 
 
 def nulls(item: str) -> list[str]:

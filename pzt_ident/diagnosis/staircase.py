@@ -62,7 +62,7 @@ def accounts(wide: Staircase, case: Case, first: Fit) -> bool:
 
 
 def clearly_better(wide: Staircase, given: Staircase, case: Case) -> bool:
-    """Whether wider bounds, none of which is reached, remove most of what the staircase within the given ones leaves."""
+    """Whether wider bounds, none of which is reached, remove most of what the staircase as given leaves."""
     share = share_explained(given.steps[-1].fit.total, wide.steps[-1].fit.total, case.floor)
     return share >= DECISIVE and keeps_within(wide, case)
 

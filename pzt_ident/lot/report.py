@@ -25,6 +25,7 @@ from pzt_ident.report.inline import inline
 from pzt_ident.report.page import environment as page_environment
 from pzt_ident.report.page import web_file
 from pzt_ident.report.style import COLUMN, PAGE
+from pzt_ident.report.words import named
 from pzt_ident.run.events import Listen, nobody
 from pzt_ident.run.place import HERE, Place
 
@@ -100,6 +101,8 @@ def draw_page(tell: Any, folder: Path) -> None:
 def page(lot: Lot, figures: dict[str | None, list[tuple[Plate, Markup]]]) -> str:
     from markupsafe import Markup
 
+    said, outside, quantities = list(findings(lot)), far(lot), [quantity_line(lot, item) for item in lot.quantities]
+    names = [name for row in lot.done for name in row["effects"]] + [line[0] for line in quantities]
     script = files("pzt_ident.lot").joinpath("lot.js").read_text(encoding="utf-8")
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return (
@@ -113,11 +116,12 @@ def page(lot: Lot, figures: dict[str | None, list[tuple[Plate, Markup]]]) -> str
             css=Markup(web_file("page.css")),
             lot=lot,
             lead=lead(lot),
-            findings=list(findings(lot)),
-            far=far(lot),
+            findings=said,
+            far=outside,
+            words=named([*said, *(kind for _, kind, _ in outside), *names], {}),
             effects=lot.effects,
             figures=figures,
-            quantities=[quantity_line(lot, quantity) for quantity in lot.quantities],
+            quantities=quantities,
             header=header(lot),
             lines=list(device_lines(lot)),
             page_of={row["device"]: page_of(lot, row["device"]) for row in lot.rows},

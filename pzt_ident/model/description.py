@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import sys
 from dataclasses import asdict, fields
 from typing import Any
 
@@ -36,6 +37,12 @@ def headline(item: type) -> str:
     paragraph = (inspect.getdoc(item) or "").partition("\n\n")[0].splitlines()
     end = next((place for place, line in enumerate(paragraph, start=1) if line.endswith(".")), len(paragraph))
     return " ".join(line.strip() for line in paragraph[:end])
+
+
+def summary(item: type) -> str:
+    """What a block or optimizer is, in a few words: the first paragraph of its file, else its own headline."""
+    file = inspect.getdoc(sys.modules[item.__module__]) or ""
+    return " ".join(file.partition("\n\n")[0].split()) or headline(item)
 
 
 def description_of(name: str) -> Facts:

@@ -13,6 +13,7 @@ from pzt_ident.report.page import POINTS, rendered, staircase
 from pzt_ident.report.sentences import USE_NAMES, listed, together, verdict
 from pzt_ident.report.tables import Cell, Table, table, write_tables
 from pzt_ident.report.traces import packed
+from pzt_ident.report.words import named
 from pzt_ident.run.results import Results, read_folder
 
 
@@ -32,6 +33,7 @@ def write_side_by_side(folders: Sequence[Path], page: Path) -> Path:
     content = {"records": packed(models, POINTS[0]), "floors": shared_floors(results), "stairs": stairs}
     verdicts = {name: verdict(result) for name, result in results.items()}
     variables: dict[str, Any] = {"results": results, "tables": tables, "stairs": stairs, "verdicts": verdicts}
+    variables["words"] = named(verdicts.values(), tables)
     write_text(page, rendered("side_by_side.html", "Side by side", content, lead=ranking(results), **variables))
     return page
 

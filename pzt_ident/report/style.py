@@ -101,7 +101,7 @@ class Frame:
     left: float = 13.0
     right: float = 2.5
     bottom: float = 9.0
-    across: float = 13.0
+    across: float = 16.0
     down: float = 14.0
 
 

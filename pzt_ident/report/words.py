@@ -14,7 +14,7 @@ from pzt_ident.report.tables import Table
 if TYPE_CHECKING:
     from markupsafe import Markup
 
-COLUMNS = ("effect", "indistinguishable from", "parameter", "step", "supported by the data")
+COLUMNS = ("effect", "indistinguishable from", "parameter", "step", "supported by the data", "effects added")
 """Headings of the columns of tables whose words are linked."""
 NAME = re.compile(r"[A-Za-z]\w*(?:\.\w+)*")  # a word, or one with its form, its parameter or its axis
 

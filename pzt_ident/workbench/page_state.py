@@ -15,8 +15,7 @@ from pzt_ident.data.readers.registry import readers
 from pzt_ident.data.signals import Trace
 from pzt_ident.diagnosis.candidates import differ
 from pzt_ident.errors import InputError
-from pzt_ident.model.description import description_of, words
-from pzt_ident.model.description import headline as first_sentence
+from pzt_ident.model.description import description_of, summary, words
 from pzt_ident.model.registry import blocks, phrase_of, word_of
 from pzt_ident.report.sentences import printed_reason
 from pzt_ident.report.style import decimate
@@ -135,7 +134,7 @@ def diagnosis_of(session: Session, step: Path) -> dict[str, Any] | None:
     diagnosis = json.loads(path.read_text(encoding="utf-8"))
     for candidate in diagnosis["candidates"]:
         candidate["estimate"] = expected(candidate["expected"], candidate["units"])
-        candidate["about"] = href(candidate["effect"], ATLAS)
+        candidate["about"] = href(candidate.get("item", candidate["effect"]), ATLAS)
     reason = printed_reason(diagnosis["reason"] + tied_sentences(session), read_results(step / "run"))
     return printed(diagnosis) | {"reason": in_page_words(reason)}
 
@@ -213,9 +212,12 @@ def effects() -> list[dict[str, Any]]:
 
 def optimizer_words() -> list[dict[str, Any]]:
     """The optimizers with the defaults of their settings."""
-    settings = {word: description_of(word)["settings"] for word in words("optimizers")}
+    settings = {
+        word: {setting["name"]: setting["default"] for setting in description_of(word)["settings"]}
+        for word in words("optimizers")
+    }
     return [
-        {"name": word, "doc": doc, "settings": {setting["name"]: setting["default"] for setting in settings[word]}}
+        {"name": word, "doc": doc, "about": href(word, ATLAS), "settings": settings[word]}
         for word, doc in words("optimizers").items()
     ]
 
@@ -225,7 +227,8 @@ def description(word: str) -> dict[str, Any]:
     return {
         "name": word,
         "about": href(word, ATLAS),
-        "doc": first_sentence(blocks[word]),
+        "forms": {item: href(item, ATLAS) for item in blocks.forms(word)[1:]},
+        "doc": summary(blocks[word]),
         "place": None if place is None else int(place),
         "kind": blocks.kind_of(word),
     }

@@ -7,9 +7,14 @@ from pzt_ident.atlas.href import href
 from pzt_ident.cli.commands import main
 
 
-def test_a_form_is_in_the_section_of_its_word():
-    assert href("creep") == href("creep.voltage") == "atlas.html#word-creep"
+def test_a_form_has_its_own_place():
+    assert href("creep") == "atlas.html#word-creep"
+    assert href("creep.voltage") == "atlas.html#word-creep.voltage"
     assert href("creep", "/atlas") == "/atlas#word-creep"
+
+
+def test_what_is_no_form_is_in_the_section_of_its_word():
+    assert href("creep.tau") == href("creep") and href("pso.particles") == href("pso")
 
 
 @pytest.mark.parametrize("word", ["creep.voltage", "pso", "lumped"])

@@ -12,6 +12,7 @@ import pytest
 from playwright.sync_api import expect
 
 from browser.conftest import faults_of, workbenches
+from pzt_ident.model.registry import blocks
 
 SAMPLE = files("pzt_ident.job").joinpath("examples", "demo")
 JOB = """\
@@ -258,6 +259,30 @@ def test_a_proposed_effect_is_shown_before_it_is_added(shown, folder):
     card.locator("summary").click()
     expect(shown.locator("#time .legend").first).not_to_contain_text("with these values")
     assert len(state_of(folder)["steps"]) == 1
+
+
+UNLINKED = """() => {
+  const words = new Set(WORDS), found = [];
+  for (const node of document.querySelectorAll("#verdict, #next, #blocks li, #sheets :is(p, li, td, dd, h3, strong)")) {
+    const links = [...(node.closest(".card") ?? node).querySelectorAll("a[href*='#word-']")];
+    const linked = links.map(({ hash }) => hash.slice(6).split(".")[0]);
+    const missed = node.textContent.split(/[^\\w]+/).filter((word) => words.has(word) && !linked.includes(word));
+    found.push(...missed.map((word) => `${word}: ${node.textContent}`));
+  }
+  return found;
+}"""
+
+
+def test_no_word_is_without_its_link_to_the_atlas(shown):
+    shown.click("#tab-steps")
+    assert shown.evaluate(UNLINKED.replace("WORDS", str(blocks.words()))) == []
+    shown.click("#more summary")
+    for link in shown.locator(".palette a").all():
+        assert link.get_attribute("href").startswith("/atlas#word-")
+    assert shown.locator(".palette a").count() == shown.locator(".palette button").count() > 8
+    shown.keyboard.press("Escape")
+    shown.select_option("[aria-label='Effect to add']", "friction")
+    expect(shown.get_by_role("link", name="About friction")).to_have_attribute("href", "/atlas#word-friction")
 
 
 def test_each_word_leads_to_its_section_of_the_atlas(shown):

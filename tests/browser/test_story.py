@@ -105,6 +105,7 @@ def test_from_the_file_drop_to_the_fallen_error(workbench, page, tmp_path):
         page.click("#report")
     report = opened.value
     expect(report.locator(".readout")).to_contain_text("Whole record")
+    expect(report.locator("#word-bouc_wen a").last).to_have_attribute("href", "/atlas#word-bouc_wen")
     assert (tmp_path / "workbench/steps/1/run/report.html").exists()
 
 

@@ -10,14 +10,15 @@ import pytest
 from pzt_ident.atlas.href import anchor, href
 from pzt_ident.atlas.look_alikes import look_alikes
 from pzt_ident.atlas.pictures import change
+from pzt_ident.atlas.shown import shown
 from pzt_ident.atlas.symptoms import SHOWN, table
 from pzt_ident.atlas.traces import traced
 from pzt_ident.atlas.words import Word
-from pzt_ident.model.registry import blocks, optimizers
+from pzt_ident.model.registry import blocks, optimizers, word_of
 
 WORDS = [*blocks.words(), *optimizers.words()]
 EFFECTS = blocks.effects()
-LARGEST_FILE, LARGEST_WORD = 5e6, 6e4
+LARGEST_FILE, LARGEST_WORD = 1.5e6, 1e5
 
 
 class Page(HTMLParser):
@@ -76,6 +77,17 @@ def test_pictures_have_units_and_differ_from_those_without_the_word(word):
         assert all(
             ", " in label for picture in pictures for label in re.findall('class="label"[^>]*>([^<]*)', picture.svg)
         )
+
+
+@pytest.mark.parametrize("item", [item for word in EFFECTS for item in blocks.forms(word)[1:]])
+def test_every_form_has_its_own_pictures_beside_those_of_the_first(item, html):
+    word = word_of(item)
+    section = re.search(rf'<article id="{anchor(word)}".*?</article>', html, re.S)[0]
+    first, mine = (re.search(rf"<code>{name}</code></dt>.*?</dd>", section, re.S)[0] for name in (word, item))
+    assert f'<dt id="{anchor(item)}"' in section
+    drawings = [re.findall(r'<path class="with".*?/>', entry) for entry in (first, mine)]
+    assert min(map(len, drawings)) >= 2 and drawings[0] != drawings[1]
+    assert all(row.name.partition(".")[2].rstrip("_0123456789") in mine for row in shown(item).values)
 
 
 @pytest.mark.parametrize("word", EFFECTS)

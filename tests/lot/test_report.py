@@ -13,6 +13,7 @@ from pzt_ident.files import read_sealed, write_sealed
 from pzt_ident.lot.figures import plates
 from pzt_ident.lot.outcome import read_lot
 from pzt_ident.lot.report import write_fleet_report
+from pzt_ident.model.registry import blocks
 from pzt_ident.report.figures import drawn
 from pzt_ident.report.style import COLUMN, PAGE
 from pzt_ident.run.place import Local
@@ -53,6 +54,14 @@ def test_it_names_what_is_broken_and_what_is_out_of_line(page):
 def test_no_text_of_a_figure_is_cut(page, width):
     drawings = [drawn(plate, width) for plate in plates(read_lot(page.parent))]
     assert drawings and not [text for drawing in drawings for text in cut_texts(drawing)]
+
+
+def test_every_word_is_explained_on_the_page(page):
+    text = page.read_text(encoding="utf-8")
+    explained = set(re.findall(r'<article id="word-(\w+)">', text))
+    assert explained == set(re.findall(r'href="#word-(\w+)"', text))
+    names = [name for item in read_lot(page.parent).quantities for name in item.name.split(".")]
+    assert {name for name in names if name in blocks} <= explained != set()
 
 
 def test_pages_are_drawn_once(page):

@@ -40,6 +40,12 @@ def test_models_of_the_same_samples_are_in_one_figure(pair, tmp_path):
     }
 
 
+def test_every_word_is_explained_on_the_page(pair, tmp_path):
+    page = write_side_by_side(pair, tmp_path / "both.html").read_text(encoding="utf-8")
+    assert set(re.findall(r'<article id="word-(\w+)">', page)) == {"bouc_wen", "lumped"}
+    assert set(re.findall(r'<a href="#word-(\w+)">\1\.', page)) == {"bouc_wen", "lumped"}
+
+
 def test_other_units_are_not_ranked(pair, tmp_path):
     result = json.loads((pair[1] / "result.json").read_text())
     (pair[1] / "result.json").write_text(json.dumps(result | {"unit": "nm"}))

@@ -74,3 +74,5 @@ def test_what_the_page_shows_has_its_place_in_the_atlas(client):
     state = client.get("/api/state").json()
     places = {item["name"]: item["about"] for item in state["blocks"] + state["effects"]}
     assert places["lumped"] == "/atlas#word-lumped" and places["creep"] == "/atlas#word-creep"
+    forms = {form: place for item in state["effects"] for form, place in item["forms"].items()}
+    assert forms["creep.voltage"] == "/atlas#word-creep.voltage" and "creep" not in forms

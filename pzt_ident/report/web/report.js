@@ -14,3 +14,7 @@ for (const button of document.querySelectorAll("button.reveal"))
     const { record, axis, from, to } = button.dataset;
     explorer.reveal(record, axis, Number(from), Number(to));
   });
+// The workbench has the atlas beside its reports.
+if (location.pathname.startsWith("/report/"))
+  for (const article of document.querySelectorAll("#words article"))
+    element(element(article, "p"), "a", { href: `/atlas#${article.id}`, target: "_blank" }, "In the atlas, with pictures");

@@ -1,4 +1,4 @@
-import { about } from "./about.js";
+import { about, sentence } from "./about.js";
 import { Figure } from "./figure.js";
 import { percent } from "./misfit.js";
 import { element, named, USE_NAMES } from "./parts.js";
@@ -13,10 +13,10 @@ export class Candidates {
     Object.assign(this, { root, page, key: "" });
   }
 
-  show({ diagnosis, unit, together, at }, progress) {
+  show({ diagnosis, unit, together, at, blocks, effects }, progress) {
     const key = JSON.stringify([diagnosis, unit, at, diagnosis ? 0 : progress]);
     if (key === this.key) return;
-    Object.assign(this, { key, unit, together: together ?? "", at });
+    Object.assign(this, { key, unit, together: together ?? "", at, catalogue: { blocks, effects } });
     this.root.replaceChildren();
     if (!diagnosis) return this.showProgress(progress);
     const { candidates, next_experiment: drive } = diagnosis;
@@ -36,7 +36,7 @@ export class Candidates {
     const body = element(table, "tbody");
     for (const { effect, explained } of scored.toSorted((a, b) => b.explained - a.explained)) {
       const line = element(body, "tr");
-      named(line, "td", {}, effect);
+      sentence(line, "td", effect, this.catalogue);
       element(line, "td", { class: "number" }, percent(explained));
     }
   }
@@ -56,9 +56,9 @@ export class Candidates {
     const facts = element(more, "dl", { class: "facts" });
     const others = item.class.filter((word) => word !== item.effect).join(", ");
     for (const [term, text] of [["estimate", item.estimate ?? item.would_be], ["visibility", number(item.visibility, 2)], ["cannot be told from", others]])
-      if (text) { element(facts, "dt", {}, term); element(facts, "dd", {}, text); }
-    element(more, "p", {}, item.physics);
-    if (item.remedy) element(more, "p", {}, `On the test rig: ${item.remedy}`);
+      if (text) { element(facts, "dt", {}, term); sentence(facts, "dd", text, this.catalogue); }
+    sentence(more, "p", item.physics, this.catalogue);
+    if (item.remedy) sentence(more, "p", `On the test rig: ${item.remedy}`, this.catalogue);
     const tried = element(more, "div");
     more.addEventListener("toggle", () => (more.open ? this.proposal(effect, tried) : this.page.move(null)));
   }
@@ -92,7 +92,7 @@ export class Candidates {
 
   showDrive({ splits, why }) {
     element(this.root, "h2", {}, "Next measurement");
-    element(this.root, "p", {}, `To tell ${splits.join(" and ")} apart, apply this drive: ${why}.`);
+    sentence(this.root, "p", `To tell ${splits.join(" and ")} apart, apply this drive: ${why}.`, this.catalogue);
     const holder = element(this.root, "div", { class: "plotted" });
     const figure = new Figure(holder, { label: "The proposed drive over time", along: true, gestures: { reset: () => figure.plot.look(null, null), point: (point) => figure.pointAt(point) } });
     const button = element(element(this.root, "p"), "button", { type: "button" }, "Download the drive (CSV)");

@@ -1,4 +1,4 @@
-import { about } from "./about.js";
+import { about, placeOf } from "./about.js";
 import { element, select } from "./parts.js";
 
 const KINDS = { hysteresis: "Hysteresis", mechanics: "Mechanics" };
@@ -52,7 +52,7 @@ export class Chain {
   showBlock(word, known) {
     const effect = this.effects.includes(word);
     const item = element(this.root, "li", effect ? { class: "effect" } : {}, known ? "" : word);
-    if (known) about(item, word, known.about, known.doc);
+    if (known) about(item, word, placeOf(known, word), known.doc);
     if (!effect && this.model.length === 1) return;
     const button = element(item, "button", { type: "button", "aria-label": `Remove ${word}`, title: `Remove ${word}`, ...(this.begun && { "data-acts": "" }) }, "×");
     button.addEventListener("click", () => (effect ? this.remove(word) : this.setModel(this.model.filter((other) => other !== word))));
@@ -68,22 +68,29 @@ export class Chain {
     element(sheet, "p", { class: "quiet" }, "Click a block, or drag it onto the chain. It replaces the block of the same kind.");
     for (const [kind, title] of Object.entries(KINDS)) {
       element(sheet, "p", {}, title);
-      const row = element(sheet, "div", { class: "bar" });
-      for (const block of blocks.filter((item) => item.kind === kind)) this.showChip(row, block);
+      const list = element(sheet, "ul");
+      for (const block of blocks.filter((item) => item.kind === kind)) this.showChip(element(list, "li"), block);
     }
   }
 
-  /** A list to choose an effect from; only the button adds it. */
+  /** A list to choose an effect from, with the link to what was chosen; only the button adds it. */
   showEffects(effects) {
     const free = effects.filter(({ name }) => !this.effects.includes(name));
     const list = select(this.palette, [["", "Add an effect …"], ...free.map(({ name, doc }) => [name, `${name}: ${doc}`.slice(0, 110)])], "", "Effect to add");
     const button = element(this.palette, "button", { type: "button", "data-acts": "", "aria-label": "Add the chosen effect" }, "Add");
     button.addEventListener("click", () => (list.value ? this.add(list.value) : list.focus()));
+    const chosen = element(this.palette, "span");
+    list.addEventListener("change", () => {
+      chosen.replaceChildren();
+      if (list.value) about(chosen, list.value, this.known[list.value].about, this.known[list.value].doc, `About ${list.value}`);
+    });
   }
 
-  showChip(row, { name, doc }) {
+  /** A block to click or drag, and what it is as the link to more. */
+  showChip(line, { name, doc, about: href }) {
     const used = this.model.includes(name);
-    const chip = element(row, "button", { type: "button", title: doc, draggable: "true", "aria-pressed": String(used), class: "chip" }, name);
+    const chip = element(line, "button", { type: "button", draggable: "true", "aria-pressed": String(used), class: "chip" }, name);
+    about(line, name, href, "", doc);
     chip.addEventListener("dragstart", (event) => event.dataTransfer.setData("text/plain", name));
     chip.addEventListener("click", () => this.place(name));
   }

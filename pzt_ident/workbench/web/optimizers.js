@@ -1,5 +1,6 @@
+import { about } from "./about.js";
 import { Convergence } from "./convergence.js";
-import { element, named, select } from "./parts.js";
+import { element, select } from "./parts.js";
 import { number } from "./signals.js";
 
 const BUDGET = { population: "Population", generations: "Generations", budget: "Evaluations" };
@@ -22,11 +23,11 @@ export class Optimizers {
     const key = JSON.stringify([optimizers, job?.search, unit]);
     if (key === this.key) return;
     this.key = key;
-    this.showLeague(optimizers ?? [], `${unit}${together ? `, ${together}` : ""}`);
+    this.showLeague(optimizers ?? [], words ?? [], `${unit}${together ? `, ${together}` : ""}`);
     this.showForms(words ?? [], job?.search);
   }
 
-  showLeague(rows, unit) {
+  showLeague(rows, words, unit) {
     this.league.replaceChildren();
     if (!rows.length) return;
     element(this.league, "h2", {}, "The last search");
@@ -36,7 +37,9 @@ export class Optimizers {
     for (const text of ["own", "polished", "runs", "CPU"]) element(head, "th", { scope: "col", class: "number" }, text);
     for (const row of rows) {
       const body = element(table, "tbody");
-      const name = named(element(body, "tr"), "th", { scope: "rowgroup", colspan: 4 }, row.optimizer);
+      const name = element(element(body, "tr"), "th", { scope: "rowgroup", colspan: 4 }), known = words.find((word) => word.name === row.optimizer);
+      if (known) about(name, known.name, known.about, known.doc);
+      else name.append(row.optimizer);
       if (row.equal) element(name, "span", { class: "tag good" }, "within the noise of the best");
       const line = element(body, "tr");
       for (const text of [number(row.rmse_best), number(row.polished_rmse_median), String(row.runs), `${number(row.cpu_seconds_median, 2)} s`]) element(line, "td", { class: "number" }, text);

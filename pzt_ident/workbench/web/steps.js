@@ -1,4 +1,5 @@
-import { element, named } from "./parts.js";
+import { sentence } from "./about.js";
+import { element } from "./parts.js";
 import { request, requestJson } from "./session.js";
 import { number } from "./signals.js";
 
@@ -9,10 +10,10 @@ export class Steps {
     Object.assign(this, { root, page, chosen: new Set(), key: "" });
   }
 
-  show({ steps, others, at, unit, together }) {
+  show({ steps, others, at, unit, together, blocks, effects }) {
     const key = JSON.stringify([steps, others, at, unit]);
     if (key === this.key) return;
-    Object.assign(this, { key, at, unit, together: together ?? "" });
+    Object.assign(this, { key, at, unit, together: together ?? "", catalogue: { blocks, effects } });
     const known = new Set([...steps, ...others].map(({ number: step }) => step));
     for (const step of this.chosen) if (!known.has(step)) this.chosen.delete(step);
     this.root.replaceChildren();
@@ -32,7 +33,7 @@ export class Steps {
     const current = step.number === this.at;
     const card = element(list, "div", { class: `card${current ? " chosen" : ""}`, id: `step-${step.number}`, tabindex: -1 });
     const head = element(card, "h3");
-    named(head, "span", {}, `${step.number}: ${step.change}`);
+    sentence(head, "span", `${step.number}: ${step.change}`, this.catalogue);
     if (current) element(head, "span", { class: "tag" }, "shown");
     const compare = element(element(head, "label", { class: "push" }, ""), "input", { type: "checkbox", "aria-label": `Compare step ${step.number}`, ...(this.chosen.has(step.number) && { checked: "" }) });
     compare.after("compare");

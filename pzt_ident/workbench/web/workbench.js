@@ -1,3 +1,4 @@
+import { spell } from "./about.js";
 import { Candidates } from "./candidates.js";
 import { Chain } from "./chain.js";
 import { Commands } from "./commands.js";
@@ -132,16 +133,24 @@ function showHeader() {
   const [verdict, next, action] = begun
     ? [headline.verdict, headline.next, headline.action ?? (state.result && !isBusy() ? { name: "", label: "Follow a reference" } : null)]
     : measurement.empty ? ["Drop a measurement with voltage and displacement.", "Or choose a file of this folder.", null] : ["Check what was read from the measurement.", measurement.records.missing || "Then identify a model of it.", measurement.records.missing ? null : { label: "Confirm and identify" }];
-  const [first, ...others] = verdict.split(/(?<=[.?!]) (?=[A-Z])/);
-  byId("verdict").replaceChildren(first);
-  if (others.length) element(byId("verdict"), "span", {}, ` ${others.join(" ")}`);
-  byId("next").textContent = next;
+  showVerdict(verdict);
+  spell(byId("next"), next, state);
   byId("action").hidden = !action || action.name === "stop";
   byId("action").textContent = action?.label ?? "";
   byId("action").onclick = () => (!begun ? measurement.confirm() : action.name ? act(action.name, action.body) : tabs.open("control"));
   const idle = begun && Boolean(state.result);
   for (const [id, shown] of Object.entries({ improve: idle && action?.name !== "improve", report: idle, undo: begun })) byId(id).hidden = !shown;
   byId("undo").textContent = state.steps.length > 1 ? "Undo" : "Change the measurement";
+}
+
+/** The verdict, with its first sentence large. */
+function showVerdict(text) {
+  const node = byId("verdict");
+  if (node.textContent === text) return;
+  node.replaceChildren();
+  const [first, ...others] = text.split(/(?<=[a-z)][.?!]) (?=[A-Z\d])/);
+  spell(element(node, "strong"), first, state);
+  if (others.length) spell(element(node, "span"), ` ${others.join(" ")}`, state);
 }
 
 /** What may not be pressed while something is under way looks so, and keeps the focus. */
