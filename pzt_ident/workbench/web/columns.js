@@ -7,10 +7,23 @@ import { typed } from "./slider.js";
  * makes a job of them. `actions` has inspect(files), put(record, place), join(place, record), changed() and confirm(). */
 export class Columns {
   constructor(root, records, actions) {
-    Object.assign(this, { root, records, actions });
+    Object.assign(this, { root, records, actions, due: false, typing: false, pressed: false });
+    const follow = (target, kinds, change) => kinds.forEach((kind) => target.addEventListener(kind, (event) => { change(event); this.show(false); }, true));
+    follow(root, ["input"], ({ target }) => { this.typing = target.matches("input:not([type=file])"); });
+    follow(root, ["change", "focusout"], () => { this.typing = false; });
+    follow(window, ["pointerdown"], () => { this.pressed = true; });
+    follow(window, ["pointerup", "pointercancel"], () => { this.pressed = false; });
   }
 
-  show() { keepingFocus(() => this.draw()); }
+  /** Draw what has changed, once no field is being typed in and nothing is being pressed. */
+  show(changed = true) {
+    this.due ||= changed;
+    setTimeout(() => {
+      if (!this.due || this.typing || this.pressed) return;
+      this.due = false;
+      keepingFocus(() => this.draw());
+    });
+  }
 
   draw() {
     this.root.replaceChildren();
@@ -82,7 +95,8 @@ export class Columns {
       const unit = element(cells[2], "input", { "aria-label": `Unit of ${name}`, value: column.unit, placeholder: "unit", size: 4 });
       preview(cells[3], column.shape, name);
       role.addEventListener("change", () => { this.records.setRole(column, role.value); this.actions.changed(); });
-      unit.addEventListener("input", () => { column.unit = unit.value; this.actions.changed(false); });
+      unit.addEventListener("input", () => { column.unit = unit.value; });
+      unit.addEventListener("change", () => this.actions.changed());
     }
   }
 
@@ -95,7 +109,7 @@ export class Columns {
   }
 
   field(bar, text, key, attributes) {
-    const input = element(element(bar, "label", {}, text), "input", { value: this.records[key], size: 12, ...attributes });
+    const input = element(element(bar, "label", {}, text), "input", { value: this.records[key], size: 12, "aria-label": text.trim(), ...attributes });
     input.addEventListener("change", () => this.actions.changed(key === "rate"));
     input.addEventListener("input", () => { this.records[key] = input.value; });
   }
