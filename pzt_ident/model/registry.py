@@ -36,7 +36,7 @@ class Registry(Generic[T]):
         """Raises InputError for a class that violates the contract of its kind, or whose word is taken."""
         check(item, self.group)
         package, _, word = item.__module__.rpartition(".")
-        taken = word in self._files() or self._items.get(word, item).__module__ != item.__module__
+        taken = word in self._files or self._items.get(word, item).__module__ != item.__module__
         if taken and package not in self.packages:
             self._refuse(word, item.__module__, "rename the module")
         item.name = word
@@ -58,7 +58,7 @@ class Registry(Generic[T]):
 
     def words(self) -> list[str]:
         """Every known word, without importing its module."""
-        return sorted({*self._items, *self._files(), *self._entries})
+        return sorted({*self._items, *self._files, *self._entries})
 
     def usable(self) -> list[str]:
         """The words that can be loaded; warns of faulty entry points."""
@@ -71,6 +71,11 @@ class Registry(Generic[T]):
                 warnings.warn(str(error), stacklevel=2)
         return usable
 
+    def modules(self) -> list[str]:
+        """The modules of the built-in words."""
+        return list(self._files.values())
+
+    @cached_property
     def _files(self) -> dict[str, str]:
         modules = {}
         for package in self.packages:
@@ -87,7 +92,7 @@ class Registry(Generic[T]):
         return entries
 
     def _load(self, word: str) -> None:
-        path, entries = self._files().get(word), self._entries.get(word, [])
+        path, entries = self._files.get(word), self._entries.get(word, [])
         for entry in entries if path else entries[1:]:
             self._refuse(word, described(entry), "give the entry point another name, or uninstall it")
         if path:
@@ -98,7 +103,7 @@ class Registry(Generic[T]):
                 self._refuse(word, described(entry), "give the entry point another name, or uninstall it")
 
     def _refuse(self, word: str, where: str, remedy: str) -> NoReturn:
-        owner = "a built-in" if word in self._files() else "another"
+        owner = "a built-in" if word in self._files else "another"
         raise InputError(f"{word!r} is taken by {owner} {self.kind}", where=where, remedy=remedy)
 
 
