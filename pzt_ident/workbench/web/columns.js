@@ -1,6 +1,6 @@
 import { element, keepingFocus, row, select, svgElement } from "./parts.js";
 import { crop, recordName, USES } from "./records.js";
-import { number } from "./signals.js";
+import { short } from "./scale.js";
 import { typed } from "./slider.js";
 
 /** The side panel before there is a job: records with rows and use, columns with role and unit, and the button that
@@ -90,7 +90,7 @@ export class Columns {
     const body = element(table, "tbody");
     for (const column of this.records.columns) {
       const name = this.records.columnName(column);
-      const cells = row(body, "td", [name, "", "", this.records.constant(column) ? `constant ${number(column.low, 3)}` : this.records.range(column).map((value) => number(value, 3)).join(" to ")]);
+      const cells = row(body, "td", [name, "", "", this.records.constant(column) ? `constant ${short(column.low)}` : this.records.range(column).map(short).join(" to ")]);
       const role = select(cells[1], this.records.rolesOf(column), this.records.roleOf(column), `Role of ${name}`);
       const unit = element(cells[2], "input", { "aria-label": `Unit of ${name}`, value: column.unit, placeholder: "unit", size: 4 });
       preview(cells[3], column.shape, name);
