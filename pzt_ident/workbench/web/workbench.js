@@ -132,7 +132,7 @@ function showHeader() {
   const [verdict, next, action] = begun
     ? [headline.verdict, headline.next, headline.action ?? (state.result && !isBusy() ? { name: "", label: "Follow a reference" } : null)]
     : measurement.empty ? ["Drop a measurement with voltage and displacement.", "Or choose a file of this folder.", null] : ["Check what was read from the measurement.", measurement.records.missing || "Then identify a model of it.", measurement.records.missing ? null : { label: "Confirm and identify" }];
-  const [first, ...others] = verdict.split(/(?<=[.?!]) (?=[A-Z])/);
+  const [first, ...others] = verdict.split(/(?<=[a-z)][.?!]) (?=[A-Z\d])/);
   byId("verdict").replaceChildren(first);
   if (others.length) element(byId("verdict"), "span", {}, ` ${others.join(" ")}`);
   byId("next").textContent = next;
