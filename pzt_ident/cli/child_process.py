@@ -9,7 +9,14 @@ import sys
 from importlib import import_module
 from threading import Thread
 
-WARM = ("pzt_ident.run.identify", "pzt_ident.run.improve", "pzt_ident.engine.kernel", "scipy.optimize", "pandas")
+WARM = (
+    "pzt_ident.run.identify",
+    "pzt_ident.run.improve",
+    "pzt_ident.engine.kernel",
+    "scipy.optimize",
+    "pandas",
+    "ruamel.yaml",
+)
 
 
 def end_with_parent() -> None:
@@ -34,10 +41,12 @@ def main(searching: bool) -> None:
     """searching: have the server of the searches there too."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy comes
     from pzt_ident.cli.commands import main
+    from pzt_ident.model.registry import blocks
     from pzt_ident.run.pool import context
 
     for name in WARM:
         import_module(name)
+    blocks.usable()
     if searching:
         context()
     sys.argv[1:] = arguments()

@@ -71,6 +71,10 @@ class Registry(Generic[T]):
                 warnings.warn(str(error), stacklevel=2)
         return usable
 
+    def modules(self) -> list[str]:
+        """The modules of the built-in words."""
+        return list(self._files.values())
+
     @cached_property
     def _files(self) -> dict[str, str]:
         modules = {}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import itertools
 import math
 import re
 from collections.abc import Iterator, Sequence
@@ -197,12 +196,10 @@ def decimate(values: NDArray[np.float64], bins: int) -> NDArray[np.intp]:
         return np.arange(size)
     edges = np.linspace(0, size, bins + 1).astype(int)
     finite = np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
-    extremes = [
-        start + index(finite[start:stop])
-        for start, stop in itertools.pairwise(edges)
-        for index in (np.argmin, np.argmax)
-    ]
-    return np.unique([0, *extremes, size - 1])
+    first, lengths = edges[:-1], np.diff(edges)
+    within = np.minimum(np.arange(lengths.max()), lengths[:, None] - 1)  # a shorter interval repeats its last value
+    blocks = finite[first[:, None] + within]
+    return np.unique(np.concatenate([[0], first + blocks.argmin(axis=1), first + blocks.argmax(axis=1), [size - 1]]))
 
 
 def decimate_curve(xs: NDArray[np.float64], ys: NDArray[np.float64], points: int) -> NDArray[np.intp]:

@@ -15,6 +15,7 @@ from multiprocessing.connection import wait
 from typing import Any
 
 from pzt_ident.errors import InputError, RunError
+from pzt_ident.model.registry import blocks, optimizers
 
 Event = dict[str, Any]
 Tell = Callable[[Event], None]
@@ -23,6 +24,7 @@ Entry = Callable[..., Any]
 Arguments = tuple[Any, ...]
 Tasks = Iterable[tuple[str, Arguments]]  # names, with the arguments that each task has of its own
 Failures = dict[str, str]  # reasons by the name of the task
+PRELOADED = ("pzt_ident.run.task", "pzt_ident.job.schema", "pzt_ident.engine.kernel", "scipy.optimize", "ruamel.yaml")
 SECONDS_DEAF = 0.1
 ATTEMPTS = 3
 """How often a task is begun whose processes die."""
@@ -41,9 +43,7 @@ def context() -> Any:
     from multiprocessing import forkserver, resource_tracker
 
     forking = multiprocessing.get_context("forkserver")
-    forking.set_forkserver_preload(
-        ["pzt_ident.run.task", "pzt_ident.job.schema", "pzt_ident.engine.kernel", "scipy.optimize"]
-    )
+    forking.set_forkserver_preload([*PRELOADED, *blocks.modules(), *optimizers.modules()])
     with without_working_folder():
         resource_tracker.ensure_running()  # it lets Ctrl-C through
         with interrupts_blocked():  # neither does the server hear of it

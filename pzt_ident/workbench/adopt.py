@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from pzt_ident.files import write_json
+from pzt_ident.files import write_json, write_sealed
 from pzt_ident.job.edit import edited
 from pzt_ident.job.schema import load_job
 from pzt_ident.run.events import step_name
@@ -52,13 +52,17 @@ def without_detours(stairs: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def diagnosis(session: Session, step: Path, last: int) -> None:
-    """Give the last step of an improvement the diagnosis with which it ended."""
-    folder = session.step(last) / "diagnosis"
+    """Give the last step of an improvement, or the one that it came back to, the diagnosis with which it ended."""
+    improved, folder = step / "improved", session.step(last) / "diagnosis"
+    found, account = (
+        json.loads((improved / name).read_text(encoding="utf-8")) for name in ("diagnosis.json", "improvement.json")
+    )
     folder.mkdir(exist_ok=True)
-    for name in ("next_experiment.csv", "diagnosis.json"):
-        if (step / "improved" / name).exists():
-            shutil.copy(step / "improved" / name, folder / name)
-    session.keep(last, diagnosed=str((step / "improved").relative_to(session.folder)))
+    (folder / "next_experiment.csv").unlink(missing_ok=True)
+    if (improved / "next_experiment.csv").exists():
+        shutil.copy(improved / "next_experiment.csv", folder)
+    write_sealed(folder / "diagnosis.json", found | {"reason": account["reason"]})
+    session.keep(last, diagnosed=str(improved.relative_to(session.folder)))
 
 
 def text_of(session: Session, step: Path, stair: dict[str, Any], folder: Path, last: bool) -> str:

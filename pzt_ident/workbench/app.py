@@ -60,8 +60,10 @@ def make_app(session: Session, hosts: set[str], token: str) -> Guard:
 
 
 def prepare(bench: Bench) -> None:
-    """Have the compiled kernels, and the model of the current step, in this process before the page asks for them."""
-    import_module("pzt_ident.engine.kernel")
+    """Have in this process what judges a measurement, the compiled kernels and the model of the current step before the
+    page asks for them."""
+    for name in ("scipy.optimize", "pzt_ident.engine.kernel"):
+        import_module(name)
     with suppress(InputError):
         bench.state()
 

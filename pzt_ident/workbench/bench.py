@@ -111,8 +111,7 @@ class Bench:
         for number in numbers:
             first, _ = session.commands(session.step(number))
             await self.command(first.name, first.arguments)
-        if numbers:
-            adopt.diagnosis(session, step, numbers[-1])
+        adopt.diagnosis(session, step, session.at)
 
     def put_to_work(self, reference: Path, options: list[str]) -> None:
         """Run `control` and `drive` on the current step."""

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import lru_cache, partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,10 +42,10 @@ def columns_of(*files: tuple[Path, str | None]) -> dict[str, Any]:
     """
     sources, columns, rate = list[dict[str, Any]](), list[dict[str, Any]](), ""
     for path, part in files:
-        source, table, _ = _opened(path, part)
-        columns += [column | {"of": len(sources)} for column in _columns(table)]
-        rate = rate or _rate(table)
-        sources.append(dict(source))
+        read = _opened(path, part)
+        columns += [column | {"of": len(sources)} for column in read.columns]
+        rate = rate or read.rate
+        sources.append(dict(read.source))
     rows = {column["rows"] for column in columns}
     if len(rows) > 1:
         lengths = ", ".join(
@@ -61,12 +61,22 @@ def values_of(*files: tuple[Path, str | None]) -> dict[tuple[int, int], NDArray[
     """The numeric columns of the files of one record by index of the file and number of the column."""
     columns = dict[tuple[int, int], NDArray[np.float64]]()
     for index, (path, part) in enumerate(files):
-        columns |= {(index, number): values for number, values in _opened(path, part)[2].items()}
+        columns |= {(index, number): values for number, values in _opened(path, part).values.items()}
     return columns
 
 
-def _opened(path: Path, part: str | None) -> tuple[dict[str, Any], Table, dict[int, NDArray[np.float64]]]:
-    """A file as `_of_file`, with its numeric columns; read again when it changes."""
+class _File(NamedTuple):
+    """Name, kind and parts of a file, its numeric columns, the sample rate that it states, and the values by number of
+    the column."""
+
+    source: dict[str, Any]
+    columns: list[dict[str, Any]]
+    rate: str
+    values: dict[int, NDArray[np.float64]]
+
+
+def _opened(path: Path, part: str | None) -> _File:
+    """A file; read again when it changes."""
     try:
         stamp = path.stat().st_mtime_ns
     except OSError:
@@ -75,41 +85,34 @@ def _opened(path: Path, part: str | None) -> tuple[dict[str, Any], Table, dict[i
 
 
 @lru_cache(4)
-def _read(path: Path, part: str | None, stamp: int) -> tuple[dict[str, Any], Table, dict[int, NDArray[np.float64]]]:
-    source, table = _of_file(path, part)
-    numbered = enumerate(_split_array(table.columns), 1)
-    return source, table, {number: values for number, c in numbered if (values := _numbers(c)) is not None}
+def _read(path: Path, part: str | None, stamp: int) -> _File:
+    """The named part of a file, else the first that has numeric columns."""
+    kind, parts = parts_of(path)
+    source = {"file": path.name, "kind": kind, "parts": parts}
+    *first, last = [part] if part or not parts else parts
+    for name in first:
+        with suppress(InputError):
+            return _file(source | {"part": name}, open_table(path, Source(str(path), **{kind: name})))  # type: ignore[arg-type]
+    table = open_table(path, Source(str(path), **({kind: last} if kind else {})))  # type: ignore[arg-type]
+    return _file(source | {"part": last}, table)
+
+
+def _file(source: dict[str, Any], table: Table) -> _File:
+    """What a table holds. Raises InputError if it has no numeric columns."""
+    columns = dict(enumerate(_split_array(table.columns), 1))
+    values = {number: found for number, column in columns.items() if (found := _numbers(column)) is not None}
+    rows = max((column.size for column in values.values()), default=0)
+    if not rows:
+        remedy = "drop a table of signals; for an array of more than two dimensions write a job file with `index`"
+        raise InputError(f"holds no column of at least {MIN_ROWS} numbers", where=table.path.name, remedy=remedy)
+    longest = [_facts(number, columns[number], found) for number, found in values.items() if found.size == rows]
+    return _File(source, longest, _rate(table), values)
 
 
 def hertz(rate: str) -> float:
     """A sample rate such as `200 Hz`. Raises ValueError for what is none."""
     number, unit = re.fullmatch(r"\s*([\d.eE+-]+)\s*(\w+)\s*", rate).groups()  # type: ignore[union-attr]
     return float(number) * factor(unit)
-
-
-def _of_file(path: Path, part: str | None) -> tuple[dict[str, Any], Table]:
-    """Name, kind and parts of a file, and its table: the named part, else the first that has numeric columns."""
-    kind, parts = parts_of(path)
-    source = {"file": path.name, "kind": kind, "parts": parts}
-    *first, last = [part] if part or not parts else parts
-    for name in first:
-        with suppress(InputError):
-            table = open_table(path, Source(str(path), **{kind: name}))  # type: ignore[arg-type]
-            _columns(table)
-            return source | {"part": name}, table
-    return source | {"part": last}, open_table(path, Source(str(path), **({kind: last} if kind else {})))  # type: ignore[arg-type]
-
-
-def _columns(table: Table) -> list[dict[str, Any]]:
-    """The longest numeric columns of a table. Raises InputError if it has none."""
-    columns = [
-        facts for number, column in enumerate(_split_array(table.columns), 1) if (facts := _column(number, column))
-    ]
-    rows = max((facts["rows"] for facts in columns), default=0)
-    if not rows:
-        remedy = "drop a table of signals; for an array of more than two dimensions write a job file with `index`"
-        raise InputError(f"holds no column of at least {MIN_ROWS} numbers", where=table.path.name, remedy=remedy)
-    return [facts for facts in columns if facts["rows"] == rows]
 
 
 def _rate(table: Table) -> str:
@@ -136,10 +139,7 @@ def _split_array(columns: Sequence[Column]) -> Sequence[Column]:
     return [Column("", partial(array.__getitem__, np.s_[:, i])) for i in range(min(np.shape(array)[1], MAX_COLUMNS))]
 
 
-def _column(number: int, column: Column) -> dict[str, Any] | None:
-    values = _numbers(column)
-    if values is None:
-        return None
+def _facts(number: int, column: Column, values: NDArray[np.float64]) -> dict[str, Any]:
     return {
         "number": number,
         "header": column.header,

@@ -39,10 +39,10 @@ def _headline(state: State) -> tuple[str, str, dict[str, Any] | None]:
     result, diagnosis = state["result"], state["diagnosis"]
     if not result or not diagnosis:
         return "The job is ready.", "Identify the model.", act("run", {}, "Identify")
-    return (diagnosis["reason"], *_next(diagnosis))
+    return (diagnosis["reason"], *_next(diagnosis, improved=bool(state["steps"][-1].get("diagnosed"))))
 
 
-def _next(diagnosis: State) -> tuple[str, dict[str, Any] | None]:
+def _next(diagnosis: State, improved: bool) -> tuple[str, dict[str, Any] | None]:
     best = next((item for item in diagnosis["candidates"] if item["decision"] == "missing"), None)
     if best:
         name = best.get("item", best["effect"])
@@ -54,6 +54,8 @@ def _next(diagnosis: State) -> tuple[str, dict[str, Any] | None]:
         return "Put the model to work: drop a reference to follow, or export it.", None
     if diagnosis["verdict"] == "refused":
         return "Narrow the bounds of the parameters, or choose another model.", None
+    if improved:
+        return "Measure again, let an improvement take more CPU time, or put the model to work.", None
     return "Let two effects be tried together, and each in its other forms.", act("improve", {}, "Improve")
 
 

@@ -14,6 +14,7 @@ from pzt_ident.data.noise import noise_floor
 from pzt_ident.data.notation import unit as printed_unit
 from pzt_ident.data.record import Record
 from pzt_ident.data.units import factor
+from pzt_ident.errors import InputError
 from pzt_ident.report.style import decimate
 from pzt_ident.workbench.columns import columns_of, hertz, values_of
 
@@ -73,8 +74,16 @@ def clock_of(time: Array | None, unit: str, rate: str) -> Clock:
     """Of a column of time or a sample rate; sample times of 1 s where neither is there."""
     if time is None:
         return Clock(0.0, 1 / hertz(rate) if rate else 1.0)
-    span = float(np.nanmax(time) - np.nanmin(time)) / max(1, time.size - 1)
-    return Clock(float(bridged(time)[0]) * factor(unit), span * factor(unit) or 1.0)
+    scale, span = scale_of(unit, "time"), float(np.nanmax(time) - np.nanmin(time)) / max(1, time.size - 1)
+    return Clock(float(bridged(time)[0]) * scale, span * scale or 1.0)
+
+
+def scale_of(unit: str, signal: str) -> float:
+    """The factor of a unit. Raises InputError that names the signal."""
+    try:
+        return factor(unit)
+    except InputError as error:
+        raise InputError(error.message, where=f"unit of the {signal}", remedy=error.remedy) from None
 
 
 def record_of(name: str, channels: dict[str, Array], roles: Roles, clock: Clock) -> Record | None:
@@ -87,8 +96,9 @@ def record_of(name: str, channels: dict[str, Array], roles: Roles, clock: Clock)
     unmeasured = np.full(samples, np.nan)
 
     def rows(side: str) -> Array:
-        names = [f"{axis}.{side}" for axis in axes]
-        return np.array([bridged(channels[n]) * factor(units[n]) if n in channels else unmeasured for n in names])
+        names = {f"{axis}.{side}": f"{side} of {axis}" for axis in axes}
+        scales = {n: scale_of(units[n], said) for n, said in names.items() if n in channels}
+        return np.array([bridged(channels[n]) * scales[n] if n in channels else unmeasured for n in names])
 
     return Record(
         name,

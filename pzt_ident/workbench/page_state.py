@@ -135,15 +135,16 @@ def diagnosis_of(session: Session, step: Path) -> dict[str, Any] | None:
     for candidate in diagnosis["candidates"]:
         candidate["estimate"] = expected(candidate["expected"], candidate["units"])
         candidate["about"] = href(candidate.get("item", candidate["effect"]), ATLAS)
-    reason = printed_reason(diagnosis["reason"] + tied_sentences(session), read_results(step / "run"))
+    tied = (sentence for sentence in tied_sentences(session) if sentence not in diagnosis["reason"])
+    reason = printed_reason(diagnosis["reason"] + "".join(tied), read_results(step / "run"))
     return printed(diagnosis) | {"reason": in_page_words(reason)}
 
 
-def tied_sentences(session: Session) -> str:
+def tied_sentences(session: Session) -> list[str]:
     """What stays undecided of effects that were added where others would have fitted as well."""
     effects = list(map(word_of, session.job().effects))
     tied = [entry["tied"] for entry in session.chain() if set(entry.get("tied", ())) & set(effects)]
-    return "".join(f" These data cannot tell {' from '.join(map(phrase_of, words))}." for words in tied)
+    return [f" These data cannot tell {' from '.join(map(phrase_of, words))}." for words in tied]
 
 
 def job_of(session: Session) -> dict[str, Any]:

@@ -185,6 +185,15 @@ def test_the_tabs_go_by_the_arrow_keys(shown):
     shown.click("text=Clear mark")
 
 
+def test_every_part_is_reached_by_the_tabulator(shown):
+    wanted = ["#action", "#improve", "#undo", "#report", "#blocks a", "#more select", "#loop .plot", "#time .plot"]
+    wanted += ["#tab-parameters", "#sheets input[type=range]", "#sheets a"]
+    for _ in range(90):
+        shown.keyboard.press("Tab")
+        wanted = [part for part in wanted if not shown.evaluate("part => document.activeElement.matches(part)", part)]
+    assert wanted == []
+
+
 def test_wheel_drag_and_double_click_in_time(shown):
     whole = span(shown)
     shown.mouse.move(*middle(shown, "#time .plot"))
@@ -242,7 +251,8 @@ def test_a_slider_moves_the_model_and_reset_brings_it_back(shown):
     shown.keyboard.press("PageUp")
     expect(shown.locator("#time .legend").first).to_contain_text("with these values")
     expect(shown.locator("#sheet-parameters [role=status]")).not_to_have_text(before)
-    shown.click("text=Reset")
+    shown.get_by_text("Reset").press("Enter")
+    expect(shown.locator(".parameter input[type=range]").first).to_be_focused()
     expect(shown.locator("#time .legend").first).not_to_contain_text("with these values")
     expect(shown.locator("#sheet-parameters [role=status]")).to_have_text(before)
     assert shown.evaluate(INK, 1) == ink

@@ -38,7 +38,9 @@ def improved(session):
         stair(["creep"], removed="friction", steps=(2,)),
         stair(["creep", "saturation"], added="saturation"),
     ]
-    (out / "improvement.json").write_text(json.dumps({"steps": stairs}))
+    (out / "improvement.json").write_text(
+        json.dumps({"steps": stairs, "reason": "Nothing. The budget of 9 s did not suffice."})
+    )
     job = session.job()
     (out / "improved.yaml").write_text(edited(job, ("creep", "saturation"), out, steps=[4]))
     return session
@@ -59,9 +61,9 @@ def test_each_step_has_its_job_and_starts_from_the_fit_that_was_found(improved):
 
 def test_what_could_not_be_told_apart_is_said_while_it_is_in_the_model(improved):
     adopt.improvement(improved, improved.step())
-    assert page_state.tied_sentences(improved) == " These data cannot tell creep from drift."
+    assert page_state.tied_sentences(improved) == [" These data cannot tell creep from drift."]
     improved.remove("creep")
-    assert page_state.tied_sentences(improved) == ""
+    assert page_state.tied_sentences(improved) == []
 
 
 def test_a_detour_leaves_the_fit_that_was_found_after_it():
@@ -79,11 +81,13 @@ def test_a_detour_leaves_the_fit_that_was_found_after_it():
 
 def test_the_last_step_has_the_diagnosis_of_the_improvement(improved):
     out = improved.step() / "improved"
-    (out / "diagnosis.json").write_text("{}")
+    (out / "diagnosis.json").write_text(json.dumps({"verdict": "unexplained", "reason": "Nothing."}))
     *_, last = adopt.improvement(improved, improved.step())
     adopt.diagnosis(improved, out.parent, last)
     folder = improved.step(last) / "diagnosis"
-    assert (folder / "diagnosis.json").exists() and improved.again(folder) == "workbench/again/1/improved"
+    found = json.loads((folder / "diagnosis.json").read_text())
+    assert (found["verdict"], found["reason"]) == ("unexplained", "Nothing. The budget of 9 s did not suffice.")
+    assert improved.again(folder) == "workbench/again/1/improved"
     (_, diagnose) = improved.commands(improved.step(last))
     assert diagnose.last.exists()
 

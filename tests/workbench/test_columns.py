@@ -1,13 +1,18 @@
 """Which columns of a dropped file are time, drive and response."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from pzt_ident.data.readers.open import open_table
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import Job
 from pzt_ident.run.statement import read
+from pzt_ident.workbench import columns
 from pzt_ident.workbench.columns import columns_of
 from pzt_ident.workbench.job_form import job_text
+from pzt_ident.workbench.measurement import measured
 from sheets import write_sheets
 
 from .conftest import form
@@ -143,6 +148,22 @@ def test_the_last_third_of_a_record_alone_is_kept_back(tmp_path, more):
     fitted, kept = read(Job.from_text(job_text(form(records=records) | more), tmp_path))
     assert (fitted.use, fitted.samples, fitted.settle) == ("identify", 40, 0)
     assert (kept.use, kept.samples, kept.settle, kept.notes) == ("validate", 60, 40, ())
+
+
+def test_a_column_is_read_once_for_its_facts_and_its_values(tmp_path, monkeypatch):
+    loads = []
+
+    def opened(path, source):
+        table = open_table(path, source)
+        counted = [replace(c, load=lambda c=c: loads.append(c.name) or c.load()) for c in table.columns]
+        return replace(table, columns=counted)
+
+    monkeypatch.setattr(columns, "open_table", opened)
+    rows = np.column_stack([TIME, DRIVE, RESPONSE])
+    np.savetxt(tmp_path / "data.csv", rows, delimiter=",", header="t,u,x", comments="")
+    columns_of((tmp_path / "data.csv", None))
+    measured([[(tmp_path / "data.csv", None)]])
+    assert sorted(loads) == ["t", "u", "x"]
 
 
 def test_a_file_without_signals_is_an_error(tmp_path):

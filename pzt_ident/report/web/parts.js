@@ -41,16 +41,19 @@ export function select(parent, options, value, label) {
   return list;
 }
 
-/** Redraw parts of a page and keep the keyboard focus: on the element of the same name, else on `fallback()`. */
+/** Redraw parts of a page and keep the keyboard focus, and in a field what is selected: on the element of the same name,
+ * else on `fallback()`. */
 export function keepingFocus(redraw, fallback = null) {
-  const name = (item) => `${item.tagName} ${item.getAttribute("aria-label") ?? (item.id || item.textContent)}`;
+  const name = (item) => `${item.tagName} ${item.getAttribute("aria-label") ?? (item.id || item.labels?.[0]?.textContent || item.textContent)}`;
   const visible = (item) => item && item.isConnected && item.offsetParent !== null;
   const focused = document.activeElement;
-  const focusedName = name(focused);
+  const focusedName = name(focused), { selectionStart, selectionEnd } = focused;
   redraw();
   if (focused === document.body || visible(focused)) return;
   const successor = [...document.querySelectorAll("a, button, select, input, summary")].find((item) => name(item) === focusedName && visible(item));
   (successor ?? fallback?.())?.focus({ preventScroll: true });
+  if (typeof selectionStart === "number") successor?.setSelectionRange(selectionStart, selectionEnd);
+  else if (successor?.matches("input[type=number]")) successor.select();
 }
 
 /** Whether the page is drawn for printing. Stacked canvases do not print: each hides the one below. */

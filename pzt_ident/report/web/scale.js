@@ -39,6 +39,11 @@ export function padded([low, high], log) {
   return [low - 0.04 * (high - low), high + 0.04 * (high - low)];
 }
 
+/** A number without trailing zeros, of four significant digits at most. */
+export function short(value) {
+  return tick(Number(value.toPrecision(4)));
+}
+
 /** A value beside an axis. */
 export function tick(value) {
   const [mantissa, power] = number(value, 6).split(" × ");

@@ -46,10 +46,11 @@ export class Candidates {
     const card = element(list, "div", { class: `card${item.decision === "missing" ? " missing" : ""}` });
     const head = element(card, "h3");
     about(head, effect, item.about, item.physics);
-    element(head, "span", { class: `tag ${item.decision === "missing" ? "warn" : ""}` }, item.decision);
-    element(head, "span", { class: "tag" }, `explains ${percent(item.explained)} of the misfit`);
     const add = element(head, "button", { type: "button", class: `push ${item.decision === "missing" ? "strong" : ""}`, "data-acts": "", "data-effect": effect, "aria-label": `Add ${effect}` }, "Add");
     add.addEventListener("click", () => this.page.add(effect));
+    const tags = element(card, "p", { class: "bar" });
+    element(tags, "span", { class: `tag ${item.decision === "missing" ? "warn" : ""}` }, item.decision);
+    element(tags, "span", { class: "tag" }, `explains ${percent(item.explained)} of the misfit`);
     if (item.rmse) element(card, "p", {}, `RMSE with it${this.together}: ${this.errors(item.rmse)}`);
     const more = element(card, "details");
     element(more, "summary", {}, "Physics, estimate, sliders");

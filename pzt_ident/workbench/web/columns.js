@@ -1,16 +1,29 @@
 import { element, keepingFocus, row, select, svgElement } from "./parts.js";
 import { crop, recordName, USES } from "./records.js";
-import { number } from "./signals.js";
+import { short } from "./scale.js";
 import { typed } from "./slider.js";
 
 /** The side panel before there is a job: records with rows and use, columns with role and unit, and the button that
  * makes a job of them. `actions` has inspect(files), put(record, place), join(place, record), changed() and confirm(). */
 export class Columns {
   constructor(root, records, actions) {
-    Object.assign(this, { root, records, actions });
+    Object.assign(this, { root, records, actions, due: false, typing: false, pressed: false });
+    const follow = (target, kinds, change) => kinds.forEach((kind) => target.addEventListener(kind, (event) => { change(event); this.show(false); }, true));
+    follow(root, ["input"], ({ target }) => { this.typing = target.matches("input:not([type=file])"); });
+    follow(root, ["change", "focusout"], () => { this.typing = false; });
+    follow(window, ["pointerdown"], () => { this.pressed = true; });
+    follow(window, ["pointerup", "pointercancel"], () => { this.pressed = false; });
   }
 
-  show() { keepingFocus(() => this.draw()); }
+  /** Draw what has changed, once no field is being typed in and nothing is being pressed. */
+  show(changed = true) {
+    this.due ||= changed;
+    setTimeout(() => {
+      if (!this.due || this.typing || this.pressed) return;
+      this.due = false;
+      keepingFocus(() => this.draw());
+    });
+  }
 
   draw() {
     this.root.replaceChildren();
@@ -77,12 +90,13 @@ export class Columns {
     const body = element(table, "tbody");
     for (const column of this.records.columns) {
       const name = this.records.columnName(column);
-      const cells = row(body, "td", [name, "", "", this.records.constant(column) ? `constant ${number(column.low, 3)}` : this.records.range(column).map((value) => number(value, 3)).join(" to ")]);
+      const cells = row(body, "td", [name, "", "", this.records.constant(column) ? `constant ${short(column.low)}` : this.records.range(column).map(short).join(" to ")]);
       const role = select(cells[1], this.records.rolesOf(column), this.records.roleOf(column), `Role of ${name}`);
       const unit = element(cells[2], "input", { "aria-label": `Unit of ${name}`, value: column.unit, placeholder: "unit", size: 4 });
       preview(cells[3], column.shape, name);
       role.addEventListener("change", () => { this.records.setRole(column, role.value); this.actions.changed(); });
-      unit.addEventListener("input", () => { column.unit = unit.value; this.actions.changed(false); });
+      unit.addEventListener("input", () => { column.unit = unit.value; });
+      unit.addEventListener("change", () => this.actions.changed());
     }
   }
 
@@ -95,7 +109,7 @@ export class Columns {
   }
 
   field(bar, text, key, attributes) {
-    const input = element(element(bar, "label", {}, text), "input", { value: this.records[key], size: 12, ...attributes });
+    const input = element(element(bar, "label", {}, text), "input", { value: this.records[key], size: 12, "aria-label": text.trim(), ...attributes });
     input.addEventListener("change", () => this.actions.changed(key === "rate"));
     input.addEventListener("input", () => { this.records[key] = input.value; });
   }

@@ -2,6 +2,7 @@ import { Columns } from "./columns.js";
 import { Handles } from "./handles.js";
 import { element } from "./parts.js";
 import { crop, keyOf, printed, Records, recordName, said } from "./records.js";
+import { short } from "./scale.js";
 import { requestJson } from "./session.js";
 import { number } from "./signals.js";
 
@@ -178,18 +179,18 @@ export class Measurement {
     for (const axis of this.records.axes())
       for (const role of ["drive", "response"]) {
         const column = this.records.columnOf(`${axis}.${role}`);
-        fact(`${role} of ${axis}`, `${this.records.columnName(column)}, ${this.records.range(column).map((value) => number(value, 4)).join(" to ")} ${printed(column.unit)}`);
+        fact(`${role} of ${axis}`, `${this.records.columnName(column)}, ${this.records.range(column).map(short).join(" to ")} ${printed(column.unit)}`);
       }
     for (const column of this.records.still) fact(said(column.role), `${this.records.columnName(column)} is constant at ${this.records.level(column)}`);
     const { clock, timed } = this.records;
-    fact("samples", `${this.records.list.map(({ rows }) => rows).join(", ")}${record.dt && timed ? `, ${number(record.rows * record.dt, 3)} s` : ""}`);
+    fact("samples", `${this.records.list.map(({ rows }) => rows).join(", ")}${record.dt && timed ? `, ${short(record.rows * record.dt)} s` : ""}`);
     fact("missing values", this.records.columns.filter((column) => this.records.roleOf(column) && column.missing).map((column) => `${column.missing} of ${this.records.columnName(column)}: crop the record, or fill the gaps in the file`).join("; "));
     if (!guess) return;
-    fact("sample rate", timed ? `${number(1 / record.dt, 4)} Hz` : "not known: give it below the columns");
-    for (const [axis, { value, unit }] of Object.entries(guess.amplitude)) fact(`span of the drive of ${axis}`, `${number(value, 4)} ${unit}`);
+    fact("sample rate", timed ? `${short(1 / record.dt)} Hz` : "not known: give it below the columns");
+    for (const [axis, { value, unit }] of Object.entries(guess.amplitude)) fact(`span of the drive of ${axis}`, `${short(value)} ${unit}`);
     for (const [axis, value] of Object.entries(guess.frequency)) fact(`main frequency of ${axis}`, value && timed ? `${number(guess.rate ? value / guess.rate / record.dt : value, 3)} Hz` : "");
     const rests = guess.rests.flat();
-    if (this.records.axes().length) fact("rests", rests.length ? rests.slice(0, 3).map(([a, b]) => `${number(a, 3)} to ${number(b, 3)} ${clock}`).join("; ") + (rests.length > 3 ? ` and ${rests.length - 3} more` : "") : "none");
+    if (this.records.axes().length) fact("rests", rests.length ? rests.slice(0, 3).map(([a, b]) => `${short(a)} to ${short(b)} ${clock}`).join("; ") + (rests.length > 3 ? ` and ${rests.length - 3} more` : "") : "none");
     for (const [axis, floor] of Object.entries(guess.noise_floor)) fact(`noise floor of ${axis}`, floor?.value ? `${number(floor.value, 2)} ${floor.unit}, from ${floor.source}` : "not known");
   }
 

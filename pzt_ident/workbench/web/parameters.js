@@ -60,6 +60,7 @@ export class Parameters {
 
   move(name, value) {
     this.values[name] = value;
+    this.last = name;
     this.page.move({ ...this.values });
     this.told();
   }
@@ -69,6 +70,7 @@ export class Parameters {
     for (const { set, value } of Object.values(this.sliders)) set(value);
     this.showError();
     this.page.move(null);
+    if (document.activeElement === this.reset) this.sliders[this.last].range.focus({ preventScroll: true });
     this.told();
   }
 

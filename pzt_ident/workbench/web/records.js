@@ -1,6 +1,6 @@
 // The records of a measurement before there is a job: files, columns with their roles, rows and use. Nothing here draws.
 
-import { number } from "./signals.js";
+import { short } from "./scale.js";
 
 export const AXES = ["x", "y", "z"];
 export const ROLES = [["", "not used"], ["time", "time"], ...AXES.flatMap((axis) => [[`${axis}.drive`, `drive of ${axis}`], [`${axis}.response`, `response of ${axis}`]])];
@@ -88,7 +88,7 @@ export class Records {
   /** The columns that would be drive or response if they moved. */
   get still() { return this.columns.filter((column) => column.role && !this.roleOf(column)); }
 
-  level({ low, unit }) { return `${number(low, 4)} ${printed(unit)}`.trim(); }
+  level({ low, unit }) { return `${short(low)} ${printed(unit)}`.trim(); }
 
   /** The roles that a column may be given. */
   rolesOf(column) { return this.constant(column) ? ROLES.filter(([role]) => !role.includes(".")) : ROLES; }

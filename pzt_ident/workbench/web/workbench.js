@@ -36,7 +36,7 @@ const commands = new Commands(sheets.commands, showError);
 const { convergence } = optimizers;
 const progress = new Progress(() => { if (state?.stage === "diagnose") { showStatus(); candidates.show(state, progress); } });
 const measurement = new Measurement(sheets.measurement, byId("guess"), {
-  explorer: (records, options) => panes.explore(records, options), fail: showError, upload, changed: () => { showHeader(); showHere(); layOut(); },
+  explorer: (records, options) => panes.explore(records, options), fail: showError, upload, changed: () => keepingFocus(() => { showHeader(); showHere(); layOut(); }, () => byId(measurement.records.missing ? "confirm" : "action")),
   confirm: (form) => act("job", { ...form, model: draftModel }, "run"), draftModel: () => draftModel, setDraftModel: (words) => { draftModel = words; showChain(); },
 });
 const chain = new Chain(byId("blocks"), byId("more"), { setModel, add: (effect) => act("add", { effect }), remove: (effect) => act("remove", { effect }) });
@@ -181,6 +181,7 @@ function showChain() {
 
 /** The data files of the folder, to be chosen. */
 function showHere() {
+  if (!state) return;
   byId("here").replaceChildren();
   const free = state.files.filter((name) => !measurement.records.files.includes(name));
   if (free.length) element(byId("here"), "span", { class: "quiet" }, "Or a file of this folder:");
