@@ -52,6 +52,9 @@ class Runner:
             self.failure = str(error)
         except asyncio.CancelledError:
             self.failure = STOPPED
+        except Exception as error:
+            self.failure = f"The workbench failed: {type(error).__name__}: {error}"
+            raise
         finally:
             self.stage, self.process = "", None
             self.changed()
@@ -59,8 +62,7 @@ class Runner:
     def warm(self, searching: bool = False) -> None:
         """Have a process there that has everything imported and waits for its arguments; `searching`: with the server
         from which searches are forked."""
-        if self.waiting is None or (self.waiting.done() and self.waiting.exception()):
-            self.waiting = asyncio.create_task(self._spawned(searching))
+        self._prepared(searching)
 
     async def run(self, name: str, arguments: Sequence[str]) -> None:
         """Run a command to its end. Raises RunError with its last lines if it fails."""
@@ -82,9 +84,7 @@ class Runner:
     async def _handed(self, arguments: list[str]) -> Process:
         """A process that has been handed its arguments: the waiting one unless it has ended."""
         while True:
-            self.warm()
-            assert self.waiting
-            process = await asyncio.shield(self.waiting)  # which a stop leaves to the next command
+            process = await asyncio.shield(self._prepared())  # which a stop leaves to the next command
             self.waiting = None
             assert process.stdin
             with suppress(ConnectionError):
@@ -92,6 +92,12 @@ class Runner:
                 await process.stdin.drain()
                 if process.returncode is None:
                     return process
+
+    def _prepared(self, searching: bool = False) -> asyncio.Task[Process]:
+        """The process that waits, or is about to."""
+        if self.waiting is None or (self.waiting.done() and self.waiting.exception()):
+            self.waiting = asyncio.create_task(self._spawned(searching))
+        return self.waiting
 
     async def _spawned(self, searching: bool = False) -> Process:
         return await asyncio.create_subprocess_exec(

@@ -44,3 +44,31 @@ def test_a_command_that_is_being_started_is_stopped_and_the_next_one_takes_its_p
         await runner.close()
 
     alone(story())
+
+
+def test_a_runner_that_keeps_no_process_waiting_runs_its_command(tmp_path):
+    class Single(Runner):
+        def warm(self, searching=False):
+            """None waits."""
+
+    async def story():
+        runner = Single(tmp_path, lambda: None)
+        await runner.run("init", ["init", "there"])
+        assert runner.waiting is None and (tmp_path / "there").exists()
+        await runner.close()
+
+    alone(story())
+
+
+def test_a_fault_of_the_workbench_itself_is_shown_and_ends_the_command(tmp_path):
+    async def faulty():
+        raise KeyError("parameters")
+
+    async def story():
+        runner = Runner(tmp_path, lambda: None)
+        runner.start(faulty())
+        with pytest.raises(KeyError):
+            await runner.task
+        assert not runner.running and runner.failure == "The workbench failed: KeyError: 'parameters'"
+
+    alone(story())
