@@ -27,7 +27,7 @@ class Suspect:
     identify: float
     validate: float | None
     without: Fit
-    beyond_form: bool
+    beyond_form: bool = True
     strangers: tuple[str, ...] = ()
 
     @property
@@ -88,8 +88,7 @@ def removed_by_all(case: Case, first: Fit, now: Fit) -> float:
 
 def suspect(case: Case, first: Fit, now: Fit, effect: str, strangers: tuple[str, ...]) -> Suspect:
     """What an effect of a fit takes up beside the others."""
-    others = effects_without(now, effect)
-    without = first if others == first.effects else refit(case, now, others, {})
+    without = refit(case, now, effects_without(now, effect), {})
     validate = None
     if now.validate is not None and without.validate is not None:
         validate = share_explained(without.validate, now.validate, case.floor)

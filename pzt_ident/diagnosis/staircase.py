@@ -143,8 +143,7 @@ def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListene
     """Steps that take effects out again: those that the last model can do without, which may only have led the fit out
     of a side minimum, and the unproven ones. What is left then is unexplained, but for other forms."""
     now = staircase.steps[-1].fit
-    several = len(now.effects) - len(first.effects) > 1
-    steps = remove_unneeded(case, first, now, newest=0) if several and near_noise(case, first, now) else []
+    steps = remove_unneeded(case, first, now, newest=0) if near_noise(case, first, now) else []
     now = steps[-1].fit if steps else now
     rivals = {step.added: step.tied for step in staircase.steps if step.added}
     staircase.suspects = unproven(case, first, now, rivals)
