@@ -40,9 +40,9 @@ def dynamic(words):
     return any(getattr(block, "place", None) in ACTUATION | MECHANICS or not block.solvable for block in listed)
 
 
-def errors_of(words, gain):
+def errors_of(words, gain, dt=1e-3):
     """Errors over the span of the displacement, of three candidates of eight that the inverse does not call wrong."""
-    chain, measured, thetas = made(words, swept(600), count=8, dt=1e-3)
+    chain, measured, thetas = made(words, swept(600), count=8, dt=dt)
     errors = []
     for theta in thetas:
         stage = stage_of(chain, measured, theta)
@@ -59,7 +59,9 @@ def errors_of(words, gain):
 
 @pytest.mark.parametrize("words", [words for words in INVERTED if not dynamic(words)])
 def test_stage_without_dynamics_follows_to_rounding(words):
-    assert max(errors_of(words, 10.0), default=0.0) < 1e-9
+    """Dry friction that jumps with the speed has no inverse; where the stage is slower than that, it has one."""
+    errors = errors_of(words, 10.0) or errors_of(words, 10.0, dt=10.0)
+    assert errors and max(errors) < 1e-9
 
 
 @pytest.mark.parametrize("words", [words for words in INVERTED if dynamic(words)])
