@@ -375,7 +375,7 @@ def test_it_is_improved_by_mouse_and_the_staircase_falls(shown, folder):
     expect(shown.locator("body.busy")).to_have_count(0)
     steps = [step["change"] for step in state_of(folder)["steps"]]
     assert steps[0] == "as given" and {"+ quadratic_gain", "+ creep"} < set(steps)
-    assert shown.locator(".stairs .mark.identify:not(.live)").count() == len(steps)
+    expect(shown.locator(".stairs .mark.identify:not(.live)")).to_have_count(len(steps))
 
 
 @pytest.mark.parametrize("typed", ["", "abc", "1e400"])
