@@ -108,9 +108,9 @@ def restart_look_alikes(case: Case, first: Fit, before: Fit, candidates: list[Ca
 
 
 def refit_other_forms(case: Case, before: Fit, candidates: Sequence[Candidate], shortlist: list[Candidate]) -> None:
-    """Refit effects of the short list in every form they have where none explains most of the misfit: a form may leave
-    little of it and yet score low. Where one explains nearly all, refit so its look-alikes, which join the short list:
-    one may explain more in another form."""
+    """Refit the short list in every form where no effect explains most of the misfit: a form that scores low may leave
+    little of it. Where an effect explains nearly all, refit its look-alikes in every form, and add them to the short
+    list: one may explain more in another form."""
     fits = [fit for item in shortlist for fit in item.refits.values()]
     best = min(fits, key=lambda fit: fit.total, default=before)
     share = share_explained(before.identify, best.identify, case.floor)

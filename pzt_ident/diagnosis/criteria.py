@@ -14,8 +14,8 @@ DECISIVE = 0.5  # of the misfit: removing less is not yet the account of a model
 NEAR = 1.5  # noise floors, up to which an error may be that of the floor itself
 VALIDATION_FACTOR = 3.0  # times the tolerance that the validation records of an adequate model may be above the noise
 MODEL_FORM = 0.03  # of the initial misfit: less may as well be the form of the effects added as another effect
-FORM_OF_OTHERS = 0.15  # of the initial RMS misfit: what the form of the other effects may leave, as far as it is
-MOST_OF_OTHERS = 1.5  # noise floors at most, so that an effect that takes up more is one of its own
+FORM_OF_OTHERS = 0.15  # of the initial RMS misfit: what the form of the other effects may leave
+MOST_OF_OTHERS = 1.5  # noise floors: the most that it may leave, however large the initial misfit
 MOST_FORM = 2.0  # noise floors: what a model leaves above this is not adequate, whatever there was before
 
 

@@ -51,7 +51,7 @@ class Suspect:
         elif self.beyond_form:
             rest = " of a model that stays above the noise with it: it may stand in for something else."
         else:
-            rest = " that the other effects leave: their form may leave as much."
+            rest = " beside the other effects, no more than their form may leave."
         return f"{phrase_of(self.effect)} takes up {seen}{unseen}".replace("%", " %") + rest
 
 
@@ -65,8 +65,8 @@ def unproven(case: Case, first: Fit, now: Fit, rivals: Mapping[str, Collection[s
     """
     suspects: list[Suspect] = []
     while added := now.effects[len(first.effects) :]:
-        accounts = (suspect(case, first, now, effect, strangers(effect, rivals.get(effect, ()))) for effect in added)
-        least = min(accounts, key=lambda account: account.rank)
+        suspected = [suspect(case, first, now, effect, rivals.get(effect, ())) for effect in added]
+        least = min(suspected, key=lambda item: item.rank)
         decisive = not least.strangers and least.share >= ALONE and removed_by_all(case, first, now) >= JOINT
         if least.beyond_form and (decisive or near_noise(case, first, now)):
             break
@@ -86,11 +86,12 @@ def removed_by_all(case: Case, first: Fit, now: Fit) -> float:
     return min(share_explained(before, after, case.floor) for before, after in both if before and after)
 
 
-def suspect(case: Case, first: Fit, now: Fit, effect: str, strangers: tuple[str, ...]) -> Suspect:
+def suspect(case: Case, first: Fit, now: Fit, effect: str, rivals: Collection[str]) -> Suspect:
     """What an effect of a fit takes up beside the others."""
     without = refit(case, now, effects_without(now, effect), {})
     validate = None
     if now.validate is not None and without.validate is not None:
         validate = share_explained(without.validate, now.validate, case.floor)
     identify = share_explained(without.identify, now.identify, case.floor)
-    return Suspect(effect, identify, validate, without, beyond_form(case, first, without, now), strangers)
+    clear = beyond_form(case, first, without, now)
+    return Suspect(effect, identify, validate, without, clear, strangers(effect, rivals))

@@ -68,6 +68,7 @@ def clearly_better(wide: Staircase, given: Staircase, case: Case) -> bool:
 
 
 def keeps_within(wide: Staircase, case: Case) -> bool:
+    """Whether the last model reaches none of the wider bounds."""
     return wide.case is None or not stands_in(wide.case, case, wide.steps[-1].fit)
 
 
@@ -89,8 +90,8 @@ def with_least_bounds(case: Case, staircase: Staircase) -> Staircase:
     return replace(staircase, steps=steps, case=None)
 
 
-def wider_bounds(case: Case, first: Fit, fit: Fit) -> tuple[Case, Step] | None:
-    """The case with wider bounds, and the step to them, where these remove most of what a fit that rests on them
+def wider_bounds(case: Case, first: Fit, fit: Fit) -> Step | None:
+    """The step to wider bounds, where these remove most of what a fit that rests on them
     leaves, and hold its estimates: an effect would only stand in for what the bounds of the job keep out."""
     beyond = None if adequate(case, first, fit) else beyond_bounds(case, first, fit)
     if beyond is None:
@@ -99,7 +100,7 @@ def wider_bounds(case: Case, first: Fit, fit: Fit) -> tuple[Case, Step] | None:
     share = explained_share(case, fit, after)
     if share < DECISIVE or stands_in(wide, case, after):
         return None
-    return wide, Step(after, explained=share, change=WIDER)
+    return Step(after, explained=share, change=WIDER, case=wide)
 
 
 def improve_within(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
@@ -179,11 +180,10 @@ def climb(
         for step in new:
             on_step(step)
         steps += new
-        if beyond := wider_bounds(case, first, steps[-1].fit):
-            case, step = beyond
-            wide = case
-            on_step(step)
-            steps.append(step)
+        if (wider := wider_bounds(case, first, steps[-1].fit)) and wider.case:
+            case = wide = wider.case
+            on_step(wider)
+            steps.append(wider)
         diagnosis = diagnose(case, steps[-1].fit, first)
         candidate = diagnosis.best
     return Staircase(steps, diagnosis, case=wide)

@@ -11,8 +11,8 @@ from pzt_ident.diagnosis.refit import Case, Fit
 @dataclass
 class Step:
     """A step of the staircase: the fit after it, the effect it added or removed, the look-alikes that these data cannot
-    distinguish from it with their fits (itself first), the shares of the misfit it removed and was expected to, and
-    what else it changed."""
+    distinguish from it with their fits (itself first), the shares of the misfit it removed and was expected to, what
+    else it changed, and the case that it goes on in where that has wider bounds."""
 
     fit: Fit
     added: str | None = None
@@ -21,6 +21,7 @@ class Step:
     explained: float = 0.0
     expected: float | None = None
     change: str = ""
+    case: Case | None = None
 
     @property
     def tied(self) -> tuple[str, ...]:

@@ -155,10 +155,12 @@ class SoFar:
 
     def __call__(self, step: stairs.Step) -> None:
         announce(self.case, step)
-        self.steps = [*self.steps, step] if step.added or step.removed else [step]
+        goes_on = step.added or step.removed or step.change
+        self.steps = [*self.steps, step] if goes_on else [step]
+        wide = next((before.case for before in reversed(self.steps) if before.case), None)
         if step.fit.total < self.least:
             self.least = step.fit.total
-            staircase = stairs.Staircase(self.steps, Diagnosis("unfinished", "", step.fit, [], []))
+            staircase = stairs.Staircase(self.steps, Diagnosis("unfinished", "", step.fit, [], []), case=wide)
             last = {
                 "verdict": "unfinished",
                 "reason": "The best account so far: the diagnosis did not come to its end.",

@@ -4,6 +4,7 @@ import json
 import re
 from html import unescape
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -352,6 +353,27 @@ def test_a_diagnosis_that_is_killed_leaves_the_best_account_so_far(bent, tmp_pat
     assert (content["verdict"], content["effects"]) == ("unfinished", ["quadratic_gain"])
     assert "best account so far" in content["reason"]
     assert load_job(tmp_path / "out" / "improved.yaml").effects == ("quadratic_gain",)
+
+
+def test_the_best_account_so_far_goes_on_through_wider_bounds(monkeypatch):
+    written, wide = [], object()
+    monkeypatch.setattr(improvement, "announce", lambda case, step: None)
+    monkeypatch.setattr(improvement, "improvement_of", lambda job, case, staircase, last: {"steps": staircase.steps})
+    monkeypatch.setattr(improvement, "improved", lambda job, case, staircase, folder: staircase.case)
+    monkeypatch.setattr(improvement, "write_improvement", lambda *content: written.append(content[1:]))
+    so_far = improvement.SoFar(None, None, None)
+    fits = [SimpleNamespace(total=total) for total in (9.0, 5.0, 1.0)]
+    given, added = stairs.Step(fits[0]), stairs.Step(fits[1], "creep")
+    wider = stairs.Step(fits[2], change="wider bounds", case=wide)
+    for step in (given, added, wider):
+        so_far(step)
+    assert [(content["steps"], job) for content, job in written] == [
+        ([given], None),
+        ([given, added], None),
+        ([given, added, wider], wide),
+    ]
+    so_far(stairs.Step(SimpleNamespace(total=0.5)))
+    assert written[-1][1] is None and len(written[-1][0]["steps"]) == 1
 
 
 def test_a_budget_that_is_too_small_says_what_was_not_tried(bent, tmp_path):
