@@ -151,9 +151,8 @@ def improve(fit: Fit, budget: float | None = None) -> Improvement:
         case.budget = Budget(budget)
         job, stairs = fit.statement.job, staircase.improve(case, first)
         content = improvement_of(job, case, stairs, diagnosis_of(job, case, stairs.last, folder))
-        last_case = stairs.case or case
         steps = [
-            Step(Fit(*from_refit(fit, last_case, step.fit)), step.added, step.removed, step.tied, step.explained)
+            Step(Fit(*from_refit(fit, case, step.fit)), step.added, step.removed, step.tied, step.explained)
             for step in stairs.steps
         ]
         return Improvement(steps, content["verdict"], content["reason"], content["effects"], content)

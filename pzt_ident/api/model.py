@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 from pzt_ident.errors import InputError, nearest
@@ -42,6 +42,11 @@ class Model:
     def with_effects(self, effects: Sequence[str]) -> Model:
         """The same chain with these effects in the place of its own."""
         return Model(*map(_settings, self.blocks), effects=effects, shared=self.shared)
+
+    def with_blocks(self, words: Collection[str]) -> Model:
+        """The same model with only those of its blocks that have these words."""
+        kept = (item for item in self.blocks if word_of(item) in words)
+        return Model(*map(_settings, kept), effects=self.effects, shared=self.shared)
 
     def __repr__(self) -> str:
         return " + ".join([" -> ".join(map(word_of, self.blocks)), *self.effects])

@@ -8,16 +8,18 @@ from typing import Any
 import numpy as np
 
 from pzt_ident.api.fitted import Fitted, Parts
+from pzt_ident.api.model import Model
 from pzt_ident.api.record import Record
 from pzt_ident.api.statement import job_text, statement_of
 from pzt_ident.diagnosis import refit as diagnosis
+from pzt_ident.diagnosis.bounds import bounds_that_changed
 from pzt_ident.diagnosis.refit import Case
 from pzt_ident.diagnosis.score import Scorer
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.model.registry import blocks, word_of
 from pzt_ident.run.checkpoint import Checkpoint
 from pzt_ident.run.computing import computing
-from pzt_ident.run.improve import case_of, wider_bounds
+from pzt_ident.run.improve import case_of
 from pzt_ident.run.statement import Statement
 from pzt_ident.run.task import what_is_known
 
@@ -33,7 +35,7 @@ def with_effect(fit: Fitted, effect: str) -> Parts:
     if word not in blocks.effects():
         raise InputError(f"unknown effect {effect!r}", where="add", remedy=nearest(str(effect), blocks.effects()))
     effects = (*fit.model.effects, effect)
-    restated(fit, effects)  # refused before anything is fitted
+    restated(fit, fit.model.with_effects(effects))  # refused before anything is fitted
     with computing():
         case = case_of(fit.statement)
         before = as_given(case, fit)
@@ -51,8 +53,9 @@ def from_refit(fit: Fitted, case: Case, refit: diagnosis.Fit) -> Parts:
     start = time.perf_counter()
     silent = case.unmeasured_nulls(refit.effects) if refit.measured_only else {}
     settings: dict[str, Any] = {name: {"value": value} for name, value in silent.items()}
-    settings |= {name: {"bounds": list(bounds)} for name, bounds in wider_bounds(fit.statement.job, case).items()}
-    statement, records, sections = restated(fit, refit.effects, refit.steps, settings)
+    settings |= {name: {"bounds": list(bounds)} for name, bounds in bounds_that_changed(case, refit).items()}
+    model = fit.model.with_blocks([*map(word_of, case.words_of(refit))]).with_effects(refit.effects)
+    statement, records, sections = restated(fit, model, refit.steps, settings)
     point = statement.problem.unit_point(refit.values)
     known = what_is_known(statement, point)
     checkpoint, seconds = Checkpoint(), time.perf_counter() - start
@@ -72,7 +75,7 @@ def from_refit(fit: Fitted, case: Case, refit: diagnosis.Fit) -> Parts:
         "failed_simulations": 0,
         "stopped_by": "refit",
     }
-    return Parts(statement, fit.model.with_effects(refit.effects), records, sections, [(run, checkpoint)])
+    return Parts(statement, model, records, sections, [(run, checkpoint)])
 
 
 def optimizer_of(fit: Fitted) -> str:
@@ -82,9 +85,9 @@ def optimizer_of(fit: Fitted) -> str:
 
 
 def restated(
-    fit: Fitted, effects: tuple[str, ...], steps: tuple[int, ...] = (), settings: dict[str, Any] | None = None
+    fit: Fitted, model: Model, steps: tuple[int, ...] = (), settings: dict[str, Any] | None = None
 ) -> tuple[Statement, dict[str, tuple[Record, ...]], dict[str, Any]]:
-    """What a fit's job states with other effects, `steps` a sample of each record and other settings of some
+    """What a fit's job states with another model, `steps` a sample of each record and other settings of some
     parameters: with its records and sections."""
     names = [record.name for record in fit.statement.records]
     counts = dict(zip(names, steps or [record.steps for record in fit.statement.records], strict=True))
@@ -92,7 +95,9 @@ def restated(
         use: tuple(record.with_steps(counts[record.name]) for record in group) for use, group in fit.records.items()
     }
     chosen = next(section for section in fit.sections["optimizers"] if section["name"] == optimizer_of(fit))
-    parameters = fit.sections["parameters"] | (settings or {})
+    gone = set(map(word_of, fit.model.blocks)) - set(map(word_of, model.blocks))
+    kept = {name: value for name, value in fit.sections["parameters"].items() if name.split(".")[-2] not in gone}
+    parameters = kept | (settings or {})
     sections = fit.sections | {"optimizers": [chosen], "repeats": 1, "parameters": parameters}
-    text = job_text(fit.statement.job.name, fit.model.with_effects(effects), records, sections)
+    text = job_text(fit.statement.job.name, model, records, sections)
     return statement_of(text, records), records, sections

@@ -59,6 +59,18 @@ def widened(case: Case, fit: Fit) -> dict[str, Widened]:
     return specs
 
 
+def bounds_that_changed(case: Case, fit: Fit) -> dict[str, tuple[float, float]]:
+    """The bounds of a fit that are not those of the job, by the names in the job, in the user's units."""
+    problem, changed = fit.problem, {}
+    for name, low, high, column in zip(problem.names, problem.lower, problem.upper, problem.free, strict=True):
+        spellings = (name, *problem.model.spellings(problem.model.entries[column]))
+        key = next((word for word in spellings if word in case.specs), None)
+        given = key and case.specs[key].bounds
+        if key and given and tuple(given) != (low, high):
+            changed[key] = (float(low), float(high))
+    return changed
+
+
 def brought_back(case: Case, fit: Fit) -> Fit | None:
     """The fit of a case with wider bounds in the case as given; None where it lies beyond the bounds there."""
     problem = case.problem(fit.effects, fit.steps, fit.measured_only)

@@ -60,8 +60,14 @@ class Case:
 
     def with_specs(self, specs: Mapping[str, ParameterSpec]) -> Case:
         """The same case with other specifications of some parameters, by their names in the job."""
-        more = self.words, self.effects, self.records, {**self.specs, **specs}, self.ruled_out, self.shared
-        other = Case(*more, self.on_event)
+        return self._altered(self.words, {**self.specs, **specs})
+
+    def with_words(self, words: Sequence[str | Choice]) -> Case:
+        """The same case with other blocks."""
+        return self._altered(words, self.specs)
+
+    def _altered(self, words: Sequence[str | Choice], specs: Any) -> Case:
+        other = Case(words, self.effects, self.records, specs, self.ruled_out, self.shared, self.on_event)
         other._resampled, other.budget = self._resampled, self.budget
         return other
 
@@ -96,6 +102,11 @@ class Case:
             and Chain.allowed_without_response(block, parameter)
             if f"{block.name}.{word}" not in (*self.shared, *self.specs)
         }
+
+    def words_of(self, fit: Fit) -> tuple[str | Choice, ...]:
+        """The blocks of this case that are in the model of a fit, which may do without some."""
+        names = {block.name for block in fit.problem.model.blocks}
+        return tuple(item for item in self.words if word_of(item) in names)
 
     def record_with_steps(self, number: int, steps: int) -> Record:
         """A record simulated in so many steps per sample; always the same object, so that its signals are prepared

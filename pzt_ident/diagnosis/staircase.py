@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -16,6 +16,7 @@ from pzt_ident.diagnosis.proof import Suspect, unproven
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.step import Step, explained_share
+from pzt_ident.diagnosis.undetermined import Undetermined, without_mechanics
 from pzt_ident.diagnosis.verdict import Diagnosis, best_pair, diagnose, unexplained
 
 MOST_STEPS = 8
@@ -31,29 +32,59 @@ StepListener = Callable[[Step], None]
 @dataclass
 class Staircase:
     """The steps, the model as given first; the diagnosis of the last model; the effects that were added and taken out
-    again, because they are not proven; the case of the last model, which may have wider bounds."""
+    again, because they are not proven, and the mechanics that the last model does without; the case of the last model,
+    which may have wider bounds or other blocks."""
 
     steps: list[Step]
     last: Diagnosis
-    suspects: list[Suspect] = field(default_factory=list)
+    suspects: list[Suspect | Undetermined] = field(default_factory=list)
     case: Case | None = None
 
 
 def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
-    """The staircase from the model as given to the one with all effects that are proven, and with wider bounds where
-    those of the job are too narrow: wider ones are tried first where they remove most of the misfit."""
+    """The staircase from the model as given to the one with all effects that are proven. Wider bounds, where those of
+    the job are too narrow, are tried first where they remove most of the misfit; mechanics that the data do not
+    determine are left out first where no effect beside them reaches the noise."""
     beyond = None if adequate(case, first, first) else beyond_bounds(case, first, first)
     wide = None
     if beyond and explained_share(case, first, beyond[1]) >= DECISIVE:
         wide = improve_beyond(case, first, *beyond, on_step)
         if accounts(wide, case, first):
             return wide
-    given = with_least_bounds(case, improve_within(case, first, on_step))
+    diagnosis = diagnose(case, first)
+    lean = improve_lean(case, first, diagnosis, on_step)
+    if lean and lean.last.verdict == "adequate":
+        return lean
+    given = with_least_bounds(case, improve_within(case, [Step(first)], on_step, diagnosis))
+    if lean and given.last.verdict != "adequate" and end_of(lean).total < end_of(given).total:
+        given = lean
     if given.last.verdict == "adequate" or not beyond:
         return given
     if wide is None and case.budget.allows("wider bounds"):
         wide = improve_beyond(case, first, *beyond, on_step)
     return wide if wide and (accounts(wide, case, first) or clearly_better(wide, given, case)) else given
+
+
+def end_of(staircase: Staircase) -> Fit:
+    """The fit of the last model."""
+    return staircase.steps[-1].fit
+
+
+def improve_lean(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListener) -> Staircase | None:
+    """The staircase without mechanics that the data do not determine; None where these determine them, or where the
+    model needs one effect at most beside them. diagnosis: of the fit `first`."""
+    settled = diagnosis.verdict in ("adequate", "refused") or any(
+        adequate(case, first, candidate.fit) for candidate in diagnosis.passing if candidate.fit
+    )
+    found = None if settled else without_mechanics(case, first)
+    if found is None:
+        return None
+    word, lean, start = found
+    step = Step(start, explained=explained_share(case, first, start), change=f"without {word}", case=lean)
+    staircase = improve_within(lean, [Step(first), step], on_step)
+    share = explained_share(case, start, first)
+    staircase.suspects.append(Undetermined(word, share, end_of(staircase).total / case.floor))
+    return staircase
 
 
 def accounts(wide: Staircase, case: Case, first: Fit) -> bool:
@@ -74,11 +105,8 @@ def keeps_within(wide: Staircase, case: Case) -> bool:
 
 def improve_beyond(case: Case, first: Fit, wide: Case, start: Fit, on_step: StepListener) -> Staircase:
     """The staircase with wider bounds."""
-    staircase = improve_within(wide, start, on_step)
-    staircase.steps[0] = Step(start, explained=explained_share(case, first, start), change=WIDER)
-    staircase.steps.insert(0, Step(first))
-    staircase.case = staircase.case or wide
-    return with_least_bounds(case, staircase)
+    step = Step(start, explained=explained_share(case, first, start), change=WIDER, case=wide)
+    return with_least_bounds(case, improve_within(wide, [Step(first), step], on_step))
 
 
 def with_least_bounds(case: Case, staircase: Staircase) -> Staircase:
@@ -103,17 +131,21 @@ def wider_bounds(case: Case, first: Fit, fit: Fit) -> Step | None:
     return Step(after, explained=share, change=WIDER, case=wide)
 
 
-def improve_within(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
-    """The staircase within the bounds of a case, from the fit `first`.
+def improve_within(
+    case: Case, base: Sequence[Step], on_step: StepListener, diagnosis: Diagnosis | None = None
+) -> Staircase:
+    """The staircase of a case, with its blocks and bounds. base: the steps to the model that effects are added to, the
+    model as given first. diagnosis: of the last of them, where there is one.
 
     Where the best first effect leads to no adequate model, the next best one is tried: the first may have stood in for
     something else.
     """
-    diagnosis = diagnose(case, first)
+    first = base[-1].fit
+    diagnosis = diagnosis or diagnose(case, first)
     paths: list[Staircase] = []
     candidates: list[Candidate | None] = [*first_candidates(case, first, diagnosis)]
     for candidate in candidates or [None]:
-        path = climb(case, first, diagnosis, candidate, on_step)
+        path = climb(case, base, diagnosis, candidate, on_step)
         paths.append(path)
         if path.last.verdict in ("adequate", "refused") or path.steps[-1].fit.identify / case.floor > HOPELESS:
             break
@@ -147,13 +179,14 @@ def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListene
     steps = remove_unneeded(case, first, now, newest=0) if near_noise(case, first, now) else []
     now = steps[-1].fit if steps else now
     rivals = {step.added: step.tied for step in staircase.steps if step.added}
-    staircase.suspects = unproven(case, first, now, rivals)
-    for suspect in staircase.suspects:
+    suspects = unproven(case, first, now, rivals)
+    for suspect in suspects:
         share = explained_share(case, now, suspect.without)
         steps.append(Step(suspect.without, None, suspect.effect, {}, share))
         now = suspect.without
     for step in steps:
         on_step(step)
+    staircase.suspects = [*suspects]
     staircase.steps += steps
     if steps:
         staircase.last = diagnose(case, staircase.steps[-1].fit, first)
@@ -162,13 +195,16 @@ def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListene
 
 
 def climb(
-    case: Case, first: Fit, diagnosis: Diagnosis, candidate: Candidate | None, on_step: StepListener
+    case: Case, base: Sequence[Step], diagnosis: Diagnosis, candidate: Candidate | None, on_step: StepListener
 ) -> Staircase:
     """One path: the candidate is added first, then always the best one, within wider bounds where these are a cheaper
     account."""
-    steps, wide = [Step(first)], None
-    on_step(steps[0])
-    while len(steps) <= MOST_STEPS and not stuck(steps) and (candidate or case.budget.allows("more effects")):
+    steps, first = [*base], base[-1].fit
+    for step in base:
+        on_step(step)
+    while (
+        len(steps) - len(base) < MOST_STEPS and not stuck(steps) and (candidate or case.budget.allows("more effects"))
+    ):
         new = next_steps(case, first, steps, diagnosis, candidate)
         if not new:
             break
@@ -181,12 +217,13 @@ def climb(
             on_step(step)
         steps += new
         if (wider := wider_bounds(case, first, steps[-1].fit)) and wider.case:
-            case = wide = wider.case
+            case = wider.case
             on_step(wider)
             steps.append(wider)
         diagnosis = diagnose(case, steps[-1].fit, first)
         candidate = diagnosis.best
-    return Staircase(steps, diagnosis, case=wide)
+    changed = next((step.case for step in reversed(steps) if step.case), None)
+    return Staircase(steps, diagnosis, case=changed)
 
 
 def stuck(steps: list[Step]) -> bool:

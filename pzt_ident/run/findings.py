@@ -11,7 +11,7 @@ import numpy as np
 from pzt_ident.data.noise import units_and_floors
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis import staircase as stairs
-from pzt_ident.diagnosis.bounds import narrow_bounds_sentence
+from pzt_ident.diagnosis.bounds import bounds_that_changed, narrow_bounds_sentence
 from pzt_ident.diagnosis.candidates import Candidate
 from pzt_ident.diagnosis.caveats import broken_conditions, caveats, misfit_sentences
 from pzt_ident.diagnosis.refit import Case, Fit
@@ -87,6 +87,8 @@ def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
         "explained": step.explained,
         "expected": step.expected,
         "parameters": parameters_of(step.fit),
+        "model": list(map(word_of, case.words_of(step.fit))),
+        "bounds": bounds_that_changed(case, step.fit),
         "effects": list(step.fit.effects),
         "steps": list(step.fit.steps),
     }

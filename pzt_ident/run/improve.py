@@ -12,6 +12,7 @@ import numpy as np
 from pzt_ident.data.record import Record
 from pzt_ident.data.signals import write_signals
 from pzt_ident.diagnosis import staircase as stairs
+from pzt_ident.diagnosis.bounds import bounds_that_changed
 from pzt_ident.diagnosis.budget import Budget, sensible
 from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.diagnosis.starts import first_fit
@@ -20,6 +21,7 @@ from pzt_ident.diagnosis.verdict import diagnose as judge
 from pzt_ident.files import write_sealed, write_text
 from pzt_ident.job.edit import edited
 from pzt_ident.job.schema import Job
+from pzt_ident.model.registry import word_of
 from pzt_ident.run.events import Event, Listen, event_log, nobody, sentence
 from pzt_ident.run.findings import diagnosis_of, improvement_of, size_of, stair, ties
 from pzt_ident.run.folder import begin, results_folder
@@ -133,14 +135,15 @@ def improve(
     """
     with opened_case(job, out, listen, budget, start, records) as (case, folder):
         staircase = stairs.improve(case, fitted(case, job, start), SoFar(job, case, folder))
-        steps, diagnosis = staircase.steps, diagnosis_of(job, case, staircase.last, folder)
+        steps, end = staircase.steps, staircase.case or case
+        diagnosis = diagnosis_of(job, end, staircase.last, folder)
         for name, step in (("signals_as_given.nc", steps[0]), ("signals.nc", steps[-1])):
             write_signals(folder / name, step.fit.problem.errors(step.fit.point))
-        proposals = (separating(job, case, step.rivals, folder) for step in ties(steps))
+        proposals = (separating(job, end, step.rivals, folder) for step in ties(steps))
         proposed = diagnosis["next_experiment"] or next(filter(None, proposals), None)
         content = improvement_of(job, case, staircase, diagnosis) | {"next_experiment": proposed}
         write_sealed(folder / "diagnosis.json", diagnosis)
-        write_improvement(folder, content, improved(job, case, staircase, folder))
+        write_improvement(folder, content, improved(job, case, steps[-1].fit, folder))
         compare(folder, folder)
     return folder
 
@@ -157,16 +160,15 @@ class SoFar:
         announce(self.case, step)
         goes_on = step.added or step.removed or step.change
         self.steps = [*self.steps, step] if goes_on else [step]
-        wide = next((before.case for before in reversed(self.steps) if before.case), None)
         if step.fit.total < self.least:
             self.least = step.fit.total
-            staircase = stairs.Staircase(self.steps, Diagnosis("unfinished", "", step.fit, [], []), case=wide)
+            staircase = stairs.Staircase(self.steps, Diagnosis("unfinished", "", step.fit, [], []))
             last = {
                 "verdict": "unfinished",
                 "reason": "The best account so far: the diagnosis did not come to its end.",
             }
             content = improvement_of(self.job, self.case, staircase, last) | {"next_experiment": None}
-            write_improvement(self.folder, content, improved(self.job, self.case, staircase, self.folder))
+            write_improvement(self.folder, content, improved(self.job, self.case, step.fit, self.folder))
 
 
 def write_improvement(folder: Path, content: dict[str, Any], job_text: str) -> None:
@@ -175,15 +177,11 @@ def write_improvement(folder: Path, content: dict[str, Any], job_text: str) -> N
     write_sealed(folder / "improvement.json", content)
 
 
-def improved(job: Job, case: Case, staircase: stairs.Staircase, folder: Path) -> str:
-    """The text of the job with the last model: its effects, its simulation steps, parameters that are fixed at their
-    nulls, bounds that are wider."""
-    end = staircase.steps[-1].fit
+def improved(job: Job, case: Case, end: Fit, folder: Path) -> str:
+    """The text of the job with the model of a fit: its blocks and effects, its simulation steps, parameters that are
+    fixed at their nulls, bounds that are wider."""
+    words = case.words_of(end)
     values = case.unmeasured_nulls(end.effects) if end.measured_only else {}
-    bounds = wider_bounds(job, staircase.case or case)
-    return edited(job, end.effects, folder, steps=end.steps, values=values, bounds=bounds)
-
-
-def wider_bounds(job: Job, case: Case) -> dict[str, tuple[float, float]]:
-    """The bounds of a case that are not those of its job, by name."""
-    return {name: spec.bounds for name, spec in case.specs.items() if spec.bounds and spec != job.parameters[name]}
+    bounds = bounds_that_changed(case, end)
+    blocks = None if words == case.words else list(map(word_of, words))
+    return edited(job, end.effects, folder, blocks, steps=end.steps, values=values, bounds=bounds)

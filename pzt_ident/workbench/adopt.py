@@ -11,6 +11,7 @@ from typing import Any
 from pzt_ident.files import write_json, write_sealed
 from pzt_ident.job.edit import edited
 from pzt_ident.job.schema import load_job
+from pzt_ident.model.registry import word_of
 from pzt_ident.run.events import step_name
 from pzt_ident.workbench.session import Session
 
@@ -40,7 +41,7 @@ def without_detours(stairs: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     found then; `tried`: the effects that were added in between."""
     path = list[dict[str, Any]]()
     for stair in stairs:
-        same = [place for place, before in enumerate(path) if set(before["effects"]) == set(stair["effects"])]
+        same = [place for place, before in enumerate(path) if same_model(before, stair)]
         if stair["removed"] and same:
             back, detour = path[same[-1]], path[same[-1] + 1 :]
             words = [*back["tried"], *(word for one in detour for word in (one["added"], *one["tried"]) if word)]
@@ -49,6 +50,11 @@ def without_detours(stairs: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
         else:
             path.append(stair | {"tried": []})
     return path
+
+
+def same_model(one: dict[str, Any], other: dict[str, Any]) -> bool:
+    """Whether two stairs have the same blocks, bounds and effects."""
+    return all(one[key] == other[key] for key in ("model", "bounds")) and set(one["effects"]) == set(other["effects"])
 
 
 def diagnosis(session: Session, step: Path, last: int) -> None:
@@ -71,4 +77,5 @@ def text_of(session: Session, step: Path, stair: dict[str, Any], folder: Path, l
         job = load_job(step / "improved" / "improved.yaml", session.plugins)
         return edited(job, job.effects, folder)
     job = load_job(step / "job.yaml", session.plugins)
-    return edited(job, stair["effects"], folder, steps=stair["steps"])
+    words = stair["model"] if stair["model"] != list(map(word_of, job.model)) else None
+    return edited(job, stair["effects"], folder, words, steps=stair["steps"], bounds=stair["bounds"])

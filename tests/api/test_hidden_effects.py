@@ -6,10 +6,12 @@ import pytest
 import pzt_ident as pzt
 from pzt_ident.api import diagnosis as diagnosing
 from pzt_ident.api.diagnosis import _proposed
-from pzt_ident.api.refit import restated
+from pzt_ident.api.fit import Fit
+from pzt_ident.api.refit import from_refit, restated
 from pzt_ident.diagnosis import refit
 from pzt_ident.job.demo import hidden
 from pzt_ident.run.events import verdict_line
+from pzt_ident.run.improve import case_of
 
 QUADRATIC, CREEP = "quadratic_gain", "creep"
 
@@ -71,10 +73,21 @@ def test_a_poor_fit_is_diagnosed_from_where_other_starts_end(fit, demo):
 
 
 def test_what_is_restated_keeps_the_value_of_what_is_held(fit):
-    statement, _, sections = restated(fit, (QUADRATIC,), settings={"bouc_wen.alpha": {"value": 0.25}})
+    bent = fit.model.with_effects([QUADRATIC])
+    statement, _, sections = restated(fit, bent, settings={"bouc_wen.alpha": {"value": 0.25}})
     assert statement.job.parameters["bouc_wen.alpha"].value == 0.25
     assert sections["parameters"]["bouc_wen.alpha"] == {"value": 0.25}
-    assert restated(fit, ())[2]["parameters"] == fit.sections["parameters"]
+    assert restated(fit, fit.model)[2]["parameters"] == fit.sections["parameters"]
+
+
+def test_a_step_without_mechanics_is_a_fit_without_them(quick):
+    fit = quick(model=pzt.Model("bouc_wen", "lumped"))
+    case = case_of(fit.statement)
+    problem = case.with_words(["bouc_wen"]).problem(())
+    step = refit.fit_at((), problem, np.full(problem.dimensions, 0.5))
+    lean = Fit(*from_refit(fit, case, step))
+    assert [*lean.model.blocks] == ["bouc_wen"]
+    assert lean.rmse["identify"] == pytest.approx(step.identify * 1e6, rel=1e-9)
 
 
 def test_the_next_drive_has_the_column_of_each_axis(tmp_path):

@@ -3,7 +3,14 @@
 import pytest
 
 import stage
-from pzt_ident.diagnosis.bounds import Widened, beyond_bounds, brought_back, narrow_bounds_sentence, widened
+from pzt_ident.diagnosis.bounds import (
+    Widened,
+    beyond_bounds,
+    bounds_that_changed,
+    brought_back,
+    narrow_bounds_sentence,
+    widened,
+)
 from pzt_ident.diagnosis.refit import fit_at
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
@@ -29,6 +36,7 @@ def test_a_gain_five_percent_beside_its_bounds_is_the_bound_and_no_effect():
     assert end.values["bouc_wen.gain"] == pytest.approx(GAIN, rel=1e-2)
     assert found.case.specs["bouc_wen.gain"].bounds[0] < GAIN < found.case.specs["bouc_wen.gain"].bounds[1]
     assert "bouc_wen.gain is" in narrow_bounds_sentence(case, end)
+    assert [list(bounds_that_changed(case, step.fit)) for step in found.steps] == [[], ["bouc_wen.gain"]]
     assert brought_back(case, end) is None
 
 

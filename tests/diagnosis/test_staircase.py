@@ -182,12 +182,13 @@ def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, mon
         Staircase([Step(SimpleNamespace(identify=identify, total=total))], SimpleNamespace(verdict=verdict))
         for verdict, identify, total in ends
     ]
-    monkeypatch.setattr(improving, "diagnose", lambda case, first: None)
+    monkeypatch.setattr(improving, "diagnose", lambda case, first: SimpleNamespace())
     monkeypatch.setattr(improving, "first_candidates", lambda case, first, diagnosis: [0, 1])
     monkeypatch.setattr(improving, "climb", lambda case, first, diagnosis, number, on_step: paths[number])
     monkeypatch.setattr(improving, "take_back", lambda *arguments: None)
     monkeypatch.setattr(improving, "find_rivals", lambda *arguments: None)
-    assert improve_within(SimpleNamespace(floor=1.0, budget=Budget()), None) is paths[taken]
+    given = Step(SimpleNamespace())
+    assert improve_within(SimpleNamespace(floor=1.0, budget=Budget()), [given], None) is paths[taken]
 
 
 def test_an_effect_that_only_led_out_of_a_side_minimum_is_taken_out_again():

@@ -355,25 +355,34 @@ def test_a_diagnosis_that_is_killed_leaves_the_best_account_so_far(bent, tmp_pat
     assert load_job(tmp_path / "out" / "improved.yaml").effects == ("quadratic_gain",)
 
 
+def test_mechanics_that_the_last_model_does_without_are_not_in_the_improved_job(bent, tmp_path):
+    parameters = "parameters: {lumped.mass: {bounds: [0.01, 1]}, bouc_wen.alpha: {bounds: [0, 1]}}\n"
+    path = bent.with_name("mechanics.yaml")
+    path.write_text(stage.JOB.replace("[bouc_wen]", "[bouc_wen, lumped]") + parameters, encoding="utf-8")
+    job = load_job(path)
+    case = improvement.case_of(Statement(job))
+    lean = case.with_words(("bouc_wen",))
+    problem = lean.problem(())
+    end = refit.fit_at((), problem, np.full(problem.dimensions, 0.5))
+    text = improvement.improved(job, case, end, tmp_path)
+    (tmp_path / "improved.yaml").write_text(text, encoding="utf-8")
+    better = load_job(tmp_path / "improved.yaml")
+    assert (better.model, list(better.parameters)) == (("bouc_wen",), ["bouc_wen.alpha"])
+
+
 def test_the_best_account_so_far_goes_on_through_wider_bounds(monkeypatch):
-    written, wide = [], object()
+    written = []
     monkeypatch.setattr(improvement, "announce", lambda case, step: None)
     monkeypatch.setattr(improvement, "improvement_of", lambda job, case, staircase, last: {"steps": staircase.steps})
-    monkeypatch.setattr(improvement, "improved", lambda job, case, staircase, folder: staircase.case)
+    monkeypatch.setattr(improvement, "improved", lambda job, case, end, folder: end)
     monkeypatch.setattr(improvement, "write_improvement", lambda *content: written.append(content[1:]))
     so_far = improvement.SoFar(None, None, None)
-    fits = [SimpleNamespace(total=total) for total in (9.0, 5.0, 1.0)]
+    fits = [SimpleNamespace(total=total) for total in (9.0, 5.0, 1.0, 0.5)]
     given, added = stairs.Step(fits[0]), stairs.Step(fits[1], "creep")
-    wider = stairs.Step(fits[2], change="wider bounds", case=wide)
-    for step in (given, added, wider):
+    wider = stairs.Step(fits[2], change="wider bounds", case=object())
+    for step in (given, added, wider, stairs.Step(fits[3])):
         so_far(step)
-    assert [(content["steps"], job) for content, job in written] == [
-        ([given], None),
-        ([given, added], None),
-        ([given, added, wider], wide),
-    ]
-    so_far(stairs.Step(SimpleNamespace(total=0.5)))
-    assert written[-1][1] is None and len(written[-1][0]["steps"]) == 1
+    assert [(len(content["steps"]), job) for content, job in written] == [*zip((1, 2, 3, 1), fits, strict=True)]
 
 
 def test_a_budget_that_is_too_small_says_what_was_not_tried(bent, tmp_path):

@@ -10,7 +10,7 @@ from pzt_ident.workbench import adopt, page_state
 from .conftest import form, measured
 
 
-def stair(effects, added=None, removed=None, tied=(), steps=(1,)):
+def stair(effects, added=None, removed=None, tied=(), steps=(1,), model=("bouc_wen",), bounds=None):
     value = {"value": 0.3, "unit": "1", "standard_error": 0.01}
     return {
         "added": added,
@@ -18,6 +18,8 @@ def stair(effects, added=None, removed=None, tied=(), steps=(1,)):
         "form": None,
         "change": None,
         "class": list(tied),
+        "model": list(model),
+        "bounds": bounds or {},
         "effects": list(effects),
         "steps": list(steps),
         "rmse": {"identify": 0.5, "validate": None},
@@ -57,6 +59,24 @@ def test_each_step_has_its_job_and_starts_from_the_fit_that_was_found(improved):
         assert start["parameters"]["bouc_wen.alpha"]["value"] == 0.3 and entry["promised"]["identify"] == 0.5
         (command, _) = improved.commands(improved.step(entry["number"]))
         assert "--no-search" in command.arguments
+
+
+def test_a_step_without_mechanics_has_a_job_without_them(session):
+    measured(session.root / "data.csv")
+    session.begin(form(model=["bouc_wen", "lumped"]))
+    out = session.step() / "improved"
+    out.mkdir()
+    stairs = [
+        stair([], model=["bouc_wen", "lumped"]),
+        stair([]) | {"change": "without lumped"},
+        stair(["creep"], "creep"),
+    ]
+    (out / "improvement.json").write_text(json.dumps({"steps": stairs, "reason": "Said."}))
+    job = session.job()
+    (out / "improved.yaml").write_text(edited(job, ("creep",), out, ["bouc_wen"]))
+    adopt.improvement(session, session.step())
+    assert [session.job(n).model for n in (1, 2, 3)] == [("bouc_wen", "lumped"), ("bouc_wen",), ("bouc_wen",)]
+    assert [entry["change"] for entry in session.chain()] == ["as given", "without lumped", "+ creep"]
 
 
 def test_what_could_not_be_told_apart_is_said_while_it_is_in_the_model(improved):

@@ -1,0 +1,70 @@
+"""Mechanics that the data do not determine: a suspect like any effect, so the model is tried without them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pzt_ident.diagnosis.criteria import CLEAR, removed_rms
+from pzt_ident.diagnosis.refit import Case, Fit, refit
+from pzt_ident.diagnosis.score import fits
+from pzt_ident.diagnosis.starts import restart
+from pzt_ident.model.block import Place
+from pzt_ident.model.registry import blocks, word_of
+from pzt_ident.search.uncertainty import covariance_of
+
+SURE = 0.1  # of the search range: a direction of parameters with a smaller standard error is determined
+OF_A_MODE = 2  # numbers that the data determine of a mode which they show: its frequency and its damping
+
+
+@dataclass(frozen=True)
+class Undetermined:
+    """Mechanics that the last model does without: their word, the share of the misfit that they took up, and the RMSE
+    in noise floors at which the staircase without them ends."""
+
+    effect: str
+    share: float
+    end: float
+
+    @property
+    def why_not(self) -> str:
+        """A sentence on why the last model does without them."""
+        shared = f"{self.effect} takes up {self.share:.0%} of the misfit without it".replace("%", " %")
+        reason = "these data determine at most one number of it, where a mode has a frequency and a damping"
+        return f"{shared}, but {reason}: the model without it ends at {self.end:.3g} noise floors."
+
+
+def without_mechanics(case: Case, first: Fit) -> tuple[str, Case, Fit] | None:
+    """The word of the mechanics, the case without them and its fit, where the data do not determine the mechanics and
+    the model is clearly worse without them; None elsewhere."""
+    word = undetermined_mechanics(first)
+    if word is None:
+        return None
+    lean = case.with_words([item for item in case.words if word_of(item) != word])
+    if not has_operator(lean) or not all(fits(lean, (), effect) for effect in case.effects):
+        return None
+    fit = restart(lean, refit(lean, first, first.effects, {}))
+    return (word, lean, fit) if removed_rms(fit.total, first.total) > CLEAR * case.floor else None
+
+
+def undetermined_mechanics(fit: Fit) -> str | None:
+    """The word of the mechanics, if all of its parameters are free and the data determine at most one number of it."""
+    problem = fit.problem
+    chain = [block for block in problem.model.blocks if block.place == Place.MECHANICS]
+    if not chain:
+        return None
+    entries = problem.model.entries
+    columns = [column for column, entry in enumerate(entries) if entry.block is chain[0] and not entry.parameter.effect]
+    places = [place for place, column in enumerate(problem.free) if column in columns]
+    if len(places) < len(columns):
+        return None
+    covariance = covariance_of(problem.jacobian(fit.point), problem.residuals(fit.point)[0])
+    variances = np.linalg.eigvalsh(covariance[np.ix_(places, places)])
+    determined = np.count_nonzero(variances < SURE**2)
+    return chain[0].name if determined < OF_A_MODE * len(problem.model.measured) else None
+
+
+def has_operator(case: Case) -> bool:
+    """Whether the model has a block that makes a response of the drive."""
+    return any(block.place == Place.OPERATOR for block in blocks.chain(case.words))

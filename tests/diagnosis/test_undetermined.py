@@ -1,0 +1,56 @@
+"""Mechanics that slow data do not determine are left out where they stand in for effects."""
+
+import numpy as np
+import pytest
+
+import stage
+from pzt_ident.diagnosis.staircase import improve
+from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.diagnosis.undetermined import undetermined_mechanics, without_mechanics
+
+SEVERAL = stage.EFFECTS["creep"] | stage.EFFECTS["sensor_lag"] | stage.EFFECTS["quadratic_gain"]
+BLOCKS = ("bouc_wen", "lumped")
+
+
+def slow(parameters, fixed=None):
+    """A stage without mechanics, and a model that has some."""
+    case = stage.case(parameters, fixed)
+    return case.with_words(BLOCKS)
+
+
+def test_slow_loops_determine_at_most_one_number_of_a_mode():
+    assert undetermined_mechanics(first_fit(slow(stage.EFFECTS["sensor_lag"]), 0)) == "lumped"
+
+
+def test_mechanics_that_the_job_knows_are_kept():
+    known = slow(stage.EFFECTS["sensor_lag"], {"lumped.mass": 0.15})
+    assert undetermined_mechanics(first_fit(known, 0)) is None
+
+
+def test_a_mode_that_rings_is_determined():
+    steps = np.repeat([0.0, 40.0, 10.0, 60.0, 0.0], 200)
+    ringing = stage.case(model=BLOCKS, drives=[steps, 0.8 * steps], dt=2e-5, steps=1)
+    assert undetermined_mechanics(first_fit(ringing, 0)) is None
+
+
+def test_mechanics_that_take_up_nothing_are_no_suspect():
+    case = slow({})
+    assert without_mechanics(case, first_fit(case, 0)) is None
+
+
+def test_effects_are_named_in_the_place_of_mechanics_that_stand_in_for_them():
+    case, reported = slow(SEVERAL), []
+    staircase = improve(case, first_fit(case, 0), reported.append)
+    assert [step.change for step in staircase.steps[:2]] == ["", "without lumped"]
+    assert staircase.last.verdict == "adequate"
+    assert staircase.case.words == ("bouc_wen",)
+    assert staircase.steps[1] in reported
+    assert staircase.suspects[-1].effect == "lumped"
+    assert "lumped takes up" in staircase.suspects[-1].why_not
+
+
+@pytest.mark.parametrize("effects", [("cubic_stiffness",), ("load_mass",)])
+def test_mechanics_that_an_effect_of_the_job_acts_in_are_kept(effects):
+    case = slow(stage.EFFECTS["sensor_lag"])
+    case.effects = effects
+    assert without_mechanics(case, first_fit(case, 0)) is None
