@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.refit import THREADS, Case, Fit, refit
+from pzt_ident.diagnosis.refit import Case, Fit, refit, side_by_side
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, applicable, squared_misfit
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.model.registry import blocks, form_of, word_of
@@ -51,11 +50,10 @@ class Candidate:
 def score_all(case: Case, before: Fit, scorer: Scorer) -> list[Candidate]:
     """Every effect that can be added to the model, with the scores of its forms."""
     words, candidates = applicable(case, before.effects), list[Candidate]()
-    with ThreadPoolExecutor(THREADS) as pool:
-        for scores in pool.map(scorer.scores, words):
-            candidates.append(Candidate.of(scores))
-            facts = {"effect": word_of(scores[0].effect), "explained": candidates[-1].score.explained}
-            case.on_event({"event": "scored", **facts, "done": len(candidates), "of": len(words)})
+    for scores in side_by_side(scorer.scores, words):
+        candidates.append(Candidate.of(scores))
+        facts = {"effect": word_of(scores[0].effect), "explained": candidates[-1].score.explained}
+        case.on_event({"event": "scored", **facts, "done": len(candidates), "of": len(words)})
     return candidates
 
 
@@ -70,9 +68,8 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
         forms = {score.effect: score for score in (candidate.forms[0], candidate.score)}
         return {item: refit(case, before, (*before.effects, item), score.guess) for item, score in forms.items()}
 
-    with ThreadPoolExecutor(THREADS) as pool:
-        for candidate, fits in zip(candidates, pool.map(refits, candidates), strict=True):
-            candidate.refits = fits
+    for candidate, fits in zip(candidates, side_by_side(refits, candidates), strict=True):
+        candidate.refits = fits
     return [candidate for candidate in candidates if candidate.refits]
 
 

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
-
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.diagnosis.refit import THREADS, Case, Fit, fit_at, refine_steps
+from pzt_ident.diagnosis.refit import Case, Fit, fit_at, refine_steps, side_by_side
 from pzt_ident.search.descent import descend
 from pzt_ident.search.problem import Problem
 
@@ -29,12 +27,10 @@ def first_fit(case: Case, seed: int, known: Array | None = None) -> Fit:
     order, agreed = ranked_points(problem, seed), False
     most = MOST_REFINED if known is None else REFINED
     for number in range(0, most, REFINED):
-        with ThreadPoolExecutor(THREADS) as pool:
-            for minimum in pool.map(
-                lambda start: descend(problem, start, going=case.budget.lasts), order[number : number + REFINED]
-            ):
-                minima = np.vstack([minima, minimum])
-                case.on_event({"event": "fitted", "done": len(minima), "of": most + (known is not None)})
+        starts = order[number : number + REFINED]
+        for minimum in side_by_side(lambda start: descend(problem, start, going=case.budget.lasts), starts):
+            minima = np.vstack([minima, minimum])
+            case.on_event({"event": "fitted", "done": len(minima), "of": most + (known is not None)})
         losses = problem.loss(minima)
         best, second = np.sort(losses)[:2]
         agreed = bool(second <= (1 + AGREEMENT) * best + 0.1 * case.floor and np.isfinite(best))

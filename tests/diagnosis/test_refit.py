@@ -12,7 +12,7 @@ import stage
 from pzt_ident.diagnosis import refit, starts
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.caveats import bounds_sentence, measured_only_sentence
-from pzt_ident.diagnosis.refit import fit_at
+from pzt_ident.diagnosis.refit import fit_at, side_by_side
 from pzt_ident.diagnosis.starts import first_fit, restart
 from pzt_ident.engine.simulator import simulate
 from pzt_ident.model.block import Addition, Block, Coupling, Place
@@ -287,3 +287,10 @@ def test_an_axis_without_response_has_an_effect_where_that_fits_better(measured_
     assert refitted.identify == pytest.approx(stage.NOISE, rel=0.1)
     assert refitted.values["amplifier_lag.tau"] == pytest.approx(3e-3, rel=0.02)
     assert ("`y.amplifier_lag.tau: {value: 0}`" in measured_only_sentence(case, refitted)) == measured_only
+
+
+def test_threads_are_as_silent_about_floating_point_as_the_caller(recwarn):
+    with np.errstate(all="ignore"):
+        quotients = list(side_by_side(lambda divisor: np.ones(1) / divisor, [0.0, 2.0]))
+    assert quotients == [np.inf, 0.5]
+    assert not recwarn.list
