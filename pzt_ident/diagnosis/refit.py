@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.noise import error_scales, pooled_floor
 from pzt_ident.data.record import Record
-from pzt_ident.diagnosis.budget import Budget
+from pzt_ident.diagnosis.budget import LAST, Budget
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.model.block import Coupling
 from pzt_ident.model.chain import Chain
@@ -160,10 +160,12 @@ class Fit:
         """The free parameters by name, in the user's units."""
         return dict(zip(self.problem.names, self.problem.physical(self.point)[0].tolist(), strict=True))
 
-    @cached_property
-    def estimates(self) -> list[Estimate]:
-        """What the data determine of the parameters."""
-        return estimates(self.problem, self.point)[0]
+    def estimates(self, budget: Budget) -> list[Estimate]:
+        """What the data determine of the parameters, by as many profiles of the loss as the budget suffices for."""
+        if "determined" not in self.__dict__:
+            going = partial(budget.allows, "intervals by profiles", LAST)
+            self.__dict__["determined"] = estimates(self.problem, self.point, going)[0]
+        return list(self.__dict__["determined"])
 
 
 def side_by_side(function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:

@@ -86,7 +86,7 @@ def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
         "records": by_record(case, step.fit),
         "explained": step.explained,
         "expected": step.expected,
-        "parameters": parameters_of(step.fit),
+        "parameters": parameters_of(case, step.fit),
         "model": list(map(word_of, case.words_of(step.fit))),
         "bounds": bounds_that_changed(case, step.fit),
         "effects": list(step.fit.effects),
@@ -94,11 +94,11 @@ def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
     }
 
 
-def parameters_of(fit: Fit) -> dict[str, dict[str, Any]]:
+def parameters_of(case: Case, fit: Fit) -> dict[str, dict[str, Any]]:
     """The free parameters of a fit with their units and standard errors, None where the data do not determine them."""
     return {
         estimate.name: {"value": estimate.value, "unit": estimate.unit, "standard_error": estimate.standard_error}
-        for estimate in fit.estimates
+        for estimate in fit.estimates(case.budget)
     }
 
 
@@ -132,7 +132,7 @@ def diagnosis_of(job: Job, case: Case, diagnosis: Diagnosis, folder: Path) -> di
         "rmse": errors_of(case, before),
         "records": by_record(case, before),
         "effects": list(before.effects),
-        "parameters": parameters_of(before),
+        "parameters": parameters_of(case, before),
         "candidates": [candidate_of(case, candidate, diagnosis.tied) for candidate in diagnosis.candidates],
         "next_experiment": proposed,
     }

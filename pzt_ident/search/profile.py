@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,11 +19,14 @@ MISLEADS = 0.25  # of the rise that the curvature expects: with less the curvatu
 PASSES = 4  # of the descent of the other parameters
 
 
-def intervals(problem: Problem, point: Array, jacobian: Array, errors: Array) -> Array:
+def intervals(
+    problem: Problem, point: Array, jacobian: Array, errors: Array, going: Callable[[], bool] = lambda: True
+) -> Array:
     """Ends of the 95 % interval of each parameter in the unit cube, (free, 2).
 
     They are those of the standard errors, (free,), where the loss, with the other parameters fitted again, rises there
     as its curvature says; where it hardly rises, they lie where it has risen by as much (Bates & Watts 1988, ch. 6).
+    going: whether there is time to look at another parameter; after that the curvature is believed.
     """
     ends = np.column_stack([point - TWO_SIDED * errors, point + TWO_SIDED * errors])
     _, s, vt = np.linalg.svd(jacobian, full_matrices=False)
@@ -30,6 +35,8 @@ def intervals(problem: Problem, point: Array, jacobian: Array, errors: Array) ->
     for i in np.flatnonzero((errors > CLEAR) & (np.diag(inverse) > 0)).tolist():
         expected = (TWO_SIDED * errors[i]) ** 2 / inverse[i, i]
         direction = inverse[:, i] / inverse[i, i]
+        if not going():
+            break
         for side, sign in enumerate((-1, 1)):
             ends[i, side] = end_of(problem, point, i, sign * TWO_SIDED * errors[i], direction, least, expected)
     return ends

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -40,7 +40,7 @@ class Estimate(NamedTuple):
     interval: tuple[float, float] | None = None
 
 
-def estimates(problem: Problem, point: Array) -> tuple[list[Estimate], Array]:
+def estimates(problem: Problem, point: Array, going: Callable[[], bool] = lambda: True) -> tuple[list[Estimate], Array]:
     """Estimates of the free parameters and of the linear ones, and the correlations of the free ones (free, free).
 
     Standard errors are those of least squares with correlated residuals: (J'J)^-1 M (J'J)^-1 with M summed over
@@ -48,12 +48,12 @@ def estimates(problem: Problem, point: Array) -> tuple[list[Estimate], Array]:
     the spectrum of the residual gives: blocks miss what is correlated over their ends. Where the profile of the loss is
     flatter than its curvature says, the standard error is that of the interval which the profile gives. A parameter is
     not determined if its standard error exceeds LOOSE, or if it changes the RMSE by less than one percent over more
-    than WIDE, of its search range.
+    than WIDE, of its search range. going: as of `intervals`.
     """
     jacobian = problem.jacobian(point)
     covariance = covariance_of(jacobian, problem.residuals(point)[0])
     error = np.sqrt(np.diag(covariance))
-    ends = intervals(problem, point, jacobian, error)
+    ends = intervals(problem, point, jacobian, error, going)
     misleads = np.ptp(ends, axis=1) > 1.01 * 2 * TWO_SIDED * error
     error = np.where(misleads, np.ptp(ends, axis=1) / (2 * TWO_SIDED), error)
     value = problem.physical(point)[0]

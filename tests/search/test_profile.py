@@ -28,9 +28,9 @@ class Toy:
         return (self.residuals(point + moved) - self.residuals(point - moved)).T / (2 * step)
 
 
-def ends(residual, point, errors):
+def ends(residual, point, errors, **more):
     toy = Toy(residual, len(point))
-    return intervals(toy, np.array(point), toy.jacobian(np.array(point)), np.array(errors))
+    return intervals(toy, np.array(point), toy.jacobian(np.array(point)), np.array(errors), **more)
 
 
 def test_of_a_line_they_are_those_of_the_standard_error():
@@ -43,6 +43,13 @@ def test_a_side_on_which_the_loss_stays_flat_is_open():
     """A response that saturates: no larger value is told from another."""
     bounds = ends(lambda p: np.array([np.tanh(8 * (p[0] - 0.3)) - np.tanh(2.4), 0.5]), [0.6], [0.08])
     assert bounds[0, 0] == pytest.approx(0.6 - 1.96 * 0.08) and bounds[0, 1] > 1
+
+
+def test_where_there_is_no_time_for_a_profile_the_curvature_is_believed():
+    def saturating(p):
+        return np.array([np.tanh(8 * (p[0] - 0.3)) - np.tanh(2.4), 0.5])
+
+    assert ends(saturating, [0.6], [0.08], going=lambda: False)[0, 1] == pytest.approx(0.6 + 1.96 * 0.08)
 
 
 def test_the_others_are_fitted_again():
