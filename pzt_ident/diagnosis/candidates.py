@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from pzt_ident.diagnosis.budget import LAST
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit, side_by_side
@@ -47,10 +48,16 @@ class Candidate:
         self.score, self.fit = next(score for score in self.forms if score.effect == item), self.refits[item]
 
 
-def score_all(case: Case, before: Fit, scorer: Scorer) -> list[Candidate]:
-    """Every effect that can be added to the model, with the scores of its forms."""
+def score_all(case: Case, first: Fit, before: Fit, scorer: Scorer) -> list[Candidate]:
+    """Every effect that can be added to the model, with the scores of its forms; beside the model as given all of them,
+    beside other effects those that the budget suffices for."""
+
+    def scores_of(word: str) -> list[Score]:
+        scored = before is first or case.budget.allows("the scores of all effects", LAST)
+        return scorer.scores(word) if scored else []
+
     words, candidates = applicable(case, before.effects), list[Candidate]()
-    for scores in side_by_side(scorer.scores, words):
+    for scores in filter(None, side_by_side(scores_of, words)):
         candidates.append(Candidate.of(scores))
         facts = {"effect": word_of(scores[0].effect), "explained": candidates[-1].score.explained}
         case.on_event({"event": "scored", **facts, "done": len(candidates), "of": len(words)})

@@ -118,7 +118,7 @@ def judged(monkeypatch):
     def of(fits):
         scores = [Candidate.of([Score(word, explained=0.9, power=3.0)]) for word in fits]
         monkeypatch.setattr(verdict, "Scorer", lambda case, before: None)
-        monkeypatch.setattr(verdict, "score_all", lambda case, before, scorer: scores)
+        monkeypatch.setattr(verdict, "score_all", lambda case, first, before, scorer: scores)
         monkeypatch.setattr(verdict, "refusal", lambda case, first, before: "")
         monkeypatch.setattr(verdict, "restart_look_alikes", lambda case, first, before, candidates: None)
         monkeypatch.setattr(

@@ -9,6 +9,7 @@ import pytest
 import rig
 import stage
 from pzt_ident.diagnosis import refit, starts
+from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.candidates import (
     Candidate,
     are_look_alikes,
@@ -61,7 +62,7 @@ def test_what_is_missing_is_named_and_its_refit_is_at_the_noise_on_records_that_
 def test_look_alikes_of_what_explains_nearly_all_are_compared_in_every_form():
     case = stage.case({"sensor_lag.tau": 2e-3}, noise=1e-8)
     before = first_fit(case, 0)
-    candidates = score_all(case, before, Scorer(case, before))
+    candidates = score_all(case, before, before, Scorer(case, before))
     named = next(item for item in candidates if item.score.effect == "sensor_lag")
     shortlist = refit_all(case, before, before, [named])
     refit_other_forms(case, before, candidates, shortlist)
@@ -75,7 +76,7 @@ def test_look_alikes_of_what_explains_nearly_all_are_compared_in_every_form():
 def test_where_no_effect_explains_most_the_short_list_is_tried_in_every_form():
     case = stage.case(stage.EFFECTS["creep"])
     before = first_fit(case, 0)
-    candidates = score_all(case, before, Scorer(case, before))
+    candidates = score_all(case, before, before, Scorer(case, before))
     shortlist = [item for item in candidates if item.score.effect in ("drift", "saturation")]
     for candidate in shortlist:
         candidate.refits = {candidate.score.effect: before}
@@ -255,3 +256,14 @@ def test_a_look_alike_of_the_best_is_fitted_again_from_elsewhere():
     assert after["friction"].identify == pytest.approx(stage.NOISE, rel=0.1)
     assert after["friction"].validate == pytest.approx(stage.NOISE, rel=0.1)
     assert after["creep"] is fits["creep"]
+
+
+def test_beside_other_effects_nothing_is_scored_once_the_budget_is_spent():
+    case = stage.case(stage.EFFECTS["creep"])
+    first = first_fit(case, 0)
+    before = refit.refit(case, first, ("drift",), {})
+    case.budget = Budget(0)
+    assert score_all(case, first, before, Scorer(case, before)) == []
+    assert "the scores of all effects" in case.budget.untried
+    assert diagnose(case, before, first).verdict == "unexplained"
+    assert score_all(case, first, first, Scorer(case, first))
