@@ -18,7 +18,7 @@ from pzt_ident.data.over_axes import together
 from pzt_ident.files import plain, write_text
 from pzt_ident.report.figures import Plate, write_page_figures
 from pzt_ident.report.inline import inline
-from pzt_ident.report.sentences import findings, next_step, verdict
+from pzt_ident.report.sentences import findings, headline, next_step, verdict
 from pzt_ident.report.spectra import printed_spectra
 from pzt_ident.report.tables import Table, make_tables, write_tables
 from pzt_ident.report.traces import packed
@@ -81,12 +81,13 @@ def _figures_by_section(results: Results) -> dict[str | None, list[tuple[Plate, 
 
 
 def _template_variables(results: Results, tables: dict[str, Table], figures: dict[str | None, Any]) -> dict[str, Any]:
-    sentence, following, remarks = verdict(results), next_step(results), findings(results)
+    (first, reasons), following = headline(verdict(results)), next_step(results)
+    remarks = [*reasons, *findings(results)]
     return {
-        "verdict": sentence,
+        "verdict": first,
         "next_step": following,
         "findings": remarks,
-        "words": named([sentence, following, *remarks], tables),
+        "words": named([first, following, *remarks], tables),
         "results": results,
         "result": results.result,
         "tables": tables,

@@ -11,6 +11,7 @@ from pzt_ident.data.over_axes import USE_NAMES as USE_NAMES
 from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.run.results import Results
 
+SENTENCE = re.compile(r"(?<=[^.\s][.?!])(?<!\beq\.)(?<!\bfig\.)(?<!\be\.g\.)(?<!\bi\.e\.) ", re.IGNORECASE)
 NOISELESS = 1e-6  # of the span of a response: no sensor has less noise
 FLOORS = re.compile(r"(?:([\d.]+) to )?([\d.]+) noise floors")
 
@@ -26,6 +27,14 @@ def verdict(results: Results) -> str:
     if results.diagnosis:
         return printed_reason(results.diagnosis["reason"], results)
     return remaining_error(results)
+
+
+def headline(text: str) -> tuple[str, list[str]]:
+    """The first sentence of a verdict, after what was added, and the others."""
+    first, *others = SENTENCE.split(text)
+    if first.startswith("Added: ") and others:
+        first, others = f"{first} {others[0]}", others[1:]
+    return first, others
 
 
 def printed_reason(text: str, results: Results) -> str:

@@ -12,7 +12,7 @@ import pytest
 from pzt_ident.data.notation import listed
 from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.report.page import write_report
-from pzt_ident.report.sentences import findings, next_step, printed_reason, verdict
+from pzt_ident.report.sentences import findings, headline, next_step, printed_reason, verdict
 from pzt_ident.run.misfit import compare
 from pzt_ident.run.results import read_results
 from run_folders import WEIRD, make_run
@@ -216,6 +216,20 @@ def test_the_headline_names_the_form_of_what_was_added():
     improvement = {"effects": ["creep", "delay"], "verdict": "adequate", "steps": steps, "reason": "All said."}
     said = verdict(SimpleNamespace(improvement=improvement, share_of_noise=1.0, result=None, diagnosis=None))
     assert said.startswith("Added: creep (voltage) and delay. All said.")
+
+
+@pytest.mark.parametrize(
+    ("text", "first", "others"),
+    [
+        ("The model is adequate.", "The model is adequate.", []),
+        ("Added: creep. The model is adequate, eq. 3. Said.", "Added: creep. The model is adequate, eq. 3.", ["Said."]),
+        ("Nothing explains 0.1 um. 8 % is a form. lumped.mass is 3 kg.", "Nothing explains 0.1 um.", 2),
+    ],
+)
+def test_the_head_of_the_page_is_one_sentence_and_the_others_are_listed(text, first, others):
+    head, rest = headline(text)
+    assert (head, rest if isinstance(others, list) else len(rest)) == (first, others)
+    assert " ".join([head, *rest]) == text
 
 
 @pytest.mark.parametrize(
