@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pzt_ident.diagnosis.bounds import beyond_bounds, brought_back, stands_in
+from pzt_ident.diagnosis.budget import LAST
 from pzt_ident.diagnosis.candidates import Candidate
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removes_enough
 from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, find_rivals, remove_unneeded
@@ -53,7 +54,7 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
             return wide
     diagnosis = diagnose(case, first)
     lean = improve_lean(case, first, diagnosis, on_step)
-    if lean and lean.last.verdict == "adequate":
+    if lean and (lean.last.verdict == "adequate" or settles_for(case, first, lean)):
         return lean
     given = with_least_bounds(case, improve_within(case, [Step(first)], on_step, diagnosis))
     if lean and given.last.verdict != "adequate" and end_of(lean).total < end_of(given).total:
@@ -63,6 +64,11 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
     if wide is None and case.budget.allows("wider bounds"):
         wide = improve_beyond(case, first, *beyond, on_step)
     return wide if wide and (accounts(wide, case, first) or clearly_better(wide, given, case)) else given
+
+
+def settles_for(case: Case, first: Fit, lean: Staircase) -> bool:
+    """Whether the staircase without mechanics is better than the model as given, and there is no time for another."""
+    return end_of(lean).total < first.total and not case.budget.allows("effects beside the mechanics", LAST)
 
 
 def end_of(staircase: Staircase) -> Fit:
