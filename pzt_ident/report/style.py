@@ -214,9 +214,12 @@ def decimate_curve(xs: NDArray[np.float64], ys: NDArray[np.float64], points: int
 def file_content(figure: Figure, form: str) -> bytes:
     """The figure as the content of a file in the format `form` (svg, pdf); the same figure gives the same bytes."""
     file = io.BytesIO()
+    if form == "svg":
+        figure.savefig(file, format=form, metadata={"Date": None})
+        return _rounded(file.getvalue().decode()).encode()
     with _fonts_without_shaping():
-        figure.savefig(file, format=form, metadata={"Date": None} if form == "svg" else {"CreationDate": None})
-    return file.getvalue() if form == "pdf" else _rounded(file.getvalue().decode()).encode()
+        figure.savefig(file, format=form, metadata={"CreationDate": None})
+    return file.getvalue()
 
 
 @contextmanager
