@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -84,12 +85,16 @@ def select(losses: Array, count: int, rng: np.random.Generator) -> NDArray[np.in
     """Rows by stochastic universal sampling with fitness 1 / sqrt(rank), shuffled."""
     from deap import tools
 
-    ranks = np.empty(len(losses))
-    ranks[np.argsort(losses, kind="stable")] = np.arange(1, len(losses) + 1)
-    line = [Individual(row, Fitness((length,))) for row, length in enumerate(1 / np.sqrt(ranks))]
     with random_seeded(rng):
-        selected = tools.selStochasticUniversalSampling(line, count)
-    return rng.permutation([individual.row for individual in selected])
+        selected = tools.selStochasticUniversalSampling(ranked(len(losses)), count)
+    places = [individual.row for individual in selected]
+    return rng.permutation(np.argsort(losses, kind="stable")[places])
+
+
+@cache
+def ranked(size: int) -> list[Individual]:
+    """Individuals by their rank, with fitness 1 / sqrt(rank)."""
+    return [Individual(place, Fitness((length,))) for place, length in enumerate(1 / np.sqrt(np.arange(1, size + 1)))]
 
 
 def migrate(losses: Array, demes: list[NDArray[np.int64]], fraction: float) -> NDArray[np.int64]:
