@@ -15,6 +15,7 @@ from pzt_ident.model.registry import optimizers
 from pzt_ident.run.collect import collect
 from pzt_ident.run.events import Listen, event_log, nobody
 from pzt_ident.run.folder import begin, check_unchanged, read_environment, read_job, results_folder
+from pzt_ident.run.here import search_here
 from pzt_ident.run.place import HERE, Place
 from pzt_ident.run.results import read_results
 from pzt_ident.run.start import START, Starts
@@ -123,7 +124,9 @@ def told_so_far(task: Task) -> bytes:
 def _worked(statement: Statement, folder: Path, tasks: list[Task], place: Place, tell: Listen) -> dict[str, str]:
     """Run searches at a place, and polish fits from elsewhere here; the reason for each run that failed."""
     searches = [task for task in tasks if task.optimizer != START]
-    failed = search_all(statement, folder, searches, place, tell) if searches else {}
+    searches, failed = search_here(statement, searches, tell) if place == HERE else (searches, {})
+    if searches:
+        failed |= search_all(statement, folder, searches, place, tell)
     for task in (task for task in tasks if task.optimizer == START):
         try:
             with np.errstate(all="ignore"):

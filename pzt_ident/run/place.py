@@ -32,7 +32,8 @@ class Place(Protocol):
 
 @dataclass(frozen=True)
 class Local:
-    """Processes of this machine; as many as it has cores unless their number is given."""
+    """Processes of this machine; as many as it has cores unless their number is given. Without a number what is soon
+    done may as well be done in the process that asks for it."""
 
     shares_disk: ClassVar[bool] = True
     workers: int | None = None
