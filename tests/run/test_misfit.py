@@ -73,7 +73,13 @@ def test_signals_come_back_in_si_units(finished):
     np.testing.assert_allclose(records[1].time, traces[1].time)
 
 
-def test_the_report_shows_it(folder):
+@pytest.fixture
+def without_figures(monkeypatch):
+    """None in files of their own."""
+    monkeypatch.setattr("pzt_ident.report.figures.write_misfit_figures", lambda results, folder: ())
+
+
+def test_the_report_shows_it(folder, without_figures):
     (folder / "report.html").touch()
     assert call("compare", folder, "--quiet").output == ""
     page = (folder / "report.html").read_text()
@@ -83,7 +89,7 @@ def test_the_report_shows_it(folder):
         assert spelled(sentence) in page
 
 
-def test_a_job_is_run_first(tmp_path):
+def test_a_job_is_run_first(tmp_path, without_figures):
     (job, *_) = write_example(tmp_path / "job")
     kept = job.read_text().partition("# Blocks of the model")[0]
     job.write_text(kept + QUICK)
