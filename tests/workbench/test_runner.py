@@ -10,19 +10,19 @@ from pzt_ident.workbench.runner import STOPPED, Runner
 from .conftest import alone
 
 
-@pytest.mark.parametrize("killed", [False, True])
-def test_the_waiting_process_takes_the_command_and_a_dead_one_is_replaced(tmp_path, killed):
+def test_the_waiting_process_takes_the_command_and_a_dead_one_is_replaced(tmp_path):
     async def story():
         runner = Runner(tmp_path, lambda: None)
         runner.warm()
         waiting = await runner.waiting
-        if killed:
-            waiting.kill()
-            await waiting.wait()
         await runner.run("init", ["init", "there"])
-        assert (runner.process is waiting) != killed and (tmp_path / "there" / "job.yaml").exists()
+        assert runner.process is waiting and (tmp_path / "there" / "job.yaml").exists()
+        dead = await runner.waiting
+        dead.kill()
+        await dead.wait()
         with pytest.raises(RunError, match="no such file"):
             await runner.run("check", ["check", "nothing.yaml"])
+        assert runner.process is not dead
         await runner.close()
         assert (await runner.waiting).returncode is not None
 
