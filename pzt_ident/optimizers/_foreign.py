@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import random
 from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import RLock
@@ -22,15 +21,3 @@ def numpy_seeded(rng: np.random.Generator) -> Iterator[None]:
             yield
         finally:
             np.random.set_state(state)  # noqa: NPY002
-
-
-@contextmanager
-def random_seeded(rng: np.random.Generator) -> Iterator[None]:
-    """Inside, the state of the module `random` is seeded from `rng`; afterwards it is restored."""
-    with _state_lock:
-        state = random.getstate()
-        random.seed(int(rng.integers(2**63)))
-        try:
-            yield
-        finally:
-            random.setstate(state)

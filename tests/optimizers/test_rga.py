@@ -1,11 +1,14 @@
 """What the papers say of the real-coded genetic algorithm."""
 
+import random
+
 import numpy as np
 import pytest
+from deap import tools
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pzt_ident.optimizers.rga import RGA, migrate, select
+from pzt_ident.optimizers.rga import RGA, Fitness, Individual, migrate, select
 
 
 @given(count=st.integers(1, 40), size=st.integers(2, 30), seed=st.integers(0, 2**32 - 1))
@@ -19,6 +22,18 @@ def test_universal_sampling_never_strays_from_the_expectation_by_one(count, size
     expected = count * length / length.sum()
     assert drawn.sum() == count
     assert (np.abs(drawn - expected) < 1 + 1e-9).all()
+
+
+@given(count=st.integers(1, 60), size=st.integers(2, 40), seed=st.integers(0, 2**32 - 1))
+@settings(max_examples=40, deadline=None)
+def test_universal_sampling_is_that_of_deap(count, size, seed):
+    losses = np.random.default_rng(seed).random(size)
+    lengths = 1 / np.sqrt(1 + np.argsort(np.argsort(losses)))
+    line = [Individual(row, Fitness((length,))) for row, length in enumerate(lengths)]
+    rng = np.random.default_rng(seed)
+    random.seed(int(rng.integers(2**63)))
+    drawn = [individual.row for individual in tools.selStochasticUniversalSampling(line, count)]
+    assert (select(losses, count, np.random.default_rng(seed)) == rng.permutation(drawn)).all()
 
 
 def test_mutation_shrinks_to_nothing_over_the_budget():
