@@ -8,9 +8,7 @@ import os
 import sys
 from collections.abc import Callable
 from dataclasses import replace
-from importlib import import_module
 from pathlib import Path
-from threading import Thread
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -122,22 +120,10 @@ def _identify(start: Callable[[Listener], Path], no_report: bool, as_json: bool,
     from pzt_ident.cli.result_tables import show_result
 
     with listening(silent=as_json or quiet) as listen:
-
-        def listen_and_prepare(event: dict[str, Any]) -> None:
-            listen(event)
-            if event["event"] == "start" and not no_report:
-                _import_report_in_background()
-
-        folder = start(listen_and_prepare)
+        folder = start(listen)
         write_report(folder, no_report)
     result = json.loads((folder / "result.json").read_text(encoding="utf-8"))
     answer({"folder": str(folder), "result": result}, lambda: show_result(result, folder), as_json, quiet)
-
-
-def _import_report_in_background() -> None:
-    """Import what draws the report while the searches run in other processes."""
-    modules = ("pandas", "matplotlib.figure", "matplotlib.backends.backend_svg", "pzt_ident.report.page")
-    Thread(target=lambda: [import_module(name) for name in modules], daemon=True).start()
 
 
 @main.command()
