@@ -10,6 +10,7 @@ from typing import Any
 
 from pzt_ident.atlas.drawing import thumbnail
 from pzt_ident.atlas.href import anchor, href
+from pzt_ident.atlas.kept import keep, kept
 from pzt_ident.atlas.manual import chapters
 from pzt_ident.atlas.pictures import MAIN, STRIP
 from pzt_ident.atlas.symptoms import table
@@ -22,14 +23,22 @@ FOLDER = files("pzt_ident.atlas")
 
 def write_atlas(path: Path) -> Path:
     """Write the atlas of all words that are registered, and the manual, as one page that needs no network."""
-    with computing():
-        write_text(path, atlas())
+    place = kept()
+    if place and place.exists():
+        page = place.read_text(encoding="utf-8")
+    else:
+        with computing():
+            page = atlas()
+        if place:
+            keep(page, place)
+    write_text(path, page)
     return path
 
 
 def drawn() -> Iterator[str]:
-    """Each word, as its pictures are drawn for the page."""
-    for word in every_word():
+    """Each word, as its pictures are drawn for the page; none where the page is kept."""
+    place = kept()
+    for word in () if place and place.exists() else every_word():
         assert word.pictures
         yield word.word
 
