@@ -37,18 +37,14 @@ def arguments() -> list[str]:
     return list(json.loads(line))
 
 
-def main(searching: bool) -> None:
-    """searching: have the server of the searches there too."""
+def main() -> None:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy comes
     from pzt_ident.cli.commands import main
     from pzt_ident.model.registry import blocks
-    from pzt_ident.run.pool import context
 
     for name in WARM:
         import_module(name)
     blocks.usable()
-    if searching:
-        context()
     sys.argv[1:] = arguments()
     Thread(target=end_with_parent, daemon=True).start()
     main(prog_name="pzt-ident")

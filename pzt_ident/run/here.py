@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from pzt_ident.run.pool import Failures, Tell, attempt, without_working_folder
+from pzt_ident.run.pool import Failures, Tell, attempt, context, without_working_folder
 from pzt_ident.run.statement import Statement
 from pzt_ident.run.task import Task, search
 
 SECONDS = 2.0
-"""CPU time: to start processes takes half of it, and halves what is left."""
+"""CPU time. After half of it the server of other processes is started, which is there when it is over."""
 
 
 class Enough(BaseException):
@@ -30,9 +30,12 @@ def search_here(statement: Statement, tasks: Sequence[Task], tell: Tell) -> tupl
         nonlocal end
         tell(event)
         if event["event"] == "generation" and task is not tasks[-1]:
-            end = min(end, time.process_time() + SECONDS)
-            if time.process_time() > end:
+            now = time.process_time()
+            end = min(end, now + SECONDS)
+            if now > end:
                 raise Enough
+            if now > end - SECONDS / 2:
+                context()
 
     def entry(tell: Tell, task: Task) -> None:
         with np.errstate(all="ignore"), without_working_folder():

@@ -57,7 +57,7 @@ def search_path() -> list[str]:
     return [place for place in sys.path if place]
 
 
-_starting = threading.Lock()
+_starting = threading.RLock()
 
 
 @contextmanager

@@ -40,7 +40,7 @@ def make_app(session: Session, hosts: set[str], token: str) -> Guard:
 
     @asynccontextmanager
     async def lifespan(app: Starlette) -> AsyncIterator[None]:
-        bench.runner.warm(searching=True)
+        bench.runner.warm()
         ready = asyncio.create_task(asyncio.to_thread(prepare, bench))
         yield
         await ready

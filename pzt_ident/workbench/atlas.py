@@ -20,7 +20,7 @@ class Atlas(Runner):
         super().__init__(session.root, lambda: None)
         self.session, self.words, self.html = session, list[str](), ""
 
-    def warm(self, searching: bool = False) -> None:
+    def warm(self) -> None:
         """No process waits: there is one command."""
 
     def page(self) -> str:

@@ -20,7 +20,7 @@ async def begin(bench: Bench, form: Form) -> None:
     await bench.runner.stop()
     await asyncio.to_thread(session.begin, form)
     bench.runner.failure = ""
-    bench.runner.warm(searching=True)
+    bench.runner.warm()
 
 
 async def run(bench: Bench, form: Form) -> None:

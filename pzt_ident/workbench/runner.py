@@ -59,10 +59,9 @@ class Runner:
             self.stage, self.process = "", None
             self.changed()
 
-    def warm(self, searching: bool = False) -> None:
-        """Have a process there that has everything imported and waits for its arguments; `searching`: with the server
-        from which searches are forked."""
-        self._prepared(searching)
+    def warm(self) -> None:
+        """Have a process there that has everything imported and waits for its arguments."""
+        self._prepared()
 
     async def run(self, name: str, arguments: Sequence[str]) -> None:
         """Run a command to its end. Raises RunError with its last lines if it fails."""
@@ -93,15 +92,15 @@ class Runner:
                 if process.returncode is None:
                     return process
 
-    def _prepared(self, searching: bool = False) -> asyncio.Task[Process]:
+    def _prepared(self) -> asyncio.Task[Process]:
         """The process that waits, or is about to."""
         if self.waiting is None or (self.waiting.done() and self.waiting.exception()):
-            self.waiting = asyncio.create_task(self._spawned(searching))
+            self.waiting = asyncio.create_task(self._spawned())
         return self.waiting
 
-    async def _spawned(self, searching: bool = False) -> Process:
+    async def _spawned(self) -> Process:
         return await asyncio.create_subprocess_exec(
-            *command_line(searching),
+            *command_line(),
             cwd=self.root,
             stdin=asyncio.subprocess.PIPE,  # closed with this process, which ends the command
             stdout=asyncio.subprocess.DEVNULL,
@@ -132,7 +131,7 @@ class Runner:
                 await process.wait()
 
 
-def command_line(searching: bool = False) -> list[str]:
+def command_line() -> list[str]:
     """A process of `pzt-ident` with this process' module search path, which reads its arguments from its input."""
-    code = f"import sys; sys.path[:] = {search_path()}; from pzt_ident.cli.child_process import main; main({searching})"
+    code = f"import sys; sys.path[:] = {search_path()}; from pzt_ident.cli.child_process import main; main()"
     return [sys.executable, "-P", "-c", code]

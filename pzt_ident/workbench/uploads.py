@@ -44,7 +44,7 @@ async def upload(bench: Bench, request: Request) -> Response:
     """Store a dropped file in the session's folder and return its columns. It is read as numbers, never executed. One
     that cannot be read is not kept, so that a corrected one can be dropped."""
     path, new = await stored(bench.session.data, request)
-    bench.runner.warm(searching=True)
+    bench.runner.warm()
     try:
         return await inspected(bench, (path, None))
     except InputError:

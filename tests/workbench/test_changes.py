@@ -29,7 +29,7 @@ def bench(session):
 def idle(bench):
     """Steps are made, and nothing is run."""
     bench.runner.start = lambda commands: commands.close()
-    bench.runner.warm = lambda searching=False: None
+    bench.runner.warm = lambda: None
     return bench
 
 

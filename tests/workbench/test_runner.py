@@ -48,7 +48,7 @@ def test_a_command_that_is_being_started_is_stopped_and_the_next_one_takes_its_p
 
 def test_a_runner_that_keeps_no_process_waiting_runs_its_command(tmp_path):
     class Single(Runner):
-        def warm(self, searching=False):
+        def warm(self):
             """None waits."""
 
     async def story():
