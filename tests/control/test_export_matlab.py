@@ -15,6 +15,7 @@ CHAINS = ["bouc_wen lumped", *FORMS[::4], *map(" ".join, HOSTS[::4]), *LONG]
 
 @pytest.mark.skipif(not shutil.which("octave"), reason="no Octave is installed")
 def test_function_responds_as_here(tmp_path):
+    """From rest, and on from the state in which it ended."""
     models = [identified(words, name=f"m{i}") for i, words in enumerate(CHAINS)]
     script = ["failed = {};"]
     for one in models:
@@ -24,9 +25,9 @@ def test_function_responds_as_here(tmp_path):
         np.savetxt(tmp_path / f"{one.word}.drive", drive.T[:120], "%.17g")
         np.savetxt(tmp_path / f"{one.word}.response", response.T[:120], "%.17g")
         script += [
-            f"u = load('{one.word}.drive'); y = load('{one.word}.response'); f = {one.word}(u);",
+            f"u = load('{one.word}.drive'); y = load('{one.word}.response');",
             f"[a, s] = {one.word}(u(1:50, :)); b = {one.word}(u(51:end, :), s);",
-            f"if any(any(abs(f - y) > 1e-9 * max(abs(y(:))))) || ~isequal(f, [a; b]), disp('{one.word}'), end",
+            f"if ~all(all(abs([a; b] - y) <= 1e-9 * max(abs(y(:))))), disp('{one.word}'), end",
         ]
     (tmp_path / "compare_models.m").write_text("\n".join(script))
     ran = subprocess.run(["octave", "-qf", "compare_models.m"], cwd=tmp_path, capture_output=True, text=True)
