@@ -218,14 +218,23 @@ def functions(block: type[Block]) -> dict[str, FunctionType]:
     return {word: function for word, function in attributes.items() if isinstance(function, FunctionType)}
 
 
+@cache
 def jitted(function: FunctionType) -> Any:
-    """The function for numba, with the plain functions that it calls registered."""
+    """The function for numba, with the plain functions that it calls registered: compiled once for all blocks and
+    variants that have it."""
     from numba import njit
-    from numba.extending import register_jitable
 
     for helper in helpers(function):
-        register_jitable(forceinline=True)(helper)
+        register(helper)
     return njit(forceinline=True)(function)
+
+
+@cache
+def register(helper: FunctionType) -> None:
+    """Let numba compile a plain function where another one calls it."""
+    from numba.extending import register_jitable
+
+    register_jitable(forceinline=True)(helper)
 
 
 def helpers(function: FunctionType) -> set[FunctionType]:
