@@ -13,8 +13,10 @@ from pzt_ident.run.pool import Failures, Tell, attempt, context, without_working
 from pzt_ident.run.statement import Statement
 from pzt_ident.run.task import Task, search
 
-SECONDS = 2.0
-"""CPU time. After half of it the server of other processes is started, which is there when it is over."""
+SECONDS = 2.5
+"""CPU time."""
+SECONDS_TO_START = 1.0
+"""How long before its end the server of other processes is started."""
 
 
 class Enough(BaseException):
@@ -34,7 +36,7 @@ def search_here(statement: Statement, tasks: Sequence[Task], tell: Tell) -> tupl
             end = min(end, now + SECONDS)
             if now > end:
                 raise Enough
-            if now > end - SECONDS / 2:
+            if now > end - SECONDS_TO_START:
                 context()
 
     def entry(tell: Tell, task: Task) -> None:
