@@ -1,4 +1,4 @@
-"""python -m experiments.foreign_effect cases|solve|table --kind single --seeds 100:130 --out DIR --jobs 2"""
+"""python -m experiments.foreign_effect cases|solve|follow|table --kind single --seeds 100:130 --out DIR --jobs 2"""
 
 import argparse
 import json
@@ -7,7 +7,7 @@ from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 
-from . import cases, score, solve, tally
+from . import cases, follow, score, solve, tally
 
 
 def _seeds(text):
@@ -24,15 +24,23 @@ def _make(job):
 
 
 def _solve(job, limit):
-    answer = solve.solve(Path(job[2]) / f"{job[0]}-{job[1]}", limit)
+    _say(job, solve.solve(Path(job[2]) / f"{job[0]}-{job[1]}", limit))
+
+
+def _follow(job, limit):
+    if answer := follow.follow(Path(job[2]) / f"{job[0]}-{job[1]}", limit):
+        _say(job, answer)
+
+
+def _say(job, answer):
     found = (answer["improvement"] or {}).get("effects")
     print(f"{job[0]} {job[1]}: exit {answer['exit']}, named {found}, {answer['cpu']:.0f} s CPU", flush=True)
 
 
 def main():
-    """Make cases, let the tool answer them, or print the tables; what is done is skipped."""
+    """Make cases, let the tool answer them, play the drives it proposes, or print tables; what is done is skipped."""
     parser = argparse.ArgumentParser(prog="python -m experiments.foreign_effect", description=main.__doc__)
-    parser.add_argument("task", choices=("cases", "solve", "table"))
+    parser.add_argument("task", choices=("cases", "solve", "follow", "table"))
     parser.add_argument("--kind", default="single", help="comma between " + ", ".join(cases.KINDS))
     parser.add_argument("--seeds", type=_seeds, default=range(1, 9), help="first:last, the last one left out")
     parser.add_argument("--out", default="results/foreign_effect")
@@ -40,13 +48,14 @@ def main():
     parser.add_argument("--limit", type=float, default=900, help="seconds for each answer")
     given = parser.parse_args()
     work = [(kind, seed, given.out) for kind in given.kind.split(",") for seed in given.seeds]
-    if given.task != "table":
+    if given.task in ("cases", "solve"):
         with get_context("fork").Pool(given.jobs, maxtasksperchild=4) as pool:
             for home in pool.imap_unordered(_make, work):
                 print(home, flush=True)
-    if given.task == "solve":
+    if given.task in ("solve", "follow"):
+        act = _solve if given.task == "solve" else _follow
         with ThreadPoolExecutor(given.jobs) as threads:
-            list(threads.map(partial(_solve, limit=given.limit), work))
+            list(threads.map(partial(act, limit=given.limit), work))
     if given.task == "table":
         rows = score.rows(given.out)
         (Path(given.out) / "rows.json").write_text(json.dumps(rows, indent=1))

@@ -197,6 +197,45 @@ def campaign(rng, pace, wanted, span, others=(), gentle=False):
     return out
 
 
+def slow_loops(rng, span, others):
+    """Slow loops only: three to five records at one rate, no step, no second rate, nothing broad."""
+    rate, out = float(rng.choice(RATES["slow"])), []
+    for i in range(int(rng.integers(3, 6))):
+        kind = str(rng.choice(["triangle", "sines", "nested", "two_amplitudes"]))
+        samples = min(int(rng.uniform(6, 30) * rate), 6000)
+        record = Record(kind, "validate" if i == 1 else "identify", rate, {"x": drive(rng, kind, samples, rate, *span)})
+        for name in others:
+            moves = str(rng.choice(["triangle", "sines", "nested"]))
+            record.drives[name] = drive(rng, moves, samples, rate, 0.0, 0.8 * span[1])
+        out.append(record)
+    return out
+
+
+def one_tone(t, low, high, period, shape):
+    """Triangles or sines of one period between two voltages, from 0 V upwards."""
+    start = -low / (high - low)
+    if shape == "triangle":
+        phase = t / period + start / 2
+        return low + (high - low) * (1 - np.abs(1 - 2 * (phase % 1)))
+    return low + (high - low) * (1 - np.cos(2 * math.pi * t / period + math.acos(1 - 2 * start))) / 2
+
+
+def one_frequency(rng, pace, span, others):
+    """Triangles, or sines, of one frequency only: two to four records that differ in amplitude and length."""
+    rate, shape = float(rng.choice(RATES[pace])), str(rng.choice(["triangle", "sines"]))
+    low, high, period, out = *span, int(rng.integers(200, 1200)), []
+    for i in range(int(rng.integers(2, 5))):
+        share = 1.0 if i == 0 else float(rng.uniform(0.4, 1))
+        t = np.arange(int(period * rng.integers(3, 8))) / rate
+        record = Record(shape, "validate" if i == 1 else "identify", rate)
+        record.drives["x"] = one_tone(t, share * low, share * high, period / rate, shape)
+        for name in others:
+            late = np.maximum(t - period / rate / 4, 0.0)
+            record.drives[name] = one_tone(late, 0.0, float(rng.uniform(0.3, 0.8)) * high, period / rate, shape)
+        out.append(record)
+    return out
+
+
 def noise(rng, samples, sigma, memory):
     """Sensor noise of standard deviation sigma: white, or e_k = memory e_k-1 + w_k."""
     white = rng.standard_normal(samples)

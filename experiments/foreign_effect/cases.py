@@ -8,17 +8,21 @@ from pathlib import Path
 import numpy as np
 
 from . import jobs
-from .campaign import campaign, floor, read
+from .campaign import campaign, floor, one_frequency, read, slow_loops
+from .family import Family
 from .forms import FORMS, NEEDS
 from .stage import Axis
 from .visibility import Rig, apart
 
-KINDS = {"single": 1, "pair": 2, "none": 3, "outside": 4}
+KINDS = {"single": 1, "pair": 2, "none": 3, "outside": 4, "family": 5, "loops": 6, "one_frequency": 7}
+TIED = ("loops", "one_frequency")  # campaigns that may not tell two effects apart: the proposed drive is played
 LEAST, MOST = 3.0, 60.0
 INSIDE_BOUC_WEN = {"asymmetry", "rate_dependence"}
 MECHANICAL = {"load_mass", "viscous_damping"}
 COUPLED = {"cross_coupling", "kinematic_coupling"}
 NAMED = [effect for effect in FORMS if effect != "outside"]
+MEMORY = {"distributed_memory", "amplitude_gain"}
+ANY_BASE = [e for e in NAMED if e not in INSIDE_BOUC_WEN | MEMORY | {"thermal_relaxation"}]
 TITLES = (
     "XY flexure stage, campaign of the week",
     "AFM scanner",
@@ -31,24 +35,26 @@ class Redraw(Exception):
     """A draw whose effect could not be seen, or not be told from the other one."""
 
 
-def draw_base(rng, effects, span, stroke):
+def draw_base(rng, kind, effects, span, stroke):
     """Hysteresis and its parameters."""
     low, high = span
     gain = stroke / (high - low)
     allowed = ["bouc_wen", "plays", "preisach", "free_energy"]
-    if INSIDE_BOUC_WEN & set(effects):
+    if kind == "family":
+        allowed = ["preisach", "plays", "free_energy"]
+    elif INSIDE_BOUC_WEN & set(effects):
         allowed = ["bouc_wen"]
     elif "thermal_relaxation" in effects:
         allowed = ["bouc_wen", "free_energy"]
-    elif {"distributed_memory", "amplitude_gain"} & set(effects):
+    elif MEMORY & set(effects):
         allowed = ["bouc_wen"]  # the others have memory of their own
     shares = np.array([2.0, 1.0, 0.7, 0.7])[: len(allowed)]
-    kind = str(rng.choice(allowed, p=shares / shares.sum()))
-    if kind == "bouc_wen":
+    law = str(rng.choice(allowed, p=shares / shares.sum()))
+    if law == "bouc_wen":
         forgetting, share = 1 / (rng.uniform(0.06, 0.3) * high), rng.uniform(0.3, 0.9)
         alpha = min(rng.uniform(0.2, 0.6), 0.9 / max(1, 2 * share))
         base = {"alpha": alpha, "beta": share * forgetting, "gamma": (1 - share) * forgetting}
-    elif kind == "plays":
+    elif law == "plays":
         count, reach = int(rng.choice([8, 8, 12, 20])), rng.uniform(0.25, 0.45) * (high - low)
         widths = reach * np.arange(1, count + 1) / count
         weights = np.exp(-widths / rng.uniform(0.1, 0.3) / high) * rng.uniform(0.5, 1.5, count)
@@ -58,10 +64,10 @@ def draw_base(rng, effects, span, stroke):
         base = {"coercive": rng.uniform(0.06, 0.2) * high, "spread": rng.uniform(0.3, 0.7)}
         base |= {"interaction": rng.uniform(0.4, 0.9) * high}
         base["remanence"] = gain * base["interaction"] * rng.uniform(0.3, 0.6)
-        if kind == "preisach":
-            law = "normal" if rng.random() < 0.3 else "lognormal"
-            base |= {"law": law, "reach": 2.0 * high}
-    return {"kind": kind, "gain": gain} | {k: float(v) if np.isscalar(v) and k != "law" else v for k, v in base.items()}
+        if law == "preisach":
+            density = "normal" if rng.random() < 0.3 else "lognormal"
+            base |= {"law": density, "reach": 2.0 * high}
+    return {"kind": law, "gain": gain} | {k: float(v) if np.isscalar(v) and k != "law" else v for k, v in base.items()}
 
 
 def count_modes(rng, effects, forms):
@@ -112,7 +118,7 @@ def surroundings(case, stroke):
         "gamma": base.get("gamma", 0.0),
         "fastest": max(r.rate for r in records),
         "longest": max(r.samples / r.rate for r in records),
-        "records": len(records),
+        "records": len(records) + (case["kind"] in TIED),
         "speed": float(np.exp(np.mean(np.log(moving)))),
         "swiftest": float(np.max(speeds)),
         "f1": case["axes"]["x"].modes[0][0] if case["axes"]["x"].modes else 0.0,
@@ -127,11 +133,25 @@ def pick_form(rng, effect, base):
     return str(rng.choice(forms))
 
 
+def draw_records(rng, kind, pace, effects, span, others, gentle):
+    """Records with their voltages, of the kind of campaign that the case has."""
+    if kind == "loops":
+        return slow_loops(rng, span, others)
+    if kind == "one_frequency":
+        return one_frequency(rng, pace, span, others)
+    wanted = dict.fromkeys(kind for e in effects for kind in NEEDS[e][1])
+    if kind == "family":
+        wanted |= {"nested": None}
+    return campaign(rng, pace, tuple(wanted), span, others, gentle)
+
+
 def draw_stage(rng, kind, effects):
     """Campaign and stage without its effects."""
     paces = set.intersection(*(set(NEEDS[e][0]) for e in effects)) if effects else {"slow", "wide", "fast"}
     if not paces:
         raise Redraw("no campaign shows both")
+    if kind in TIED:
+        paces = {"slow"} if kind == "loops" or "fast" not in paces else paces & {"slow", "fast"}
     rough = [pick_form(rng, e, None) for e in effects]
     if any("inside" in form for form in rough) and "wide" in paces:
         paces = paces - {"wide"} or paces
@@ -139,14 +159,22 @@ def draw_stage(rng, kind, effects):
     high = float(rng.choice([20, 60, 100, 120, 150]))
     span = (float(rng.choice([0.0, -0.13, -1.0], p=[0.6, 0.25, 0.15])) * high, high)
     stroke = float(np.exp(rng.uniform(math.log(5), math.log(80))))
-    wanted = tuple(dict.fromkeys(kind for e in effects for kind in NEEDS[e][1]))
     second = bool(COUPLED & set(effects)) or rng.random() < 0.25
     count = count_modes(rng, effects, rough)
-    records = campaign(rng, pace, wanted, span, ("y",) if second else (), gentle=count > 0 and pace != "slow")
-    base = draw_base(rng, effects, span, stroke)
+    gentle = count > 0 and pace != "slow"
+    records = draw_records(rng, kind, pace, effects, span, ("y",) if second else (), gentle)
+    base = draw_base(rng, kind, effects, span, stroke)
     needed = bool(MECHANICAL & set(effects)) or any("inside" in form for form in rough)
     axes = {"x": Axis(base, draw_modes(rng, count, needed, pace, max(r.rate for r in records)))}
-    case = {"axes": axes, "records": records, "pace": pace, "stroke": stroke, "forms": rough, "span": span}
+    case = {
+        "kind": kind,
+        "axes": axes,
+        "records": records,
+        "pace": pace,
+        "stroke": stroke,
+        "forms": rough,
+        "span": span,
+    }
     case["y_measured"] = bool(second and rng.random() < 0.45)
     if second:
         axes["y"] = other_axis(rng, axes["x"])
@@ -166,17 +194,25 @@ def other_axis(rng, x):
     return Axis(base, [(f * float(rng.uniform(0.85, 1.15)), z, s) for f, z, s in x.modes])
 
 
+def draw_effects(rng, kind, seed):
+    """What is hidden: nothing in every third case of a base of another family."""
+    if kind in ("none", "outside"):
+        return [kind] * (kind == "outside")
+    if kind == "family":
+        return [str(rng.choice(ANY_BASE))] if seed % 3 else []
+    return [str(e) for e in rng.choice(NAMED, 2 if kind == "pair" else 1, replace=False)]
+
+
 def draw(kind, seed):
     """The case of a kind and a seed; draws that cannot be seen are drawn again, from the same stream."""
     rng = np.random.default_rng([KINDS[kind], seed])
     for attempt in range(60):
-        effects = {"none": [], "outside": ["outside"]}.get(kind)
-        if effects is None:
-            effects = [str(e) for e in rng.choice(NAMED, 1 if kind == "single" else 2, replace=False)]
+        effects = draw_effects(rng, kind, seed)
         try:
             case = draw_stage(rng, kind, effects)
-            case |= {"kind": kind, "seed": seed, "truth": [e for e in effects if e != "outside"], "attempt": attempt}
-            case |= {"bounds": str(rng.choice(["none", "tight", "wide", "wrong"], p=[0.25, 0.3, 0.3, 0.15]))}
+            case |= {"seed": seed, "truth": [e for e in effects if e != "outside"], "attempt": attempt}
+            shares = [0.5, 0, 0.5, 0] if kind == "family" else [0.25, 0.3, 0.3, 0.15]
+            case |= {"bounds": str(rng.choice(["none", "tight", "wide", "wrong"], p=shares))}
             case |= {"damping_bounds": bool(rng.random() < 0.5), "bare": bool(rng.random() < 0.3)}
             case |= {"title": str(rng.choice(TITLES)), "noise_seed": int(rng.integers(2**31))}
             frequency = case["axes"]["x"].modes[0][0] if case["axes"]["x"].modes else 100.0
@@ -192,15 +228,21 @@ def draw(kind, seed):
 
 def equip(rng, case, effects):
     """Put effects into the stage, each of a size that leaves the drawn number of noise floors."""
-    rig = Rig(case)
+    rig = (Family if case["kind"] == "family" else Rig)(case)
     rig.hold_base()
+    if case["kind"] == "family":
+        case["bouc_wen"] = rig.left
+        if not rig.memory_is_seen():
+            raise Redraw("Bouc-Wen holds this base")
     level, c = floor(case["sensor"]), surroundings(case, case["stroke"])
     most = min(MOST, 0.1 * case["stroke"] / level)
     signatures = {}
     for effect, rough in zip(effects, case["forms"], strict=True):
         form = pick_form(rng, effect, case["axes"]["x"].base) if effect == "thermal_relaxation" else rough
         plan, low, high, signs = FORMS[effect][form](rng, c)
-        least = 6.0 if effect == "outside" else 1.3 * LEAST  # what is outside must not pass for adequate
+        least = 6.0 if effect == "outside" else 1.3 * rig.least  # what is outside must not pass for adequate
+        if least > most:
+            raise Redraw("what Bouc-Wen leaves hides any effect")
         target = float(np.exp(rng.uniform(math.log(least), math.log(max(0.85 * most, least)))))
         entry = plan | {"form": form, "sign": float(rng.choice([-1, 1])) if signs else 1.0}
         signatures[effect] = rig.scale(effect, entry, low, high, target)
@@ -245,7 +287,9 @@ def write(kind, seed, out):
         "mechanics",
         "bounds",
     )
-    truth = {key: case.get(key) for key in (*keys, "y_measured", "wrong", "attempt", "mass")}
+    truth = {key: case.get(key) for key in (*keys, "y_measured", "wrong", "attempt", "mass", "bouc_wen")}
+    if kind == "family":
+        truth["truth"] = ["distributed_memory", *case["truth"]]
     truth["base"] = case["axes"]["x"].base
     truth["modes"] = case["axes"]["x"].modes
     truth["y"] = None if "y" not in case["axes"] else {"base": case["axes"]["y"].base["kind"]}

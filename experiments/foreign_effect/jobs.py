@@ -22,6 +22,16 @@ def hysteresis(base):
     return f"{{name: {block}, density: free}}" if base.get("law") == "normal" else block
 
 
+def believed(case):
+    """The hysteresis that the user takes the stage for: its own, or Bouc-Wen with the stroke over the voltage."""
+    base = case["axes"]["x"].base
+    if case["kind"] != "family":
+        return base
+    reading = np.concatenate([clean["x"] for clean in case["clean"]])
+    voltage = np.concatenate([record.drives["x"] for record in case["records"]])
+    return {"kind": "bouc_wen", "gain": float(np.ptp(reading) / np.ptp(voltage))}
+
+
 def known(case):
     """Mass, damping and stiffness of x: stiffness from the force test, mass from CAD; f1 = (k / m)^0.5 / 2 pi."""
     frequency, damping, _ = case["axes"]["x"].modes[0]
@@ -69,7 +79,7 @@ def _mechanics(rng, case, style, wrong):
 
 def _parameters(rng, case):
     """Bounds that the user has, and a word on their style for the truth."""
-    style, base = case["bounds"], case["axes"]["x"].base
+    style, base = case["bounds"], believed(case)
     block, lines, wrong = BLOCKS[base["kind"]], [], None
     choices = ["gain"] + (["mass"] if case["mechanics"] == "lumped" and base and case["axes"]["x"].modes else [])
     if style == "wrong":
@@ -97,22 +107,38 @@ def _parameters(rng, case):
 def write_records(folder, case, readings):
     """One file a record: CSV with a header in one style, columns of numbers without header in the other."""
     for i, (record, seen) in enumerate(zip(case["records"], readings, strict=True)):
-        t = np.arange(record.samples) / record.rate
-        columns, names = [t], ["time [s]"]
-        for axis in sorted(record.drives):
-            columns.append(record.drives[axis])
-            names.append(f"u_{axis} [V]")
-            if axis in seen:
-                columns.append(seen[axis])
-                names.append(f"{axis} [um]")
-        rows = np.column_stack(columns)
-        if case["bare"]:
-            np.savetxt(folder / f"rec{i + 1:02d}.dat", rows[:, 1:], fmt="%.8g")
-        else:
-            with open(folder / f"{i + 1:02d}_{record.kind}.csv", "w", newline="") as file:
-                writer = csv.writer(file)
-                writer.writerow(names)
-                writer.writerows([[f"{v:.9g}" for v in row] for row in rows.tolist()])
+        write_record(folder, case, i, record, seen)
+
+
+def file_name(case, i, record):
+    """File of record i, counted from 0."""
+    return f"rec{i + 1:02d}.dat" if case["bare"] else f"{i + 1:02d}_{record.kind}.csv"
+
+
+def write_record(folder, case, i, record, seen):
+    """The file of one record and its readings."""
+    t = np.arange(record.samples) / record.rate
+    columns, names = [t], ["time [s]"]
+    for axis in sorted(record.drives):
+        columns.append(record.drives[axis])
+        names.append(f"u_{axis} [V]")
+        if axis in seen:
+            columns.append(seen[axis])
+            names.append(f"{axis} [um]")
+    rows = np.column_stack(columns)
+    if case["bare"]:
+        np.savetxt(folder / file_name(case, i, record), rows[:, 1:], fmt="%.8g")
+        return
+    with open(folder / file_name(case, i, record), "w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(names)
+        writer.writerows([[f"{v:.9g}" for v in row] for row in rows.tolist()])
+
+
+def record_line(case, i, record):
+    """Line of a job for record i."""
+    rate = f", sample_rate: {record.rate:.12g} Hz" if case["bare"] else ""
+    return f"  - {{file: {file_name(case, i, record)}, use: {record.use}{rate}}}"
 
 
 def _channels(case):
@@ -135,13 +161,9 @@ def _channels(case):
 def text(rng, case):
     """The job file."""
     lines = [f"# {case['title']}", f"name: {case['kind']}-{case['seed']}", "records:"]
-    for i, record in enumerate(case["records"]):
-        if case["bare"]:
-            lines.append(f"  - {{file: rec{i + 1:02d}.dat, use: {record.use}, sample_rate: {record.rate:g} Hz}}")
-        else:
-            lines.append(f"  - {{file: {i + 1:02d}_{record.kind}.csv, use: {record.use}}}")
+    lines += [record_line(case, i, record) for i, record in enumerate(case["records"])]
     lines += _channels(case)
-    words = [hysteresis(case["axes"]["x"].base)]
+    words = [hysteresis(believed(case))]
     if case["mechanics"] == "lumped":
         words.append("lumped")
     elif case["mechanics"] == "modal":

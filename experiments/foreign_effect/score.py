@@ -21,6 +21,11 @@ def classes(improvement):
     return out
 
 
+def tied(improvement):
+    """Whether an effect that is named cannot be told from another one."""
+    return any(len(group) > 1 for group in classes(improvement).values())
+
+
 def matched(truth, groups):
     """Whether every true effect has a named one of its own in whose class it is, and no other effect is named."""
     if not truth:
@@ -38,7 +43,8 @@ def score(truth, solved):
     row = {"kind": truth["kind"], "seed": truth["seed"], "truth": truth["truth"], "cpu": solved["cpu"]}
     row |= {"seconds": solved["seconds"], "base": truth["base"]["kind"], "bounds": truth["bounds"]}
     row |= {"mechanics": truth["mechanics"], "y": _other(truth), "coloured": bool(truth["sensor"]["memory"])}
-    row["forms"] = [entry["form"] for entry in (truth["sizes"] or {}).values()]
+    row["forms"] = [truth["base"]["kind"]] * (truth["kind"] == "family")
+    row["forms"] += [entry["form"] for entry in (truth["sizes"] or {}).values()]
     row["visible"] = {effect: max(seen) for effect, seen in truth["seen"].items()}
     if improvement is None:
         verdict = "out of time" if solved["exit"] == "time" else f"exit {solved['exit']}"
@@ -47,6 +53,8 @@ def score(truth, solved):
             "exact": False,
             "in_class": False,
             "extra": [],
+            "missed": truth["truth"],
+            "suspects": [],
             "verdict": verdict,
             "floors": math.nan,
         }
@@ -60,7 +68,9 @@ def score(truth, solved):
     row["floors"] = round(_size(last["validate"]) / truth["floor"], 2)
     row["floors_identify"] = round(_size(last["identify"]) / truth["floor"], 2)
     row["floors_before"] = round(_size(improvement["steps"][0]["rmse"]["validate"]) / truth["floor"], 2)
-    return row
+    row["tied"] = [sorted(group) for group in groups.values() if len(group) > 1]
+    following = improvement.get("next_experiment") or {}
+    return row | {"proposed": following.get("why"), "reason": improvement.get("reason")}
 
 
 def _other(truth):
@@ -72,5 +82,8 @@ def rows(out):
     found = []
     for path in sorted(Path(out).glob("*/solved.json")):
         truth = json.loads((path.parent / "truth.json").read_text())
-        found.append(score(truth, json.loads(path.read_text())))
+        row, second = score(truth, json.loads(path.read_text())), path.parent / "followed" / "solved.json"
+        if second.exists():
+            row["followed"] = score(truth, json.loads(second.read_text()))
+        found.append(row)
     return found

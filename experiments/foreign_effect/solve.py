@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 COMMAND = Path(sys.executable).parent / "pzt-ident"
+KEPT = ("improvement.json", "improved.yaml", "next_experiment.csv")
 
 
 def _wait(process, limit):
@@ -52,7 +53,7 @@ def solve(home, limit):
     if found.exists():
         out["improvement"] = json.loads(found.read_text())
     for path in answer.glob("*") if answer.exists() else ():
-        if path.name not in ("improvement.json", "improved.yaml"):
+        if path.name not in KEPT:
             shutil.rmtree(path) if path.is_dir() else path.unlink()
     done.write_text(json.dumps(out, indent=1))
     return out

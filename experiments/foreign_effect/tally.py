@@ -43,9 +43,61 @@ def _grouped(rows, keys):
     return [_line(key, groups[key]) for key in sorted(groups)]
 
 
+def _family(rows):
+    """Bouc-Wen fitted to another family: is the memory named, and what is hidden beside it?"""
+    if not rows:
+        return []
+    lines = [
+        "| Bouc-Wen fitted to another family | cases | memory named | in class | effect named | in class | "
+        "with a wrong name | floors left, median / 90 % | CPU s, median / 95 % |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
+    for name, group in (("without an effect", 1), ("with an effect", 2)):
+        some = [r for r in rows if len(r["truth"]) == group]
+        memory = [("distributed_memory" in r["named"], "distributed_memory" not in r["missed"]) for r in some]
+        effect = [(r["truth"][-1] in r["named"], r["truth"][-1] not in r["missed"]) for r in some if group == 2]
+        counts = [_share([dict(enumerate(m)) for m in pairs], i) for pairs in (memory, effect) for i in (0, 1)]
+        line = _line(name, some).split(" | ")
+        lines.append(" | ".join([line[0], line[1], *counts, *line[4:7]]) + " |")
+    return [*lines, ""]
+
+
+def _ties(rows):
+    """Campaigns that ended in a class of several effects, and what the proposed drive made of it."""
+    rows = [r for r in rows if r["kind"] in ("loops", "one_frequency")]
+    if not rows:
+        return []
+    lines = [
+        "| campaign | cases | ended in a tie | the truth in it | a drive proposed and played | tie gone | truth kept | "
+        "exact after it |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    for kind in sorted({r["kind"] for r in rows}):
+        some = [r for r in rows if r["kind"] == kind]
+        tied = [r for r in some if r["tied"]]
+        played = [r["followed"] for r in tied if "followed" in r]
+        shares = [_share(tied, "in_class"), f"{len(played)}/{len(tied)}"]
+        shares += [f"{sum(r.get('tied') == [] for r in played)}/{len(played)}"]
+        shares += [_share(played, "in_class"), _share(played, "exact")]
+        lines.append(f"| {kind} | {len(some)} | {len(tied)} | " + " | ".join(shares) + " |")
+    lines += ["", "| tie | truth | cannot be told apart | named after the drive | still tied | verdict | floors left |"]
+    lines += ["|---|---|---|---|---|---|---|"]
+    for row in (r for r in rows if r["tied"]):
+        groups, after = "; ".join(" ".join(group) for group in row["tied"]), row.get("followed")
+        said = ["no drive proposed", "", "", ""]
+        if after:
+            still = "; ".join(" ".join(group) for group in after.get("tied", []))
+            said = [" ".join(after["named"]), still, after["verdict"], str(after["floors"])]
+        lines.append(
+            f"| {row['kind']} {row['seed']} | {' '.join(row['truth'])} | {groups} | " + " | ".join(said) + " |"
+        )
+    return [*lines, ""]
+
+
 def markdown(rows):
     """Tables by kind, effect, form, base, bounds, mechanics and other axis; at the end the cases that went wrong."""
     parts = [_head("kind"), *_grouped(rows, lambda r: [r["kind"]]), ""]
+    parts += [*_family([r for r in rows if r["kind"] == "family"]), *_ties([r for r in rows if "tied" in r])]
     proper = [r for r in rows if r["truth"]]
     if proper:
         parts += [_head("effect"), *_grouped(proper, lambda r: r["truth"]), ""]

@@ -23,6 +23,7 @@ class Rig:
         self.records = case["records"]
         self.floor = floor(case["sensor"])
         self.offsets = np.cumsum([0, *(r.samples for r in self.records)])
+        self.least = 3.0
 
     def _fine(self, record, effects):
         """Steps to a sample: more where something is quick against it."""
@@ -32,14 +33,15 @@ class Rig:
             fine = max(fine, math.ceil(2 * math.pi * self.axes["x"].modes[0][0] / record.rate / 0.1))
         return min(fine, 16)
 
+    def reading(self, i, record, axes=None):
+        """Clean readings of record number i."""
+        axes = axes or self.axes
+        fine = self._fine(record, axes["x"].effects)
+        return simulate(axes, record.drives, 1 / record.rate, fine, i, self.case["noise_seed"])
+
     def readings(self, axes=None):
         """Clean readings of all records."""
-        axes = axes or self.axes
-        out = []
-        for i, record in enumerate(self.records):
-            fine = self._fine(record, axes["x"].effects)
-            out.append(simulate(axes, record.drives, 1 / record.rate, fine, i, self.case["noise_seed"]))
-        return out
+        return [self.reading(i, record, axes) for i, record in enumerate(self.records)]
 
     def trace(self, axes=None):
         """Clean readings of x, end to end."""
@@ -55,19 +57,27 @@ class Rig:
         """An orthonormal basis of what the parameters of the job's model and an offset a record take up."""
         still = {"x": Axis(self.axes["x"].base, self.axes["x"].modes)}
         self.rest = self.trace(still)
-        kind, columns = self.axes["x"].base["kind"], []
-        if kind == "plays":
-            columns += self._play_directions()
-        for key in HELD.get(kind, ()):
-            columns.append(self.trace(self._moved(key, 1.01)) - self.rest)
-        columns += self._mode_directions()
+        self.basis = self.span(self._base_directions() + self._mode_directions())
+        self._quieten()
+
+    def span(self, columns):
+        """An orthonormal basis of traces and of an offset a record."""
+        columns = list(columns)
         for a, b in zip(self.offsets[:-1], self.offsets[1:], strict=True):
             column = np.zeros(len(self.rest))
             column[a:b] = 1.0
             columns.append(column)
         matrix = np.column_stack(columns)
-        self.basis = np.linalg.qr(matrix / np.linalg.norm(matrix, axis=0))[0]
-        self._quieten()
+        return np.linalg.qr(matrix / np.linalg.norm(matrix, axis=0))[0]
+
+    def _base_directions(self):
+        """Changes of the base's own parameters."""
+        kind, columns = self.axes["x"].base["kind"], []
+        if kind == "plays":
+            columns += self._play_directions()
+        for key in HELD.get(kind, ()):
+            columns.append(self.trace(self._moved(key, 1.01)) - self.rest)
+        return columns
 
     def _play_directions(self):
         """Eight plays up to the reach, as in a model of eight, and a change of the reach."""
@@ -152,7 +162,7 @@ class Rig:
             size = following
         seen = self.seen(signature)
         uses = {r.use for r, share in zip(self.records, seen, strict=True) if share > 1.5}
-        return signature if 3.0 <= left <= 60.0 and uses == {"identify", "validate"} else None
+        return signature if self.least <= left <= 60.0 and uses == {"identify", "validate"} else None
 
     def seen(self, signature):
         """Noise floors left in each record."""

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from experiments.foreign_effect import cases, effects, mechanics, operators, score
-from experiments.foreign_effect.campaign import DRIVES, drive, floor, noise, read
+from experiments.foreign_effect import campaign, cases, effects, follow, mechanics, operators, score
+from experiments.foreign_effect.campaign import DRIVES, Record, drive, floor, noise, read
+from experiments.foreign_effect.family import Family
 from experiments.foreign_effect.forms import FORMS, NEEDS
 from experiments.foreign_effect.stage import Axis, simulate
 
@@ -237,6 +238,48 @@ def test_score_knows_exact_from_tied_from_wrong():
     assert not row("sensor_lag")["in_class"] and row("sensor_lag")["extra"] == ["sensor_lag"]
     assert not row("amplifier_lag", "creep")["in_class"]
     assert row("amplifier_lag")["floors"] == 1.0
+
+
+def test_one_frequency_is_one_line_and_its_harmonics_and_starts_at_rest():
+    for shape in ("triangle", "sines"):
+        u = campaign.one_tone(np.arange(4000) * 1e-3, -20.0, 100.0, 0.4, shape)
+        assert abs(u[0]) < 1e-9 and u[1] > 0 and np.ptp(u) == pytest.approx(120, abs=1)
+        lines = np.abs(np.fft.rfft(u))
+        assert set(np.flatnonzero(lines > 1e-6 * lines.max()) % 10) == {0}
+
+
+def family(base):
+    """The rig of a family case with one record of either use."""
+    u = drive(np.random.default_rng(3), "nested", 900, 500, 0, 100)
+    records = [
+        Record("nested", "identify", 500.0, {"x": u}),
+        Record("nested", "validate", 500.0, {"x": u[::-1].copy()}),
+    ]
+    sensor = {"sigma": 1e-3, "memory": 0.0, "count": 0.0}
+    rig = Family({"axes": {"x": Axis(base, [])}, "records": records, "sensor": sensor, "truth": [], "noise_seed": 1})
+    rig.hold_base()
+    return rig
+
+
+def test_bouc_wen_is_no_other_family_than_itself_and_the_ten_plays_hold_ten_plays():
+    rig = family(dict(BOUC_WEN))
+    assert rig.nearest_bouc_wen() == pytest.approx({k: v for k, v in BOUC_WEN.items() if k != "kind"}, rel=1e-3)
+    assert rig.left["alone"]["all"] < 0.1 and not rig.memory_is_seen()
+    widths = (4.0 * np.arange(1, 11)).tolist()
+    rig = family({"kind": "plays", "gain": 0.1, "weights": [0.01] * 10, "widths": widths, "reach": 40.0})
+    assert rig.memory_is_seen() and rig.left["with_plays"]["all"] < 0.1 and rig.left["knee"] == 0
+
+
+def test_a_drive_that_was_run_before_gives_the_same_readings_when_it_is_proposed(tmp_path):
+    case = cases.draw("loops", 3)
+    record = case["records"][0]
+    t = np.arange(record.samples) / record.rate
+    rows = [f"{a:.9g},{b:.9g}" for a, b in zip(t, record.drives["x"], strict=True)]
+    (tmp_path / "drive.csv").write_text("\n".join(["time [s],u_x [V]", *rows]))
+    again = follow.proposed(case, tmp_path / "drive.csv")
+    assert again.rate == record.rate
+    difference = follow.play(case, again)["x"] - case["clean"][0]["x"]
+    assert np.sqrt(np.mean(difference**2)) == pytest.approx(case["floor"], rel=0.1)
 
 
 def test_every_effect_has_a_campaign_that_excites_it():
