@@ -46,6 +46,8 @@ def score(truth, solved):
     row["forms"] = [truth["base"]["kind"]] * (truth["kind"] == "family")
     row["forms"] += [entry["form"] for entry in (truth["sizes"] or {}).values()]
     row["visible"] = {effect: max(seen) for effect, seen in truth["seen"].items()}
+    if leaves := truth.get("bouc_wen"):
+        row |= {"seen": truth["seen"], "bouc_wen": [leaves[key]["all"] for key in ("alone", "with_plays")]}
     if improvement is None:
         verdict = "out of time" if solved["exit"] == "time" else f"exit {solved['exit']}"
         return row | {
@@ -55,6 +57,7 @@ def score(truth, solved):
             "extra": [],
             "missed": truth["truth"],
             "suspects": [],
+            "tied": [],
             "verdict": verdict,
             "floors": math.nan,
         }

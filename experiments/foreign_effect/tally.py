@@ -49,17 +49,33 @@ def _family(rows):
         return []
     lines = [
         "| Bouc-Wen fitted to another family | cases | memory named | in class | effect named | in class | "
-        "with a wrong name | floors left, median / 90 % | CPU s, median / 95 % |",
-        "|---|---|---|---|---|---|---|---|---|",
+        "with a wrong name | floors left, median / 90 % | CPU s, median / 95 % | verdicts |",
+        "|---|---|---|---|---|---|---|---|---|---|",
     ]
-    for name, group in (("without an effect", 1), ("with an effect", 2)):
-        some = [r for r in rows if len(r["truth"]) == group]
-        memory = [("distributed_memory" in r["named"], "distributed_memory" not in r["missed"]) for r in some]
-        effect = [(r["truth"][-1] in r["named"], r["truth"][-1] not in r["missed"]) for r in some if group == 2]
-        counts = [_share([dict(enumerate(m)) for m in pairs], i) for pairs in (memory, effect) for i in (0, 1)]
-        line = _line(name, some).split(" | ")
-        lines.append(" | ".join([line[0], line[1], *counts, *line[4:7]]) + " |")
+    for name, length in (("without an effect", 1), ("with one effect", 2)):
+        if some := [r for r in rows if len(r["truth"]) == length]:
+            counts = [_found(some, i, key) if i < length else "" for i in (0, 1) for key in ("named", "missed")]
+            cells = _line(name, some).split(" | ")
+            lines.append(" | ".join([*cells[:2], *counts, *cells[4:]]))
+    lines += [
+        "",
+        "| case | base | Bouc-Wen leaves, alone / with plays | hidden | floors, by record | named | suspects ",
+    ]
+    lines[-1] += "| verdict | floors left | CPU s |"
+    lines.append("|" + "---|" * 10)
+    for row in rows:
+        seen = " ".join(f"{value:.0f}" for values in row["seen"].values() for value in values)
+        alone, beside = row["bouc_wen"]
+        cells = [row["seed"], row["base"], f"{alone:.0f} / {beside:.1f}", " ".join(_forms(row)[1:]), seen]
+        cells += [" ".join(row["named"]), " ".join(row["suspects"]), row["verdict"], row["floors"], f"{row['cpu']:.0f}"]
+        lines.append("| " + " | ".join(map(str, cells)) + " |")
     return [*lines, ""]
+
+
+def _found(rows, i, key):
+    """In how many rows the i-th true effect is named, or not missed."""
+    count = sum((r["truth"][i] in r[key]) == (key == "named") for r in rows)
+    return f"{count}/{len(rows)}"
 
 
 def _ties(rows):
@@ -77,7 +93,7 @@ def _ties(rows):
         tied = [r for r in some if r["tied"]]
         played = [r["followed"] for r in tied if "followed" in r]
         shares = [_share(tied, "in_class"), f"{len(played)}/{len(tied)}"]
-        shares += [f"{sum(r.get('tied') == [] for r in played)}/{len(played)}"]
+        shares += [f"{sum(bool(r['named']) and not r['tied'] for r in played)}/{len(played)}"]
         shares += [_share(played, "in_class"), _share(played, "exact")]
         lines.append(f"| {kind} | {len(some)} | {len(tied)} | " + " | ".join(shares) + " |")
     lines += ["", "| tie | truth | cannot be told apart | named after the drive | still tied | verdict | floors left |"]
@@ -86,7 +102,7 @@ def _ties(rows):
         groups, after = "; ".join(" ".join(group) for group in row["tied"]), row.get("followed")
         said = ["no drive proposed", "", "", ""]
         if after:
-            still = "; ".join(" ".join(group) for group in after.get("tied", []))
+            still = "; ".join(" ".join(group) for group in after["tied"])
             said = [" ".join(after["named"]), still, after["verdict"], str(after["floors"])]
         lines.append(
             f"| {row['kind']} {row['seed']} | {' '.join(row['truth'])} | {groups} | " + " | ".join(said) + " |"
@@ -97,7 +113,7 @@ def _ties(rows):
 def markdown(rows):
     """Tables by kind, effect, form, base, bounds, mechanics and other axis; at the end the cases that went wrong."""
     parts = [_head("kind"), *_grouped(rows, lambda r: [r["kind"]]), ""]
-    parts += [*_family([r for r in rows if r["kind"] == "family"]), *_ties([r for r in rows if "tied" in r])]
+    parts += [*_family([r for r in rows if r["kind"] == "family"]), *_ties(rows)]
     proper = [r for r in rows if r["truth"]]
     if proper:
         parts += [_head("effect"), *_grouped(proper, lambda r: r["truth"]), ""]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from experiments.foreign_effect import campaign, cases, effects, follow, mechanics, operators, score
+from experiments.foreign_effect import campaign, cases, effects, follow, mechanics, operators, score, tally
 from experiments.foreign_effect.campaign import DRIVES, Record, drive, floor, noise, read
 from experiments.foreign_effect.family import Family
 from experiments.foreign_effect.forms import FORMS, NEEDS
@@ -238,6 +238,28 @@ def test_score_knows_exact_from_tied_from_wrong():
     assert not row("sensor_lag")["in_class"] and row("sensor_lag")["extra"] == ["sensor_lag"]
     assert not row("amplifier_lag", "creep")["in_class"]
     assert row("amplifier_lag")["floors"] == 1.0
+
+
+def test_tables_count_the_memory_the_effect_beside_it_and_ties_that_are_gone():
+    truth = {"seed": 1, "base": {"kind": "plays"}, "bounds": "wide", "mechanics": "none", "y": None, "floor": 0.01}
+    truth |= {"sensor": {"memory": 0}, "sizes": {"creep": {"form": "voltage"}}, "seen": {"creep": [4.0]}}
+
+    def row(kind, true, *named, tied=()):
+        steps = [{"added": None, "rmse": {"identify": 0.2, "validate": 0.3}}]
+        steps += [{"added": e, "class": [e, *tied], "rmse": {"identify": 0.01, "validate": 0.01}} for e in named]
+        answer = {"effects": list(named), "steps": steps, "verdict": "adequate"}
+        leaves = {"bouc_wen": {key: {"all": 5.0} for key in ("alone", "with_plays")}}
+        whole = truth | {"kind": kind, "truth": true} | (leaves if kind == "family" else {})
+        return score.score(whole, {"improvement": answer, "cpu": 1.0, "seconds": 1.0, "exit": 0})
+
+    hidden = ["distributed_memory", "creep"]
+    text = tally.markdown([row("family", hidden, *hidden), row("family", hidden, "creep")])
+    assert "| with one effect | 2 | 1/2 | 1/2 | 2/2 | 2/2 | 0 |" in text
+    first = row("loops", ["creep"], "drift", tied=["creep"])
+    text = tally.markdown([first | {"followed": row("loops", ["creep"], "creep")}, row("loops", ["creep"], "creep")])
+    assert "| loops | 2 | 1 | 1/1 | 1/1 | 1/1 | 1/1 | 1/1 |" in text
+    text = tally.markdown([first | {"followed": row("loops", ["creep"], "drift")}])
+    assert "| loops | 1 | 1 | 1/1 | 1/1 | 1/1 | 0/1 | 0/1 |" in text
 
 
 def test_one_frequency_is_one_line_and_its_harmonics_and_starts_at_rest():
