@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from pzt_ident.diagnosis.criteria import removes_enough
 from pzt_ident.diagnosis.refit import Case, Fit, fit_at, refine_steps
+from pzt_ident.diagnosis.undetermined import undetermined_mechanics
 from pzt_ident.search.descent import descend
 
 SLIP = 0.15  # of a bound, by which a data sheet may be beside the truth
@@ -40,11 +41,15 @@ def stands_in(wide: Case, case: Case, fit: Fit) -> bool:
 
 
 def widened(case: Case, fit: Fit) -> dict[str, Widened]:
-    """Wider bounds, by the names in the job, of the parameters that rest on one; not beyond those declared."""
+    """Wider bounds, by the names in the job, of the parameters that rest on one; not beyond those declared, and none of
+    mechanics that the data do not determine, which may stand in for anything slow."""
     problem, specs = fit.problem, {}
+    undetermined = undetermined_mechanics(fit) if fit.on_bounds else None
     for name in fit.on_bounds:
         i = problem.names.index(name)
         entry = problem.model.entries[problem.free[i]]
+        if entry.block.name == undetermined:
+            continue
         key = next((word for word in problem.model.spellings(entry) if word in case.specs), None)
         if key is None:
             continue

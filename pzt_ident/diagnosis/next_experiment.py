@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 CHIRP = (20.0, 2000.0)  # Hz
 COUPLING_CHIRP = (20.0, 6000.0)  # Hz, to beyond the resonances of a stage
 HOLD = 20.0  # s
+MOST_SAMPLES = 100_000  # of a drive: what takes more is too slow a rig for it
 SEPARATED, WELL_SEPARATED, AMPLE = 0.3, 1.0, 3.0  # noise floors between two rivals; more than AMPLE is no better
 
 
@@ -107,22 +108,24 @@ def protocols(limits: Sequence[DriveLimits], axis: int) -> Iterator[Protocol]:
 def axis_protocols(limits: DriveLimits) -> list[Protocol]:
     """The protocols of the measured axis, drives of shape (samples,)."""
     fast = fastest_cycles(limits)
-    slow = min(0.5, fast)
+    slow, fine = min(0.5, fast), max(1e-4, 1e-3 / fast)
+    coarse = max(1e-3, 5e-4 / slow)
     nested = [1, 0.2, 0.8, 0.3, 0.7, 0.4, 0.7, 0.3, 0.8, 0.2, 1, 0]
     return [
-        Protocol("slow triangles", 1e-3, ramps(limits, [1, 0] * 3, slow, 1e-3)),
-        Protocol("two rates", 1e-4, two_rates(limits, fast, 1e-4)),
+        Protocol("slow triangles", coarse, ramps(limits, [1, 0] * 3, slow, coarse)),
+        Protocol("two rates", fine, two_rates(limits, fast, fine)),
         Protocol("steps and holds", 1e-2, holds(limits, [0.6, 0.57, 0.3, 0.9, 0.1], 1e-2)),
-        Protocol("nested loops", 1e-3, ramps(limits, nested, slow, 1e-3)),
-        Protocol("two amplitudes", 1e-3, ramps(limits, [0.4, 0, 0.4, 0, 1, 0, 1, 0], slow, 1e-3)),
+        Protocol("nested loops", coarse, ramps(limits, nested, slow, coarse)),
+        Protocol("two amplitudes", coarse, ramps(limits, [0.4, 0, 0.4, 0, 1, 0, 1, 0], slow, coarse)),
         Protocol("small chirp", 5e-5, chirp(limits, CHIRP, 2.0, 5e-5)),
     ]
 
 
 def coupling_protocols(limits: DriveLimits) -> Iterator[Protocol]:
     """The protocols of another axis than the measured one, drives of shape (samples,)."""
-    slow = ramps(limits, [1, 0] * 2, min(0.5, fastest_cycles(limits)), 1e-3)
-    yield Protocol("the other axis alone", 1e-3, slow)
+    slow = min(0.5, fastest_cycles(limits))
+    coarse = max(1e-3, 5e-4 / slow)
+    yield Protocol("the other axis alone", coarse, ramps(limits, [1, 0] * 2, slow, coarse))
     fast = chirp(limits, COUPLING_CHIRP, 1.0, 2e-5)
     yield Protocol("chirp of the other axis", 2e-5, fast)
 
@@ -134,9 +137,9 @@ def fastest_cycles(limits: DriveLimits) -> float:
 
 def on_axis(limits: Sequence[DriveLimits], protocol: Protocol, axis: int) -> Iterator[Protocol]:
     """The protocol on one axis, cut to the allowed duration, with the others at rest as near to 0 as allowed; nothing
-    where fewer than 101 samples are left."""
+    where fewer than 101 samples are left, or more than MOST_SAMPLES."""
     moving = protocol.drive[: int(limits[axis].duration / protocol.dt)]
-    if moving.size > 100:
+    if 100 < moving.size <= MOST_SAMPLES:
         resting = np.array([min(max(0.0, item.low), item.high) for item in limits])
         drive = np.tile(resting[:, None], moving.size)
         drive[axis] = moving

@@ -9,8 +9,8 @@ import numpy as np
 
 from pzt_ident.diagnosis.bounds import beyond_bounds, brought_back, stands_in
 from pzt_ident.diagnosis.budget import LAST
-from pzt_ident.diagnosis.candidates import Candidate
-from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removes_enough
+from pzt_ident.diagnosis.candidates import TIE, Candidate
+from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms, removes_enough
 from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, find_rivals, remove_unneeded
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.proof import Suspect, unproven
@@ -157,10 +157,18 @@ def improve_within(
             break
         if not case.budget.allows("another effect first"):
             break
-    best = min(paths, key=lambda path: (path.last.verdict != "adequate", path.steps[-1].fit.total))
+    best = best_path(case, paths)
     take_back(best.case or case, first, best, on_step)
     find_rivals(best.case or case, first, best.steps)
     return best
+
+
+def best_path(case: Case, paths: Sequence[Staircase]) -> Staircase:
+    """The adequate path, else the lowest one; of those that end as low, that with the fewest parameters."""
+    settled = [path for path in paths if path.last.verdict == "adequate"] or paths
+    least = min(end_of(path).total for path in settled)
+    close = [path for path in settled if removed_rms(end_of(path).total, least) < TIE * case.floor]
+    return min(close, key=lambda path: (end_of(path).problem.dimensions, end_of(path).total))
 
 
 def first_candidates(case: Case, first: Fit, diagnosis: Diagnosis) -> list[Candidate]:

@@ -24,14 +24,17 @@ from pzt_ident.run.next_drive import limits_of, separating
 from pzt_ident.run.statement import loss_unit
 
 
-def improvement_of(job: Job, case: Case, staircase: stairs.Staircase, last: dict[str, Any]) -> dict[str, Any]:
-    """The content of `improvement.json`, less the next experiment."""
+def improvement_of(
+    job: Job, case: Case, staircase: stairs.Staircase, last: dict[str, Any], proposed: dict[str, Any] | None = None
+) -> dict[str, Any]:
+    """The content of `improvement.json`. proposed: the next experiment, None where there is none."""
     steps, suspects = staircase.steps, staircase.suspects
     reason, end = last["reason"], steps[-1].fit
     added = [effect for effect in end.effects if effect not in job.effects]
     reason += "".join(f" {suspect.why_not}" for suspect in suspects)
     undecided = dict.fromkeys(step.tied for step in ties(steps))
     reason += "".join(f" These data cannot tell {' from '.join(map(phrase_of, tied))}." for tied in undecided)
+    reason += no_drive_sentence(job, case) if undecided and not proposed else ""
     reason += narrow_bounds_sentence(case, end)
     of_end = caveats(case, end)
     reason += "" if of_end in reason else of_end  # the last diagnosis may be of this fit
@@ -47,6 +50,7 @@ def improvement_of(job: Job, case: Case, staircase: stairs.Staircase, last: dict
             for suspect in suspects
         ],
         **units_and_floors(list(case.records)),
+        "next_experiment": proposed,
     }
 
 
@@ -121,7 +125,7 @@ def diagnosis_of(job: Job, case: Case, diagnosis: Diagnosis, folder: Path) -> di
     if diagnosis.verdict == "unexplained":
         reason += f" {misfit_sentences(case, before)}"
     if len(rivals) > 1 and not proposed:
-        reason += f" No drive within {limits_of(job, case)} tells them apart: allow more under `limits`."
+        reason += no_drive_sentence(job, case)
     return {
         "verdict": diagnosis.verdict,
         "reason": reason
@@ -136,6 +140,11 @@ def diagnosis_of(job: Job, case: Case, diagnosis: Diagnosis, folder: Path) -> di
         "candidates": [candidate_of(case, candidate, diagnosis.tied) for candidate in diagnosis.candidates],
         "next_experiment": proposed,
     }
+
+
+def no_drive_sentence(job: Job, case: Case) -> str:
+    """That no drive tells tied effects apart."""
+    return f" No drive within {limits_of(job, case)} tells them apart: allow more under `limits`."
 
 
 def candidate_of(case: Case, candidate: Candidate, tied: Sequence[str]) -> dict[str, Any]:

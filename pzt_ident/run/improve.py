@@ -141,7 +141,7 @@ def improve(
             write_signals(folder / name, step.fit.problem.errors(step.fit.point))
         proposals = (separating(job, end, step.rivals, folder) for step in ties(steps))
         proposed = diagnosis["next_experiment"] or next(filter(None, proposals), None)
-        content = improvement_of(job, case, staircase, diagnosis) | {"next_experiment": proposed}
+        content = improvement_of(job, case, staircase, diagnosis, proposed)
         write_sealed(folder / "diagnosis.json", diagnosis)
         write_improvement(folder, content, improved(job, case, steps[-1].fit, folder))
         compare(folder, folder)
@@ -167,7 +167,7 @@ class SoFar:
                 "verdict": "unfinished",
                 "reason": "The best account so far: the diagnosis did not come to its end.",
             }
-            content = improvement_of(self.job, self.case, staircase, last) | {"next_experiment": None}
+            content = improvement_of(self.job, self.case, staircase, last)
             write_improvement(self.folder, content, improved(self.job, self.case, step.fit, self.folder))
 
 

@@ -245,3 +245,10 @@ def test_a_protocol_runs_at_its_own_sample_time():
     response = respond(case, fit_at((), problem, problem.unit_point({"bouc_wen.gain": 1e-7})), 1e-3, step[None])
     after = 1e-3 * (np.arange(200) + 0.5)  # the step is a ramp over a sample
     np.testing.assert_allclose(response[200:] - response[0], 1e-5 * (1 - np.exp(-after / 20e-3)), atol=1e-8)
+
+
+@pytest.mark.parametrize("rate", [0.5, 5.0, 500.0])
+def test_no_drive_is_longer_than_a_diagnosis_can_take(rate):
+    sizes = {name: drive.shape[1] for name, _, drive in protocols([DriveLimits(0.0, 100.0, rate, 400.0)] * 2, 0)}
+    assert max(sizes.values()) <= 100_000
+    assert {"slow triangles", "nested loops", "the other axis alone"} <= set(sizes) or rate < 5

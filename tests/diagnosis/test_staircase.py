@@ -179,7 +179,7 @@ def test_what_fits_as_well_in_the_place_of_an_effect_is_told_once_all_are_known(
 def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, monkeypatch):
     """Each path by its verdict, its last error in noise floors and its total; the second is tried where it may help."""
     paths = [
-        Staircase([Step(SimpleNamespace(identify=identify, total=total))], SimpleNamespace(verdict=verdict))
+        Staircase([Step(ending(identify, total))], SimpleNamespace(verdict=verdict))
         for verdict, identify, total in ends
     ]
     monkeypatch.setattr(improving, "diagnose", lambda case, first: SimpleNamespace())
@@ -189,6 +189,17 @@ def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, mon
     monkeypatch.setattr(improving, "find_rivals", lambda *arguments: None)
     given = Step(SimpleNamespace())
     assert improve_within(SimpleNamespace(floor=1.0, budget=Budget()), [given], None) is paths[taken]
+
+
+def ending(identify, total, parameters=3):
+    return SimpleNamespace(identify=identify, total=total, problem=SimpleNamespace(dimensions=parameters))
+
+
+def test_of_paths_that_end_as_low_the_one_with_fewer_parameters_is_taken():
+    """A general form ends as low as the effect that it contains."""
+    ends = ending(1.22, 1.2196, 9), ending(1.22, 1.2197, 7), ending(4, 4, 2)
+    paths = [Staircase([Step(end)], SimpleNamespace(verdict="unexplained")) for end in ends]
+    assert improving.best_path(SimpleNamespace(floor=1.0), paths) is paths[1]
 
 
 def test_an_effect_that_only_led_out_of_a_side_minimum_is_taken_out_again():

@@ -19,7 +19,8 @@ from pzt_ident.run.statement import Statement
 
 @pytest.mark.parametrize("verdict", ["adequate", "unexplained", "refused"])
 def test_an_improvement_says_what_it_added_and_what_it_suspects(verdict, monkeypatch):
-    for name, nothing in (("stair", {}), ("caveats", ""), ("narrow_bounds_sentence", ""), ("units_and_floors", {})):
+    silent = {"stair": {}, "caveats": "", "narrow_bounds_sentence": "", "units_and_floors": {}, "limits_of": "10 V"}
+    for name, nothing in silent.items():
         monkeypatch.setattr(findings, name, lambda *arguments, nothing=nothing: nothing)
     before, after = SimpleNamespace(effects=("drift",)), SimpleNamespace(effects=("drift", "creep"))
     steps = [stairs.Step(before), stairs.Step(after, "creep", None, {"creep": after, "thermal_relaxation": after})]
@@ -35,7 +36,10 @@ def test_an_improvement_says_what_it_added_and_what_it_suspects(verdict, monkeyp
     assert suspect["why not"].startswith(
         "asymmetry (constant) takes up 40 % of the misfit on the identification records and 0 % on the validation"
     )
-    assert "These data cannot tell creep from thermal_relaxation." in content["reason"]
+    assert "cannot tell creep from thermal_relaxation. No drive within 10 V tells them apart" in content["reason"]
+    proposed = {"splits": ["creep", "thermal_relaxation"]}
+    content = findings.improvement_of(job, case, staircase, {"verdict": verdict, "reason": ""}, proposed)
+    assert "No drive" not in content["reason"] and content["next_experiment"] is proposed
     steps[1].rivals = {"creep": after}
     content = findings.improvement_of(job, case, staircase, {"verdict": verdict, "reason": ""})
     assert "cannot tell" not in content["reason"]
