@@ -25,7 +25,7 @@ from pzt_ident.report.inline import inline
 from pzt_ident.report.page import environment as page_environment
 from pzt_ident.report.page import web_file
 from pzt_ident.report.style import COLUMN, PAGE
-from pzt_ident.report.words import named
+from pzt_ident.report.words import atlas_beside, named
 from pzt_ident.run.events import Listen, nobody
 from pzt_ident.run.place import HERE, Place
 
@@ -119,6 +119,7 @@ def page(lot: Lot, figures: dict[str | None, list[tuple[Plate, Markup]]]) -> str
             findings=said,
             far=outside,
             words=named([*said, *(kind for _, kind, _ in outside), *names], {}),
+            atlas=atlas_beside(lot.folder),
             effects=lot.effects,
             figures=figures,
             quantities=quantities,

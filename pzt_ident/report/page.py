@@ -6,12 +6,14 @@ import base64
 import hashlib
 import json
 import re
+from collections.abc import Collection
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pzt_ident.atlas.href import anchor
+from pzt_ident.atlas.words import Word
 from pzt_ident.data import notation as numbers
 from pzt_ident.data.notation import listed
 from pzt_ident.data.over_axes import together
@@ -22,7 +24,7 @@ from pzt_ident.report.sentences import findings, headline, next_step, verdict
 from pzt_ident.report.spectra import printed_spectra
 from pzt_ident.report.tables import Table, make_tables, write_tables
 from pzt_ident.report.traces import packed
-from pzt_ident.report.words import COLUMNS, linked, named, without_links
+from pzt_ident.report.words import COLUMNS, atlas_beside, linked, named, place_of, without_links
 from pzt_ident.run.events import step_name
 from pzt_ident.run.results import Results, read_folder
 
@@ -60,7 +62,8 @@ def write_report(folder: Path, static: bool = True) -> Path:
     write_tables(tables, results.folder / "tables")
     variables = _template_variables(results, tables, _figures_by_section(results) if static else {})
     variables["static"] = static
-    stairs = [staircase(results, "stairs")] if results.improvement or results.result else []
+    words = variables["words"]
+    stairs = [staircase(results, "stairs", words)] if results.improvement or results.result else []
     content = {"floors": results.floors, "stairs": stairs, "spectra": printed_spectra(results.traces)}
     page = ""
     for points in POINTS:
@@ -88,6 +91,7 @@ def _template_variables(results: Results, tables: dict[str, Table], figures: dic
         "next_step": following,
         "findings": remarks,
         "words": named([first, following, *remarks], tables),
+        "atlas": atlas_beside(results.folder),
         "results": results,
         "result": results.result,
         "tables": tables,
@@ -99,11 +103,15 @@ def _template_variables(results: Results, tables: dict[str, Table], figures: dic
     }
 
 
-def staircase(results: Results, place: str) -> dict[str, Any]:
+def staircase(results: Results, place: str, words: Collection[Word]) -> dict[str, Any]:
     """What the page's script draws of the steps of an improvement, or of a single run, into the element with the id
     `place`."""
     if improvement := results.improvement:
-        steps = [{"name": step_name(step), **step["rmse"]} for step in improvement["steps"]]
+        names = list(map(step_name, improvement["steps"]))
+        steps = [
+            {"name": name, "href": place_of(name, words), **step["rmse"]}
+            for name, step in zip(names, improvement["steps"], strict=True)
+        ]
         unit, floor = improvement["unit"], improvement["floor"]
     else:
         steps, unit, floor = [{"name": "as given", **results.rmse}], results.unit, results.floor

@@ -13,7 +13,7 @@ from pzt_ident.report.page import POINTS, rendered, staircase
 from pzt_ident.report.sentences import USE_NAMES, listed, together, verdict
 from pzt_ident.report.tables import Cell, Table, table, write_tables
 from pzt_ident.report.traces import packed
-from pzt_ident.report.words import named
+from pzt_ident.report.words import atlas_beside, named
 from pzt_ident.run.results import Results, read_folder
 
 
@@ -25,15 +25,17 @@ def write_side_by_side(folders: Sequence[Path], page: Path) -> Path:
     results = dict(zip(labels(folders), map(read_folder, folders), strict=True))
     tables = {table.name: table for table in (summary(results), parameters(results))}
     write_tables(tables, page.with_suffix(""))
+    verdicts = {name: verdict(result) for name, result in results.items()}
+    words = named(verdicts.values(), tables)
     improved = {name: result for name, result in results.items() if result.improvement}
     stairs = [
-        staircase(result, f"stairs-{place}") | {"title": name} for place, (name, result) in enumerate(improved.items())
+        staircase(result, f"stairs-{place}", words) | {"title": name}
+        for place, (name, result) in enumerate(improved.items())
     ]
     models = {name: result.traces for name, result in results.items()}
     content = {"records": packed(models, POINTS[0]), "floors": shared_floors(results), "stairs": stairs}
-    verdicts = {name: verdict(result) for name, result in results.items()}
     variables: dict[str, Any] = {"results": results, "tables": tables, "stairs": stairs, "verdicts": verdicts}
-    variables["words"] = named(verdicts.values(), tables)
+    variables |= {"words": words, "atlas": atlas_beside(page.parent)}
     write_text(page, rendered("side_by_side.html", "Side by side", content, lead=ranking(results), **variables))
     return page
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Collection, Iterable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING
+from urllib.parse import quote
 
-from pzt_ident.atlas.href import anchor
+from pzt_ident.atlas.href import PAGE, anchor
 from pzt_ident.atlas.words import Word
 from pzt_ident.model.registry import blocks
 from pzt_ident.report.tables import Table
@@ -42,6 +45,22 @@ def linked(text: str, words: Collection[Word]) -> Markup:
 
     parts = re.split(f"({NAME.pattern})", text)
     return Markup("".join(NAME.sub(link, part) if place % 2 else escape(part) for place, part in enumerate(parts)))
+
+
+def place_of(text: str, words: Collection[Word]) -> str:
+    """The link to the section of the first word in a text; empty where there is none."""
+    names = {word.word for word in words}
+    parts = (part for name in NAME.findall(text) for part in name.split("."))
+    return next((f"#{anchor(part)}" for part in parts if part in names), "")
+
+
+def atlas_beside(folder: Path) -> str:
+    """The atlas that lies in the folder of a page or, up to the working folder, above it, as a link; empty where there
+    is none."""
+    folder, here = folder.resolve(), Path.cwd()
+    within = [place for place in (folder, *folder.parents) if place == folder or place.is_relative_to(here)]
+    found = next((place / PAGE for place in within if (place / PAGE).is_file()), None)
+    return quote(os.path.relpath(found, folder)) if found else ""
 
 
 def without_links(html: str) -> Markup:

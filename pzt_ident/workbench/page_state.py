@@ -62,7 +62,6 @@ def state(session: Session) -> dict[str, Any]:
         "improving": improving(step) if step else None,
         "control": read(step / "control" / "control.json") if step else None,
         "downloads": downloads.names(session),
-        "limits": job["limits"] if job else None,
         "commands": session.logged_commands(),
     }
 
@@ -157,12 +156,19 @@ def job_of(session: Session) -> dict[str, Any]:
         "folder": folder,
         "text": job.text,
         "limits": asdict(job.limits),
+        "drive_units": drive_units(session),
         "search": {
             "optimizers": [{"name": item.name, **item.settings} for item in job.optimizers],
             "repeats": job.repeats,
             "seed": job.seed,
         },
     }
+
+
+def drive_units(session: Session) -> dict[str, str]:
+    """Of each axis as printed."""
+    record = model_of(session.step(), session.plugins).statement.records[0]
+    return dict(zip(record.axes, map(unit, record.drive_units), strict=True))
 
 
 def signals(session: Session, numbers: Sequence[int] = ()) -> dict[str, Any]:

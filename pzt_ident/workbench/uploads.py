@@ -57,7 +57,9 @@ async def reference(bench: Bench, request: Request) -> Response:
     """Store a reference that the stage is to follow, and say what is in it."""
     path, new = await stored(bench.session.folder / "references", request)
     try:
-        return JSONResponse(await asyncio.to_thread(reference_facts, bench, path, request.query_params.get("rate")))
+        return JSONResponse(
+            await asyncio.to_thread(reference_facts, bench, path, request.query_params.get("rate") or None)
+        )
     except InputError:
         if new:
             path.unlink(missing_ok=True)

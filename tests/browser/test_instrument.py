@@ -295,6 +295,25 @@ def test_no_word_is_without_its_link_to_the_atlas(shown):
     expect(shown.get_by_role("link", name="About friction")).to_have_attribute("href", "/atlas#word-friction")
 
 
+def test_a_form_and_the_name_of_a_step_lead_to_their_sections(shown):
+    def change(state):
+        (first,) = state["steps"]
+        names = ["+ friction.coulomb", "search by pso"]
+        state["steps"] += [first | {"number": n, "change": name} for n, name in enumerate(names, 2)]
+        state["headline"]["verdict"] = "Missing: friction (coulomb). Beside it friction (fitted) and creep (voltage)."
+
+    with state_with(shown, change):
+        links = shown.locator("#verdict a")
+        words = [link.get_attribute("href").removeprefix("/atlas#word-") for link in links.all()]
+        assert words == ["friction.coulomb", "friction", "creep.voltage"]
+        expect(links).to_have_text(["friction (coulomb)", "friction", "creep (voltage)"])
+        steps = shown.locator(".stairs a")
+        hrefs = [link.get_attribute("href") for link in steps.all()]
+        assert hrefs == ["/atlas#word-friction.coulomb", "/atlas#word-pso"]
+        assert all(min(link.bounding_box()[side] for side in ("width", "height")) >= 24 for link in steps.all())
+        assert faults_of(shown) == []
+
+
 def test_each_word_leads_to_its_section_of_the_atlas(shown):
     shown.focus("#blocks a")
     with shown.context.expect_page() as opened:
@@ -335,6 +354,7 @@ def test_a_reference_is_followed(shown, folder):
     shown.click("#tab-control")
     shown.set_input_files("#sheet-control input[type=file]", folder / "ramp.csv")
     expect(shown.locator("#sheet-control [role=status]")).to_contain_text("400 samples")
+    expect(shown.get_by_label("to, in V", exact=True)).to_be_visible()
     shown.click("#follow")
     expect(shown.locator("#ways tbody tr")).to_have_count(3)
     expect(shown.locator("body.busy")).to_have_count(0)

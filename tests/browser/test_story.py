@@ -164,6 +164,8 @@ def test_a_crop_past_the_part_for_validation_leaves_a_job_that_can_be_read(workb
     constant = "u_x [V] is constant at 50 V: give the drive of x another column, or drop a record in which it moves."
     expect(page.locator("#next")).to_have_text(constant)
     expect(page.locator("#action")).to_be_hidden()
+    expect(page.locator("#loop canvas.drawn")).to_be_visible()
+    expect(page.locator("#time .legend")).to_have_text(["measured", "drive"])
     assert "drive of x" not in page.locator("[aria-label='Role of u_x [V]']").text_content()
     page.click("#confirm")
     expect(page.locator("#error p")).to_have_text(constant)
@@ -319,8 +321,16 @@ def test_signals_in_files_of_their_own_and_a_block_drawn_onto_the_chain(workbenc
     expect(page.locator("#blocks li")).to_have_count(3)
     signals = ["\n".join(f"{i % period / 3}" for i in range(900)) for period in (30, 50)]
     tab_to(page, "#choose")
-    payloads = [(f"{name}.csv", signal) for name, signal in zip(("drive", "response"), signals, strict=True)]
-    page.set_input_files("#choose", [{"name": n, "mimeType": "text/csv", "buffer": s.encode()} for n, s in payloads])
+    drive, response = (
+        {"name": f"{name}.csv", "mimeType": "text/csv", "buffer": signal.encode()}
+        for name, signal in zip(("drive", "response"), signals, strict=True)
+    )
+    with page.expect_file_chooser() as opened:
+        page.keyboard.press("Enter")
+    opened.value.set_files([drive])
+    expect(page.locator("#time canvas.drawn").first).to_be_visible()  # the one signal that is there
+    expect(page.locator("#loop")).to_contain_text("The loop is drawn when there are a drive and a response.")
+    page.set_input_files("#choose", [response])
     tab_to(page, "#confirm")  # from where the focus was left
     expect(page.locator(".files h3").first).to_contain_text("drive.csv + response.csv")
     assert roles(page) == ["x.drive", "x.response"]

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from pzt_ident.report.page import write_report
-from pzt_ident.report.words import linked, named, without_links
+from pzt_ident.report.words import linked, named, place_of, without_links
 from run_folders import make_run
 
 
@@ -43,6 +43,21 @@ def test_links_to_other_sections_of_the_atlas_are_left_out():
         without_links('a <a href="#word-pso"><code>pso</code></a> <math>x</math>')
         == "a <code>pso</code> <math>x</math>"
     )
+
+
+def test_where_an_atlas_lies_beside_each_word_leads_to_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    run = make_run(tmp_path / "a b" / "run", samples=60)
+    assert "atlas.html" not in write_report(run, static=False).read_text(encoding="utf-8")
+    (tmp_path / "atlas.html").touch()
+    links = re.findall(r'href="(.*?)#(word-\w+)">In the atlas', write_report(run, static=False).read_text("utf-8"))
+    assert links == [("../../atlas.html", "word-bouc_wen"), ("../../atlas.html", "word-lumped")]
+
+
+def test_the_first_word_of_a_step_is_its_place_on_the_page():
+    words = named(["creep and lumped"], {})
+    steps = ["+ creep (voltage) - lumped", "x.lumped.mass = 3", "as given"]
+    assert [place_of(step, words) for step in steps] == ["#word-creep", "#word-lumped", ""]
 
 
 def test_each_word_has_its_equation_and_remedy_on_the_page(tmp_path):

@@ -101,12 +101,23 @@ export class Explorer {
 
   draw() {
     const { record } = this;
+    if (record.alone) return this.drawAlone();
     this.loop.show(this.loopScene(), record.unit);
     if (this.timeView !== "time") return this.drawSpectra();
     this.response.plot.along = this.lower.plot.along = true;
     this.response.show(this.responseScene(), record.unit);
     this.lower.show(this.lowerScene(), record.models.length ? record.unit : record.driveUnit);
     this.lower.element.hidden = false;
+    this.pointAt(this.point);
+  }
+
+  /** A record of a single signal. */
+  drawAlone() {
+    const { record } = this;
+    this.loop.say("The loop is drawn when there are a drive and a response.");
+    this.lower.element.hidden = true;
+    const scene = responseScene(record);
+    this.response.show({ ...scene, y: { ...scene.y, label: `${record.alone} [${record.unit}]` } }, record.unit);
     this.pointAt(this.point);
   }
 
@@ -192,7 +203,8 @@ export class Explorer {
   updateReadout() {
     const { record, marks, point } = this;
     if (point !== null && point < record.time.length) {
-      return this.read(`${tick(Number(record.time[point].toPrecision(6)))} s, drive ${number(record.drive[point], 4)} ${record.driveUnit}`);
+      const drive = record.alone ? "" : `, drive ${number(record.drive[point], 4)} ${record.driveUnit}`;
+      return this.read(`${tick(Number(record.time[point].toPrecision(6)))} ${record.timeLabel === "sample" ? "samples" : "s"}${drive}`);
     }
     const errors = record.models.map((model) => {
       const { rmse, share } = errorOf(record, model, marks.length ? marks : [[0, record.index.length]]);

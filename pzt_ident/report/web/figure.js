@@ -38,6 +38,7 @@ export class Figure {
 
   /** A sentence in the place of the plot. */
   say(text) {
+    this.legend.show([]);
     [this.message.hidden, this.plot.root.hidden, this.message.textContent] = [false, true, text];
   }
 

@@ -14,7 +14,9 @@ for (const button of document.querySelectorAll("button.reveal"))
     const { record, axis, from, to } = button.dataset;
     explorer.reveal(record, axis, Number(from), Number(to));
   });
-// The workbench has the atlas beside its reports.
+// The workbench has an atlas of its own.
 if (location.pathname.startsWith("/report/"))
-  for (const article of document.querySelectorAll("#words article"))
+  for (const article of document.querySelectorAll("#words article")) {
+    article.querySelector(".atlas")?.parentElement.remove();
     element(element(article, "p"), "a", { href: `/atlas#${article.id}`, target: "_blank" }, "In the atlas, with pictures");
+  }

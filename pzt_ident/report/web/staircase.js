@@ -5,10 +5,11 @@ import { number } from "./signals.js";
 const USES = Object.keys(USE_NAMES);
 const LINES = 3; // of a name that is not turned
 const LINE = 1.2; // em
+const TOUCHED = 24; // px, the least size of a link
 const FLATTEST = Math.PI / 5; // angle of names that are turned
 const pen = document.createElement("canvas").getContext("2d");
 
-/** The RMSE after each of `steps` ({name, identify, validate, note, promised, current, live}) as stairs on a logarithmic
+/** The RMSE after each of `steps` ({name, href, identify, validate, note, promised, current, live}) as stairs on a logarithmic
  * axis that ends at the noise floor. `choose(step)` is called for a step that is clicked. */
 export class Staircase {
   constructor(root, content, choose = null) {
@@ -28,7 +29,7 @@ export class Staircase {
     const [width, height] = [Math.max(200, this.holder.clientWidth), Math.max(150, this.holder.clientHeight)];
     this.drawnSize = `${this.holder.clientWidth} ${this.holder.clientHeight}`;
     const size = Math.max(11, 0.74 * parseFloat(getComputedStyle(document.documentElement).fontSize));
-    this.svg = svgElement(this.holder, "svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: "img", "aria-label": description(content), "font-size": size });
+    this.svg = svgElement(this.holder, "svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: content.steps.some(({ href }) => href) ? "group" : "img", "aria-label": description(content), "font-size": size });
     const pitch = (width - 5 * size) / Math.max(content.steps.length, 1);
     const texts = namesOf(content.steps, pitch, size, 0.32 * height, getComputedStyle(this.holder).fontFamily);
     const area = { left: 4.2 * size, right: width - 0.8 * size, top: 2.4 * size, bottom: height - texts.height - 0.6 * size, size };
@@ -115,14 +116,19 @@ export class Staircase {
     const { size } = area;
     const x = area.left + (place + 0.5) * pitch, y = area.bottom + 1.3 * size;
     const group = svgElement(this.svg, "g", { class: `step${step.current ? " current" : ""}` });
-    const turned = angle && { transform: `rotate(${(-180 * angle) / Math.PI} ${x} ${y})` };
-    const text = svgElement(group, "text", { x, y, class: angle ? "name turned" : "name", ...turned });
+    const turned = angle ? { transform: `rotate(${(-180 * angle) / Math.PI} ${x} ${y})` } : {};
     const { named, note } = lines[place];
-    named.forEach((line, i) => svgElement(text, "tspan", { x, dy: i ? LINE * size : 0 }, line));
-    if (note) svgElement(group, "text", { x, y: y + named.length * LINE * size, class: "note" }, note);
-    svgElement(group, "title", {}, `${step.name}${step.note ? `: ${step.note}` : ""}`);
     const hit = svgElement(group, "rect", { x: area.left + place * pitch, y: 0, width: pitch, height: area.bottom + 3 * size, class: "hit" });
     if (this.choose) hit.addEventListener("click", () => this.choose(step));
+    const link = step.href ? svgElement(group, "a", { href: step.href, "aria-label": `About ${step.name}`, ...(step.href.startsWith("#") || { target: "_blank" }) }) : group;
+    const text = svgElement(link, "text", { x, y, class: angle ? "name turned" : "name", ...turned });
+    named.forEach((line, i) => svgElement(text, "tspan", { x, dy: i ? LINE * size : 0 }, line));
+    if (step.href) {
+      const width = Math.max(TOUCHED, text.getComputedTextLength() / (angle ? 1 : named.length)), height = Math.max(TOUCHED, named.length * LINE * size);
+      svgElement(link, "rect", { x: x - (angle ? width : width / 2), y: y - 0.35 * size - TOUCHED / 2, width, height, class: "touched", ...turned });
+    }
+    if (note) svgElement(group, "text", { x, y: y + named.length * LINE * size, class: "note" }, note);
+    svgElement(group, "title", {}, `${step.name}${step.note ? `: ${step.note}` : ""}`);
   }
 }
 

@@ -13,10 +13,10 @@ export class Candidates {
     Object.assign(this, { root, page, key: "" });
   }
 
-  show({ diagnosis, unit, together, at, blocks, effects }, progress) {
+  show({ diagnosis, unit, together, at, blocks, effects, optimizer_words }, progress) {
     const key = JSON.stringify([diagnosis, unit, at, diagnosis ? 0 : progress]);
     if (key === this.key) return;
-    Object.assign(this, { key, unit, together: together ?? "", at, catalogue: { blocks, effects } });
+    Object.assign(this, { key, unit, together: together ?? "", at, catalogue: { blocks, effects, optimizer_words } });
     this.root.replaceChildren();
     if (!diagnosis) return this.showProgress(progress);
     const { candidates, next_experiment: drive } = diagnosis;

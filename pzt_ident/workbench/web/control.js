@@ -3,6 +3,7 @@ import { element } from "./parts.js";
 import { printed } from "./records.js";
 import { request, requestJson, save } from "./session.js";
 import { extent, number } from "./signals.js";
+import { plain, typed } from "./slider.js";
 
 const COLOURS = ["--identify", "--validate", "--third", "--fourth", "--before"];
 const DASHES = [[6, 3], [], [2, 2], [8, 2, 2, 2], [4, 2]];
@@ -12,7 +13,7 @@ const KINDS = { error: "Error", displacement: "Displacement", drive: "Drive" };
  * act(name, body) and fail(error). */
 export class Control {
   constructor(root, page) {
-    Object.assign(this, { root, page, key: "", reference: null });
+    Object.assign(this, { root, page, key: "", reference: null, file: null, typed: null });
   }
 
   show({ result, control, job, at }) {
@@ -32,8 +33,9 @@ export class Control {
     const facts = element(drop, "p", { class: "quiet", role: "status" }, this.reference ? said(this.reference) : "");
     const take = async (file) => {
       if (!file) return;
+      this.file = file;
       try {
-        this.reference = await (await request(`reference?name=${encodeURIComponent(file.name)}`, file, true)).json();
+        this.reference = await (await request(`reference?name=${encodeURIComponent(file.name)}&rate=${encodeURIComponent(this.typed.rate ?? "")}`, file, true)).json();
         facts.textContent = said(this.reference);
       } catch (error) { this.page.fail(error); }
     };
@@ -44,17 +46,31 @@ export class Control {
         event.stopPropagation();
         if (kind === "drop") take(event.dataTransfer.files[0]);
       });
-    const bar = element(this.root, "p", { class: "bar" });
-    const field = (text, value) => element(element(bar, "label", {}, `${text} `), "input", { value, size: 6, "aria-label": text });
-    const limits = job?.limits?.drive ?? [];
-    const low = field("Drive from", limits[0] ?? ""), high = field("to", limits[1] ?? ""), noise = field("Noise gain", "10"), rate = field("Rate", "");
-    rate.placeholder = "as given";
+    this.fields(job).rate.addEventListener("change", () => take(this.file));
     const start = element(this.root, "button", { type: "button", class: "strong", "data-acts": "", id: "follow" }, "Compute drive and errors");
     start.addEventListener("click", () => {
       if (!this.reference) return choose.focus();
-      const options = { noise_gain: noise.value, rate: rate.value, ...(low.value && high.value && { limits: [Number(low.value), Number(high.value)] }) };
-      this.page.act("control", { reference: this.reference.file, options });
+      const { low, high, ...options } = this.typed, limits = [low, high].map((value) => typed({ value }));
+      if ((low || high) && limits.includes(null)) return this.page.fail({ message: "Give the lowest and the highest drive as numbers, or neither." });
+      this.page.act("control", { reference: this.reference.file, options: { ...options, ...(low && { limits }) } });
     });
+  }
+
+  /** What the amplifier can do, and how the reference is to be followed, by name; what is typed is kept. */
+  fields(job) {
+    const [low, high] = job?.limits?.drive ?? [], unit = Object.values(job?.drive_units ?? {})[0] ?? "";
+    this.typed ??= { low: plain(low), high: plain(high), slew: plain(job?.limits?.slew), current: "", capacitance: "", noise_gain: "10", rate: "" };
+    const made = {};
+    for (const line of [[["low", "Drive from"], ["high", "to", unit]], [["slew", "Slew rate at most", `${unit}/s`]], [["current", "Amplifier current", "", "50 mA"], ["capacitance", "capacitance", "", "1.8 uF"]], [["noise_gain", "Noise gain at most"]], [["rate", "Sample rate without a time column", "", "10 kHz"]]]) {
+      const bar = element(this.root, "p", { class: "bar" });
+      for (const [name, text, shown = "", placeholder = ""] of line) {
+        const label = element(bar, "label", {}, `${text} `);
+        made[name] = element(label, "input", { value: this.typed[name], size: 6, placeholder, "aria-label": shown ? `${text}, in ${shown}` : text });
+        made[name].addEventListener("input", () => { this.typed[name] = made[name].value; });
+        label.append(shown);
+      }
+    }
+    return made;
   }
 
   showWays({ ways, units, notes, gains, drive_units: driveUnits }) {

@@ -58,7 +58,7 @@ export class Measurement {
   async measure() {
     const asked = JSON.stringify({
       records: this.records.list.map(({ files }) => ({ files: files.map(({ file, part }) => ({ file, part })) })),
-      columns: Object.fromEntries(this.records.columns.filter((column) => this.records.roleOf(column)).map(({ role, number: place, of, unit }) => [role, { number: place, of, unit }])),
+      columns: Object.fromEntries([this.records.columnOf("time"), ...this.records.signals.flatMap(({ drive, response }) => [drive, response])].filter(Boolean).map((column) => [keyOfSignal(column), { number: column.number, of: column.of, unit: column.unit }])),
     });
     if (this.empty) return;
     if (asked === this.asked) return this.time();
@@ -130,23 +130,23 @@ export class Measurement {
     this.showGuess();
   }
 
-  /** The records as the explorer shows them: an entry for each axis that has a drive and a response. */
+  /** The records as the explorer shows them: an entry for each axis. */
   plotted() {
     return this.records.list.flatMap((record) => {
       const signals = this.measured.get(keyOf(record));
-      return signals ? this.records.axes().map((axis) => this.entry(record, signals, axis)).filter(Boolean) : [];
+      return signals ? this.records.signals.map((pair) => this.entry(record, signals, pair)).filter(Boolean) : [];
     });
   }
 
-  entry(record, signals, axis) {
-    const [drive, response] = ["drive", "response"].map((role) => this.records.columnOf(`${axis}.${role}`));
-    const [u, y] = ["drive", "response"].map((role) => signals.values[`${axis}.${role}`]);
-    if (!u || !y) return null;
-    const index = Float64Array.from(signals.places ?? u.keys());
+  /** A record with the signals of an axis; `alone`: what the one of two signals is that is there. */
+  entry(record, signals, { axis, drive, response }) {
+    const [u, y] = [drive, response].map((column) => column && signals.values[keyOfSignal(column)]), values = y ?? u;
+    if (!values) return null;
+    const index = Float64Array.from(signals.places ?? values.keys()), unitOf = (column) => printed((column ?? drive ?? response).unit || "1");
     return {
-      source: record, name: recordName(record), use: record.use === "split" ? "" : record.use, axis, unit: printed(response.unit || "1"), driveUnit: printed(drive.unit || "1"), start: record.t0, dt: record.dt,
-      samples: record.rows, settle: 0, index, timeLabel: this.records.timed ? "time [s]" : "sample", time: index.map((i) => record.t0 + i * record.dt), drive: u, response: y, models: [], counts: index,
-      strips: () => strips(record),
+      source: record, name: recordName(record), use: record.use === "split" ? "" : record.use, axis, unit: unitOf(response), driveUnit: unitOf(drive), start: record.t0, dt: record.dt,
+      samples: record.rows, settle: 0, index, timeLabel: this.records.timed ? "time [s]" : "sample", time: index.map((i) => record.t0 + i * record.dt), drive: u ?? values, response: values, models: [], counts: index,
+      alone: u && y ? "" : axis ? (u ? "drive" : "response") : this.records.columnName(response), strips: () => strips(record),
     };
   }
 
@@ -187,11 +187,12 @@ export class Measurement {
     fact("missing values", this.records.columns.filter((column) => this.records.roleOf(column) && column.missing).map((column) => `${column.missing} of ${this.records.columnName(column)}: crop the record, or fill the gaps in the file`).join("; "));
     if (!guess) return;
     fact("sample rate", timed ? `${short(1 / record.dt)} Hz` : "not known: give it below the columns");
-    for (const [axis, { value, unit }] of Object.entries(guess.amplitude)) fact(`span of the drive of ${axis}`, `${short(value)} ${unit}`);
-    for (const [axis, value] of Object.entries(guess.frequency)) fact(`main frequency of ${axis}`, value && timed ? `${number(guess.rate ? value / guess.rate / record.dt : value, 3)} Hz` : "");
+    const usable = (facts) => Object.entries(facts).filter(([axis]) => this.records.axes().includes(axis));
+    for (const [axis, { value, unit }] of usable(guess.amplitude)) fact(`span of the drive of ${axis}`, `${short(value)} ${unit}`);
+    for (const [axis, value] of usable(guess.frequency)) fact(`main frequency of ${axis}`, value && timed ? `${number(guess.rate ? value / guess.rate / record.dt : value, 3)} Hz` : "");
     const rests = guess.rests.flat();
     if (this.records.axes().length) fact("rests", rests.length ? rests.slice(0, 3).map(([a, b]) => `${short(a)} to ${short(b)} ${clock}`).join("; ") + (rests.length > 3 ? ` and ${rests.length - 3} more` : "") : "none");
-    for (const [axis, floor] of Object.entries(guess.noise_floor)) fact(`noise floor of ${axis}`, floor?.value ? `${number(floor.value, 2)} ${floor.unit}, from ${floor.source}` : "not known");
+    for (const [axis, floor] of usable(guess.noise_floor)) fact(`noise floor of ${axis}`, floor?.value ? `${number(floor.value, 2)} ${floor.unit}, from ${floor.source}` : "not known");
   }
 
   /** There is a job now: the panes are its own. */
@@ -206,6 +207,9 @@ export class Measurement {
     else this.page.confirm(this.records.form());
   }
 }
+
+/** The name under which a column is asked for: its role, or none that the server knows. */
+function keyOfSignal({ role }) { return role || "shown"; }
 
 /** Bands over time: what is cropped or not scored, and the part for validation. */
 function strips({ t0, dt, rows, crop: [from, to], settle, split, use }) {

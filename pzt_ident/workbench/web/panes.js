@@ -1,3 +1,4 @@
+import { spelled } from "./about.js";
 import { Explorer } from "./explorer.js";
 import { Moving } from "./moving.js";
 import { requestJson } from "./session.js";
@@ -57,6 +58,7 @@ export class Panes {
     const last = steps.at(-1);
     if (state.stage === "run" && last.identify === null) Object.assign(last, Number.isFinite(best) ? { identify: best, validate, live: true, note: "so far" } : { note: "starting" });
     if (state.stage === "improve") steps.push(...grown(state.improving?.steps ?? [], last));
+    for (const step of steps) step.href = spelled(step.name, state).find(({ href }) => href)?.href;
     const content = { steps, floor: this.floor, unit: state.unit || unit, together: state.unit ? state.together : together };
     if (this.stairs) this.stairs.show(content);
     else this.stairs = new Staircase(byId("stairs"), content, (step) => this.chooseStep(step));

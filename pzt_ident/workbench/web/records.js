@@ -70,6 +70,15 @@ export class Records {
 
   columnOf(role) { return this.columns.find((column) => this.roleOf(column) === role); }
 
+  /** The signals to be plotted, whether a model can be made of them or not: of each axis the columns of its drive and
+   * its response, one of which may be missing; where there is neither, the first column that is not the time. */
+  get signals() {
+    const column = (role) => this.columns.find((other) => other.role === role);
+    const pairs = AXES.map((axis) => ({ axis, drive: column(`${axis}.drive`), response: column(`${axis}.response`) })).filter(({ drive, response }) => drive || response);
+    const other = this.columns.find(({ role }) => role !== "time");
+    return pairs.length || !other ? pairs : [{ axis: "", response: other }];
+  }
+
   /** The role of a column; one that is constant in every record is neither drive nor response. */
   roleOf(column) { return column.role.includes(".") && this.constant(column) ? "" : column.role; }
 

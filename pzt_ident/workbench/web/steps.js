@@ -10,10 +10,10 @@ export class Steps {
     Object.assign(this, { root, page, chosen: new Set(), key: "" });
   }
 
-  show({ steps, others, at, unit, together, blocks, effects }) {
+  show({ steps, others, at, unit, together, blocks, effects, optimizer_words }) {
     const key = JSON.stringify([steps, others, at, unit]);
     if (key === this.key) return;
-    Object.assign(this, { key, at, unit, together: together ?? "", catalogue: { blocks, effects } });
+    Object.assign(this, { key, at, unit, together: together ?? "", catalogue: { blocks, effects, optimizer_words } });
     const known = new Set([...steps, ...others].map(({ number: step }) => step));
     for (const step of this.chosen) if (!known.has(step)) this.chosen.delete(step);
     this.root.replaceChildren();
@@ -44,7 +44,7 @@ export class Steps {
     });
     element(card, "p", {}, step.identify === null ? "Not run." : `RMSE ${this.errors(step)}`);
     if (step.promised) element(card, "p", { class: "quiet" }, `Expected before: ${this.errors(step.promised)}`);
-    if (step.tried?.length) element(card, "p", { class: "quiet" }, `Tried from here and taken back: ${step.tried.join(", ")}.`);
+    if (step.tried?.length) sentence(card, "p", `Tried from here and taken back: ${step.tried.join(", ")}.`, this.catalogue).className = "quiet";
     const line = element(card, "div", { class: "bar" });
     if (!current) element(line, "button", { type: "button", "data-acts": "" }, "Go to this step").addEventListener("click", () => this.page.back(step.number));
     element(line, "button", { type: "button" }, "Job file").addEventListener("click", () => this.showJob(step, card));

@@ -18,7 +18,7 @@ import { Tabs } from "./tabs.js";
 const STAGES = { run: "Identifying", diagnose: "Diagnosing", improve: "Improving", control: "Following the reference" };
 const TABS = { measurement: "Measurement", parameters: "Parameters", misfit: "Where it fails", candidates: "Candidates", steps: "Steps", optimizers: "Optimizers", control: "Control", commands: "Commands" };
 const byId = (id) => document.getElementById(id);
-let state = null, asking = false, newest = 0, draftModel = ["bouc_wen"], disconnected = false, failure = "";
+let state = null, asking = false, newest = 0, draftModel = ["bouc_wen"], disconnected = false, failure = "", entered = null;
 
 const tabs = new Tabs(byId("tabs"), byId("sheets"), TABS);
 const { sheets } = tabs;
@@ -223,6 +223,12 @@ async function openReport() {
 document.addEventListener("click", (event) => {
   if (event.detail > 1 && event.target.closest(ACTS)) event.stopPropagation();
 }, true);
+// A file dialog opens by Enter, too: once the key is up, since a browser may take it for no wish of the user before.
+addEventListener("keydown", (event) => {
+  entered = event.key === "Enter" && event.target.matches("input[type=file]") ? event.target : null;
+  if (entered) event.preventDefault();
+});
+addEventListener("keyup", (event) => { if (event.key === "Enter" && event.target === entered) entered.click(); });
 byId("improve").addEventListener("click", () => act("improve", {}));
 byId("stop").addEventListener("click", () => act("stop"));
 byId("undo").addEventListener("click", () => act("undo"));
