@@ -57,7 +57,7 @@ def demo(out: Path, no_browser: bool, as_json: bool, quiet: bool) -> None:
 
 
 @click.command()
-@click.argument("source", metavar="[JOB or DATA]", required=False, type=EXISTING)
+@click.argument("source", metavar="[JOB, DATA or FLEET]", required=False, type=EXISTING)
 @click.option("--out", type=EXISTING, help="Folder of the session; workbench/<name of the file> if not given.")
 @click.option("--port", type=click.IntRange(0, 65535), default=0, help="A free port if not given.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen at.")
@@ -67,7 +67,7 @@ def demo(out: Path, no_browser: bool, as_json: bool, quiet: bool) -> None:
 def workbench(
     source: Path | None, out: Path | None, port: int, host: str, allow_network: bool, no_browser: bool, plugins: bool
 ) -> None:
-    """See and do all of it in the browser: a job, a measurement, or a file that you drop onto the page.
+    """See and do all of it in the browser: a job, a measurement, a fleet, or a file that you drop onto the page.
 
     Serves files of the folder it is started in, to this machine only.
     """

@@ -18,7 +18,7 @@ from pzt_ident.job.files import Template
 from pzt_ident.job.schema import Job
 from pzt_ident.lot.device import Given, Orders, identify_device
 from pzt_ident.lot.devices import Device, devices_of
-from pzt_ident.lot.table import folder_of, read_row, write_table
+from pzt_ident.lot.table import folder_of, read_row, write_devices, write_table
 from pzt_ident.run.events import Listen, nobody
 from pzt_ident.run.folder import make_empty, read_job
 from pzt_ident.run.place import HERE, Place
@@ -101,6 +101,7 @@ class Identification:
     def identify(self, place: Place) -> Path:
         self.by_name = {device.name: device for device in self.devices}
         shutil.rmtree(self.folder / "devices" / ".new", ignore_errors=True)
+        write_devices(self.folder, self.devices)
         self.tell({})
         try:
             place.run_all(identify_device, (self.orders,), self.tasks(place), self.note, self.keep)

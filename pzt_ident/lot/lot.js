@@ -1,30 +1,39 @@
-const table = document.querySelector("#table-devices");
-if (table) {
-  const body = table.tBodies[0], rows = [...body.rows], filter = document.querySelector("#filter");
-  const show = () => {
-    const words = filter.value.toLowerCase().split(/\s+/).filter(Boolean);
-    let count = 0;
-    for (const row of rows) {
-      const text = row.textContent.toLowerCase();
-      row.hidden = !words.every((word) => text.includes(word));
-      count += !row.hidden;
-    }
-    document.querySelector("#shown").textContent = `${count} of ${rows.length}`;
-  };
-  const value = (row, column) => {
-    const cell = row.cells[column], text = cell.dataset.value ?? cell.textContent.trim(), number = Number(text);
-    return text === "" || Number.isNaN(number) ? text : number;
-  };
-  const order = (a, b) => (typeof a === typeof b ? (a < b ? -1 : a > b ? 1 : 0) : typeof a === "number" ? -1 : 1);
-  table.tHead.addEventListener("click", (event) => {
-    const cell = event.target.closest("th");
-    if (!cell) return;
-    const down = cell.getAttribute("aria-sort") === "ascending", column = cell.cellIndex;
-    for (const other of table.tHead.rows[0].cells) other.removeAttribute("aria-sort");
-    cell.setAttribute("aria-sort", down ? "descending" : "ascending");
-    rows.sort((a, b) => (down ? -1 : 1) * order(value(a, column), value(b, column)));
-    body.append(...rows);
-  });
-  filter.addEventListener("input", show);
-  show();
+let column = null, down = false, typed = "";
+
+/** Sort and filter the table as it was chosen. */
+function arrange() {
+  const table = document.querySelector("#table-devices");
+  if (!table) return;
+  const rows = [...table.tBodies[0].rows], words = typed.toLowerCase().split(/\s+/).filter(Boolean);
+  document.querySelector("#filter").value = typed;
+  for (const row of rows) row.hidden = !words.every((word) => row.textContent.toLowerCase().includes(word));
+  document.querySelector("#shown").textContent = `${rows.filter(({ hidden }) => !hidden).length} of ${rows.length}`;
+  if (column === null) return;
+  for (const cell of table.tHead.rows[0].cells) cell.removeAttribute("aria-sort");
+  table.tHead.rows[0].cells[column]?.setAttribute("aria-sort", down ? "descending" : "ascending");
+  rows.sort((a, b) => (down ? -1 : 1) * order(valueOf(a.cells[column]), valueOf(b.cells[column])));
+  table.tBodies[0].append(...rows);
 }
+
+function valueOf(cell) {
+  const text = cell.dataset.value ?? cell.textContent.trim(), number = Number(text);
+  return text === "" || Number.isNaN(number) ? text : number;
+}
+
+function order(a, b) {
+  return typeof a === typeof b ? (a < b ? -1 : a > b ? 1 : 0) : typeof a === "number" ? -1 : 1;
+}
+
+document.addEventListener("click", ({ target }) => {
+  const cell = target.closest("#table-devices thead th");
+  if (!cell) return;
+  [down, column] = [cell.getAttribute("aria-sort") === "ascending", cell.cellIndex];
+  arrange();
+});
+document.addEventListener("input", ({ target }) => {
+  if (target.id !== "filter") return;
+  typed = target.value;
+  arrange();
+});
+document.addEventListener("redrawn", arrange);
+arrange();

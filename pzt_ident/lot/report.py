@@ -5,11 +5,11 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import quote
 
 from pzt_ident.data.notation import listed, number, percent, spelled, unit
@@ -38,6 +38,14 @@ MOST_LINES = 2000
 """Devices in the table of the page; above that it shows those that stand out alone."""
 
 
+class Served(NamedTuple):
+    """What the workbench adds to the page: styles, the address of a module that keeps it up to date, and its words."""
+
+    css: str
+    module: str
+    worded: Callable[[str], str]
+
+
 def write_fleet_report(folder: Path, *, place: Place = HERE, listen: Listen = nobody) -> Path:
     """Write `report.html`, `figures/`, and the page of each device that has none, or of those that stand out where
     there are many; of a fleet that is not finished, too. Returns the page.
@@ -49,13 +57,19 @@ def write_fleet_report(folder: Path, *, place: Place = HERE, listen: Listen = no
     lot = read_lot(folder)
     write_table(folder, [Device(row["device"], {}, row["columns"]) for row in lot.rows])
     draw_pages(lot, place, listen)
-    figures: dict[str | None, list[tuple[Plate, Markup]]] = {}
     for plate in plates(lot):
         write_plate(plate, COLUMN, ("svg", "pdf"), folder / "figures")
-        svg = write_plate(plate, PAGE, ("svg", "pdf"), folder / "figures")["svg"]
-        figures.setdefault(plate.section, []).append((plate, inline(svg, plate.name)))
-    write_text(folder / "report.html", page(lot, figures))
+    drawn = figures(lot, lambda plate: write_plate(plate, PAGE, ("svg", "pdf"), folder / "figures")["svg"])
+    write_text(folder / "report.html", page(lot, drawn))
     return folder / "report.html"
+
+
+def figures(lot: Lot, draw: Callable[[Plate], bytes]) -> dict[str | None, list[tuple[Plate, Markup]]]:
+    """The figures of the page by their sections. draw: a plate as SVG."""
+    sections: dict[str | None, list[tuple[Plate, Markup]]] = {}
+    for plate in plates(lot):
+        sections.setdefault(plate.section, []).append((plate, inline(draw(plate), plate.name)))
+    return sections
 
 
 def draw_pages(lot: Lot, place: Place, listen: Listen) -> None:
@@ -98,10 +112,12 @@ def draw_page(tell: Any, folder: Path) -> None:
             write_report(results, static=False)
 
 
-def page(lot: Lot, figures: dict[str | None, list[tuple[Plate, Markup]]]) -> str:
+def page(lot: Lot, figures: Mapping[str | None, list[tuple[Plate, Markup]]], served: Served | None = None) -> str:
+    """The report, or, where it is `served`, the same with the devices on one screen with what is said of them."""
     from markupsafe import Markup
 
-    said, outside, quantities = list(findings(lot)), far(lot), [quantity_line(lot, item) for item in lot.quantities]
+    said = [*map(served.worded, findings(lot))] if served else [*unfinished(lot), *findings(lot)]
+    outside, quantities = far(lot), [quantity_line(lot, item) for item in lot.quantities]
     names = [name for row in lot.done for name in row["effects"]] + [line[0] for line in quantities]
     script = files("pzt_ident.lot").joinpath("lot.js").read_text(encoding="utf-8")
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
@@ -112,8 +128,9 @@ def page(lot: Lot, figures: dict[str | None, list[tuple[Plate, Markup]]]) -> str
             title=lot.statement["job_name"],
             content=Markup("{}"),
             script=Markup(script),
-            allowed=Markup(f"'sha256-{digest}'"),
-            css=Markup(web_file("page.css")),
+            allowed=Markup(f"'sha256-{digest}'" + " 'self'; connect-src 'self'" * bool(served)),
+            css=Markup(web_file("page.css") + (served.css if served else "")),
+            served=served,
             lot=lot,
             lead=lead(lot),
             findings=said,
@@ -151,7 +168,7 @@ def lead(lot: Lot) -> str:
     adequate = [row for row in lot.done if row["verdict"] == "adequate"]
     more = sum(bool(row["effects"]) for row in adequate)
     if not done:
-        return f"None of {total} devices could be identified."
+        return f"None of {total} devices {'is done yet' if unfinished(lot) else 'could be identified'}."
     fit = [f"is adequate for {len(adequate) - more or 'none'} of {total} devices"]
     fit += [f"with effects added for {more} more"] * bool(more)
     as_given = "as given " * bool(lot.statement["improve"])
@@ -164,11 +181,13 @@ def lead(lot: Lot) -> str:
     return text
 
 
+def unfinished(lot: Lot) -> list[str]:
+    waiting = len(lot.rows) - len(lot.done) - len(lot.broken)
+    return [f"{waiting} devices are not done: pzt-ident resume goes on with them."] if waiting else []
+
+
 def findings(lot: Lot) -> Iterator[str]:
     """What a reader must know beside that."""
-    waiting = len(lot.rows) - len(lot.done) - len(lot.broken)
-    if waiting:
-        yield f"{waiting} devices are not done: `pzt-ident resume` goes on with them.".replace("`", "")
     above = lot.verdicts.get("above the noise", 0)
     if above and not lot.statement["improve"]:
         yield f"{above} are above the noise: the same command with --improve says which effect they miss."

@@ -39,10 +39,15 @@ def read_row(folder: Path) -> Row | None:
     return row if {"device", "key", "state", "reason"} <= set(row) else None
 
 
-def write_table(folder: Path, devices: Sequence[Device]) -> None:
-    """Write `devices.json`, which devices there are and what is known of them, and the table as it is by now."""
+def write_devices(folder: Path, devices: Sequence[Device]) -> None:
+    """Write `devices.json`: which devices there are, and what is known of them."""
     listed = [{"device": device.name, "columns": dict(device.columns)} for device in devices]
     write_sealed(folder / "devices.json", {"devices": listed})
+
+
+def write_table(folder: Path, devices: Sequence[Device]) -> None:
+    """Write the devices, and the table as it is by now."""
+    write_devices(folder, devices)
     frame = frame_of(rows_of(folder, {device.name: device.columns for device in devices}))
     with replaced(folder / "devices.csv") as path:
         frame.to_csv(path, index=False, lineterminator="\n")

@@ -22,6 +22,7 @@ from pzt_ident.errors import InputError, RunError
 from pzt_ident.workbench import gets, page_state
 from pzt_ident.workbench.bench import Bench
 from pzt_ident.workbench.export import exported
+from pzt_ident.workbench.fleet import Fleet
 from pzt_ident.workbench.guard import Guard
 from pzt_ident.workbench.posts import CHANGES
 from pzt_ident.workbench.session import Session
@@ -34,9 +35,9 @@ SERVED = {".js": "text/javascript", ".css": "text/css", ".html": "text/html", ".
 Handler = Callable[[Bench, Request], Awaitable[Response]]
 
 
-def make_app(session: Session, hosts: set[str], token: str) -> Guard:
-    """The application; `hosts`: the allowed values of the Host header."""
-    bench = Bench(session)
+def make_app(session: Session, hosts: set[str], token: str, fleet: Fleet | None = None) -> Guard:
+    """The application; `hosts`: the allowed values of the Host header; `fleet`: the lot that is shown first."""
+    bench = Bench(session, fleet)
 
     @asynccontextmanager
     async def lifespan(app: Starlette) -> AsyncIterator[None]:
@@ -50,7 +51,7 @@ def make_app(session: Session, hosts: set[str], token: str) -> Guard:
     posts |= {"upload": upload, "reference": reference, "look": inspect, "measurement": measurement}
     posts |= {"simulate": simulate, "report": make_report, "export": make_export}
     pages: dict[str, Handler] = {"/": page, "/favicon.ico": no_content, "/web/{name:path}": web_file}
-    pages |= {"/report/{key}": report, "/file/{key}": handout, "/atlas": atlas}
+    pages |= {"/report/{key}": report, "/file/{key}": handout, "/atlas": atlas, "/lot/{key}": lot}
     routes = [route(bench, path, handler) for path, handler in pages.items()]
     routes += [route(bench, f"/api/{name}", handler) for name, handler in {**gets.GETS, "events": events}.items()]
     routes += [route(bench, f"/api/{name}", handler, "POST") for name, handler in posts.items()]
@@ -126,6 +127,14 @@ async def handout(bench: Bench, request: Request) -> Response:
     return FileResponse(path, filename=path.name) if path else PlainTextResponse("not found", 404)
 
 
+async def lot(bench: Bench, request: Request) -> Response:
+    """The page of the lot."""
+    fleet = bench.fleet
+    if fleet is None or not secrets.compare_digest(request.path_params["key"].encode(), fleet.key.encode()):
+        return PlainTextResponse("not found", 404)
+    return HTMLResponse(await asyncio.to_thread(lambda: fleet.page))
+
+
 async def atlas(bench: Bench, request: Request) -> Response:
     """The atlas of effects, or, with status 202, a page that waits for it."""
     if html := bench.atlas.page():
@@ -159,15 +168,16 @@ def served(name: str) -> Response:
 
 async def events(bench: Bench, request: Request) -> Response:
     """Server-sent events: the lines of `events.jsonl` of the current step, and `changed` when the state changes."""
-    return StreamingResponse(event_stream(bench.session, request), media_type="text/event-stream")
+    return StreamingResponse(event_stream(bench, request), media_type="text/event-stream")
 
 
-async def event_stream(session: Session, request: Request) -> AsyncIterator[str]:
-    step, version, offsets = -1, -1, dict[Path, int]()
-    while not session.closing() and not await request.is_disconnected():
-        if session.at != step:
-            step, offsets = session.at, {}
-            yield event({"event": "step", "step": step})
+async def event_stream(bench: Bench, request: Request) -> AsyncIterator[str]:
+    step, version, offsets = (bench.session, -1), -1, dict[Path, int]()
+    while not bench.session.closing() and not await request.is_disconnected():
+        session = bench.session
+        if (session, session.at) != step:
+            step, offsets = (session, session.at), {}
+            yield event({"event": "step", "step": session.at})
         for path in session.logs():
             for line in new_lines(path, offsets):
                 yield event(page_state.printed(json.loads(line)))

@@ -5,14 +5,16 @@ from __future__ import annotations
 import asyncio
 import json
 import shutil
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Coroutine
 from pathlib import Path
 from typing import Any
 
 from pzt_ident.errors import InputError
 from pzt_ident.files import plain
+from pzt_ident.lot.identify import is_fleet
 from pzt_ident.workbench import adopt, page_state
 from pzt_ident.workbench.atlas import Atlas
+from pzt_ident.workbench.fleet import Fleet, to_adopt
 from pzt_ident.workbench.headline import error, headline
 from pzt_ident.workbench.runner import Runner
 from pzt_ident.workbench.session import INTERRUPTED, Session
@@ -23,14 +25,18 @@ Change = Callable[["Bench", Form], Awaitable[None]]
 
 
 class Bench:
-    """A session with what is done to it. `handouts`: files that are given away, by keys that cannot be guessed."""
+    """A session with what is done to it. `fleet`: the lot that it is in or that was made from it, in `folder` or
+    elsewhere. `handouts`: files that are given away, by keys that cannot be guessed."""
 
-    def __init__(self, session: Session) -> None:
-        self.session = session
+    def __init__(self, session: Session, fleet: Fleet | None = None) -> None:
+        made_here = session.folder / "fleet"
+        self.session, self.folder = session, session.folder
+        self.fleet = fleet or (Fleet(made_here) if is_fleet(made_here) else None)
         self.runner = Runner(session.root, self.changed)
         self.atlas = Atlas(session)
         self.lock = asyncio.Lock()
         self.making: tuple[str, str] | None = None
+        self.tasks: set[asyncio.Task[None]] = set()
         self.handouts: dict[str, Path] = {}
         if session.interrupted:
             self.runner.failure = INTERRUPTED
@@ -107,6 +113,11 @@ class Bench:
         more = ["--budget", budget] if budget else []
         flags = ["--no-report", *session.plugins_flag]
         await self.command("improve", ["improve", job, *start, "--out", folder, *more, *flags])
+        await self._adopt(step)
+
+    async def _adopt(self, step: Path) -> None:
+        """Make steps of the improvement of a step."""
+        session = self.session
         numbers = await asyncio.to_thread(adopt.improvement, session, step)
         for number in numbers:
             first, _ = session.commands(session.step(number))
@@ -127,15 +138,64 @@ class Bench:
         await self.command("control", ["control", *arguments, "--out", name_of(step / "control")])
         await self.command("control", ["drive", *arguments, "-o", name_of(step / "control" / "drive.csv")])
 
+    async def open_device(self, name: str) -> None:
+        """Go to the session of a device of the lot. A fleet that is running goes on."""
+        if self.fleet is None:
+            raise InputError("there is no lot")
+        if self.runner.stage != "fleet":
+            await self.runner.stop()
+        before = self.session
+        session = await asyncio.to_thread(
+            self.fleet.session, name, before.root, self.folder / "devices", before.plugins
+        )
+        session.version, session.closing = before.version + 1, before.closing
+        self.session = self.atlas.session = session
+        if not self.runner.running:
+            self.runner.failure = INTERRUPTED if session.interrupted else ""
+            if to_adopt(session):
+                self.runner.start(self._adopt(session.step()))
+
+    def identify_lot(self, pattern: str, improve: bool) -> None:
+        """Run the job of the current step on the devices that a pattern names."""
+        job, out = self.session.step() / "job.yaml", self.folder / "fleet"
+        name_of, flags = self.session.relative, self.session.plugins_flag
+        arguments = ["fleet", name_of(job), pattern, "--out", name_of(out), *["--improve"] * improve, *flags]
+        self._run_fleet(out, arguments)
+
+    def resume_lot(self) -> None:
+        """Go on with the fleet that is shown."""
+        if self.fleet is None:
+            raise InputError("there is no lot")
+        folder = self.fleet.folder
+        self._run_fleet(folder, ["resume", self.session.relative(folder), *self.session.plugins_flag])
+
+    def _run_fleet(self, folder: Path, arguments: list[str]) -> None:
+        if not self.runner.running:
+            if self.fleet is None or self.fleet.folder != folder:
+                self.fleet = Fleet(folder)
+            self.runner.start(self.command("fleet", arguments))
+
+    @property
+    def lot(self) -> dict[str, Any] | None:
+        """The lot beside the session: where its page is, and which device the session is of."""
+        device = self.session.steps[0].get("device", "") if self.session.steps else ""
+        return {"url": self.fleet.url, "device": device} if self.fleet and self.fleet.begun else None
+
     def state(self) -> dict[str, Any]:
         """All that the page shows, but signals."""
         self.session.settle()
         runner = self.runner
         doing = {"stage": runner.stage, "since": runner.since, "busy": self.busy, "running": runner.running}
         failure = self.session.readable(runner.failure)
-        state = page_state.state(self.session) | doing | {"failure": failure}
+        state = page_state.state(self.session) | doing | {"failure": failure, "lot": self.lot}
         state |= {"headline": headline(state), "error": error(state)}
         return dict(plain(state))
+
+    def background(self, work: Coroutine[Any, Any, None]) -> None:
+        """Let something be done beside all else."""
+        task = asyncio.create_task(work)
+        self.tasks.add(task)
+        task.add_done_callback(self.tasks.discard)
 
     async def close(self) -> None:
         await self.runner.close()

@@ -83,6 +83,23 @@ async def tracking(bench: Bench, request: Request) -> Response:
     return answer(await asyncio.to_thread(page_state.tracking, bench.session.step() / "control" / "control.csv"))
 
 
+async def lot(bench: Bench, request: Request) -> Response:
+    """How far the fleet is that is shown, and what is being done."""
+    if bench.fleet is None:
+        raise InputError("there is no lot")
+    facts = await asyncio.to_thread(lambda fleet: fleet.facts, bench.fleet)
+    bench.background(asyncio.to_thread(bench.fleet.draw))
+    runner = bench.runner
+    return answer(facts | {"running": runner.stage == "fleet", "failure": bench.session.readable(runner.failure)})
+
+
+async def lot_file(bench: Bench, request: Request) -> Response:
+    if bench.fleet is None:
+        raise InputError("there is no lot")
+    path = bench.fleet.given(request.query_params["name"])
+    return FileResponse(path, filename=path.name)
+
+
 GETS: dict[str, Get] = {
     "state": state,
     "signals": signals,
@@ -93,4 +110,6 @@ GETS: dict[str, Get] = {
     "drive": drive_file,
     "download": download,
     "tracking": tracking,
+    "lot": lot,
+    "lot_file": lot_file,
 }

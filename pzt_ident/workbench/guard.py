@@ -24,7 +24,11 @@ HEADERS = {
     "cross-origin-resource-policy": "same-origin",
 }
 LARGEST_UPLOAD = 256 << 20
-OWN_POLICY = ("/report/", "/atlas")  # beginnings of the paths of pages that bring their own content security policy
+OWN_POLICY = (
+    "/report/",
+    "/lot/",
+    "/atlas",
+)  # beginnings of the paths of pages that bring their own content security policy
 
 
 class Guard:
@@ -74,6 +78,16 @@ def headers_of(scope: Scope) -> dict[str, list[str]]:
     for key, value in scope["headers"]:
         headers.setdefault(key.decode("latin-1").lower(), []).append(value.decode("latin-1"))
     return headers
+
+
+def below(root: Path, pattern: str) -> None:
+    """Raises InputError unless a pattern of folders or files can match only what is below `root`."""
+    parts = Path(pattern).parts
+    fixed = next((place for place, part in enumerate(parts) if set(part) & set("*?[")), len(parts))
+    if ".." in parts or not parts:
+        raise InputError(f"{pattern!r} is not in the workbench's folder", remedy="give folders in it, such as lot/*/")
+    if fixed:
+        inside(root, str(Path(*parts[:fixed])))
 
 
 def inside(root: Path, name: str) -> Path:

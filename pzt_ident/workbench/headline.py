@@ -12,6 +12,7 @@ DOING = {
     "diagnose": "Each effect of the catalogue is being tried.",
     "improve": "What is missing is being added, effect by effect.",
     "control": "The drive for the reference is being computed.",
+    "fleet": "The model is being identified on every device.",
 }
 State = Mapping[str, Any]
 
@@ -37,7 +38,11 @@ def _headline(state: State) -> tuple[str, str, dict[str, Any] | None]:
         verdict, following = (what, RESUME) if resumes else ("The last command failed.", "Resume tries it again.")
         return verdict, following, act("run", {}, "Resume")
     result, diagnosis = state["result"], state["diagnosis"]
-    if not result or not diagnosis:
+    if result and not diagnosis:
+        floors = state["steps"][-1]["floors"]
+        left = f": it leaves an RMSE of {floors:.2g} noise floors" if floors else ""
+        return f"The model is fitted{left}.", "Find out what it misses.", act("run", {}, "Diagnose")
+    if not result:
         return "The job is ready.", "Identify the model.", act("run", {}, "Identify")
     return (diagnosis["reason"], *_next(diagnosis, improved=bool(state["steps"][-1].get("diagnosed"))))
 

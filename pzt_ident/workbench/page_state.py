@@ -157,6 +157,7 @@ def job_of(session: Session) -> dict[str, Any]:
         "text": job.text,
         "limits": asdict(job.limits),
         "drive_units": drive_units(session),
+        "files": list(dict.fromkeys(Path(record.file).name for record in job.records)),
         "search": {
             "optimizers": [{"name": item.name, **item.settings} for item in job.optimizers],
             "repeats": job.repeats,

@@ -9,7 +9,7 @@ from pzt_ident.data.units import duration
 from pzt_ident.errors import InputError
 from pzt_ident.workbench import edits
 from pzt_ident.workbench.bench import Bench, Form
-from pzt_ident.workbench.guard import inside
+from pzt_ident.workbench.guard import below, inside
 from pzt_ident.workbench.job_form import file_sources
 
 
@@ -88,6 +88,20 @@ async def control(bench: Bench, form: Form) -> None:
     bench.put_to_work(inside(bench.session.root, str(form["reference"])), control_options(form.get("options") or {}))
 
 
+async def device(bench: Bench, form: Form) -> None:
+    await bench.open_device(str(form["device"]))
+
+
+async def fleet(bench: Bench, form: Form) -> None:
+    pattern = str(form["pattern"])
+    below(bench.session.root, pattern)
+    bench.identify_lot(pattern, bool(form.get("improve")))
+
+
+async def go_on(bench: Bench, form: Form) -> None:
+    bench.resume_lot()
+
+
 WORDS = {
     "rate": "--rate",
     "slew": "--slew",
@@ -129,4 +143,7 @@ CHANGES = {
     "note": note,
     "draft": draft,
     "control": control,
+    "device": device,
+    "fleet": fleet,
+    "go_on": go_on,
 }

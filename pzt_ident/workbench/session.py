@@ -40,7 +40,7 @@ class Session:
         self.at: int = saved.get("at", 0)
         self.draft: dict[str, Any] = saved.get("draft", {})
         self.settle()
-        if self.at and 0 < sum(file.exists() for file in self._milestones()) < len(self._milestones()):
+        if self.at and any(c.last.parent.exists() and not c.last.exists() for c in self.commands(self.step())):
             self.interrupted = True
 
     def _saved(self) -> dict[str, Any]:
@@ -256,11 +256,6 @@ class Session:
         entry = self.entry(int(step.name))
         source = self.folder / entry["from"] if "from" in entry else None
         return commands_of(step, source, bool(entry.get("search", source is None)), self.relative, self.plugins_flag)
-
-    def _milestones(self) -> list[Path]:
-        """The files that mark how far the current step has been filled, first to last."""
-        step = self.step()
-        return [step / "run" / "environment.json", *(command.last for command in self.commands(step))]
 
     def again(self, path: Path) -> str:
         """Where a listed command writes what the workbench wrote into `steps`: a folder beside it, so that the commands

@@ -26,7 +26,7 @@ optimizers:
   - {name: pso, population: 20, generations: 30}
 rule_out: [asymmetry, friction, thermal_relaxation, amplifier_lag, amplitude_gain, delay, distributed_memory, drift]
 """
-SHEETS = ("parameters", "misfit", "candidates", "steps", "optimizers", "control", "commands")
+SHEETS = ("parameters", "misfit", "candidates", "steps", "optimizers", "control", "devices", "commands")
 INK = "place => document.querySelectorAll('.plot canvas.moving')[place].toDataURL()"
 
 
@@ -77,7 +77,7 @@ def test_all_is_on_one_screen(shown, size):
     shown.set_viewport_size({"width": size[0], "height": size[1]})
     root = shown.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]")
     assert tuple(root) <= size and root[1] <= size[1]
-    for part in ("#loop .plot", "#time .plot >> nth=1", ".stairs svg", "#panel", "#action", "#blocks"):
+    for part in ("#loop .plot", "#time .plot >> nth=1", ".stairs svg", "#panel", "#action", "#blocks", "#tab-commands"):
         box = shown.locator(part).first.bounding_box()
         assert box["height"] > 20 and box["y"] + box["height"] <= size[1] and box["x"] + box["width"] <= size[0]
     shown.set_viewport_size({"width": 1280, "height": 800})

@@ -242,7 +242,7 @@ def test_events_are_the_lines_of_the_run(session, monkeypatch):
             return False
 
     async def first(count):
-        stream, found = event_stream(session, Listening()), []
+        stream, found = event_stream(Bench(session), Listening()), []
         async for message in stream:
             found.append(json.loads(message.removeprefix("data: ")))
             if len(found) == count:

@@ -47,7 +47,7 @@ function drawGraph(plot, pen, series) {
 
 /** Dots that are told apart; of very many, smaller ones. */
 function drawDots(plot, pen, { xs, ys }, first = 0, end = xs.length, apart = APART) {
-  const size = end - first > MANY ? 1.6 : 3.2;
+  const size = end - first > MANY ? 2.8 : 3.4;
   let [left, top] = [-99, -99];
   for (let i = first; i < end; i++) {
     const x = plot.x.px(xs[i]), y = plot.y.px(ys[i]);

@@ -2,7 +2,7 @@ import { sentence } from "./about.js";
 import { element } from "./parts.js";
 import { number } from "./signals.js";
 
-export const percent = (share) => `${Math.round(100 * share)} %`;
+export const percent = (share) => (share > 0.995 && share < 1 ? "more than 99 %" : `${Math.round(100 * share)} %`);
 
 /** Where the model fails: the sentences of misfit and diagnosis, and the worst segments to look at. `reveal(record,
  * axis, from, to)` marks one in the plots. */

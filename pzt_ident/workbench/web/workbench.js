@@ -3,6 +3,7 @@ import { Candidates } from "./candidates.js";
 import { Chain } from "./chain.js";
 import { Commands } from "./commands.js";
 import { Control } from "./control.js";
+import { Devices } from "./devices.js";
 import { Measurement } from "./measurement.js";
 import { showMisfit } from "./misfit.js";
 import { Optimizers } from "./optimizers.js";
@@ -15,8 +16,8 @@ import { number } from "./signals.js";
 import { Steps } from "./steps.js";
 import { Tabs } from "./tabs.js";
 
-const STAGES = { run: "Identifying", diagnose: "Diagnosing", improve: "Improving", control: "Following the reference" };
-const TABS = { measurement: "Measurement", parameters: "Parameters", misfit: "Where it fails", candidates: "Candidates", steps: "Steps", optimizers: "Optimizers", control: "Control", commands: "Commands" };
+const STAGES = { run: "Identifying", diagnose: "Diagnosing", improve: "Improving", control: "Following the reference", fleet: "Identifying all devices" };
+const TABS = { measurement: "Measurement", parameters: "Parameters", misfit: "Where it fails", candidates: "Candidates", steps: "Steps", optimizers: "Optimizers", control: "Control", devices: "Devices", commands: "Commands" };
 const byId = (id) => document.getElementById(id);
 let state = null, asking = false, newest = 0, draftModel = ["bouc_wen"], disconnected = false, failure = "", entered = null;
 
@@ -32,6 +33,7 @@ const candidates = new Candidates(sheets.candidates, { ...page, add: (effect) =>
 const steps = new Steps(sheets.steps, { ...page, back: (step) => act("back", { step }), compare: (chosen) => chosen.length === 2 && panes.showSignals(state, chosen.toSorted((a, b) => b - a)).catch(showError) });
 const optimizers = new Optimizers(sheets.optimizers, { search: (form) => act("search", form), improve: (budget) => act("improve", { budget }) });
 const control = new Control(sheets.control, page);
+const devices = new Devices(sheets.devices, { ...page, open: openLot });
 const commands = new Commands(sheets.commands, showError);
 const { convergence } = optimizers;
 const progress = new Progress(() => { if (state?.stage === "diagnose") { showStatus(); candidates.show(state, progress); } });
@@ -48,6 +50,7 @@ const isBusy = () => asking || Boolean(state?.busy ?? state?.stage);
  * Returns whether it was made. */
 async function act(name, body = {}, then = null) {
   if (isBusy() && name !== "stop") return false;
+  let refused = null;
   [asking, failure] = [true, ""];
   hideError();
   showBusy();
@@ -56,11 +59,12 @@ async function act(name, body = {}, then = null) {
     if (then) state = await requestJson(then, { at: state.at });
     return true;
   } catch (error) {
-    showError(error);
+    refused = error;
     return false;
   } finally {
     asking = false;
     show(state);
+    if (refused) showError(refused);
     if (newest > state.version) refresh();
   }
 }
@@ -123,12 +127,13 @@ function showResults() {
   steps.show(state);
   optimizers.show(state);
   control.show(state);
+  devices.show(state);
 }
 
 function showHeader() {
   if (!state) return;
   const begun = state.steps.length > 0, { headline } = state;
-  byId("name").textContent = begun ? state.job.name : "pzt-ident workbench";
+  byId("name").textContent = begun ? state.lot?.device || state.job.name : "pzt-ident workbench";
   byId("name").title = begun ? state.job.folder : state.folder;
   const [verdict, next, action] = begun
     ? [headline.verdict, headline.next, headline.action ?? (state.result && !isBusy() ? { name: "", label: "Follow a reference" } : null)]
@@ -139,7 +144,7 @@ function showHeader() {
   byId("action").textContent = action?.label ?? "";
   byId("action").onclick = () => (!begun ? measurement.confirm() : action.name ? act(action.name, action.body) : tabs.open("control"));
   const idle = begun && Boolean(state.result);
-  for (const [id, shown] of Object.entries({ improve: idle && action?.name !== "improve", report: idle, undo: begun })) byId(id).hidden = !shown;
+  for (const [id, shown] of Object.entries({ improve: idle && action?.name !== "improve", report: idle, undo: begun && (state.steps.length > 1 || !state.lot?.device), lot: Boolean(state.lot) })) byId(id).hidden = !shown;
   byId("undo").textContent = state.steps.length > 1 ? "Undo" : "Change the measurement";
 }
 
@@ -211,6 +216,9 @@ async function refresh() {
   } catch (error) { showError(error); }
 }
 
+/** Go to the page of the lot. */
+function openLot(url) { location.href = `${url}${location.hash}`; }
+
 async function openReport() {
   try {
     const opened = window.open("", "_blank");
@@ -233,6 +241,7 @@ byId("improve").addEventListener("click", () => act("improve", {}));
 byId("stop").addEventListener("click", () => act("stop"));
 byId("undo").addEventListener("click", () => act("undo"));
 byId("report").addEventListener("click", openReport);
+byId("lot").addEventListener("click", () => openLot(state.lot.url));
 byId("error").querySelector("button").addEventListener("click", hideError);
 byId("choose").addEventListener("change", (event) => upload(event.target.files));
 addEventListener("dragover", (event) => {

@@ -1,0 +1,70 @@
+"""A lot in the workbench: begun by mouse, watched as it goes on, sorted, and a device opened like a run."""
+
+import pytest
+from playwright.sync_api import expect
+
+from browser.conftest import faults_of, workbenches
+from experiments.fleet.lot import write_lot
+
+DEVICES = 6
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    made = tmp_path_factory.mktemp("lot")
+    write_lot(made, DEVICES, 3, broken=1 / DEVICES, samples=300, swarm=(12, 15))
+    return made
+
+
+@pytest.fixture(scope="module")
+def lot(browsing, folder):
+    """The page of the lot, begun from the job of one device."""
+    job = folder / "one.yaml"
+    text = (folder / "job.yaml").read_text(encoding="utf-8")
+    job.write_text(text.replace("file: ", "file: lot/d00000/"), encoding="utf-8")
+    with workbenches(folder) as start, browsing() as page:
+        page.goto(start("one.yaml"))
+        page.click("#tab-devices")
+        expect(page.locator("#sheet-devices")).to_contain_text("loops.csv, tones.csv")
+        page.click("#identify-lot")
+        expect(page.locator("#counts")).to_contain_text("of 6 devices done")  # while it goes on
+        expect(page.locator("#table-devices tbody tr")).to_have_count(DEVICES - 1)
+        expect(page.locator("#live progress")).to_be_hidden()
+        yield page
+
+
+def test_its_table_is_sorted_and_filtered(lot):
+    heading = lot.locator("#table-devices th", has_text="bouc_wen.gain")
+    heading.locator("button").click()
+    gains = [float(cell.get_attribute("data-value")) for cell in lot.locator("#table-devices td:nth-child(3)").all()]
+    assert gains == sorted(gains)
+    expect(heading).to_have_attribute("aria-sort", "ascending")
+    lot.fill("#filter", "d00000")
+    expect(lot.locator("#table-devices tbody tr:visible")).to_have_count(1)
+    lot.fill("#filter", "")
+
+
+def test_what_is_said_of_it_is_beside_it_and_leads_to_the_atlas(lot):
+    expect(lot.locator("#broken")).to_contain_text("the file is empty")
+    expect(lot.locator("#spreads svg").first).to_be_visible()  # drawn after the table
+    expect(lot.locator("#spreads a").first).to_have_attribute("href", "/atlas#word-bouc_wen")
+    assert faults_of(lot) == []
+    for width in (1280, 820):
+        lot.set_viewport_size({"width": width, "height": 800})
+        assert lot.evaluate("document.documentElement.scrollWidth") <= width
+    lot.set_viewport_size({"width": 1280, "height": 800})
+    with lot.expect_download() as download:
+        lot.click("[data-file='devices.csv']")
+    assert len(download.value.path().read_text(encoding="utf-8").splitlines()) == DEVICES + 1
+
+
+def test_a_device_opens_like_a_run_and_leads_back(lot):
+    name = lot.locator("#table-devices a[data-device]").first.text_content()
+    lot.locator("#table-devices a[data-device]").first.press("Enter")
+    expect(lot.locator("#name")).to_have_text(name)
+    expect(lot.locator("#loop canvas.drawn")).to_be_visible()
+    expect(lot.locator("#verdict")).to_contain_text("The model is fitted: it leaves an RMSE of")
+    expect(lot.locator("#action")).to_have_text("Diagnose")
+    expect(lot.locator(".parameter input[type=range]").first).to_be_enabled()
+    lot.click("#lot")
+    expect(lot.locator("#table-devices tbody tr")).to_have_count(DEVICES - 1)
