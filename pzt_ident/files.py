@@ -76,7 +76,7 @@ DIGEST = "digest"
 
 def write_sealed(path: Path, content: Mapping[str, Any]) -> dict[str, Any]:
     """Write a JSON object with the digest of what is in it, and return it: `read_sealed` finds every change of it."""
-    facts = plain(dict(content))
+    facts = plain({key: value for key, value in content.items() if key != DIGEST})
     facts[DIGEST] = _digest(facts)
     write_json(path, facts)
     return dict(facts)

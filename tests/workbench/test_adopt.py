@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+from pzt_ident.files import read_sealed, write_sealed
 from pzt_ident.job.edit import edited
 from pzt_ident.workbench import adopt, page_state
 
@@ -101,11 +102,11 @@ def test_a_detour_leaves_the_fit_that_was_found_after_it():
 
 def test_the_last_step_has_the_diagnosis_of_the_improvement(improved):
     out = improved.step() / "improved"
-    (out / "diagnosis.json").write_text(json.dumps({"verdict": "unexplained", "reason": "Nothing."}))
+    write_sealed(out / "diagnosis.json", {"verdict": "unexplained", "reason": "Nothing."})
     *_, last = adopt.improvement(improved, improved.step())
     adopt.diagnosis(improved, out.parent, last)
     folder = improved.step(last) / "diagnosis"
-    found = json.loads((folder / "diagnosis.json").read_text())
+    found = read_sealed(folder / "diagnosis.json")  # whole, though its reason has changed
     assert (found["verdict"], found["reason"]) == ("unexplained", "Nothing. The budget of 9 s did not suffice.")
     assert improved.again(folder) == "workbench/again/1/improved"
     (_, diagnose) = improved.commands(improved.step(last))

@@ -10,10 +10,10 @@ export function element(parent, tag, attributes = {}, text = "") {
   return append(parent, document.createElement(tag), attributes, text);
 }
 
-/** A new element with a name in it, which is parted, where it must be, after a dot or an underscore. */
+/** A new element with a name in it, which is parted, where it must be, after a dot, a slash or an underscore. */
 export function named(parent, tag, attributes, name) {
   const node = element(parent, tag, attributes);
-  name.split(/(?<=[a-z\d][._])(?=[a-z])/i).forEach((part, place) => node.append(...(place ? [document.createElement("wbr")] : []), part));
+  name.split(/(?<=[a-z\d][._/])(?=[a-z])/i).forEach((part, place) => node.append(...(place ? [document.createElement("wbr")] : []), part));
   return node;
 }
 

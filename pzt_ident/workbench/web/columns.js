@@ -1,4 +1,4 @@
-import { element, keepingFocus, row, select, svgElement } from "./parts.js";
+import { element, keepingFocus, named, row, select, svgElement } from "./parts.js";
 import { crop, recordName, USES } from "./records.js";
 import { short } from "./scale.js";
 import { typed } from "./slider.js";
@@ -35,6 +35,7 @@ export class Columns {
     element(this.root, "p", { class: "quiet" }, "Drag the handles in the time plot to crop a record, to leave out its start, or to move the part for validation.");
     const more = element(element(this.root, "p"), "label", {}, "More files ");
     element(more, "input", { type: "file", multiple: "" }).addEventListener("change", (event) => this.actions.upload(event.target.files));
+    if (!this.records.columnOf("time")) this.field(element(this.root, "p", { class: "bar" }), "No time column. Sample rate ", "rate", { placeholder: "1 kHz" });
     element(this.root, "h2", {}, "Columns");
     element(this.root, "p", { class: "quiet" }, "Check the role and the unit of each column: the units set the scale of every parameter.");
     this.columnTable();
@@ -90,7 +91,8 @@ export class Columns {
     const body = element(table, "tbody");
     for (const column of this.records.columns) {
       const name = this.records.columnName(column);
-      const cells = row(body, "td", [name, "", "", this.records.constant(column) ? `constant ${short(column.low)}` : this.records.range(column).map(short).join(" to ")]);
+      const cells = row(body, "td", ["", "", "", this.records.constant(column) ? `constant ${short(column.low)}` : this.records.range(column).map(short).join(" to ")]);
+      named(cells[0], "span", {}, name);
       const role = select(cells[1], this.records.rolesOf(column), this.records.roleOf(column), `Role of ${name}`);
       const unit = element(cells[2], "input", { "aria-label": `Unit of ${name}`, value: column.unit, placeholder: "unit", size: 4 });
       preview(cells[3], column.shape, name);
@@ -103,7 +105,6 @@ export class Columns {
   confirmation() {
     const bar = element(this.root, "p", { class: "bar" });
     this.field(bar, "Name of the job ", "name", {});
-    if (!this.records.columnOf("time")) this.field(bar, "No time column. Sample rate ", "rate", { placeholder: "1 kHz" });
     const button = element(bar, "button", { type: "button", class: "strong", id: "confirm", "data-acts": "" }, "Confirm and identify");
     button.addEventListener("click", () => this.actions.confirm());
   }

@@ -10,7 +10,7 @@ const DASHES = [[6, 3], [], [2, 2], [8, 2, 2, 2], [4, 2]];
 const KINDS = { error: "Error", displacement: "Displacement", drive: "Drive" };
 
 /** The model put to work: a reference to follow, the error of each way to follow it, and the drive as a file. `page` has
- * act(name, body) and fail(error). */
+ * act(name, body), fail(error) and clear(). */
 export class Control {
   constructor(root, page) {
     Object.assign(this, { root, page, key: "", reference: null, file: null, typed: null });
@@ -37,6 +37,7 @@ export class Control {
       try {
         this.reference = await (await request(`reference?name=${encodeURIComponent(file.name)}&rate=${encodeURIComponent(this.typed.rate ?? "")}`, file, true)).json();
         facts.textContent = said(this.reference);
+        this.page.clear();
       } catch (error) { this.page.fail(error); }
     };
     choose.addEventListener("change", () => take(choose.files[0]));

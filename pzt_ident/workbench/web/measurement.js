@@ -186,7 +186,7 @@ export class Measurement {
     fact("samples", `${this.records.list.map(({ rows }) => rows).join(", ")}${record.dt && timed ? `, ${short(record.rows * record.dt)} s` : ""}`);
     fact("missing values", this.records.columns.filter((column) => this.records.roleOf(column) && column.missing).map((column) => `${column.missing} of ${this.records.columnName(column)}: crop the record, or fill the gaps in the file`).join("; "));
     if (!guess) return;
-    fact("sample rate", timed ? `${short(1 / record.dt)} Hz` : "not known: give it below the columns");
+    fact("sample rate", timed ? `${short(1 / record.dt)} Hz` : "not known: give it above the columns");
     const usable = (facts) => Object.entries(facts).filter(([axis]) => this.records.axes().includes(axis));
     for (const [axis, { value, unit }] of usable(guess.amplitude)) fact(`span of the drive of ${axis}`, `${short(value)} ${unit}`);
     for (const [axis, value] of usable(guess.frequency)) fact(`main frequency of ${axis}`, value && timed ? `${number(guess.rate ? value / guess.rate / record.dt : value, 3)} Hz` : "");

@@ -24,7 +24,7 @@ let state = null, asking = false, newest = 0, draftModel = ["bouc_wen"], disconn
 const tabs = new Tabs(byId("tabs"), byId("sheets"), TABS);
 const { sheets } = tabs;
 const panes = new Panes({ fail: showError, chooseStep: ({ number: step }) => { tabs.open("steps"); steps.reveal(step); }, onMoved: (rmse) => (tabs.current === "candidates" ? candidates.moved(rmse) : parameters.showError(rmse)) });
-const page = { move: (values, effect) => panes.move(state.at, values, effect), fail: showError, act, refresh };
+const page = { move: (values, effect) => panes.move(state.at, values, effect), fail: showError, clear: hideError, act, refresh };
 const parameters = new Parameters(sheets.parameters, {
   ...page, polish: (values) => act("polish", { values }),
   settle: (body, undo) => act("settings", body).then((done) => done || undo()),
