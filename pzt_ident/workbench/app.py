@@ -75,6 +75,8 @@ def route(bench: Bench, path: str, handler: Handler, method: str = "GET") -> Rou
     async def respond(request: Request) -> Response:
         try:
             return await handler(bench, request)
+        except asyncio.CancelledError:
+            return PlainTextResponse("the workbench has ended", 503)
         except TooLarge as error:
             return JSONResponse({"error": str(error)}, status_code=413, headers={"connection": "close"})
         except (InputError, RunError) as error:

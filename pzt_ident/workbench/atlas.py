@@ -8,20 +8,17 @@ from pathlib import Path
 from pzt_ident.atlas.href import PAGE
 from pzt_ident.errors import RunError
 from pzt_ident.model.registry import blocks
-from pzt_ident.workbench.runner import Runner
+from pzt_ident.workbench.runner import Aside
 from pzt_ident.workbench.session import Session
 
 
-class Atlas(Runner):
+class Atlas(Aside):
     """Drawn by a process of its own when it is first asked for, and again once a job brought other words; kept in
     memory."""
 
     def __init__(self, session: Session) -> None:
         super().__init__(session.root, lambda: None)
         self.session, self.words, self.html = session, list[str](), ""
-
-    def warm(self) -> None:
-        """No process waits: there is one command."""
 
     def page(self) -> str:
         """The page, nothing while it is being drawn. Raises RunError where that failed."""

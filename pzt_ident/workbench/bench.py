@@ -16,8 +16,9 @@ from pzt_ident.workbench import adopt, page_state
 from pzt_ident.workbench.atlas import Atlas
 from pzt_ident.workbench.fleet import Fleet, to_adopt
 from pzt_ident.workbench.headline import error, headline
-from pzt_ident.workbench.runner import Runner
+from pzt_ident.workbench.runner import Aside, Runner
 from pzt_ident.workbench.session import INTERRUPTED, Session
+from pzt_ident.workbench.session_results import gathered
 from pzt_ident.workbench.step_commands import better_fit
 
 Form = dict[str, Any]
@@ -34,6 +35,7 @@ class Bench:
         self.fleet = fleet or (Fleet(made_here) if is_fleet(made_here) else None)
         self.runner = Runner(session.root, self.changed)
         self.atlas = Atlas(session)
+        self.drawer, self.drawing = Aside(session.root, lambda: None), asyncio.Lock()
         self.lock = asyncio.Lock()
         self.making: tuple[str, str] | None = None
         self.tasks: set[asyncio.Task[None]] = set()
@@ -190,6 +192,12 @@ class Bench:
         state = page_state.state(self.session) | doing | {"failure": failure, "lot": self.lot}
         state |= {"headline": headline(state), "error": error(state)}
         return dict(plain(state))
+
+    async def draw(self) -> None:
+        """Draw the report of the current step with every figure, in a process that ends with this one."""
+        run = await asyncio.to_thread(gathered, self.session)
+        async with self.drawing:
+            await self.drawer.run("report", ["report", self.session.relative(run)])
 
     def background(self, work: Coroutine[Any, Any, None]) -> None:
         """Let something be done beside all else."""

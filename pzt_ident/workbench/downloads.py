@@ -28,7 +28,8 @@ PLACES = {
 }
 """Files of a step by the name under which they are given."""
 
-FOLDERS = {"figures.zip": "figures", "tables.zip": "tables"}
+FIGURES = "figures.zip"
+FOLDERS = {FIGURES: "figures", "tables.zip": "tables"}
 """Folders of a report, packed when they are asked for."""
 
 
@@ -42,7 +43,7 @@ def names(session: Session) -> list[str]:
 
 
 def path_of(session: Session, name: str) -> Path:
-    """The file of a name; figures and tables are drawn first. Raises InputError for what is not there."""
+    """The file of a name; tables are made first. Raises InputError for what is not there."""
     present = names(session)
     if name not in present:
         raise InputError(f"{name!r} cannot be had of this step", remedy=nearest(name, present) if present else "")
@@ -57,14 +58,13 @@ def path_of(session: Session, name: str) -> Path:
 
 
 def packed_folder(session: Session, name: str) -> Path:
-    """Figures as PDF and SVG at two widths, or tables as CSV and LaTeX, in an archive."""
-    from pzt_ident.report.figures import write_all_figures
-    from pzt_ident.report.page import write_report
+    """Figures as PDF and SVG at two widths, as they were drawn, or tables as CSV and LaTeX, in an archive."""
+    from pzt_ident.report.tables import make_tables, write_tables
+    from pzt_ident.run.results import read_folder
 
     run = gathered(session)
-    write_report(run)
-    if name == "figures.zip":
-        write_all_figures([run])
+    if name != FIGURES:
+        write_tables(make_tables(read_folder(run)), run / FOLDERS[name])
     return archive(run / FOLDERS[name], session.step() / name)
 
 

@@ -74,7 +74,10 @@ async def drive_file(bench: Bench, request: Request) -> Response:
 
 
 async def download(bench: Bench, request: Request) -> Response:
-    path = await asyncio.to_thread(downloads.path_of, bench.session, request.query_params["name"])
+    name = request.query_params["name"]
+    if name == downloads.FIGURES and name in downloads.names(bench.session):
+        await bench.draw()
+    path = await asyncio.to_thread(downloads.path_of, bench.session, name)
     return FileResponse(path, filename=path.name)
 
 

@@ -131,6 +131,13 @@ class Runner:
                 await process.wait()
 
 
+class Aside(Runner):
+    """A command now and then beside the others: no process waits for it."""
+
+    def warm(self) -> None:
+        """Nothing."""
+
+
 def command_line() -> list[str]:
     """A process of `pzt-ident` with this process' module search path, which reads its arguments from its input."""
     code = f"import sys; sys.path[:] = {search_path()}; from pzt_ident.cli.child_process import main; main()"

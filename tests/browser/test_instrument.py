@@ -398,6 +398,23 @@ def test_it_is_improved_by_mouse_and_the_staircase_falls(shown, folder):
     expect(shown.locator(".stairs .mark.identify:not(.live)")).to_have_count(len(steps))
 
 
+def test_both_bounds_are_taken_at_once(shown, folder):
+    before, (lower, upper) = (
+        state_of(folder),
+        [shown.get_by_label(re.compile(f"bouc_wen.beta, {side} bound")) for side in ("lower", "upper")],
+    )
+    lower.fill("0.001")
+    lower.press("Tab")
+    upper.fill("0.4")
+    assert state_of(folder)["steps"] == before["steps"]  # nothing is fitted in between
+    upper.press("Enter")
+    expect(shown.locator("#stop")).to_be_visible()
+    expect(shown.locator("body.busy")).to_have_count(0)
+    added = state_of(folder)["steps"][len(before["steps"]) :]
+    assert [step["change"] for step in added] == ["bouc_wen.beta in 0.001000 to 0.4000"]
+    expect(shown.locator("#error")).to_be_hidden()
+
+
 @pytest.mark.parametrize("typed", ["", "abc", "1e400"])
 def test_a_bound_that_is_no_number_changes_nothing(shown, folder, typed):
     field = shown.get_by_label(re.compile("bouc_wen.alpha, lower bound"))

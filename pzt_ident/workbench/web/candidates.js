@@ -2,7 +2,7 @@ import { about, sentence } from "./about.js";
 import { Figure } from "./figure.js";
 import { percent } from "./misfit.js";
 import { element, named, USE_NAMES } from "./parts.js";
-import { request, requestJson, save } from "./session.js";
+import { once, request, requestJson, save } from "./session.js";
 import { extent, number } from "./signals.js";
 import { slider } from "./slider.js";
 
@@ -96,8 +96,7 @@ export class Candidates {
     sentence(this.root, "p", `To tell ${splits.join(" and ")} apart, apply this drive: ${why}.`, this.catalogue);
     const holder = element(this.root, "div", { class: "plotted" });
     const figure = new Figure(holder, { label: "The proposed drive over time", along: true, gestures: { reset: () => figure.plot.look(null, null), point: (point) => figure.pointAt(point) } });
-    const button = element(element(this.root, "p"), "button", { type: "button" }, "Download the drive (CSV)");
-    button.addEventListener("click", () => save("drive", "next_experiment.csv").catch((error) => this.page.fail(error)));
+    once(element(element(this.root, "p"), "button", { type: "button" }, "Download the drive (CSV)"), () => save("drive", "next_experiment.csv"), this.page.fail);
     request("drive").then((reply) => reply.text()).then((text) => figure.show(driveScene(text), "")).catch((error) => this.page.fail(error));
   }
 }

@@ -1,5 +1,5 @@
 import { element } from "./parts.js";
-import { requestJson, save } from "./session.js";
+import { once, requestJson, save } from "./session.js";
 
 const FORMATS = { c: "C", fmu: "FMU", matlab: "MATLAB", csv: "CSV table", json: "JSON" };
 
@@ -25,21 +25,18 @@ export class Commands {
     element(this.root, "h2", {}, "The model for a controller");
     const bar = element(this.root, "div", { class: "bar" });
     for (const [to, text] of Object.entries(FORMATS))
-      element(bar, "button", { type: "button", "data-export": to }, text).addEventListener("click", () => this.exportTo(to));
-  }
-
-  async exportTo(to) {
-    try {
-      const { url, file } = await requestJson("export", { to });
-      const link = Object.assign(document.createElement("a"), { href: url, download: file.split("/").at(-1) });
-      link.click();
-    } catch (error) { this.fail(error); }
+      once(element(bar, "button", { type: "button", "data-export": to }, text), () => exported(to), this.fail);
   }
 
   showFiles(names) {
     element(this.root, "h2", {}, "Files of this step");
     const bar = element(this.root, "div", { class: "bar downloads" });
     for (const name of names)
-      element(bar, "button", { type: "button" }, name).addEventListener("click", () => save(`download?name=${encodeURIComponent(name)}`, name).catch((error) => this.fail(error)));
+      once(element(bar, "button", { type: "button" }, name), () => save(`download?name=${encodeURIComponent(name)}`, name), this.fail);
   }
+}
+
+async function exported(to) {
+  const { url, file } = await requestJson("export", { to });
+  Object.assign(document.createElement("a"), { href: url, download: file.split("/").at(-1) }).click();
 }

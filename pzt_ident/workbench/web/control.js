@@ -1,7 +1,7 @@
 import { Figure } from "./figure.js";
 import { element } from "./parts.js";
 import { printed } from "./records.js";
-import { request, requestJson, save } from "./session.js";
+import { once, request, requestJson, save } from "./session.js";
 import { extent, number } from "./signals.js";
 import { plain, typed } from "./slider.js";
 
@@ -90,7 +90,7 @@ export class Control {
     for (const [axis, { kp, ki }] of Object.entries(gains ?? {})) element(this.root, "p", { class: "quiet" }, `PI controller of ${axis}: Kp ${number(kp)} ${driveUnits[axis]}/${units[axis]}, Ki ${number(ki)} ${driveUnits[axis]}/(${units[axis]} s).`);
     for (const note of notes ?? []) element(this.root, "p", {}, note);
     const bar = element(this.root, "p", { class: "bar" });
-    element(bar, "button", { type: "button", id: "take-drive" }, "Download the drive (CSV)").addEventListener("click", () => save("download?name=drive.csv", "drive.csv").catch((error) => this.page.fail(error)));
+    once(element(bar, "button", { type: "button", id: "take-drive" }, "Download the drive (CSV)"), () => save("download?name=drive.csv", "drive.csv"), this.page.fail);
     for (const [kind, title] of Object.entries(KINDS)) {
       element(this.root, "h2", {}, title);
       this[kind] = this.figure(title);

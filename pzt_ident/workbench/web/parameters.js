@@ -35,11 +35,11 @@ export class Parameters {
     const head = element(entry, "div", { class: "parameter-head" });
     about(element(head, "strong"), name, href, physics);
     const line = element(entry, "div", { class: "slide" });
-    const [lowest, highest] = ["lower", "upper"].map((side, i) => [side, bounds[i]]);
-    this.bound(line, parameter, lowest, 0);
+    const fields = ["lower", "upper"].map((side, i) => this.bound(line, parameter, side, bounds[i]));
     const made = slider(line, head, parameter, (value) => this.move(name, value));
     this.sliders[name] = { ...made, value: parameter.value };
-    this.bound(line, parameter, highest, 1);
+    line.append(fields[1]);
+    this.settleBounds(line, parameter, fields);
     const fix = element(element(line, "label", { title: "Keep this value in the next fit" }, ""), "input", { type: "checkbox", "aria-label": `Fix ${name}`, ...(fixed && { checked: "" }) });
     fix.after("fix");
     fix.addEventListener("change", () => this.page.settle(fix.checked ? { parameter: name, value: this.values[name] ?? parameter.value } : { parameter: name, free: true }, () => { fix.checked = fixed; }));
@@ -48,13 +48,26 @@ export class Parameters {
     if (text) element(facts, "span", { class: `tag ${style}` }, text);
   }
 
-  bound(line, { name, bounds, unit }, [side, value], place) {
-    const field = element(line, "input", { type: "text", inputmode: "decimal", value: plain(value, 4), "aria-label": `${name}, ${side} bound${unit ? ` in ${unit}` : ""}` });
-    field.addEventListener("change", () => {
-      const changed = [...bounds];
-      changed[place] = typed(field);
-      if (changed[place] !== null && changed[0] < changed[1]) this.page.settle({ parameter: name, bounds: changed }, () => { field.value = plain(value, 4); });
-      else field.value = plain(value, 4);
+  bound(line, { name, unit }, side, value) {
+    return element(line, "input", { type: "text", inputmode: "decimal", value: plain(value, 4), "aria-label": `${name}, ${side} bound${unit ? ` in ${unit}` : ""}` });
+  }
+
+  /** Take both bounds at once, by Enter or when the line is left. */
+  settleBounds(line, { name, bounds }, fields) {
+    const shown = bounds.map((value) => plain(value, 4));
+    let asked = false;
+    const undo = () => { asked = false; fields.forEach((field, i) => { field.value = shown[i]; }); };
+    const settle = () => {
+      const [low, high] = fields.map((field, i) => (field.value === shown[i] ? bounds[i] : typed(field)));
+      if (asked || (low === bounds[0] && high === bounds[1])) return;
+      asked = low < high;
+      if (asked) this.page.settle({ parameter: name, bounds: [low, high] }, undo);
+      else undo();
+    };
+    line.addEventListener("focusout", ({ relatedTarget }) => line.contains(relatedTarget) || settle());
+    fields.forEach((field, i) => {
+      field.addEventListener("change", () => { if (typed(field) === null) field.value = shown[i]; });
+      field.addEventListener("keydown", ({ key }) => key === "Enter" && settle());
     });
   }
 

@@ -47,6 +47,16 @@ export async function follow(onEvent, onError) {
   }
 }
 
+/** Let a button do what takes its time, and nothing more until that is done; `fail(error)` is told why it was not. */
+export function once(button, work, fail) {
+  button.addEventListener("click", async () => {
+    if (button.getAttribute("aria-disabled") === "true") return;
+    button.setAttribute("aria-disabled", "true");
+    try { await work(); } catch (error) { fail(error); }
+    button.setAttribute("aria-disabled", "false");
+  });
+}
+
 /** Download `/api/name` as a file. */
 export async function save(name, fileName) {
   const link = document.createElement("a");

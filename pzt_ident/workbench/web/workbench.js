@@ -11,7 +11,7 @@ import { Panes } from "./panes.js";
 import { Parameters } from "./parameters.js";
 import { element, keepingFocus } from "./parts.js";
 import { Progress } from "./progress.js";
-import { follow, initialFile, request, requestJson } from "./session.js";
+import { follow, initialFile, once, request, requestJson } from "./session.js";
 import { number } from "./signals.js";
 import { Steps } from "./steps.js";
 import { Tabs } from "./tabs.js";
@@ -27,7 +27,10 @@ const panes = new Panes({ fail: showError, chooseStep: ({ number: step }) => { t
 const page = { move: (values, effect) => panes.move(state.at, values, effect), fail: showError, clear: hideError, act, refresh };
 const parameters = new Parameters(sheets.parameters, {
   ...page, polish: (values) => act("polish", { values }),
-  settle: (body, undo) => act("settings", body).then((done) => done || undo()),
+  settle: (body, undo) => {
+    if (isBusy()) showError({ message: "Wait until the model is fitted, or stop that." });
+    return act("settings", body).then((done) => done || undo());
+  },
 });
 const candidates = new Candidates(sheets.candidates, { ...page, add: (effect) => act("add", { effect }) });
 const steps = new Steps(sheets.steps, { ...page, back: (step) => act("back", { step }), compare: (chosen) => chosen.length === 2 && panes.showSignals(state, chosen.toSorted((a, b) => b - a)).catch(showError) });
@@ -43,7 +46,7 @@ const measurement = new Measurement(sheets.measurement, byId("guess"), {
 });
 const chain = new Chain(byId("blocks"), byId("more"), { setModel, add: (effect) => act("add", { effect }), remove: (effect) => act("remove", { effect }) });
 
-const ACTS = "#action, #improve, #undo, #report, [data-acts]";
+const ACTS = "#action, #improve, #undo, [data-acts]";
 const isBusy = () => asking || Boolean(state?.busy ?? state?.stage);
 
 /** Request a change, then perhaps another, and show the new state or the error. Nothing happens while one is under way.
@@ -162,7 +165,7 @@ function showVerdict(text) {
 function showBusy() {
   const busy = isBusy();
   document.body.classList.toggle("busy", busy);
-  for (const button of document.querySelectorAll(ACTS)) if (button.id !== "report") button.setAttribute("aria-disabled", String(busy));
+  for (const button of document.querySelectorAll(ACTS)) button.setAttribute("aria-disabled", String(busy));
   byId("stop").hidden = !state?.running;
   showStatus();
 }
@@ -220,11 +223,14 @@ async function refresh() {
 function openLot(url) { location.href = `${url}${location.hash}`; }
 
 async function openReport() {
+  const opened = window.open("", "_blank");
   try {
-    const opened = window.open("", "_blank");
     const { url } = await requestJson("report", {});
     opened ? (opened.location = url) : (location.href = url);
-  } catch (error) { showError(error); }
+  } catch (error) {
+    opened?.close();
+    throw error;
+  }
 }
 
 // The second click of a double-click is no wish of its own, however fast the answer to the first one is.
@@ -240,7 +246,7 @@ addEventListener("keyup", (event) => { if (event.key === "Enter" && event.target
 byId("improve").addEventListener("click", () => act("improve", {}));
 byId("stop").addEventListener("click", () => act("stop"));
 byId("undo").addEventListener("click", () => act("undo"));
-byId("report").addEventListener("click", openReport);
+once(byId("report"), openReport, showError);
 byId("lot").addEventListener("click", () => openLot(state.lot.url));
 byId("error").querySelector("button").addEventListener("click", hideError);
 byId("choose").addEventListener("change", (event) => upload(event.target.files));
