@@ -56,7 +56,7 @@ export class Candidates {
     element(more, "summary", {}, "Physics, estimate, sliders");
     const facts = element(more, "dl", { class: "facts" });
     const others = item.class.filter((word) => word !== item.effect).join(", ");
-    for (const [term, text] of [["estimate", item.estimate ?? item.would_be], ["visibility", number(item.visibility, 2)], ["cannot be told from", others]])
+    for (const [term, text] of [["estimate", item.estimate], ["visibility", number(item.visibility, 2)], ["cannot be told from", others]])
       if (text) { element(facts, "dt", {}, term); sentence(facts, "dd", text, this.catalogue); }
     sentence(more, "p", item.physics, this.catalogue);
     if (item.remedy) sentence(more, "p", `On the test rig: ${item.remedy}`, this.catalogue);

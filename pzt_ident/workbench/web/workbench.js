@@ -235,7 +235,9 @@ async function openReport() {
 
 // The second click of a double-click is no wish of its own, however fast the answer to the first one is.
 document.addEventListener("click", (event) => {
-  if (event.detail > 1 && event.target.closest(ACTS)) event.stopPropagation();
+  if (!(event.detail > 1 && event.target.closest(`${ACTS}, .slide label`))) return;
+  event.stopPropagation();
+  event.preventDefault();
 }, true);
 // A file dialog opens by Enter, too: once the key is up, since a browser may take it for no wish of the user before.
 addEventListener("keydown", (event) => {
