@@ -304,10 +304,11 @@ def test_a_form_and_the_name_of_a_step_lead_to_their_sections(shown):
 
     with state_with(shown, change):
         links = shown.locator("#verdict a")
+        expect(links).to_have_text(["friction (coulomb)", "friction", "creep (voltage)"])
         words = [link.get_attribute("href").removeprefix("/atlas#word-") for link in links.all()]
         assert words == ["friction.coulomb", "friction", "creep.voltage"]
-        expect(links).to_have_text(["friction (coulomb)", "friction", "creep (voltage)"])
         steps = shown.locator(".stairs a")
+        expect(steps).to_have_count(2)
         hrefs = [link.get_attribute("href") for link in steps.all()]
         assert hrefs == ["/atlas#word-friction.coulomb", "/atlas#word-pso"]
         assert all(min(link.bounding_box()[side] for side in ("width", "height")) >= 24 for link in steps.all())
