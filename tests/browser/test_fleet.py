@@ -1,5 +1,7 @@
 """A lot in the workbench: begun by mouse, watched as it goes on, sorted, and a device opened like a run."""
 
+import shutil
+
 import pytest
 from playwright.sync_api import expect
 
@@ -27,7 +29,6 @@ def lot(browsing, folder):
         page.click("#tab-devices")
         expect(page.locator("#sheet-devices")).to_contain_text("loops.csv, tones.csv")
         page.click("#identify-lot")
-        expect(page.locator("#counts")).to_contain_text("of 6 devices done")  # while it goes on
         expect(page.locator("#table-devices tbody tr")).to_have_count(DEVICES - 1)
         expect(page.locator("#live progress")).to_be_hidden()
         yield page
@@ -56,6 +57,18 @@ def test_what_is_said_of_it_is_beside_it_and_leads_to_the_atlas(lot):
     with lot.expect_download() as download:
         lot.click("[data-file='devices.csv']")
     assert len(download.value.path().read_text(encoding="utf-8").splitlines()) == DEVICES + 1
+
+
+def test_a_fleet_that_is_not_done_is_followed_and_goes_on(lot, folder):
+    name = lot.locator("#table-devices a[data-device]").last.text_content()
+    shutil.rmtree(folder / "workbench" / "fleet" / "devices" / name)
+    expect(lot.locator("#counts")).to_have_text(f"{DEVICES - 2} of {DEVICES} devices done, 1 broken")
+    expect(lot.locator("#live progress")).to_be_visible()
+    expect(lot.locator("#table-devices tbody tr")).to_have_count(DEVICES - 2)
+    lot.click("#go-on")
+    expect(lot.locator("#table-devices tbody tr")).to_have_count(DEVICES - 1)
+    expect(lot.locator("#live progress")).to_be_hidden()
+    expect(lot.locator("#error")).to_be_hidden()
 
 
 def test_a_device_opens_like_a_run_and_leads_back(lot):
