@@ -13,14 +13,14 @@ from numba.extending import intrinsic, overload, register_jitable
 from pzt_ident.model import block
 
 
-def bitwise(result: Any, build: Any) -> Any:
-    """An intrinsic of one float64 that works on its bits."""
+def bitwise(result: Any, build: Any, given: Any = types.float64) -> Any:
+    """An intrinsic of one float64, or int64, that works on its bits."""
 
     def function(context: Any, x: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
             return build(builder, builder.bitcast(args[0], INTEGER), lambda value: ir.Constant(INTEGER, value))
 
-        return result(types.float64), generate
+        return result(given), generate
 
     return intrinsic(function)
 
@@ -29,6 +29,11 @@ INTEGER = ir.IntType(64)
 two_to_the = bitwise(  # 2^n from n + SHIFT
     types.float64,
     lambda ir_, bits, const: ir_.bitcast(ir_.shl(ir_.add(bits, const(1023)), const(52)), ir.DoubleType()),
+)
+two_to_minus = bitwise(  # 2^-n from a whole n, zero for 1023
+    types.float64,
+    lambda ir_, bits, const: ir_.bitcast(ir_.shl(ir_.sub(const(1023), bits), const(52)), ir.DoubleType()),
+    types.int64,
 )
 exponent = bitwise(types.int64, lambda ir_, bits, const: ir_.sub(ir_.lshr(bits, const(52)), const(1023)))
 mantissa = bitwise(
@@ -49,9 +54,10 @@ def expm1(x):
     shifted = x * PER_LN2 + SHIFT
     n = shifted - SHIFT
     r = (x - n * LN2_HIGH) - n * LN2_LOW
-    p = 2.4801536388690766e-05 + r * (2.762511557828763e-06 + r * 2.761380686153829e-07)
-    p = 0.008333333353729397 + r * (0.0013888888905881542 + r * (0.00019841208732536384 + r * p))
-    p = r + r * r * (0.5 + r * (0.1666666666664829 + r * (0.04166666666665136 + r * p)))
+    z = r * r
+    even = 0.5 + z * (0.04166666666665136 + z * (0.0013888888905881542 + z * (2.4801536388690766e-05 + z * 2.761380686153829e-07)))
+    odd = 0.1666666666664829 + z * (0.008333333353729397 + z * (0.00019841208732536384 + z * 2.762511557828763e-06))
+    p = r + z * (even + r * odd)
     scale = two_to_the(shifted)
     return scale * p + (scale - 1)
 
@@ -63,13 +69,14 @@ def log1p(x):
     m = mantissa(argument)
     high = m > 1.4142135623730951
     m = 0.5 * m if high else m
-    n = float(exponent(argument) + (1 if high else 0))
-    s = (m - 1) / (m + 1)
+    power = exponent(argument) + (1 if high else 0)
+    n = float(power)
+    s = ((m - 1) + (x - (argument - 1)) * two_to_minus(power)) / (m + 1)
     z = s * s
-    p = 0.11111105549855646 + z * (0.09091445840219947 + z * (0.0766581834977067 + z * 0.07308749346957806))
-    p = 0.3333333333333335 + z * (0.19999999999949516 + z * (0.14285714313095244 + z * p))
-    rounding = (x - (argument - 1)) / argument
-    return n * LN2_HIGH + (2 * s + (2 * s * z * p + (rounding + n * LN2_LOW)))
+    w = z * z
+    even = 0.3333333333333335 + w * (0.14285714313095244 + w * (0.09091445840219947 + w * 0.07308749346957806))
+    odd = 0.19999999999949516 + w * (0.11111105549855646 + w * 0.0766581834977067)
+    return n * LN2_HIGH + (2 * s + (2 * s * z * (even + z * odd) + n * LN2_LOW))
 
 
 @register_jitable(forceinline=True)

@@ -34,6 +34,9 @@ pointer = types.CPointer(types.float64)
 SIGNATURE = types.void(types.intp, types.intp, types.intp, pointer, pointer, pointer, pointer)
 
 
+import llvmlite.binding
+llvmlite.binding.set_option("pzt_ident", "-force-vector-interleave=3")
+
 class NoAliasCompiler(Compiler):
     """Compiles with pointers that never overlap, so that coefficients stay in registers."""
 

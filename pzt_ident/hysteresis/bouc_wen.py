@@ -62,21 +62,8 @@ class BoucWen(Operator):
         lost = -expm1(-rate * distance)
         return 1 - lost, lost * length
 
-    def near(further, keep, add, rate, length):
-        x = rate * further
-        extra = further * (
-            1 - x * (1 / 2 - x * (1 / 6 - x * (1 / 24 - x * (1 / 120 - x * (1 / 720 - x * (1 / 5040))))))
-        )
-        return keep - rate * (keep * extra), add + keep * extra
-
-    def exact(q, distance, along, against):
-        rate, length = against
-        reaches = q < 0 and -q * rate > -1
-        left = distance - (log1p(-q * rate) * length if reaches else inf)
-        crosses = q < 0 and left > 0
-        rate, length = along if crosses or q >= 0 else against
-        q, distance = (0.0, left) if crosses else (q, distance)
-        return q + expm1(-rate * distance) * (q - length)
+    def reach(q, rate, length):
+        return log1p(-q * rate) * length if -q * rate > -1 else inf
 
     def output(h, u, gain, slope):
         return gain * u - slope * h

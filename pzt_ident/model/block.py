@@ -174,9 +174,7 @@ class Operator(Block):
 
     prepare(*parameters) -> (shared, along, against), a tuple of coefficients each.
     travel(distance, *along or against) -> (keep, add) for a step of |du| = distance.
-    near(further, keep, add, *along or against) -> (keep, add) for distance + further, from those for distance, accurate
-    to 3e-13 for |rate further| <= 0.1, the rate being the first coefficient of a regime.
-    exact(q, distance, along, against) -> q, for any q, also through a sign change of q.
+    reach(q, *against) -> the distance after which q < 0 is zero; inf if it never is.
     output(h, u, *shared) -> y.
     quadrant(way, rate, distance, u, sign, *shared) -> the regime that takes the place of one with that rate on a step
     of du = sign distance about u; way: 1 along, -1 against. Optional, for regimes that differ by branch.
