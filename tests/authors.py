@@ -47,11 +47,8 @@ class Memory(Operator):
     def travel(distance, rate, length):
         return exp(-rate * distance), length
 
-    def near(further, keep, add, rate, length):
-        return keep - rate * further, add
-
-    def exact(q, distance, along, against):
-        return q + distance * along[0]
+    def reach(q, rate, length):
+        return -q * length
 
     def output(h, u, gain):
         return gain * u - h

@@ -10,6 +10,7 @@ import numpy as np
 from pzt_ident.atlas.fitted import fitted
 from pzt_ident.atlas.stage import MECHANICS, OPERATOR, STROKE, VALUES, Array, Drive, Stage, drives, record
 from pzt_ident.engine.additions import Additions
+from pzt_ident.engine.program import Program
 from pzt_ident.model.block import Addition, Place, Term
 from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks, word_of
@@ -94,7 +95,7 @@ class Shown:
         with np.errstate(all="ignore"):
             response = self.stage.respond(drive, theta)
         if amounts := [amount for _, amount in self._amounts(share)]:
-            response = response + Additions(self.stage.chain, record(drive)).basis(0, theta)[:, 1:] @ amounts
+            response = response + Additions(Program(self.stage.chain, record(drive))).basis(0, theta)[:, 1:] @ amounts
         return response
 
     def bare(self, drive: Drive) -> Array:

@@ -1,8 +1,6 @@
 """Thermal drift of stage, frame and sensor."""
 
-import numpy as np
-
-from pzt_ident.model.block import Addition, Place
+from pzt_ident.model.block import Addition, Place, expm1
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
@@ -31,7 +29,7 @@ class Drift(Drifting, Addition):
     tau = Parameter("s", (1, 3000), "Thermal time constant.", scale="log")
 
     def basis(t, tau):
-        return (-np.expm1(-t / tau),)
+        return (-expm1(-t / tau),)
 
 
 class Ramp(Drifting, Addition):
@@ -41,8 +39,8 @@ class Ramp(Drifting, Addition):
     down: together they are a random walk.
     """
 
-    def basis(t):
-        return (t / t[-1],)
+    def basis(t, duration):
+        return (t / duration,)
 
 
 Drift.forms = {"ramp": Ramp}

@@ -1,8 +1,10 @@
 """Mains hum and vibration of the floor."""
 
+from math import pi
+
 import numpy as np
 
-from pzt_ident.model.block import Addition, Place
+from pzt_ident.model.block import Addition, Place, cos, sin
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
@@ -28,9 +30,9 @@ class PeriodicDisturbance(Addition):
     separate_by = "Record at constant voltage, then with the driver off: a line that stays is not the drive's."
     remedy = "Ground and shield against hum, isolate the stage from the floor, or filter the line out."
 
-    def basis(t, frequency):
-        phase, enough = 2 * np.pi * frequency * t, frequency * (t[-1] - t[0]) >= MIN_PERIODS
-        return enough * np.sin(phase), enough * np.cos(phase)
+    def basis(t, frequency, duration):
+        phase, enough = 2 * pi * frequency * t, 1.0 if frequency * duration >= MIN_PERIODS else 0.0
+        return enough * sin(phase), enough * cos(phase)
 
     def guess(times, drives, residuals, low, high):
         """The three strongest spectral lines of the residuals of all records, Hz, without those of the drive."""
@@ -74,9 +76,10 @@ class Harmonics(PeriodicDisturbance):
     third_sine = Parameter("response", (-1, 1), "Third harmonic, in phase at the start.", null=0, per_record=True)
     third_cosine = Parameter("response", (-1, 1), "Third harmonic, a quarter period ahead.", null=0, per_record=True)
 
-    def basis(t, frequency):
-        phase, enough = 2 * np.pi * frequency * t, frequency * (t[-1] - t[0]) >= MIN_PERIODS
-        return tuple(enough * wave(n * phase) for n in (1, 3) for wave in (np.sin, np.cos))
+    def basis(t, frequency, duration):
+        phase, enough = 2 * pi * frequency * t, 1.0 if frequency * duration >= MIN_PERIODS else 0.0
+        first, third = (sin(phase), cos(phase)), (sin(3 * phase), cos(3 * phase))
+        return enough * first[0], enough * first[1], enough * third[0], enough * third[1]
 
 
 PeriodicDisturbance.forms = {"harmonics": Harmonics}

@@ -5,19 +5,34 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.record import Record
-from pzt_ident.model.block import Block, argument_names
-from pzt_ident.model.chain import Chain
+from pzt_ident.engine.program import Program
+from pzt_ident.model.block import TILES
 
 Array = NDArray[np.float64]
+
+SURE = 1e-8  # share of a sum of squares that is left, and still has half of its digits
 
 
 class Additions:
     """The offset and the additions of a model on one record: y = x + a_0 + sum_i a_i b_i(t), with the amounts a from
     least squares over the scored samples."""
 
-    def __init__(self, model: Chain, record: Record) -> None:
-        self.model, self.record = model, record
+    def __init__(self, program: Program) -> None:
+        self.program, self.model, self.record = program, program.model, program.record
+        self.signals = sum(block.amounts() for block in self.model.additions)
+        pairs = (self.signals + 1) * (self.signals + 2) // 2
+        self.tiles = 1 + self.signals if self.signals else 0
+        self.sums = 2 + self.tiles + pairs if self.signals else 0
+
+    def steps(self, axis: int) -> list[tuple[int, ...]]:
+        """Rows for the kernel that make the signals of an axis."""
+        return [(self.program.address(item), item.row, 0, item.tile, 0) for item in self.program.additions[axis]]
+
+    def begin(self, sums: Array) -> None:
+        """Say to kernel.products where the signals are; sums: (groups, its rows of all measured axes, lanes)."""
+        for i, axis in enumerate(self.model.measured if self.signals else ()):
+            sums[:, i * self.sums] = self.signals
+            sums[:, i * self.sums + 1] = self.program.tiles - TILES * axis
 
     def remove(self, error: Array, theta: Array) -> None:
         """Subtract them from the errors (candidates, measured axes, samples), in place; NaN if they are not finite."""
@@ -27,10 +42,10 @@ class Additions:
             return
         for i, axis in enumerate(self.model.measured):
             of_additions = [entry.axis == axis and entry.block in self.model.additions for entry in self.model.entries]
-            distinct, index = np.unique(theta[:, of_additions], axis=0, return_inverse=True)
-            for number in range(len(distinct)):
+            _, first, index = np.unique(theta[:, of_additions], axis=0, return_index=True, return_inverse=True)
+            for number, candidate in enumerate(first):
                 same = np.flatnonzero(index.ravel() == number)
-                self._project(error, same, i, self.basis(axis, theta[same[0]]))
+                self._project(error, same, i, self.basis(axis, theta[candidate]))
 
     def _project(self, error: Array, candidates: NDArray[np.intp], i: int, basis: Array) -> None:
         """Subtract the least-squares fit of the basis from the errors of measured axis i, in place."""
@@ -45,15 +60,34 @@ class Additions:
             residual = error[candidates, i, self.record.settle :].T
             error[candidates, i] -= (basis @ (inverse @ (scored.T @ residual))).T
 
+    def squares(self, sums: Array, scored: int) -> tuple[Array, NDArray[np.bool_]]:
+        """Sums of squared errors from the sums of kernel.products, (candidates, measured axes, sums): (candidates,
+        measured axes), and of which candidates rounding leaves enough digits."""
+        table, mean, row = np.empty((*sums.shape[:2], self.tiles, self.tiles)), np.empty((*sums.shape[:2], self.tiles)), 2
+        for k in range(self.tiles):
+            mean[..., k] = sums[..., row] / scored
+            table[..., k, : k + 1] = table[..., : k + 1, k] = sums[..., row + 1 : row + 2 + k]
+            row += 2 + k
+        with np.errstate(all="ignore"):
+            raw = np.diagonal(table, axis1=-2, axis2=-1).copy()
+            table -= scored * mean[..., None] * mean[..., None, :]
+            sure = np.ones(len(sums), dtype=bool)
+            for k in range(1, self.tiles):
+                pivot = table[..., k, k].copy()
+                sure &= ~((pivot < SURE * raw[..., k]) & (raw[..., k] > 0)).any(axis=1)
+                column = table[..., k].copy()
+                table -= column[..., None] * (column / np.where(pivot > 0, pivot, 1)[..., None])[..., None, :]
+            left = table[..., 0, 0]
+            return left, sure & ~(left < SURE * raw[..., 0]).any(axis=1)
+
     def sizes(self, residual: Array, theta: Array) -> dict[str, Array]:
         """Standard deviation over time of each addition with one candidate, SI units: by name of the effect, (measured
         axes,). residual: measurement minus simulation, (measured axes, samples)."""
         sizes = {block.name: np.zeros(len(residual)) for block in self.model.additions}
+        owners = ["", *(block.name for block in self.model.additions for _ in range(block.amounts()))]
         for i, axis in enumerate(self.model.measured):
-            candidate, settle = np.atleast_2d(theta)[0], self.record.settle
-            basis = self.basis(axis, candidate)[settle:]
-            amounts = np.linalg.lstsq(basis, residual[i, settle:], rcond=1e-12)[0]
-            owners = ["", *(b.name for b in self.model.additions for _ in self._signals_of(b, axis, candidate))]
+            basis = self.basis(axis, np.atleast_2d(theta)[0])[self.record.settle :]
+            amounts = np.linalg.lstsq(basis, residual[i, self.record.settle :], rcond=1e-12)[0]
             for name in sizes:
                 columns = [owner == name for owner in owners]
                 sizes[name][i] = np.std(basis[:, columns] @ amounts[columns])
@@ -61,11 +95,12 @@ class Additions:
 
     def basis(self, axis: int, theta: Array) -> Array:
         """Ones and the signals of all additions of an axis: (samples, 1 + signals)."""
-        additions = [self._signals_of(block, axis, theta) for block in self.model.additions]
-        return np.array([np.ones(self.record.samples), *(signal for signals in additions for signal in signals)]).T
+        from pzt_ident.engine.kernel import WIDTH, run
 
-    def _signals_of(self, addition: type[Block], axis: int, theta: Array) -> tuple[Array, ...]:
-        columns = self.model.columns(addition, axis, axis) or {}
-        words = argument_names(addition.basis)[1:]  # type: ignore[attr-defined]
-        signals: tuple[Array, ...] = addition.basis(self.record.time, *(theta[columns[word]] for word in words))  # type: ignore[attr-defined]
-        return signals
+        program, since = self.program, self.record.run_in * self.record.samples
+        tiles = program.tiles + 1 + np.arange(self.signals)
+        output = np.empty((WIDTH, self.signals, self.record.samples))
+        steps = np.array(self.steps(axis), dtype=np.int64)
+        scratch = program.scratch(np.atleast_2d(theta), program.rows)
+        run(steps, np.zeros((1, 1)), scratch, program.tiles + self.tiles, since + self.record.samples, since, 1, output, tiles)
+        return np.vstack([np.ones(self.record.samples), output[0]]).T

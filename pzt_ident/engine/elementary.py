@@ -42,7 +42,7 @@ mantissa = bitwise(
 )
 
 SHIFT = 1.5 * 2**52
-PER_LN2 = 1 / log(2)
+PER_LN2, PER_PI = 1 / log(2), 1 / pi
 LN2_HIGH, LN2_LOW = float.fromhex("0x1.62e42fefap-1"), float.fromhex("0x1.cf79abc9e3b3ap-40")
 PI_HIGH, PI_LOW = float.fromhex("0x1.921fb54442p+1"), float.fromhex("0x1.a308d313198a3p-40")
 
@@ -92,14 +92,14 @@ def half_wave(x, n, turns):
 
 @register_jitable(forceinline=True)
 def sin(x):
-    n = (x / pi + SHIFT) - SHIFT
+    n = (x * PER_PI + SHIFT) - SHIFT
     return half_wave(x, n, n)
 
 
 @register_jitable(forceinline=True)
 def cos(x):
     """sin(x + pi / 2), with x reduced before pi / 2 is added."""
-    n = (x / pi + 0.5 + SHIFT) - SHIFT
+    n = (x * PER_PI + 0.5 + SHIFT) - SHIFT
     return half_wave(x, n, n - 0.5)
 
 

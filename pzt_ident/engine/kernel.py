@@ -13,13 +13,12 @@ from typing import Any
 
 import numba
 import numpy as np
-from llvmlite import ir
+from llvmlite import binding, ir
 from numba import cfunc, njit, types
 from numba.core.compiler import Compiler
 from numba.extending import intrinsic
 
 from pzt_ident.files import cache_folder
-from pzt_ident.model.block import TILES
 
 cache_folder()
 setattr(numba.config, "CACHE_DIR", os.environ.get("NUMBA_CACHE_DIR", ""))  # noqa: B010
@@ -27,15 +26,14 @@ setattr(numba.config, "CACHE_DIR", os.environ.get("NUMBA_CACHE_DIR", ""))  # noq
 WIDTH = 24
 TILE = 64
 UNROLL = 2
+VECTORS = WIDTH // 8
 PADDING = 4  # samples after the last one, which an unrolled loop may read
+binding.set_option("pzt_ident", f"-force-vector-interleave={VECTORS}")  # no vector waits for a step of another
 OPTIONS: dict[str, Any] = {"fastmath": {"contract"}, "error_model": "numpy", "cache": True}
 
 pointer = types.CPointer(types.float64)
 SIGNATURE = types.void(types.intp, types.intp, types.intp, pointer, pointer, pointer, pointer)
 
-
-import llvmlite.binding
-llvmlite.binding.set_option("pzt_ident", "-force-vector-interleave=3")
 
 class NoAliasCompiler(Compiler):
     """Compiles with pointers that never overlap, so that coefficients stay in registers."""
@@ -131,27 +129,62 @@ def errors(samples, first, fresh, response, runs, sums, tile):
             sums[WIDTH + j] += e0 * e0
 
 
+@compiled
+def products(samples, first, fresh, response, runs, sums, tile):
+    """Add up e and the signals of additions, and the products of each pair of them: in sums those of x_0, x_0 x_0, x_1,
+    x_1 x_0, x_1 x_1, ..., with x_0 = e = y - response. Row 0 of sums: the number of signals; row 1: the tile of e, ahead
+    of theirs, counted from that of y."""
+    widen()  # type: ignore[call-arg]
+    count, begin = int(sums[0]), int(sums[WIDTH]) * TILE * WIDTH
+    for i in range(samples):
+        for j in range(WIDTH):
+            tile[begin + i * WIDTH + j] = tile[i * WIDTH + j] - response[first + i]
+    row, even = 2 * WIDTH, samples - samples % 4
+    for k in range(count + 1):
+        x = begin + k * TILE * WIDTH
+        for i in range(0, even, 4):
+            for j in range(WIDTH):
+                a = x + i * WIDTH + j
+                sums[row + j] += tile[a] + tile[a + WIDTH] + (tile[a + 2 * WIDTH] + tile[a + 3 * WIDTH])
+        for i in range(even, samples):
+            for j in range(WIDTH):
+                sums[row + j] += tile[x + i * WIDTH + j]
+        for m in range(k + 1):
+            row += WIDTH
+            y = begin + m * TILE * WIDTH
+            for i in range(0, even, 4):
+                for j in range(WIDTH):
+                    a, b = x + i * WIDTH + j, y + i * WIDTH + j
+                    first_two = tile[a] * tile[b] + tile[a + WIDTH] * tile[b + WIDTH]
+                    last_two = tile[a + 2 * WIDTH] * tile[b + 2 * WIDTH] + tile[a + 3 * WIDTH] * tile[b + 3 * WIDTH]
+                    sums[row + j] += first_two + last_two
+            for i in range(even, samples):
+                for j in range(WIDTH):
+                    sums[row + j] += tile[x + i * WIDTH + j] * tile[y + i * WIDTH + j]
+        row += WIDTH
+
+
 @njit(nogil=True, cache=True)
-def run(program, signals, scratch, axes, samples, since, stride, output, output_axes):
+def run(program, signals, scratch, count, samples, since, stride, output, output_tiles):
     """Run every group through every tile.
 
     program: (steps, 5), each step the address of a function, its row of the scratch, row of signals, tile, and first
     sample. signals: (rows, 1 + samples + PADDING), with a sample of rest before the record; the row after that of a
-    drive holds its runs. scratch: (groups, rows * WIDTH). output: (groups * WIDTH, axes, samples after `since` /
-    stride) or empty; it is filled with every `stride`-th sample of the axes in output_axes.
+    drive holds its runs. scratch: (groups, rows * WIDTH). count: number of tiles. output: (groups * WIDTH, tiles,
+    samples after `since` / stride) or empty; it is filled with every `stride`-th sample of output_tiles.
     """
-    buffer = np.zeros(TILES * axes * TILE * WIDTH + 8)
+    buffer = np.zeros(count * TILE * WIDTH + 8)
     start = (-buffer.ctypes.data // 8) % 8  # on a cache line
-    tiles = buffer[start : start + TILES * axes * TILE * WIDTH].reshape(TILES * axes, TILE * WIDTH)
+    tiles = buffer[start : start + count * TILE * WIDTH].reshape(count, TILE * WIDTH)
     for group in range(scratch.shape[0]):
         for first in range(0, samples, TILE):
-            count = min(TILE, samples - first)
+            here = min(TILE, samples - first)
             for step in range(program.shape[0]):
                 skip = max(0, program[step, 4] - first)
-                if skip < count:
+                if skip < here:
                     call(  # type: ignore[call-arg]
                         program[step, 0],
-                        count - skip,
+                        here - skip,
                         first + skip,
                         1 if first == 0 else 0,
                         signals[program[step, 2]].ctypes.data + 8,
@@ -162,11 +195,11 @@ def run(program, signals, scratch, axes, samples, since, stride, output, output_
             if output.size:
                 begin = max(first, since)
                 begin += (since - begin) % stride
-                for axis in range(output_axes.size):
-                    for i in range(begin, first + count, stride):
+                for k in range(output_tiles.size):
+                    for i in range(begin, first + here, stride):
                         for j in range(WIDTH):
-                            output[group * WIDTH + j, axis, (i - since) // stride] = tiles[
-                                TILES * output_axes[axis], (i - first) * WIDTH + j
+                            output[group * WIDTH + j, k, (i - since) // stride] = tiles[
+                                output_tiles[k], (i - first) * WIDTH + j
                             ]
 
 

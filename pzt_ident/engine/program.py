@@ -11,7 +11,19 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.record import Record
 from pzt_ident.engine.precomputed import Precomputation
-from pzt_ident.model.block import TILES, Bank, Beside, Block, Coupling, Modes, Operator, Place, Shift, argument_names
+from pzt_ident.model.block import (
+    TILES,
+    Addition,
+    Bank,
+    Beside,
+    Block,
+    Coupling,
+    Modes,
+    Operator,
+    Place,
+    Shift,
+    argument_names,
+)
 from pzt_ident.model.chain import Chain
 
 Array = NDArray[np.float64]
@@ -62,6 +74,7 @@ class Program:
                     self._keep(number, axis)
                     self._append(block, axis)
         self._fill(self._fresh & set(model.measured), Place.SENSOR)
+        self.additions = {axis: self._additions(axis) for axis in model.measured} if not single else {}
         if not single:
             self.steps  # noqa: B018  what cannot be compiled is refused before anything is simulated
 
@@ -121,14 +134,34 @@ class Program:
         from pzt_ident.engine.lanes import layout_of
 
         form = self.model.form_of(block)
-        layout = layout_of(form, variant)  # type: ignore[arg-type]
         tile = TILES * axis + (1 if block.place == Place.READOUT and self.model.has_readout else 0)
         self.operations.append(Operation("block", axis, tile, block.place, block, variant, self.rows))
         words = (*form.arguments(), *(argument_names(block.terms) if variant.terms else ()))  # type: ignore[attr-defined]
+        self._give(block, layout_of(form, variant), words, self._places(block, axis))  # type: ignore[arg-type]
+
+    def _give(self, block: type[Block], layout: Any, words: tuple[str, ...], places: list[tuple[int, int]]) -> None:
+        """Take rows of the scratch for a block, with the sources of its arguments."""
         row = self.rows + layout.first_given
-        for target, source in self._places(block, axis):
+        for target, source in places:
             row = self._place(block, target, source, words, row)
         self.rows += layout.rows
+
+    def _additions(self, axis: int) -> list[Operation]:
+        """The signals of the additions of an axis, each in a tile of its own behind those of all axes and one more."""
+        from pzt_ident.engine.lanes import TIME, Variant, layout_of
+
+        operations, tile = [], self.tiles + 1
+        for block in self.model.additions:
+            variant = Variant()
+            operations.append(Operation("block", axis, tile, block.place, block, variant, self.rows))
+            self._give(block, layout_of(block, variant), (*TIME, *block.arguments()), [(axis, axis)])  # type: ignore[arg-type]
+            tile += block.amounts()
+        return operations
+
+    @property
+    def tiles(self) -> int:
+        """Number of tiles of the signals of all axes."""
+        return TILES * len(self.model.axes)
 
     def _places(self, block: type[Block], axis: int) -> list[tuple[int, int]]:
         """The pairs (axis, axis), or ordered pairs of different axes, that have their own parameters."""
@@ -163,7 +196,11 @@ class Program:
         drive = self.record.drive[axis]
         nulls = {p.name: p.null for p in block.parameters().values() if p.null is not None}
         span, peak = float(np.ptp(drive)), float(np.abs(drive).max())
-        return nulls | block.numbers() | {"dt": self.record.dt / self.substeps, "span": span, "peak": peak}
+        known = nulls | block.numbers() | {"dt": self.record.dt / self.substeps, "span": span, "peak": peak}
+        if issubclass(block, Addition):
+            first, duration = self.record.run_in * self.record.samples, self.record.dt * (self.record.samples - 1)
+            known |= {"_first": first, "_start": self.record.start, "_dt": self.record.dt, "duration": duration}
+        return known
 
     def _weigh(self, block: type[Modes], mode: int, row: int) -> int:
         """Add the weights of a mode for force and motion of each axis from a row of the scratch on: 1 for the force of

@@ -28,10 +28,11 @@ class Simulator:
     def __init__(self, model: Chain, record: Record) -> None:
         self.model, self.record = model, record
         self._program = Program(model, record)
-        self._additions = Additions(model, record)
-        self._measured = np.array(model.measured, dtype=np.int64)
+        self._additions = Additions(self._program)
+        self._measured = TILES * np.array(model.measured, dtype=np.int64)
         self._sums = self._program.rows  # row of the scratch after those of the blocks
-        self._rows = self._sums + 2 * len(model.measured)
+        self._each = self._additions.sums or 2  # rows of sums of an axis
+        self._rows = self._sums + self._each * len(model.measured)
 
     @property
     def substeps(self) -> int:
@@ -58,11 +59,18 @@ class Simulator:
         from pzt_ident.engine.kernel import WIDTH
 
         theta = np.atleast_2d(theta)
-        if self.substeps > 1 or self.model.additions:
+        if self.substeps > 1:
             error = self.residuals(theta)
             return np.einsum("mas,mas->ma", error, error)
         scratch = self._run(theta, self._scoring, np.empty((0, 0, 0)))
         sums = scratch.reshape(scratch.shape[0], self._rows, WIDTH)[:, self._sums :]
+        if self.model.additions:
+            table = sums.reshape(-1, len(self.model.measured), self._each, WIDTH).transpose(0, 3, 1, 2)
+            squares, sure = self._additions.squares(table.reshape(-1, *table.shape[2:])[: theta.shape[0]], self.scored)
+            if not sure.all():
+                error = self.residuals(theta[~sure])
+                squares[~sure] = np.einsum("mas,mas->ma", error, error)
+            return squares
         with np.errstate(invalid="ignore", over="ignore"):
             squares = (
                 sums[:, 1::2] - (sums[:, 0::2] / np.sqrt(self.scored)) ** 2
@@ -100,24 +108,25 @@ class Simulator:
     @cached_property
     def _scoring(self) -> NDArray[np.int64]:
         """The program, followed by the sums of errors."""
-        from pzt_ident.engine.kernel import address, errors
+        from pzt_ident.engine.kernel import address, errors, products
 
         since = self.record.run_in * self.record.samples + self.record.settle
         responses = 2 * len(self.model.axes)  # first row of signals after those of the drives
-        sums = [
-            (address(errors), self._sums + 2 * i, responses + i, TILES * a, since)
-            for i, a in enumerate(self.model.measured)
-        ]
-        return np.array(self._program.steps + sums, dtype=np.int64)
+        sums, added = products if self.model.additions else errors, []
+        for i, a in enumerate(self.model.measured):
+            added += [(*step[:-1], since) for step in self._additions.steps(a)]
+            added.append((address(sums), self._sums + self._each * i, responses + i, TILES * a, since))
+        return np.array(self._program.steps + added, dtype=np.int64)
 
     def _run(self, theta: Array, program: NDArray[np.int64], output: Array) -> Array:
         from pzt_ident.engine.kernel import run
 
         scratch = self._program.scratch(theta, self._rows)
+        self._additions.begin(scratch.reshape(len(scratch), self._rows, -1)[:, self._sums :])
         since = self.record.run_in * self.record.samples * self.substeps
         samples = since + self.record.samples * self.substeps
-        axes = len(self.model.axes)
-        run(program, self._signals, scratch, axes, samples, since, self.substeps, output, self._measured)
+        tiles = self._program.tiles + self._additions.tiles
+        run(program, self._signals, scratch, tiles, samples, since, self.substeps, output, self._measured)
         return scratch
 
     @property

@@ -262,11 +262,23 @@ class Beside(Block):
 class Addition(Block):
     """A disturbance added to the response, with amounts of its own for each record: y = x + sum_i a_i b_i(t).
 
-    basis(t, *parameters) -> (b_1, b_2, ...), arrays over t in s from the start of the record. The amounts a_i, the
-    parameters that are `per_record`, are solved for in closed form together with the offset.
+    basis(t, *parameters[, duration]) -> (b_1, b_2, ...) at the time t in s from the start of the record; duration: that
+    of the record. The amounts a_i, the parameters that are `per_record`, are solved for in closed form together with
+    the offset.
     """
 
     kind = "addition"
+
+    @classmethod
+    @cache
+    def arguments(cls) -> tuple[str, ...]:
+        """The arguments of `basis` behind t."""
+        return argument_names(cls.basis)[1:]  # type: ignore[attr-defined]
+
+    @classmethod
+    def amounts(cls) -> int:
+        """Number of signals."""
+        return sum(declared.per_record for declared in cls.parameters().values())
 
 
 class Modes(Block):

@@ -142,10 +142,11 @@ def test_addition_of_any_size_is_taken_in_closed_form(word):
     chain, measured, theta = made(word, waves(8, 150), settle=20)
     rng = np.random.default_rng(9)
     for candidate in theta:
-        signals = addition.basis(measured.time, *candidate)
-        amounts = [declared.per_record for declared in addition.parameters().values()].count(True)
-        assert len(signals) == amounts
-        added = rng.normal(size=amounts) @ np.array(signals)
+        asked = {"duration": measured.time[-1]} | dict(zip((e.word for e in chain.entries), candidate, strict=True))
+        given = [asked[word] for word in addition.arguments()]
+        signals = np.array([addition.basis(t, *given) for t in measured.time])
+        assert signals.shape[1] == addition.amounts()
+        added = signals @ rng.normal(size=addition.amounts())
         measured.response[:] = measured.drive + 3 + added
         np.testing.assert_allclose(Simulator(chain, measured).errors(candidate), 0, atol=1e-9)
         assert Simulator(chain, measured).added(candidate) == {
@@ -264,21 +265,17 @@ def test_operator_behind_a_block_is_the_one_on_the_drive(word, drive, seed):
 @given(seed=seeds)
 @quick
 def test_operator_is_one_map_of_the_distance(word, seed):
-    """`exact` in one step or two, `travel` on one side of zero, `near` around it: all the same."""
+    """`travel` in one step or two, and zero after `reach`."""
     block, rng = blocks[word], np.random.default_rng(seed)
     theta = candidates(model(word), SPAN, 1, seed)[0]
     _, along, against = block.prepare(*theta.tolist())
     a, b = rng.uniform(0, 20, 2)
     q = rng.uniform(-1, 1) / max(abs(along[0]), abs(against[0]))
-    whole = block.exact(q, a + b, along, against)
-    assert block.exact(block.exact(q, a, along, against), b, along, against) == pytest.approx(whole, rel=1e-11)
     for regime in (along, against):
-        keep, add = block.travel(a, *regime)
-        if q >= 0 or (regime == against and keep * q + add <= 0):
-            assert keep * q + add == pytest.approx(block.exact(q, a, regime, regime), rel=1e-12)
-        further = rng.uniform(-0.1, 0.1) / abs(regime[0])
-        near, expected = block.near(further, keep, add, *regime), block.travel(a + further, *regime)
-        assert near == pytest.approx(expected, rel=1e-12)
+        (keep, add), (more, further), (whole, sum_of_both) = (block.travel(d, *regime) for d in (a, b, a + b))
+        assert more * (keep * q + add) + further == pytest.approx(whole * q + sum_of_both, rel=1e-11)
+    keep, add = block.travel(block.reach(-abs(q), *against), *against)
+    assert keep * -abs(q) + add == pytest.approx(0, abs=1e-12 * abs(q))
 
 
 @pytest.mark.parametrize("words", CHAINS)

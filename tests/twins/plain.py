@@ -154,7 +154,8 @@ def bank(block, each, signal, prompt):
 
 
 def operator(block, coefficients, terms, signal, prompt):
-    """Only `exact`, in every sample. A factor on what drives h is one on h itself, as long as it is the same."""
+    """A step against the motion and one along it, in every sample. A factor on what drives h is one on h itself, as long
+    as it is the same."""
     shared, along, against = coefficients
     (h,), before, result = block.start(signal[0]), signal[0], []
     quadrant = getattr(block, "quadrant", None)
@@ -167,12 +168,24 @@ def operator(block, coefficients, terms, signal, prompt):
         ]
         up = block.lift(distance, middle, sign, *terms) if terms else 1.0
         try:
-            h, before = sign * up * block.exact(sign * h / up, distance, *on), u
+            h, before = sign * up * leg(block, sign * h / up, distance, *on), u
         except OverflowError:
             h = math.nan
         h *= block.fade(h, *terms) if terms else 1.0
         result.append(block.output(h, v, *shared))
     return np.array(result)
+
+
+def leg(block, q, distance, along, against):
+    """q after a monotone step, through zero where it gets there."""
+    if q < 0:
+        reach = block.reach(q, *against)
+        if distance <= reach:
+            keep, add = block.travel(distance, *against)
+            return keep * q + add
+        q, distance = 0.0, distance - reach
+    keep, add = block.travel(distance, *along)
+    return keep * q + add
 
 
 def relays(block, coefficients, signal, prompt):

@@ -19,6 +19,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from pzt_ident.engine.lanes.compile_error import compile_error
 from pzt_ident.files import cache_folder
 from pzt_ident.model.block import (
+    TILES,
+    Addition,
     Bank,
     Beside,
     Block,
@@ -40,8 +42,10 @@ TEMPLATES = Path(__file__).parent
 FUNCTIONS = (
     *("prepare", "start", "step", "output", "rests"),
     *("travel", "reach", "terms", "lift", "fade", "quadrant"),
-    *("field", "coercive_field", "mass", "leave"),
+    *("field", "coercive_field", "mass", "leave", "basis"),
 )
+
+TIME = ("_first", "_start", "_dt")  # what gives an addition its time, ahead of the arguments of `basis`
 
 
 class Layout(NamedTuple):
@@ -107,7 +111,14 @@ def compile_block(block: type[Block], variant: Variant = Variant()) -> Compiled:
 def template_of(block: type[Block], variant: Variant) -> str:
     if issubclass(block, Operator):
         return "driven_operator" if variant.driven else "operator"
-    templates = {Coupling: "coupling", Modes: "modes", Bank: "bank", Shift: "shift", Relays: "relays"}
+    templates = {
+        Addition: "addition",
+        Coupling: "coupling",
+        Modes: "modes",
+        Bank: "bank",
+        Shift: "shift",
+        Relays: "relays",
+    }
     return next((name for kind, name in templates.items() if issubclass(block, kind)), "plain")
 
 
@@ -140,6 +151,7 @@ def layout_of(block: type[Block], variant: Variant) -> Layout:
     given_terms = argument_names(block.terms) if variant.terms else ()  # type: ignore[attr-defined]
     terms = len(groups["terms"]) if variant.terms else 0
     given = len(block.arguments()) + (2 * axes if issubclass(block, Modes) else 0)
+    given += len(TIME) if issubclass(block, Addition) else 0
     return Layout(states, sum(parts), given, copies, work, parts[0], parts[1], terms, len(given_terms))
 
 
@@ -156,6 +168,7 @@ def render(text: str, block: type[Block], layout: Layout, variant: Variant) -> s
         second=layout.second,
         copies=layout.copies,
         T=[f"e{i}" for i in range(layout.terms)],
+        B=[f"b{i}" for i in range(block.amounts())] if issubclass(block, Addition) else [],
         GT=layout.given_terms,
         readout=variant.readout,
         rests=has_rests(block),
@@ -167,7 +180,7 @@ def render(text: str, block: type[Block], layout: Layout, variant: Variant) -> s
         axes=variant.axes,
         place=block.place,
         Place=Place,
-        TILES=kernel.TILES,
+        TILES=TILES,
         W=1 if variant.single else kernel.WIDTH,
         TILE=1 if variant.single else kernel.TILE,
         UNROLL=1 if variant.single else kernel.UNROLL,

@@ -15,8 +15,7 @@ from pzt_ident.model.contract.kinds import ANY, BRANCHED, KINDS, Signature, kind
 from pzt_ident.model.parameter import Setting
 
 MEASURED = ("dt", "span", "peak")
-SAMPLES = 16
-EXAMPLE = {"dt": 1e-3, "span": 1.0, "peak": 1.0, "branch": 0, "low": 0.0, "further": 0.01, "sign": 1.0}
+EXAMPLE = {"dt": 1e-3, "span": 1.0, "peak": 1.0, "branch": 0, "low": 0.0, "sign": 1.0, "duration": 1.0}
 Known = dict[str, Any]
 
 
@@ -63,21 +62,17 @@ def try_functions(block: Any) -> dict[str, tuple[Any, ...]]:
         arguments = _arguments(block, word, functions, known, groups)
         if item.results:
             _store(block, word, item, call_function(block, word, *arguments), known, groups)
-    if len(groups.get("along", ())) != len(groups.get("against", ())):
-        counts = f"{len(groups['along'])} and {len(groups['against'])} coefficients"
-        raise fault(block, "prepare", f"gives {counts} of the two regimes", "give as many along the motion as against")
+        if len(groups.get("along", ())) != len(groups.get("against", ())):
+            counts = f"{len(groups['along'])} and {len(groups['against'])} coefficients"
+            remedy = "give as many along the motion as against"
+            raise fault(block, "prepare", f"gives {counts} of the two regimes", remedy)
     return groups
 
 
 def example(block: Any) -> Known:
     """An example value for each name that the functions of a block may ask for."""
     middle = {word: sum(item.bounds) / 2 for word, item in parameters(block).items()}
-    known = EXAMPLE | block.numbers() | dict.fromkeys(getattr(block, "solved", ()), 0.5) | middle
-    if kind_of(block) == "addition":
-        import numpy as np
-
-        known["t"] = np.linspace(0, 1, SAMPLES)
-    return known
+    return EXAMPLE | block.numbers() | dict.fromkeys(getattr(block, "solved", ()), 0.5) | middle
 
 
 def function_of(block: Any, word: str) -> FunctionType:
@@ -187,7 +182,7 @@ def _allowed(block: Any, token: str) -> set[str]:
     if token == "settings":
         return {word for word, item in block.settings().items() if isinstance(item, Setting)}
     if token == "own parameters":
-        return names
+        return names | {"duration"}
     if token == "branches":
         return names | set(block.numbers()) | {"branch"}
     names -= set(block.weights) if kind == "modes" else set()
@@ -230,8 +225,8 @@ def _store(block: Any, word: str, item: Signature, result: Any, known: Known, gr
             groups[token.strip("()")] = value
         known[token] = value
     for value in (number for entry in result for number in (entry if isinstance(entry, tuple) else (entry,))):
-        if not hasattr(value, "__float__") or getattr(value, "shape", ()) != getattr(known.get("t"), "shape", ()):
-            _fail(block, word, item, result, "numbers" if "t" not in known else "arrays over t")
+        if not hasattr(value, "__float__") or getattr(value, "shape", ()):
+            _fail(block, word, item, result, "numbers")
 
 
 def _fail(block: Any, word: str, item: Signature, result: Any, expected: str) -> Any:
