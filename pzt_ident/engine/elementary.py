@@ -35,6 +35,8 @@ two_to_minus = bitwise(  # 2^-n from a whole n, zero for 1023
     lambda ir_, bits, const: ir_.bitcast(ir_.shl(ir_.sub(const(1023), bits), const(52)), ir.DoubleType()),
     types.int64,
 )
+bits_of = bitwise(types.int64, lambda ir_, bits, const: bits)
+float_of = bitwise(types.float64, lambda ir_, bits, const: ir_.bitcast(bits, ir.DoubleType()), types.int64)
 exponent = bitwise(types.int64, lambda ir_, bits, const: ir_.sub(ir_.lshr(bits, const(52)), const(1023)))
 mantissa = bitwise(
     types.float64,
@@ -77,6 +79,17 @@ def log1p(x):
     even = 0.3333333333333335 + w * (0.14285714313095244 + w * (0.09091445840219947 + w * 0.07308749346957806))
     odd = 0.19999999999949516 + w * (0.11111105549855646 + w * 0.0766581834977067)
     return n * LN2_HIGH + (2 * s + (2 * s * z * (even + z * odd) + n * LN2_LOW))
+
+
+@register_jitable(forceinline=True)
+def rough_log(x):
+    """The bits of x as a whole number are nearly its logarithm: exponent plus mantissa."""
+    return float(bits_of(x)) * (log(2) / 2**52) - (1023 - 0.043) * log(2)
+
+
+@register_jitable(forceinline=True)
+def rough_inverse_cube_root(x):
+    return float_of(int((4 / 3 * 1023 - 0.06) * 2.0**52 - float(bits_of(x)) * (1 / 3)))
 
 
 @register_jitable(forceinline=True)
@@ -131,6 +144,8 @@ for function, lanes in (
     (block.expm1, expm1),
     (block.log1p, log1p),
     (block.erf, erf),
+    (block.rough_log, rough_log),
+    (block.rough_inverse_cube_root, rough_inverse_cube_root),
     (block.sin, sin),
     (block.cos, cos),
 ):

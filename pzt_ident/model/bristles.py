@@ -1,6 +1,6 @@
 """Laws of friction under a spring, stepped implicitly: bristles that bend, then slide (LuGre), and Coulomb's."""
 
-from pzt_ident.model.elementary import expm1, log1p
+from pzt_ident.model.elementary import expm1, log1p, rough_log
 
 
 def rub(friction, pull, force, reach, stiction, fast, share):
@@ -13,21 +13,26 @@ def rub(friction, pull, force, reach, stiction, fast, share):
     sign = 1.0 if pull >= 0 else -1.0
     move = abs(pull)
     level = 1 + stiction * (1 + expm1(-move * fast * move * fast))
-    push = move / (reach * level)
-    gap = force / reach - sign * friction / (reach * level)
+    per = 1 / (reach * level)
+    push = move * per
+    gap = force / reach - sign * friction * per
     slack = share * gap
     above = 1 + max(slack - push, 0.0)
-    d = max(push - slack, log1p(max(min(push, slack), 0.0) / above))
-    d = halley_step(halley_step(halley_step(d, slack, push), slack, push), slack, push)
-    return sign * level * (force + reach * gap * -(1 + expm1(-d)))
-
-
-def halley_step(d, slack, push):
-    """Halley's step for d + slack (1 - exp(-d)) = push: after three the error is rounding for slack <= 1000."""
+    d = max(push - slack, rough_log(1 + max(min(push, slack), 0.0) / above))
+    d += halley_step(d, expm1(-d), slack, push)
+    d += halley_step(d, expm1(-d), slack, push)
     bent = expm1(-d)
+    last = halley_step(d, bent, slack, push)
+    left = (1 + bent) * (1 - last * (1 - last / 2))
+    return sign * level * (force - reach * gap * left)
+
+
+def halley_step(d, bent, slack, push):
+    """Halley's step for d + slack (1 - exp(-d)) = push, bent = exp(-d) - 1: the third is below 3e-6, and leaves an error
+    of rounding, for 0 <= slack <= 1000."""
     stiff = slack * (1 + bent)
     value, slope = d - slack * bent - push, 1 + stiff
-    return d - value * slope / (slope * slope + value * stiff / 2)
+    return -value * slope / (slope * slope + value * stiff / 2)
 
 
 def slide(load, pull):
