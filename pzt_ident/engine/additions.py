@@ -63,7 +63,11 @@ class Additions:
     def squares(self, sums: Array, scored: int) -> tuple[Array, NDArray[np.bool_]]:
         """Sums of squared errors from the sums of kernel.products, (candidates, measured axes, sums): (candidates,
         measured axes), and of which candidates rounding leaves enough digits."""
-        table, mean, row = np.empty((*sums.shape[:2], self.tiles, self.tiles)), np.empty((*sums.shape[:2], self.tiles)), 2
+        table, mean, row = (
+            np.empty((*sums.shape[:2], self.tiles, self.tiles)),
+            np.empty((*sums.shape[:2], self.tiles)),
+            2,
+        )
         for k in range(self.tiles):
             mean[..., k] = sums[..., row] / scored
             table[..., k, : k + 1] = table[..., : k + 1, k] = sums[..., row + 1 : row + 2 + k]
@@ -102,5 +106,15 @@ class Additions:
         output = np.empty((WIDTH, self.signals, self.record.samples))
         steps = np.array(self.steps(axis), dtype=np.int64)
         scratch = program.scratch(np.atleast_2d(theta), program.rows)
-        run(steps, np.zeros((1, 1)), scratch, program.tiles + self.tiles, since + self.record.samples, since, 1, output, tiles)
+        run(
+            steps,
+            np.zeros((1, 1)),
+            scratch,
+            program.tiles + self.tiles,
+            since + self.record.samples,
+            since,
+            1,
+            output,
+            tiles,
+        )
         return np.vstack([np.ones(self.record.samples), output[0]]).T

@@ -28,7 +28,9 @@ TILE = 64
 UNROLL = 2
 VECTORS = WIDTH // 8
 PADDING = 4  # samples after the last one, which an unrolled loop may read
-binding.set_option("pzt_ident", f"-force-vector-interleave={VECTORS}")  # no vector waits for a step of another
+# Three vectors at once, so that none waits for a step of another, and no loop over lanes written out before it is one.
+for option in (f"-force-vector-interleave={VECTORS}", f"-unroll-full-max-count={WIDTH - 1}"):
+    binding.set_option("pzt_ident", option)
 OPTIONS: dict[str, Any] = {"fastmath": {"contract"}, "error_model": "numpy", "cache": True}
 
 pointer = types.CPointer(types.float64)
@@ -131,9 +133,9 @@ def errors(samples, first, fresh, response, runs, sums, tile):
 
 @compiled
 def products(samples, first, fresh, response, runs, sums, tile):
-    """Add up e and the signals of additions, and the products of each pair of them: in sums those of x_0, x_0 x_0, x_1,
-    x_1 x_0, x_1 x_1, ..., with x_0 = e = y - response. Row 0 of sums: the number of signals; row 1: the tile of e, ahead
-    of theirs, counted from that of y."""
+    """Add up e = y - response and the signals of additions, and the products of each pair of them: x_0, x_0 x_0, x_1,
+    x_1 x_0, x_1 x_1, ..., with x_0 = e. Row 0 of sums: the number of signals; row 1: the tile of e, ahead of theirs,
+    counted from that of y."""
     widen()  # type: ignore[call-arg]
     count, begin = int(sums[0]), int(sums[WIDTH]) * TILE * WIDTH
     for i in range(samples):

@@ -28,8 +28,8 @@ def rub(friction, pull, force, reach, stiction, fast, share):
 
 
 def halley_step(d, bent, slack, push):
-    """Halley's step for d + slack (1 - exp(-d)) = push, bent = exp(-d) - 1: the third is below 3e-6, and leaves an error
-    of rounding, for 0 <= slack <= 1000."""
+    """Halley's step for d + slack (1 - exp(-d)) = push, bent = exp(-d) - 1: for 0 <= slack <= 1000 the third is below
+    3e-6, and the error that it leaves is rounding."""
     stiff = slack * (1 + bent)
     value, slope = d - slack * bent - push, 1 + stiff
     return -value * slope / (slope * slope + value * stiff / 2)

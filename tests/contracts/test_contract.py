@@ -71,7 +71,7 @@ FUNCTIONS = [
     (OPERATOR, "return -q * length", "return q, length", "Memory.reach: .*one number, bare should be"),
     (OPERATOR, "(fast, 1 / fast), (fast, 1 / fast)", "(fast, 1 / fast), (fast,)", "Memory.prepare: gives 2 and 1"),
     (OPERATOR, "return (gain,),", "return (),", "Memory.prepare: .*a tuple of one or more for shared"),
-    (OPERATOR, "(q, rate, length)", "(rate, length)", "Memory.reach: .*'q' missing"),
+    (OPERATOR, "(q, rate, length)", "(rate, length)", "Memory.reach: .*'q'.* missing"),
     (OPERATOR, "travel(distance, rate, length)", "travel(distance, rate)", "Memory.travel: .*'length' missing"),
     (OPERATOR, "reach(q, rate, length)", "reach(q, rate)", "Memory.reach: .*'length'"),
     (GAIN, "return bend, dt / tau", "return bend, 1.0, 2.0", r"Gain.start: .*\(u, bend, share, coefficient 3\)"),

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 from numba import njit
 
 from pzt_ident.engine import elementary
@@ -22,7 +23,7 @@ def over(function):
     return loop
 
 
-expm1, log1p, sin, cos, erf = (
+expm1, log1p, sin, cos, erf, rough_log, rough_inverse_cube_root = (
     over(function)
     for function in (
         elementary.expm1,
@@ -30,6 +31,8 @@ expm1, log1p, sin, cos, erf = (
         elementary.sin,
         elementary.cos,
         elementary.erf,
+        elementary.rough_log,
+        elementary.rough_inverse_cube_root,
     )
 )
 
@@ -110,9 +113,17 @@ def test_erf_over_the_whole_range():
     assert np.isnan(erf(np.array([np.nan])))[0]
 
 
+def test_rough_ones_are_near_enough_for_an_iteration_to_start():
+    x = 10.0 ** np.random.default_rng(3).uniform(-300, 300, 20000)
+    np.testing.assert_allclose(rough_log(x), np.log(x), rtol=0, atol=0.03)
+    np.testing.assert_allclose(rough_inverse_cube_root(x), np.cbrt(1 / x), rtol=0.04)
+
+
 def test_authors_have_them_in_plain_python():
     assert block.expm1(1e-20) == block.log1p(1e-20) == block.sin(1e-20) == 1e-20
     assert block.cos(0.0) == 1
     assert math.isnan(block.sin(math.inf)) and math.isnan(block.cos(math.inf))
     assert block.erf(0.5) == math.erf(0.5)
+    assert block.rough_log(2.0) == math.log(2)
+    assert block.rough_inverse_cube_root(8.0) == pytest.approx(0.5)
     assert math.isnan(block.log1p(-1.0)) and math.isnan(block.log1p(-5.0))

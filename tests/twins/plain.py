@@ -154,8 +154,7 @@ def bank(block, each, signal, prompt):
 
 
 def operator(block, coefficients, terms, signal, prompt):
-    """A step against the motion and one along it, in every sample. A factor on what drives h is one on h itself, as long
-    as it is the same."""
+    """From one sample to the next. A factor on what drives h is one on h itself, as long as it is the same."""
     shared, along, against = coefficients
     (h,), before, result = block.start(signal[0]), signal[0], []
     quadrant = getattr(block, "quadrant", None)

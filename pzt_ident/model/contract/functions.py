@@ -225,7 +225,7 @@ def _store(block: Any, word: str, item: Signature, result: Any, known: Known, gr
             groups[token.strip("()")] = value
         known[token] = value
     for value in (number for entry in result for number in (entry if isinstance(entry, tuple) else (entry,))):
-        if not hasattr(value, "__float__") or getattr(value, "shape", ()):
+        if not hasattr(value, "__float__") or getattr(value, "shape", None):
             _fail(block, word, item, result, "numbers")
 
 
