@@ -89,7 +89,7 @@ class Additions:
         axes,). residual: measurement minus simulation, (measured axes, samples)."""
         sizes = {block.name: np.zeros(len(residual)) for block in self.model.additions}
         owners = ["", *(block.name for block in self.model.additions for _ in range(block.amounts()))]
-        for i, axis in enumerate(self.model.measured):
+        for i, axis in enumerate(self.model.measured if sizes else ()):
             basis = self.basis(axis, np.atleast_2d(theta)[0])[self.record.settle :]
             amounts = np.linalg.lstsq(basis, residual[i, self.record.settle :], rcond=1e-12)[0]
             for name in sizes:

@@ -42,7 +42,7 @@ class Fields:
             (coefficients, layout.copies, False),
             (terms, 1, False),
             ((*given, *weights), layout.copies, True),
-            (WORK.get(block.kind, ()) if layout.work in (3, 7) else (), 1, False),
+            (WORK.get(block.kind, ()) if layout.work == 3 else (), 1, False),
         ):
             self.groups.append(Group(row, tuple(words), copies, is_given))
             row += copies * len(words)

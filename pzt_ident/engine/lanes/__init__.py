@@ -147,7 +147,15 @@ def layout_of(block: type[Block], variant: Variant) -> Layout:
     copies = (
         block.branches if issubclass(block, Bank | Modes) else axes * (axes - 1) if issubclass(block, Coupling) else 1
     )
-    work = 4 if operator else 3 if has_rests(block) else relays_work(block) if issubclass(block, Relays) else 0
+    work = (
+        (4 if variant.driven else 3)
+        if operator
+        else 3
+        if has_rests(block)
+        else relays_work(block)
+        if issubclass(block, Relays)
+        else 0
+    )
     given_terms = argument_names(block.terms) if variant.terms else ()  # type: ignore[attr-defined]
     terms = len(groups["terms"]) if variant.terms else 0
     given = len(block.arguments()) + (2 * axes if issubclass(block, Modes) else 0)
