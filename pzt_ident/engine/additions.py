@@ -36,16 +36,18 @@ class Additions:
 
     def remove(self, error: Array, theta: Array) -> None:
         """Subtract them from the errors (candidates, measured axes, samples), in place; NaN if they are not finite."""
-        settle = self.record.settle
+        from pzt_ident.engine.kernel import WIDTH
+
         if not self.model.additions:
-            error -= error[:, :, settle:].mean(axis=2, keepdims=True)
+            error -= error[:, :, self.record.settle :].mean(axis=2, keepdims=True)
             return
         for i, axis in enumerate(self.model.measured):
-            of_additions = [entry.axis == axis and entry.block in self.model.additions for entry in self.model.entries]
-            _, first, index = np.unique(theta[:, of_additions], axis=0, return_index=True, return_inverse=True)
-            for number, candidate in enumerate(first):
-                same = np.flatnonzero(index.ravel() == number)
-                self._project(error, same, i, self.basis(axis, theta[candidate]))
+            own = [entry.axis == axis and entry.block in self.model.additions for entry in self.model.entries]
+            _, first, index = np.unique(theta[:, own], axis=0, return_index=True, return_inverse=True)
+            for begin in range(0, len(first), WIDTH):
+                bases = self.bases(axis, theta[first[begin : begin + WIDTH]])
+                for number, basis in enumerate(bases, begin):
+                    self._project(error, np.flatnonzero(index.ravel() == number), i, basis)
 
     def _project(self, error: Array, candidates: NDArray[np.intp], i: int, basis: Array) -> None:
         """Subtract the least-squares fit of the basis from the errors of measured axis i, in place."""
@@ -63,26 +65,25 @@ class Additions:
     def squares(self, sums: Array, scored: int) -> tuple[Array, NDArray[np.bool_]]:
         """Sums of squared errors from the sums of kernel.products, (candidates, measured axes, sums): (candidates,
         measured axes), and of which candidates rounding leaves enough digits."""
-        table, mean, row = (
-            np.empty((*sums.shape[:2], self.tiles, self.tiles)),
-            np.empty((*sums.shape[:2], self.tiles)),
-            2,
-        )
+        with np.errstate(all="ignore"):
+            table = self._table(sums, scored)
+            raw = np.diagonal(table, axis1=-2, axis2=-1).copy()
+            sure = np.ones(len(sums), dtype=bool)
+            for k in range(table.shape[-1] - 1, -1, -1):  # each signal is taken out of the others, the error is left
+                pivot, column = table[..., k, k].copy(), table[..., k].copy()
+                sure &= ~((pivot < SURE * raw[..., k]) & (raw[..., k] > 0)).any(axis=1)
+                if k > 0:
+                    table -= column[..., None] * (column / np.where(pivot > 0, pivot, 1)[..., None])[..., None, :]
+            return pivot, sure
+
+    def _table(self, sums: Array, scored: int) -> Array:
+        """Products of the error, the signals and the offset: (candidates, measured axes, 2 + signals, 2 + signals)."""
+        table, row = np.full((*sums.shape[:2], self.tiles + 1, self.tiles + 1), float(scored)), 2
         for k in range(self.tiles):
-            mean[..., k] = sums[..., row] / scored
+            table[..., k, -1] = table[..., -1, k] = sums[..., row]
             table[..., k, : k + 1] = table[..., : k + 1, k] = sums[..., row + 1 : row + 2 + k]
             row += 2 + k
-        with np.errstate(all="ignore"):
-            raw = np.diagonal(table, axis1=-2, axis2=-1).copy()
-            table -= scored * mean[..., None] * mean[..., None, :]
-            sure = np.ones(len(sums), dtype=bool)
-            for k in range(1, self.tiles):
-                pivot = table[..., k, k].copy()
-                sure &= ~((pivot < SURE * raw[..., k]) & (raw[..., k] > 0)).any(axis=1)
-                column = table[..., k].copy()
-                table -= column[..., None] * (column / np.where(pivot > 0, pivot, 1)[..., None])[..., None, :]
-            left = table[..., 0, 0]
-            return left, sure & ~(left < SURE * raw[..., 0]).any(axis=1)
+        return table
 
     def sizes(self, residual: Array, theta: Array) -> dict[str, Array]:
         """Standard deviation over time of each addition with one candidate, SI units: by name of the effect, (measured
@@ -98,23 +99,17 @@ class Additions:
         return sizes
 
     def basis(self, axis: int, theta: Array) -> Array:
-        """Ones and the signals of all additions of an axis: (samples, 1 + signals)."""
-        from pzt_ident.engine.kernel import WIDTH, run
+        """Ones and the signals of all additions of an axis with one candidate: (samples, 1 + signals)."""
+        return self.bases(axis, np.atleast_2d(theta))[0]
 
-        program, since = self.program, self.record.run_in * self.record.samples
-        tiles = program.tiles + 1 + np.arange(self.signals)
-        output = np.empty((WIDTH, self.signals, self.record.samples))
-        steps = np.array(self.steps(axis), dtype=np.int64)
-        scratch = program.scratch(np.atleast_2d(theta), program.rows)
-        run(
-            steps,
-            np.zeros((1, 1)),
-            scratch,
-            program.tiles + self.tiles,
-            since + self.record.samples,
-            since,
-            1,
-            output,
-            tiles,
-        )
-        return np.vstack([np.ones(self.record.samples), output[0]]).T
+    def bases(self, axis: int, theta: Array) -> Array:
+        """Likewise of many candidates: (candidates, samples, 1 + signals)."""
+        from pzt_ident.engine.kernel import run
+
+        program, samples = self.program, self.record.samples
+        since, count = self.record.run_in * samples, program.tiles + self.tiles
+        output = np.empty((len(theta), self.signals, samples))
+        steps, tiles = np.array(self.steps(axis), dtype=np.int64), program.tiles + 1 + np.arange(self.signals)
+        scratch = program.scratch(theta, program.rows)
+        run(steps, np.zeros((1, 1)), scratch, count, since + samples, since, 1, output, tiles)
+        return np.concatenate([np.ones((len(theta), 1, samples)), output], axis=1).transpose(0, 2, 1)

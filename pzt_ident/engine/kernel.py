@@ -172,7 +172,7 @@ def run(program, signals, scratch, count, samples, since, stride, output, output
 
     program: (steps, 5), each step the address of a function, its row of the scratch, row of signals, tile, and first
     sample. signals: (rows, 1 + samples + PADDING), with a sample of rest before the record; the row after that of a
-    drive holds its runs. scratch: (groups, rows * WIDTH). count: number of tiles. output: (groups * WIDTH, tiles,
+    drive holds its runs. scratch: (groups, rows * WIDTH). count: number of tiles. output: (candidates, tiles,
     samples after `since` / stride) or empty; it is filled with every `stride`-th sample of output_tiles.
     """
     buffer = np.zeros(count * TILE * WIDTH + 8)
@@ -199,7 +199,7 @@ def run(program, signals, scratch, count, samples, since, stride, output, output
                 begin += (since - begin) % stride
                 for k in range(output_tiles.size):
                     for i in range(begin, first + here, stride):
-                        for j in range(WIDTH):
+                        for j in range(min(WIDTH, output.shape[0] - group * WIDTH)):
                             output[group * WIDTH + j, k, (i - since) // stride] = tiles[
                                 output_tiles[k], (i - first) * WIDTH + j
                             ]

@@ -46,13 +46,10 @@ class Simulator:
 
     def simulate(self, theta: Array) -> Array:
         """Responses without the free offset, SI units: (candidates, measured axes, samples)."""
-        from pzt_ident.engine.kernel import WIDTH
-
         theta = np.atleast_2d(theta)
-        lanes = -(-theta.shape[0] // WIDTH) * WIDTH
-        output = np.empty((lanes, len(self.model.measured), self.record.samples))
+        output = np.empty((theta.shape[0], len(self.model.measured), self.record.samples))
         self._run(theta, np.array(self._program.steps, dtype=np.int64).reshape(-1, 5), output)
-        return output[: theta.shape[0]]
+        return output
 
     def squares(self, theta: Array) -> Array:
         """Sum of squared errors over the scored samples, without the free offset: (candidates, measured axes)."""
