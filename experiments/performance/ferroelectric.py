@@ -20,6 +20,7 @@ from experiments.tables import number, table
 from pzt_ident.data.record import Record
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks, optimizers
+from pzt_ident.search.descent import polish
 from pzt_ident.search.loop import Outcome, Stop, optimize
 from pzt_ident.search.problem import Problem
 
@@ -91,7 +92,7 @@ def search() -> tuple[float, Outcome, Problem]:
     problem.loss(np.full((1, 2), 0.5))
     begun = time.process_time()
     found = optimize(optimizers["pso"].make(population=40, generations=40), 2, problem.loss, 1, Stop(1600))
-    point, more = problem.polish(found.point)
+    point, more = polish(problem, found.point)
     found = found._replace(point=point, evaluations=found.evaluations + more)
     return time.process_time() - begun, found, problem
 

@@ -42,12 +42,17 @@ class Additions:
             error -= error[:, :, self.record.settle :].mean(axis=2, keepdims=True)
             return
         for i, axis in enumerate(self.model.measured):
-            own = [entry.axis == axis and entry.block in self.model.additions for entry in self.model.entries]
-            _, first, index = np.unique(theta[:, own], axis=0, return_index=True, return_inverse=True)
-            for begin in range(0, len(first), WIDTH):
-                bases = self.bases(axis, theta[first[begin : begin + WIDTH]])
-                for number, basis in enumerate(bases, begin):
-                    self._project(error, np.flatnonzero(index.ravel() == number), i, basis)
+            groups = self.groups(axis, theta)
+            for begin in range(0, len(groups), WIDTH):
+                several = groups[begin : begin + WIDTH]
+                for same, basis in zip(several, self.bases(axis, theta[[same[0] for same in several]]), strict=True):
+                    self._project(error, same, i, basis.T)
+
+    def groups(self, axis: int, theta: Array) -> list[NDArray[np.intp]]:
+        """The candidates that have the same signals on an axis, group by group."""
+        own = [entry.axis == axis and entry.block in self.model.additions for entry in self.model.entries]
+        distinct, index = np.unique(theta[:, own], axis=0, return_inverse=True)
+        return [np.flatnonzero(index.ravel() == number) for number in range(len(distinct))]
 
     def _project(self, error: Array, candidates: NDArray[np.intp], i: int, basis: Array) -> None:
         """Subtract the least-squares fit of the basis from the errors of measured axis i, in place."""
@@ -100,16 +105,27 @@ class Additions:
 
     def basis(self, axis: int, theta: Array) -> Array:
         """Ones and the signals of all additions of an axis with one candidate: (samples, 1 + signals)."""
-        return self.bases(axis, np.atleast_2d(theta))[0]
+        return self.bases(axis, np.atleast_2d(theta))[0].T
 
-    def bases(self, axis: int, theta: Array) -> Array:
-        """Likewise of many candidates: (candidates, samples, 1 + signals)."""
-        from pzt_ident.engine.kernel import run
+    def count(self, axis: int, theta: Array) -> int:
+        """Number of signals of an axis, the ones included."""
+        return 1 + self.signals
 
-        program, samples = self.program, self.record.samples
-        since, count = self.record.run_in * samples, program.tiles + self.tiles
-        output = np.empty((len(theta), self.signals, samples))
-        steps, tiles = np.array(self.steps(axis), dtype=np.int64), program.tiles + 1 + np.arange(self.signals)
-        scratch = program.scratch(theta, program.rows)
-        run(steps, np.zeros((1, 1)), scratch, count, since + samples, since, 1, output, tiles)
-        return np.concatenate([np.ones((len(theta), 1, samples)), output], axis=1).transpose(0, 2, 1)
+    def stretch(self, axis: int, theta: Array, at: slice) -> Array:
+        """Ones and the signals of all additions of an axis at some samples: (1 + signals, samples)."""
+        return self.bases(axis, np.atleast_2d(theta), at)[0]
+
+    def bases(self, axis: int, theta: Array, at: slice | None = None) -> Array:
+        """Ones and the signals with many candidates, at some samples or all: (candidates, 1 + signals, samples)."""
+        from pzt_ident.engine.kernel import TILE, run
+
+        at = at or slice(0, self.record.samples)
+        bases = np.ones((len(theta), 1 + self.signals, at.stop - at.start))
+        if self.signals:
+            program, lead = self.program, self.record.run_in * self.record.samples
+            steps, tiles = np.array(self.steps(axis), dtype=np.int64), program.tiles + 1 + np.arange(self.signals)
+            begin, since, count = (lead + at.start) // TILE * TILE, lead + at.start, program.tiles + self.tiles
+            scratch, output = program.scratch(theta, program.rows), np.empty_like(bases[:, 1:])
+            run(steps, np.zeros((1, 1)), scratch, count, begin, lead + at.stop, since, 1, output, tiles)
+            bases[:, 1:] = output
+        return bases

@@ -167,20 +167,23 @@ def products(samples, first, fresh, response, runs, sums, tile):
 
 
 @njit(nogil=True, cache=True)
-def run(program, signals, scratch, count, samples, since, stride, output, output_tiles):
-    """Run every group through every tile.
+def run(program, signals, scratch, count, begin, end, since, stride, output, output_tiles):
+    """Run every group through the samples from `begin` to `end`, tile by tile, on from where the scratch is.
 
     program: (steps, 5), each step the address of a function, its row of the scratch, row of signals, tile, and first
     sample. signals: (rows, 1 + samples + PADDING), with a sample of rest before the record; the row after that of a
-    drive holds its runs. scratch: (groups, rows * WIDTH). count: number of tiles. output: (candidates, tiles,
-    samples after `since` / stride) or empty; it is filled with every `stride`-th sample of output_tiles.
+    drive holds its runs. scratch: (groups, rows * WIDTH). count: number of tiles. begin: a multiple of TILE, and of the
+    stride. output: (candidates, tiles, samples after `since` / stride) or empty; it is filled with every `stride`-th
+    sample of output_tiles.
     """
     buffer = np.zeros(count * TILE * WIDTH + 8)
     start = (-buffer.ctypes.data // 8) % 8  # on a cache line
     tiles = buffer[start : start + count * TILE * WIDTH].reshape(count, TILE * WIDTH)
+    kept = max(begin, since)
     for group in range(scratch.shape[0]):
-        for first in range(0, samples, TILE):
-            here = min(TILE, samples - first)
+        lanes = min(WIDTH, output.shape[0] - group * WIDTH)
+        for first in range(begin, end, TILE):
+            here = min(TILE, end - first)
             for step in range(program.shape[0]):
                 skip = max(0, program[step, 4] - first)
                 if skip < here:
@@ -195,12 +198,12 @@ def run(program, signals, scratch, count, samples, since, stride, output, output
                         tiles[program[step, 3]].ctypes.data + 8 * WIDTH * skip,
                     )
             if output.size:
-                begin = max(first, since)
-                begin += (since - begin) % stride
+                left = max(first, kept)
+                left += (kept - left) % stride
                 for k in range(output_tiles.size):
-                    for i in range(begin, first + here, stride):
-                        for j in range(min(WIDTH, output.shape[0] - group * WIDTH)):
-                            output[group * WIDTH + j, k, (i - since) // stride] = tiles[
+                    for i in range(left, first + here, stride):
+                        for j in range(lanes):
+                            output[group * WIDTH + j, k, (i - kept) // stride] = tiles[
                                 output_tiles[k], (i - first) * WIDTH + j
                             ]
 

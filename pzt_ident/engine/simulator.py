@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -11,11 +12,13 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.record import Record, interpolated
 from pzt_ident.engine.additions import Additions
+from pzt_ident.engine.gather import squares
 from pzt_ident.engine.program import Program
 from pzt_ident.model.block import TILES
 from pzt_ident.model.chain import Chain
 
 Array = NDArray[np.float64]
+STRETCH = 4096  # samples that errors are gathered from at once
 SIGNALS: WeakKeyDictionary[Record, dict[Any, Array]] = WeakKeyDictionary()
 
 
@@ -28,10 +31,10 @@ class Simulator:
     def __init__(self, model: Chain, record: Record) -> None:
         self.model, self.record = model, record
         self._program = Program(model, record)
-        self._additions = Additions(self._program)
+        self.additions = Additions(self._program)
         self._measured = TILES * np.array(model.measured, dtype=np.int64)
         self._sums = self._program.rows  # row of the scratch after those of the blocks
-        self._each = self._additions.sums or 2  # rows of sums of an axis
+        self._each = self.additions.sums or 2  # rows of sums of an axis
         self._rows = self._sums + self._each * len(model.measured)
 
     @property
@@ -46,10 +49,34 @@ class Simulator:
 
     def simulate(self, theta: Array) -> Array:
         """Responses without the free offset, SI units: (candidates, measured axes, samples)."""
-        theta = np.atleast_2d(theta)
-        output = np.empty((theta.shape[0], len(self.model.measured), self.record.samples))
-        self._run(theta, np.array(self._program.steps, dtype=np.int64).reshape(-1, 5), output)
-        return output
+        return next(self._stretches(np.atleast_2d(theta), self.record.samples * (self.record.run_in + 1)))[1]
+
+    def tiles(self, theta: Array) -> Iterator[tuple[slice, Array]]:
+        """Model minus measurement over the scored samples, with the offset, a stretch after the other: its samples, and
+        the errors (candidates, measured axes, samples of the stretch)."""
+        measured, settle = list(self.model.measured), self.record.settle
+        for at, response in self._stretches(np.atleast_2d(theta), STRETCH):
+            if at.stop > settle:
+                at = slice(max(at.start, settle), at.stop)
+                error = response[:, :, at.start - at.stop :]
+                error -= self.record.response[measured, at]
+                yield at, error
+
+    def _stretches(self, theta: Array, most: int) -> Iterator[tuple[slice, Array]]:
+        """The responses (candidates, measured axes, samples), stretch by stretch of so many samples at most."""
+        from pzt_ident.engine.kernel import TILE
+
+        steps = np.array(self._program.steps, dtype=np.int64).reshape(-1, 5)
+        scratch = self._program.scratch(theta, self._rows)
+        length = -(-most // TILE) * TILE
+        lead, samples = self.record.run_in * self.record.samples, self.record.samples
+        for first in range(0, lead + samples, length):
+            last = min(first + length, lead + samples)
+            at = slice(max(first - lead, 0), last - lead)
+            output = np.empty((len(theta), len(self.model.measured), max(at.stop - at.start, 0)))
+            self._run(scratch, steps, output, first, last)
+            if output.size:
+                yield at, output
 
     def squares(self, theta: Array) -> Array:
         """Sum of squared errors over the scored samples, without the free offset: (candidates, measured axes)."""
@@ -57,23 +84,23 @@ class Simulator:
 
         theta = np.atleast_2d(theta)
         if self.substeps > 1:
-            error = self.residuals(theta)
-            return np.einsum("mas,mas->ma", error, error)
-        scratch = self._run(theta, self._scoring, np.empty((0, 0, 0)))
+            return squares(self, theta)
+        scratch = self._program.scratch(theta, self._rows)
         sums = scratch.reshape(scratch.shape[0], self._rows, WIDTH)[:, self._sums :]
+        self.additions.begin(sums)
+        self._run(scratch, self._scoring, np.empty((0, 0, 0)), 0, self.record.samples * (self.record.run_in + 1))
         if self.model.additions:
             table = sums.reshape(-1, len(self.model.measured), self._each, WIDTH).transpose(0, 3, 1, 2)
-            squares, sure = self._additions.squares(table.reshape(-1, *table.shape[2:])[: theta.shape[0]], self.scored)
+            found, sure = self.additions.squares(table.reshape(-1, *table.shape[2:])[: theta.shape[0]], self.scored)
             if not sure.all():
-                error = self.residuals(theta[~sure])
-                squares[~sure] = np.einsum("mas,mas->ma", error, error)
-            return squares
+                found[~sure] = squares(self, theta[~sure])
+            return found
         with np.errstate(invalid="ignore", over="ignore"):
-            squares = (
+            found = (
                 sums[:, 1::2] - (sums[:, 0::2] / np.sqrt(self.scored)) ** 2
             )  # overflows only where the sum of squares does
-        squares = np.maximum(squares, 0)  # negative by rounding for a perfect fit
-        return squares.swapaxes(1, 2).reshape(-1, len(self.model.measured))[: theta.shape[0]]
+        found = np.maximum(found, 0)  # negative by rounding for a perfect fit
+        return found.swapaxes(1, 2).reshape(-1, len(self.model.measured))[: theta.shape[0]]
 
     def residuals(self, theta: Array) -> Array:
         """Model minus measurement over the scored samples, without offset and additions; see `errors`."""
@@ -84,13 +111,13 @@ class Simulator:
         the amounts of its additions are subtracted; they follow from least squares over the scored samples."""
         theta = np.atleast_2d(theta)
         error = self.simulate(theta) - self.record.response[list(self.model.measured)]
-        self._additions.remove(error, theta)
+        self.additions.remove(error, theta)
         return error
 
     def added(self, theta: Array) -> dict[str, Array]:
         """Standard deviation of each addition with one candidate; see `Additions.sizes`."""
         residual = self.record.response[list(self.model.measured)] - self.simulate(theta)[0]
-        return self._additions.sizes(residual, theta)
+        return self.additions.sizes(residual, theta)
 
     def violations(self, theta: Array) -> tuple[str, ...]:
         """Sentences on the conditions of the blocks' equations that one candidate violates on this record."""
@@ -111,20 +138,18 @@ class Simulator:
         responses = 2 * len(self.model.axes)  # first row of signals after those of the drives
         sums, added = products if self.model.additions else errors, []
         for i, a in enumerate(self.model.measured):
-            added += [(*step[:-1], since) for step in self._additions.steps(a)]
+            added += [(*step[:-1], since) for step in self.additions.steps(a)]
             added.append((address(sums), self._sums + self._each * i, responses + i, TILES * a, since))
         return np.array(self._program.steps + added, dtype=np.int64)
 
-    def _run(self, theta: Array, program: NDArray[np.int64], output: Array) -> Array:
+    def _run(self, scratch: Array, program: NDArray[np.int64], output: Array, first: int, last: int) -> None:
+        """Step from sample `first` to sample `last`, counted from the start of the run-in."""
         from pzt_ident.engine.kernel import run
 
-        scratch = self._program.scratch(theta, self._rows)
-        self._additions.begin(scratch.reshape(len(scratch), self._rows, -1)[:, self._sums :])
-        since = self.record.run_in * self.record.samples * self.substeps
-        samples = since + self.record.samples * self.substeps
-        tiles = self._program.tiles + self._additions.tiles
-        run(program, self._signals, scratch, tiles, samples, since, self.substeps, output, self._measured)
-        return scratch
+        fine = self.substeps
+        since = self.record.run_in * self.record.samples * fine
+        tiles = self._program.tiles + self.additions.tiles
+        run(program, self._signals, scratch, tiles, first * fine, last * fine, since, fine, output, self._measured)
 
     @property
     def _signals(self) -> Array:
@@ -141,17 +166,17 @@ class Simulator:
         from pzt_ident.engine.kernel import PADDING, runs_of
 
         record, model = self.record, self.model
-        rows = []
-        for row in record.drive:
-            drive = np.tile(self._fine(row), record.run_in + 1)
-            rows += [drive, runs_of(drive)]
-        for axis in model.measured:
-            response = np.zeros(rows[0].size)
+        samples = record.samples * (record.run_in + 1) * self.substeps
+        table = np.zeros((2 * len(record.drive) + len(model.measured), 1 + samples + PADDING))
+        for row, drive in zip(table[0::2], record.drive, strict=False):
+            row[1 : 1 + samples] = np.tile(self._fine(drive), record.run_in + 1)
+        for i in range(len(record.drive)):
+            table[2 * i + 1, 1 : 1 + samples] = runs_of(table[2 * i, 1 : 1 + samples])
+        for row, axis in zip(table[2 * len(record.drive) :], model.measured, strict=True):
             if self.substeps == 1:
-                response[-record.samples :] = record.response[axis] - record.response[axis].mean()
-            rows.append(response)
-        table = np.array(rows)
-        return np.hstack([table[:, :1], table, np.repeat(table[:, -1:], PADDING, axis=1)])
+                row[1 + samples - record.samples : 1 + samples] = record.response[axis] - record.response[axis].mean()
+        table[:, 0], table[:, 1 + samples :] = table[:, 1], table[:, samples : samples + 1]
+        return table
 
     def _fine(self, drive: Array) -> Array:
         return interpolated(drive, self.substeps, bool(self.record.run_in), smooth=self.model.oversample > 1)

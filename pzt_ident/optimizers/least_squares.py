@@ -6,9 +6,12 @@ from collections.abc import Generator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pzt_ident.model.optimizer import Array, Budgeted, Search, setting
 from pzt_ident.model.registry import optimizers
+
+Mask = NDArray[np.bool_]
 
 ROUNDING = float(np.finfo(np.float64).eps)
 STEP = ROUNDING**0.5  # of a forward difference
@@ -88,9 +91,9 @@ def widths(loss: float, hessian: Array) -> Array:
     return np.clip(2 * np.sqrt(ROUNDING * abs(loss) / curvature), 1e-10, 1e-6)
 
 
-def bounded_step(x: Array, gradient: Array, hessian: Array, damping: float) -> Array:
-    """The damped step over the coordinates that are free to move, cut at the bounds."""
-    free = ~(((x <= 0) & (gradient > 0)) | ((x >= 1) & (gradient < 0)))
+def bounded_step(x: Array, gradient: Array, hessian: Array, damping: float, movable: Mask | bool = True) -> Array:
+    """The damped step over the coordinates that are free to move, cut at the bounds. movable: which may."""
+    free = movable & ~(((x <= 0) & (gradient > 0)) | ((x >= 1) & (gradient < 0)))
     step = np.zeros_like(x)
     scale = np.maximum(np.diag(hessian), 1e-12 * max(np.diag(hessian).max(), 1e-300))
     for _ in range(x.size):

@@ -21,6 +21,7 @@ from pzt_ident.model.registry import optimizers
 from pzt_ident.run.checkpoint import Checkpoint, read_losses
 from pzt_ident.run.start import START, start_point
 from pzt_ident.run.statement import Statement
+from pzt_ident.search.descent import polish
 from pzt_ident.search.loop import History, Outcome, State, Stop, optimize
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.uncertainty import estimates
@@ -84,7 +85,7 @@ def identification(task: Task, statement: Statement, checkpoint: Checkpoint, tel
     if not np.isfinite(outcome.loss):
         raise RunError(f"the simulation of each of its {outcome.evaluations} candidates failed: narrow the bounds")
     start, problem.failed = time.perf_counter(), 0
-    point, polish_evaluations = problem.polish(outcome.point) if task.polish else (outcome.point, 0)
+    point, polish_evaluations = polish(problem, outcome.point) if task.polish else (outcome.point, 0)
     polish_seconds = time.perf_counter() - start
     failed = problem.failed + checkpoint.failures
     return {

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pzt_ident.data.record import Record, drive_correlation
 from pzt_ident.data.units import factor
+from pzt_ident.engine.gather import Triangle, rotated
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.errors import InputError
 from pzt_ident.model.chain import Chain
@@ -20,6 +21,8 @@ from pzt_ident.search.linear import Linear, Tangent
 from pzt_ident.search.scales import bounds_of, size_of, unit_of
 
 Array = NDArray[np.float64]
+
+DIFFERENCE = 1e-5  # half the width of central differences in the unit cube
 
 
 class ParameterSpec(Protocol):
@@ -234,21 +237,61 @@ class Problem:
         near.linear = Linear(self.model, columns[~followed], self.linear.units[~followed], near._scaled)
         return near
 
-    def jacobian(self, point: Array, step: float = 1e-5) -> Array:
-        """Jacobian of the residuals over the cube by central differences, one-sided on its faces and beside points that
-        fail, zero between two failed points: (samples, free). What is solved for follows to first order (Kaufman 1975,
-        BIT 15, 49)."""
-        point = np.asarray(point, dtype=float)
+    def jacobian(self, point: Array) -> Array:
+        """Jacobian of the residuals over the cube, (samples, free), see `stencil`. What is solved for follows to first
+        order (Kaufman 1975, BIT 15, 49)."""
         near = self.along(self.tangent(point))
-        ends = np.concatenate([np.minimum(point + step, 1), np.maximum(point - step, 0)])
-        count = self.dimensions
-        shifted = np.where(np.tile(np.eye(count, dtype=bool), (2, 1)), ends[:, None], point)
-        residuals = near.residuals(shifted)
+        points, weights = self.stencil(point)
+        residuals = near.residuals(points)
         failed = np.isinf(residuals[:, 0])
         if failed.any():
-            residuals[failed], ends[failed] = near.residuals(point), np.tile(point, 2)[failed]
-        width = ends[:count] - ends[count:]
-        return ((residuals[:count] - residuals[count:]) / np.where(width > 0, width, 1)[:, None]).T
+            residuals[failed] = residuals[0]
+            weights = self.stencil(point, failed)[1]
+        return (weights[1:] @ residuals).T
+
+    def stencil(self, point: Array, failed: NDArray[np.bool_] | None = None) -> tuple[Array, Array]:
+        """Points of central differences about a point, the point first, one-sided on the faces of the cube and beside
+        points that `failed`, none between two failed ones: (2 free + 1, free). And the weights of their residuals in
+        the residual and its derivatives: (1 + free, 2 free + 1)."""
+        point, count = np.asarray(point, dtype=float), self.dimensions
+        steps = np.vstack([np.zeros(count), DIFFERENCE * np.eye(count), -DIFFERENCE * np.eye(count)])
+        points = np.clip(point + steps, 0, 1)
+        points[np.zeros(len(points), dtype=bool) if failed is None else failed] = point
+        ends = points[1:].reshape(2, count, count).diagonal(axis1=1, axis2=2)
+        width = ends[0] - ends[1]
+        slope = np.diag(1 / np.where(width > 0, width, np.inf))
+        weights = np.zeros((1 + count, len(points)))
+        weights[0, 0], weights[1:, 1 : 1 + count], weights[1:, 1 + count :] = 1, slope, -slope
+        return points, weights
+
+    def equations(self, point: Array) -> tuple[Array, Array]:
+        """Jacobian (rows, free) and residual (rows,) as of `jacobian` and `residuals`, rotated together so that a few
+        rows are left: J' J, J' r and r' r are those of the samples."""
+        near = self.along(self.tangent(point))
+        points, weights = self.stencil(point)
+        rotated, failed = near.rotated(points, weights)
+        if failed[1:].any():
+            rotated, failed = near.rotated(*self.stencil(point, failed))
+        return rotated[:, 1:], np.full(len(rotated), np.inf) if failed[0] else rotated[:, 0]
+
+    def rotated(self, points: Array, weights: Array) -> tuple[Array, NDArray[np.bool_]]:
+        """Combinations `weights`, (combinations, candidates), of the residuals, rotated so that a few rows are left:
+        (rows, combinations). And which candidates failed, whose residuals are taken as zero: (candidates,)."""
+        triangle = Triangle(len(weights))
+        if self._tangent:
+            residuals = self.residuals(points)
+            failed = np.isinf(residuals[:, 0])
+            residuals[failed] = 0
+            triangle.add(weights @ residuals)
+            return triangle.r, failed
+        theta, failed = self.parameters(points), np.zeros(len(points), dtype=bool)
+        for simulator in self.simulators["identify"]:
+            parts, broken = rotated(simulator, theta, weights)
+            failed |= broken
+            for part, size in zip(parts, self.sizes, strict=True):
+                triangle.add(part.T / (size * np.sqrt(self.scored)))
+        self.failed += int(failed.sum())
+        return triangle.r, failed
 
     @property
     def every_simulator(self) -> list[Simulator]:
@@ -262,26 +305,3 @@ class Problem:
         """Each record with model minus measurement over all its samples: (measured axes, samples), SI units."""
         theta = self.parameters(point)
         return ((simulator.record, simulator.errors(theta)[0]) for simulator in self.every_simulator)
-
-    def polish(self, point: Array, evaluations: int = 2000) -> tuple[Array, int]:
-        """Least squares from a point, with the batched Jacobian: the point reached and the number of simulations."""
-        from scipy.optimize import least_squares
-
-        start = np.clip(point, 1e-9, 1 - 1e-9)
-        size = self.loss(start)[0] or 1.0
-        if not np.isfinite(size):
-            return np.asarray(point), 1
-        per_jacobian = 2 * self.dimensions
-        result = least_squares(
-            lambda x: self.residuals(x)[0] / size,
-            start,
-            lambda x: self.jacobian(x) / size,
-            bounds=(np.zeros(self.dimensions), np.ones(self.dimensions)),
-            x_scale="jac",
-            ftol=1e-10,
-            xtol=1e-10,
-            gtol=1e-12,
-            max_nfev=max(2, evaluations // (per_jacobian + 1)),
-        )
-        better = self.loss(result.x)[0] < self.loss(point)[0]
-        return (result.x if better else np.asarray(point)), int(result.nfev + per_jacobian * result.njev)

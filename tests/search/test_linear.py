@@ -18,6 +18,7 @@ from pzt_ident.model.registry import blocks
 from pzt_ident.report.page import write_report
 from pzt_ident.run.identify import run
 from pzt_ident.run.place import Local
+from pzt_ident.search.descent import polish
 from pzt_ident.search.linear import Linear, solve
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.uncertainty import estimates
@@ -68,7 +69,7 @@ def test_it_is_one_non_negative_least_squares_problem(measured):
 
 def test_the_residual_is_the_noise_at_the_true_interaction(measured):
     made = problem(measured)
-    point, _ = made.polish(at(made, 9000))
+    point, _ = polish(made, at(made, 9000))
     assert made.physical(point)[0, 0] == pytest.approx(6120, rel=0.05)
     assert made.loss(point)[0] == pytest.approx(NOISE, rel=0.06)
     wrong = [made.loss(at(made, width))[0] for width in (3000, 12000)]
@@ -87,7 +88,7 @@ def test_polarization_and_strain_share_a_density(measured):
     made = Problem(model, [pair], specs, [NOISE, 3 * NOISE])
     assert made.names == ("homogenized_energy.interaction", "d.homogenized_energy.ratio")
     assert made.units == ("V", "um/(uC/cm2)")
-    point, _ = made.polish(np.array([0.5, 0.7]))
+    point, _ = polish(made, np.array([0.5, 0.7]))
     width, ratio = made.physical(point)[0]
     assert width == pytest.approx(6120, rel=0.05) and ratio == pytest.approx(3e4, rel=0.01)
     assert made.loss(point)[0] == pytest.approx(1, rel=0.06)

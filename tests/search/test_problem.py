@@ -11,6 +11,7 @@ from pzt_ident.engine.simulator import simulate
 from pzt_ident.errors import InputError
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks, optimizers
+from pzt_ident.search.descent import polish
 from pzt_ident.search.loop import Stop, optimize
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.uncertainty import estimates
@@ -119,7 +120,7 @@ def test_jacobian_is_the_derivative():
 def test_polish_finds_the_truth_from_nearby():
     model, records = made(["bouc_wen"], TRUTH)
     problem = Problem(model, records)
-    point, spent = problem.polish(np.clip(problem.unit_point(TRUTH) * 1.2, 0, 1))
+    point, spent = polish(problem, np.clip(problem.unit_point(TRUTH) * 1.2, 0, 1))
     np.testing.assert_allclose(problem.physical(point)[0], list(TRUTH.values()), rtol=1e-4)
     assert 0 < spent < 2000
 
@@ -157,7 +158,7 @@ def test_the_jacobian_beside_a_failed_simulation_is_one_sided():
     jacobian = problem.jacobian(holds)
     assert np.isfinite(jacobian).all()
     assert (np.abs(jacobian[:, [0, 2]]).max(axis=0) > 0).all()
-    assert np.isfinite(problem.loss(problem.polish(holds)[0])[0])
+    assert np.isfinite(problem.loss(polish(problem, holds)[0])[0])
 
 
 def turned(records, word):
@@ -166,7 +167,7 @@ def turned(records, word):
         signed = [dataclasses.replace(record, response=sign * record.response) for record in records]
         problem = Problem(Chain([blocks[word]], ["x"], [0]), signed)
         found = optimize(optimizers["pso"].make(), problem.dimensions, problem.loss, 1, Stop(3000))
-        yield problem, problem.loss(problem.polish(found.point)[0])[0]
+        yield problem, problem.loss(polish(problem, found.point)[0])[0]
 
 
 @pytest.mark.parametrize("word", ["bouc_wen", "prandtl_ishlinskii"])
@@ -190,7 +191,7 @@ def test_a_constant_drive_is_no_scale():
 def test_standard_errors_cover_the_truth():
     model, records = made(["bouc_wen"], TRUTH, noise=2e-8)
     problem = Problem(model, records)
-    point, _ = problem.polish(problem.unit_point(TRUTH))
+    point, _ = polish(problem, problem.unit_point(TRUTH))
     found, correlation = estimates(problem, point)
     assert [item.verdict for item in found] == ["determined"] * 4
     for item in found:
@@ -216,7 +217,7 @@ def test_slow_data_do_not_determine_the_mechanics():
 def test_a_parameter_on_its_bound_is_named():
     model, records = made(["bouc_wen"], TRUTH)
     problem = Problem(model, records, {"bouc_wen.gain": spec((0.0, 0.08))})
-    point, _ = problem.polish(problem.unit_point(TRUTH))
+    point, _ = polish(problem, problem.unit_point(TRUTH))
     found, _ = estimates(problem, point)
     assert found[0].verdict == "on its upper bound"
 

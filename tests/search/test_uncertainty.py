@@ -8,6 +8,7 @@ from scipy.signal import lfilter
 
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks
+from pzt_ident.search.descent import polish
 from pzt_ident.search.problem import FixedValue, Problem
 from pzt_ident.search.uncertainty import autoregression, caution, covariance_of, estimates
 from rig import record
@@ -92,7 +93,7 @@ def test_the_error_of_a_gain_is_that_of_the_slope_of_a_straight_line():
         f"bouc_wen.{word}": FixedValue(value) for word, value in (("alpha", 0.0), ("beta", 0.01), ("gamma", 0.0))
     }
     problem = Problem(Chain([blocks["bouc_wen"]], "x", [0]), [record(drive, response=[response])], straight)
-    point, _ = problem.polish(np.array([0.5]))
+    point, _ = polish(problem, np.array([0.5]))
     (gain,) = estimates(problem, point)[0]
     assert (gain.name, gain.unit, gain.verdict) == ("bouc_wen.gain", "m/V", "determined")
     expected = noise / np.linalg.norm(drive - drive.mean())
