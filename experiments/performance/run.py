@@ -141,13 +141,12 @@ def whole_search() -> list[tuple[str, float]]:
     made = problem(drives(t)["constant step (triangle, 1 Hz)"])
     settings = {"pso": {"population": 70, "generations": 250, "c1": 2.8, "c2": 1.3}}  # Lin & Lin
 
-    def residuals(points: np.ndarray) -> np.ndarray:
-        return made.residuals(points) * np.sqrt(made.scored)
-
     functions: dict[str, Callable[[], object]] = {}
     for word in optimizers.words():
         chosen = optimizers[word].make(**settings.get(word, {})).with_budget(17_500)
-        functions[word] = lambda o=chosen: optimize(o, made.dimensions, made.loss, 1, Stop(17_500), residuals)
+        functions[word] = lambda o=chosen: optimize(
+            o, made.dimensions, made.loss, 1, Stop(17_500), made.rotated_residuals
+        )
     return list(cpu(functions, 3, 1).items())
 
 

@@ -7,6 +7,7 @@ grows by a stretch of rows at a time (Golub & Van Loan 2013, section 6.5; LAPACK
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -57,6 +58,14 @@ class Remainder:
         """NaN where the basis is not finite."""
         return self.outside + np.square(without(self.basis.r, self.inside)).sum(axis=0)
 
+    @property
+    def amounts(self) -> Array:
+        """Of the basis in each signal: (signals of the basis, candidates)."""
+        basis = self.basis.r
+        size = np.linalg.norm(basis, axis=0)
+        size[size == 0] = 1
+        return np.asarray(np.linalg.pinv(basis / size, rcond=DEPENDENT) @ self.inside / size[:, None])
+
 
 def without(basis: Array, signals: Array) -> Array:
     """Signals (rows, candidates) without their least-squares fit by a basis (rows, signals)."""
@@ -68,20 +77,38 @@ def without(basis: Array, signals: Array) -> Array:
     return np.asarray(signals - kept @ (kept.T @ signals))
 
 
-def squares(simulator: Simulator, theta: Array) -> Array:
-    """Sum of squared errors without offset and additions: (candidates, measured axes)."""
-    additions, axes = simulator.additions, range(len(simulator.model.measured))
-    groups = [additions.groups(axis, theta) for axis in simulator.model.measured]
-    sums = [[Remainder(additions.count(axis, theta), len(group)) for group in groups[axis]] for axis in axes]
+def remainders(simulator: Simulator, theta: Array) -> list[list[tuple[NDArray[np.intp], Remainder]]]:
+    """For each measured axis the candidates with the same signals of additions, and what these leave of the errors."""
+    additions = simulator.additions
+    found = [
+        [(group, Remainder(additions.count(axis, theta), len(group))) for group in additions.groups(axis, theta)]
+        for axis in simulator.model.measured
+    ]
     for at, error in simulator.tiles(theta):
         for i, axis in enumerate(simulator.model.measured):
-            for group, remainder in zip(groups[i], sums[i], strict=True):
+            for group, remainder in found[i]:
                 remainder.add(additions.stretch(axis, theta[group[0]], at), error[group, i])
-    found = np.empty((len(theta), len(axes)))
-    for i in axes:
-        for group, remainder in zip(groups[i], sums[i], strict=True):
+    return found
+
+
+def squares(simulator: Simulator, theta: Array) -> Array:
+    """Sum of squared errors without offset and additions: (candidates, measured axes)."""
+    found = np.empty((len(theta), len(simulator.model.measured)))
+    for i, groups in enumerate(remainders(simulator, theta)):
+        for group, remainder in groups:
             found[group, i] = remainder.squares
     return found
+
+
+def stretches(simulator: Simulator, theta: Array) -> Iterator[tuple[int, Array]]:
+    """Errors without offset and additions, stretch by stretch: the number of a measured axis, and its errors
+    (candidates, samples)."""
+    amounts = [[(group, part.amounts) for group, part in groups] for groups in remainders(simulator, theta)]
+    for at, error in simulator.tiles(theta):
+        for i, axis in enumerate(simulator.model.measured):
+            for group, amount in amounts[i]:
+                error[group, i] -= amount.T @ simulator.additions.stretch(axis, theta[group[0]], at)
+            yield i, error[:, i]
 
 
 def rotated(simulator: Simulator, theta: Array, weights: Array) -> tuple[list[Array], NDArray[np.bool_]]:

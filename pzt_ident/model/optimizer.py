@@ -31,7 +31,8 @@ def choice(default: str, words: tuple[str, ...], doc: str) -> Any:
 class Optimizer(ABC):
     """Typed settings and one generator. A subclass is a frozen dataclass with fields from `setting` or `choice`.
 
-    `wants`: with "residuals" it is sent residuals (M, N) if the problem has them, otherwise losses (M,).
+    `wants`: with "residuals" it is sent residuals (M, N) if the problem has them, otherwise losses (M,). Those of one
+    batch may be rotated together, so that N is small: only they may be subtracted from each other.
     `convergent`: its steps shrink towards an optimum, so that within 6000 evaluations it finds the minimum of |x - c|^2
     in 4 dimensions to 1e-4; others to 1e-2.
     Raises InputError for a setting of the wrong type or out of its bounds.

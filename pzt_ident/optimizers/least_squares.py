@@ -15,6 +15,7 @@ Mask = NDArray[np.bool_]
 
 ROUNDING = float(np.finfo(np.float64).eps)
 STEP = ROUNDING**0.5  # of a forward difference
+TOGETHER = 64  # points of a batch
 SMALLEST = 1e-11  # step below which a start ends
 
 
@@ -34,11 +35,16 @@ class LeastSquares(Budgeted):
 
     def search(self, dimensions: int, rng: np.random.Generator) -> Search:
         while True:
+            best, least, answer = np.zeros(dimensions), np.inf, np.array(np.inf)
             points = rng.random((self.samples, dimensions))
-            answers = yield points
-            best = int(np.argmin([size(answer) for answer in answers]))
-            if np.isfinite(size(answers[best])):
-                yield from descend(points[best], answers[best])
+            for first in range(0, self.samples, TOGETHER):
+                answers = yield points[first : first + TOGETHER]
+                sizes = [size(answer) for answer in answers]
+                if min(sizes) < least:
+                    chosen = int(np.argmin(sizes))
+                    best, least, answer = points[first + chosen], sizes[chosen], answers[chosen]
+            if least < np.inf:
+                yield from descend(best, answer)
 
 
 def size(answer: Array) -> float:
@@ -55,11 +61,13 @@ def descend(x: Array, answer: Array) -> Generator[Array, Array, None]:
     while True:
         sizes = np.full(x.size, STEP) if np.ndim(answer) or hessian is None else widths(float(answer), hessian)
         steps = np.where(x + sizes > 1, -sizes, sizes)
-        shifted = yield np.clip(x + np.diag(steps), 0, 1)
+        points = np.clip(x + np.diag(steps), 0, 1)
+        shifted = yield np.vstack([x, points]) if np.ndim(answer) else points
         if not np.isfinite(shifted).all():
             return
         if np.ndim(answer):
-            jacobian = ((shifted - answer) / steps[:, None]).T
+            answer, *shifted = shifted  # residuals of one batch are rotated together
+            jacobian = ((np.array(shifted) - answer) / steps[:, None]).T
             gradient, hessian = jacobian.T @ answer, jacobian.T @ jacobian
         else:
             gradient = (shifted - answer) / steps

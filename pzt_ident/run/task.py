@@ -147,7 +147,7 @@ def searched(
             problem.loss,
             np.random.SeedSequence([task.seed, task.repeat, zlib.crc32(task.optimizer.encode())]),
             Stop(**task.stop),
-            residuals=lambda points: problem.residuals(points) * np.sqrt(problem.scored),
+            residuals=problem.rotated_residuals,
             callback=note,
             earlier_losses=known,
         )

@@ -39,14 +39,13 @@ def descend(
 
 def polish(problem: Problem, point: Array, evaluations: int = 2000) -> tuple[Array, int]:
     """The minimum next to a point, as exactly as the loss tells, and the number of simulations."""
-    best = np.clip(point, 0, 1)
+    best, number = np.clip(point, 0, 1), 0
     a_step = 2 * problem.dimensions + 1 + len(DAMPINGS)
-    most = max(1, evaluations // a_step)
-    for number, (step, fall) in enumerate(islice(steps(problem, best), most), 1):
-        best = step
+    for step, fall in islice(steps(problem, best), max(1, evaluations // a_step)):
+        best, number = step, number + 1
         if fall < SETTLED:
-            return best, 1 + number * a_step
-    return best, 1 + most * a_step
+            break
+    return best, number * a_step + 1
 
 
 def steps(
@@ -56,8 +55,8 @@ def steps(
     each fell, until none is lower."""
     loss = problem.loss(point)[0]
     movable = np.arange(point.size) != held
-    while np.isfinite(loss) and going():
-        jacobian, residual = problem.equations(point)
+    while 0 < loss < np.inf and going():
+        jacobian, residual = (part / loss for part in problem.equations(point))
         gradient, curvature = jacobian.T @ residual, jacobian.T @ jacobian
         moves = [bounded_step(point, gradient, curvature, damping, movable) for damping in DAMPINGS]
         best, least = problem.best(np.clip(point + np.clip(moves, -FARTHEST, FARTHEST), 0, 1), point)

@@ -72,9 +72,9 @@ class Outcome(NamedTuple):
     stopped_by: str
 
 
-def rms(residuals: Array) -> Array:
-    """Root mean square of each row, inf for a row that is not finite: (M, N) -> (M,)."""
-    return finite(np.sqrt(np.mean(np.square(residuals), axis=1)))
+def norms(residuals: Array) -> Array:
+    """Norm of each row, inf for a row that is not finite: (M, N) -> (M,)."""
+    return finite(np.sqrt(np.sum(np.square(residuals), axis=1)))
 
 
 def finite(losses: ArrayLike) -> Array:
@@ -96,7 +96,7 @@ def optimize(
     """Run an optimizer until `stop` ends it.
 
     evaluate: candidates (M, P) in the unit cube -> losses (M,). residuals: candidates -> (M, N), the loss being the
-    root mean square of a row; used instead of evaluate by an optimizer that wants them. seed: anything that NumPy's
+    norm of a row; used instead of evaluate by an optimizer that wants them. seed: anything that NumPy's
     default_rng takes; the outcome depends on nothing else. callback: called after each generation; True ends the
     search. earlier_losses: the losses of each generation of an earlier run, which is continued bit for bit without
     evaluating them again (residuals are evaluated again). Raises InputError if they belong to another run, RunError if
@@ -112,7 +112,7 @@ def optimize(
         recorded = next(replay, None)
         if by_residuals and residuals is not None:
             answer = np.asarray(residuals(points), dtype=np.float64)
-            losses = rms(answer)
+            losses = norms(answer)
         else:
             losses = finite(evaluate(points) if recorded is None else recorded)
             answer = losses.copy()

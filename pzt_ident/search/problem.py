@@ -12,17 +12,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from pzt_ident.data.record import Record, drive_correlation
 from pzt_ident.data.units import factor
-from pzt_ident.engine.gather import Triangle, rotated
+from pzt_ident.engine.gather import Triangle, rotated, stretches
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.errors import InputError
 from pzt_ident.model.chain import Chain
 from pzt_ident.search.feasibility import check_feasible, check_units
 from pzt_ident.search.linear import Linear, Tangent
 from pzt_ident.search.scales import bounds_of, size_of, unit_of
+from pzt_ident.search.stencil import stencil
 
 Array = NDArray[np.float64]
-
-DIFFERENCE = 1e-5  # half the width of central differences in the unit cube
 
 
 class ParameterSpec(Protocol):
@@ -241,38 +240,53 @@ class Problem:
         """Jacobian of the residuals over the cube, (samples, free), see `stencil`. What is solved for follows to first
         order (Kaufman 1975, BIT 15, 49)."""
         near = self.along(self.tangent(point))
-        points, weights = self.stencil(point)
+        points, weights = stencil(point)
         residuals = near.residuals(points)
         failed = np.isinf(residuals[:, 0])
         if failed.any():
             residuals[failed] = residuals[0]
-            weights = self.stencil(point, failed)[1]
+            weights = stencil(point, failed)[1]
         return (weights[1:] @ residuals).T
-
-    def stencil(self, point: Array, failed: NDArray[np.bool_] | None = None) -> tuple[Array, Array]:
-        """Points of central differences about a point, the point first, one-sided on the faces of the cube and beside
-        points that `failed`, none between two failed ones: (2 free + 1, free). And the weights of their residuals in
-        the residual and its derivatives: (1 + free, 2 free + 1)."""
-        point, count = np.asarray(point, dtype=float), self.dimensions
-        steps = np.vstack([np.zeros(count), DIFFERENCE * np.eye(count), -DIFFERENCE * np.eye(count)])
-        points = np.clip(point + steps, 0, 1)
-        points[np.zeros(len(points), dtype=bool) if failed is None else failed] = point
-        ends = points[1:].reshape(2, count, count).diagonal(axis1=1, axis2=2)
-        width = ends[0] - ends[1]
-        slope = np.diag(1 / np.where(width > 0, width, np.inf))
-        weights = np.zeros((1 + count, len(points)))
-        weights[0, 0], weights[1:, 1 : 1 + count], weights[1:, 1 + count :] = 1, slope, -slope
-        return points, weights
 
     def equations(self, point: Array) -> tuple[Array, Array]:
         """Jacobian (rows, free) and residual (rows,) as of `jacobian` and `residuals`, rotated together so that a few
         rows are left: J' J, J' r and r' r are those of the samples."""
         near = self.along(self.tangent(point))
-        points, weights = self.stencil(point)
+        points, weights = stencil(point)
         rotated, failed = near.rotated(points, weights)
         if failed[1:].any():
-            rotated, failed = near.rotated(*self.stencil(point, failed))
+            rotated, failed = near.rotated(*stencil(point, failed))
         return rotated[:, 1:], np.full(len(rotated), np.inf) if failed[0] else rotated[:, 0]
+
+    def samples(self, point: Array) -> Iterator[tuple[int, Array]]:
+        """Residual and Jacobian as of `equations`, but sample by sample, stretch after stretch: the number of a series
+        of samples, of a record and axis, and (1 + free, samples)."""
+        near = self.along(self.tangent(point))
+        points, weights = stencil(point)
+        losses = near.loss(points)
+        if np.isinf(losses).any():
+            points, weights = stencil(point, np.isinf(losses))
+        if near._tangent:
+            yield 0, weights @ near.residuals(points)
+            return
+        theta, axes = near.parameters(points), len(self.model.measured)
+        for number, simulator in enumerate(near.simulators["identify"]):
+            for i, error in stretches(simulator, theta):
+                yield number * axes + i, weights @ error / (self.sizes[i] * np.sqrt(self.scored))
+
+    def rotated_residuals(self, points: Array) -> Array:
+        """Residuals as of `residuals`, of all points rotated together so that a few are left: (candidates, rows). Norms
+        and inner products are those of the samples."""
+        points = np.atleast_2d(points)
+        changes = np.eye(len(points))
+        changes[1:, 0] = -1  # of the first, so that differences of near ones keep their digits
+        rows, failed = self.rotated(points, changes)
+        if failed[0]:
+            rows, failed = self.rotated(points, np.eye(len(points)))
+        else:
+            rows[:, 1:] += rows[:, :1]
+        rows[:, failed] = np.inf
+        return rows.T
 
     def rotated(self, points: Array, weights: Array) -> tuple[Array, NDArray[np.bool_]]:
         """Combinations `weights`, (combinations, candidates), of the residuals, rotated so that a few rows are left:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pzt_ident.data.units import factor
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.profile import TWO_SIDED, intervals
+from pzt_ident.search.sandwich import Sandwich, covariance_of
 
 Array = NDArray[np.float64]
 
@@ -43,17 +44,16 @@ class Estimate(NamedTuple):
 def estimates(problem: Problem, point: Array, going: Callable[[], bool] = lambda: True) -> tuple[list[Estimate], Array]:
     """Estimates of the free parameters and of the linear ones, and the correlations of the free ones (free, free).
 
-    Standard errors are those of least squares with correlated residuals: (J'J)^-1 M (J'J)^-1 with M summed over
-    blocks of neighbouring samples (White 1980; Newey & West 1987), in no direction less than white noise or noise with
-    the spectrum of the residual gives: blocks miss what is correlated over their ends. Where the profile of the loss is
+    Standard errors are those of least squares with correlated residuals, see `Sandwich`: blocks of neighbouring samples
+    alone miss what is correlated over their ends. Where the profile of the loss is
     flatter than its curvature says, the standard error is that of the interval which the profile gives. A parameter is
     not determined if its standard error exceeds LOOSE, or if it changes the RMSE by less than one percent over more
     than WIDE, of its search range. going: as of `intervals`.
     """
-    jacobian = problem.jacobian(point)
-    covariance = covariance_of(jacobian, problem.residuals(point)[0])
+    sandwich = Sandwich(lambda: problem.samples(point))
+    covariance = sandwich.covariance
     error = np.sqrt(np.diag(covariance))
-    ends = intervals(problem, point, jacobian, error, going)
+    ends = intervals(problem, point, sandwich.jacobian, error, going)
     misleads = np.ptp(ends, axis=1) > 1.01 * 2 * TWO_SIDED * error
     error = np.where(misleads, np.ptp(ends, axis=1) / (2 * TWO_SIDED), error)
     value = problem.physical(point)[0]
@@ -92,7 +92,7 @@ def interval_of(problem: Problem, point: Array, i: int, ends: Array) -> tuple[fl
 def covariance(problem: Problem, point: Array) -> Array:
     """Covariance of the free parameters in the user's units, (free, free)."""
     slope = (problem.physical(point + 1e-6) - problem.physical(point - 1e-6))[0] / 2e-6
-    return covariance_of(problem.jacobian(point), problem.residuals(point)[0]) * np.outer(slope, slope)
+    return Sandwich(lambda: problem.samples(point)).covariance * np.outer(slope, slope)
 
 
 def linear_estimates(problem: Problem, point: Array) -> list[Estimate]:
@@ -191,49 +191,6 @@ def verdict_of(place: float, error: float, flat: float) -> tuple[str, str]:
         if reached:
             return f"on its {side} bound", "the best value may lie beyond it: widen the bounds, or doubt the model"
     return "determined", ""
-
-
-def covariance_of(jacobian: Array, residual: Array, blocks: int = 40) -> Array:
-    """Covariance of the parameters in the unit cube, (free, free); huge along directions that the data leave open."""
-    u, s, vt = np.linalg.svd(jacobian, full_matrices=False)
-    singular = np.maximum(s, 1e-9 * max(s.max(initial=0), 1e-300))
-    parts = np.array_split(u * residual[:, None], blocks)
-    sums = np.array([part.sum(axis=0) for part in parts])
-    meat = sums.T @ sums
-    white = residual @ residual / max(1, residual.size - s.size)
-    least = np.maximum(white, stationary(u, residual))  # a direction without influence has no gradient
-    meat += np.diag(np.maximum(least - np.diag(meat), 0))
-    bread = vt.T / singular
-    return bread @ meat @ bread.T
-
-
-def stationary(directions: Array, residual: Array) -> Array:
-    """Variance of each direction's sum with noise that has the spectrum of the residual: (directions,)."""
-    weights, variance = autoregression(residual)
-    length = 1 << (2 * residual.size - 1).bit_length()
-    density = variance / np.abs(np.fft.rfft(weights, length)) ** 2
-    density[1:-1] *= 2
-    return np.array([density @ np.abs(np.fft.rfft(column, length)) ** 2 for column in directions.T]) / length
-
-
-def autoregression(residual: Array) -> tuple[Array, float]:
-    """Weights a, from 1, and variance of e in sum_i a_i r[k - i] = e[k], from the equations of Yule and Walker. The
-    order is that of the least AIC (Akaike 1974), 10 log10 of the number of samples at most."""
-    from scipy.linalg import solve_toeplitz
-
-    size = residual.size
-    most = min(size - 1, int(10 * np.log10(size)))
-    lags = np.fft.irfft(np.abs(np.fft.rfft(residual, 2 * size)) ** 2)[: most + 1] / size
-    best, least = (np.ones(1), float(lags[0])), 0.0
-    for order in range(1, most + 1 if lags[0] > 0 else 1):
-        weights = np.append(1.0, solve_toeplitz(lags[:order], -lags[1 : order + 1]))
-        variance = float(weights @ lags[: order + 1])
-        if not variance > 1e-12 * lags[0]:
-            break
-        criterion = size * np.log(variance / lags[0]) + 2 * order
-        if criterion < least:
-            best, least = (weights, variance), criterion
-    return best
 
 
 def flat_share(problem: Problem, point: Array, steps: int = 24) -> Array:

@@ -19,7 +19,7 @@ from pzt_ident.model.block import Addition, Block, Coupling, Place
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks
-from pzt_ident.search.descent import damped_step, descend
+from pzt_ident.search.descent import descend
 
 
 @pytest.fixture(scope="module")
@@ -118,23 +118,6 @@ def test_descent_comes_to_rest(creeping):
     gradient = problem.jacobian(end).T @ problem.residuals(end)[0]
     inside = (end > 0) & (end < 1)
     assert np.abs(gradient[inside]).max() < 1e-4 * problem.loss(end)[0] ** 2 / 1e-2
-
-
-@given(st.lists(st.floats(0, 1), min_size=3, max_size=3), st.floats(1e-5, 1e4), st.integers(0, 7), st.integers(0, 99))
-def test_a_step_is_short_and_moves_nothing_that_is_held(point, damping, held, seed):
-    rng = np.random.default_rng(seed)
-    jacobian, residual = rng.normal(size=(20, 3)), rng.normal(size=20)
-    free = np.array([bool(held >> i & 1) for i in range(3)])
-    end = damped_step(np.array(point), jacobian.T @ residual, jacobian.T @ jacobian, free, damping)
-    assert np.array_equal(end[~free], np.array(point)[~free])
-    assert np.all(np.abs(end - point) <= 0.3 + 1e-12)
-    assert np.all((end >= 0) & (end <= 1))
-
-
-def test_a_step_without_damping_is_newtons():
-    curvature, gradient = np.diag([2.0, 4.0]), np.array([0.2, -0.4])
-    end = damped_step(np.array([0.5, 0.5]), gradient, curvature, np.array([True, True]), 0.0)
-    assert end == pytest.approx([0.4, 0.6])
 
 
 class Failing(Block):

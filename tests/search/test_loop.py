@@ -9,7 +9,7 @@ import pytest
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.model.optimizer import Generational
 from pzt_ident.model.registry import optimizers
-from pzt_ident.search.loop import Stop, finite, minimize, optimize, rms
+from pzt_ident.search.loop import Stop, finite, minimize, norms, optimize
 
 
 def bowl(points):
@@ -181,7 +181,7 @@ def test_residuals_replay_identically():
 
 def test_failures_are_infinite():
     np.testing.assert_array_equal(finite([1, np.nan, np.inf, -np.inf]), [1, np.inf, np.inf, np.inf])
-    np.testing.assert_allclose(rms(np.array([[3.0, 4.0], [1.0, np.nan], [np.inf, 0.0]])), [12.5**0.5, np.inf, np.inf])
+    np.testing.assert_allclose(norms(np.array([[3.0, 4.0], [1.0, np.nan], [np.inf, 0.0]])), [5, np.inf, np.inf])
     outcome = optimize(Walk(), 2, lambda x: np.full(len(x), np.nan), 0, Stop(20))
     assert outcome.loss == np.inf
     assert np.isnan(outcome.point).all()

@@ -23,14 +23,15 @@ class Toy:
         losses = self.loss(points)
         return points[np.argmin(losses)], losses.min()
 
-    def jacobian(self, point, step=1e-6):
+    def equations(self, point, step=1e-6):
         moved = np.eye(self.dimensions) * step
-        return (self.residuals(point + moved) - self.residuals(point - moved)).T / (2 * step)
+        jacobian = (self.residuals(point + moved) - self.residuals(point - moved)).T / (2 * step)
+        return jacobian, self.residuals(point)[0]
 
 
 def ends(residual, point, errors, **more):
     toy = Toy(residual, len(point))
-    return intervals(toy, np.array(point), toy.jacobian(np.array(point)), np.array(errors), **more)
+    return intervals(toy, np.array(point), toy.equations(np.array(point))[0], np.array(errors), **more)
 
 
 def test_of_a_line_they_are_those_of_the_standard_error():

@@ -10,7 +10,8 @@ from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks
 from pzt_ident.search.descent import polish
 from pzt_ident.search.problem import FixedValue, Problem
-from pzt_ident.search.uncertainty import autoregression, caution, covariance_of, estimates
+from pzt_ident.search.sandwich import Lags, autoregression, covariance_of
+from pzt_ident.search.uncertainty import caution, estimates
 from rig import record
 
 BLOCKS, LENGTH = 40, 10
@@ -76,7 +77,11 @@ def test_errors_are_the_scatter_of_estimates_over_campaigns(memory):
 
 
 def test_an_autoregression_is_found_from_its_residual():
-    weights, variance = autoregression(coloured(np.random.default_rng(2), 20_000, 0.9))
+    lags, residual = Lags(), coloured(np.random.default_rng(2), 20_000, 0.9)
+    for part in np.array_split(residual, [50, 4000]):
+        lags.add(0, part)
+    np.testing.assert_allclose(lags.sums[7], residual[7:] @ residual[:-7], rtol=1e-9)
+    weights, variance = autoregression(lags)
     np.testing.assert_allclose(weights[:2], [1, -0.9], atol=0.02)
     assert np.abs(weights[2:]).max(initial=0) < 0.05 and variance == pytest.approx(1 - 0.9**2, rel=0.03)
 

@@ -1,0 +1,125 @@
+"""Covariance of least squares with correlated residuals, from samples that come stretch by stretch."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pzt_ident.engine.gather import Triangle
+
+Array = NDArray[np.float64]
+Samples = Callable[[], Iterable[tuple[int, Array]]]
+
+BLOCKS = 40  # of neighbouring samples
+OPEN = 1e-9  # of the largest singular value: a direction below is one that the data leave open
+DIED = 1e-6  # of a filtered direction's squares: what is less has died away
+STRETCH = 4096  # samples in which it may die away
+
+
+class Sandwich:
+    """(J'J)^-1 M (J'J)^-1 with M summed over blocks of neighbouring samples (White 1980; Newey & West 1987), in no
+    direction less than white noise or noise with the spectrum of the residual gives.
+
+    samples: gives residual and Jacobian as `Problem.samples` does, as often as it is called. jacobian: rotated, (rows,
+    free). covariance: (free, free) in the unit cube, huge along directions that the data leave open.
+    """
+
+    def __init__(self, samples: Samples) -> None:
+        triangle, lags = None, Lags()
+        for series, rows in samples():
+            lags.add(series, rows[0])
+            triangle = triangle or Triangle(len(rows))
+            triangle.add(np.array(rows[[*range(1, len(rows)), 0]]))
+        if triangle is None:
+            raise ValueError("no samples")
+        self.jacobian, self.size = triangle.r[:, :-1], lags.size
+        _, s, vt = np.linalg.svd(self.jacobian, full_matrices=False)
+        self._directions = vt.T / np.maximum(s, OPEN * max(s.max(initial=0), 1e-300))
+        sums, least = self._moments(samples, *autoregression(lags))
+        meat = sums.T @ sums
+        white = lags.sums[0] / max(1, self.size - s.size)
+        least = np.maximum(white, least)  # a direction without influence has no gradient
+        meat += np.diag(np.maximum(least - np.diag(meat), 0))
+        self.covariance = self._directions @ meat @ self._directions.T
+
+    def _moments(self, samples: Samples, weights: Array, variance: float) -> tuple[Array, Array]:
+        """Sums of the gradient along each direction over each block, and the variance of the sum along each with noise
+        of this autoregression: (blocks, directions), (directions,)."""
+        from scipy.signal import lfilter
+
+        count = self._directions.shape[1]
+        sums, energy = np.zeros((BLOCKS, count)), np.zeros(count)
+        after = np.zeros((count, weights.size - 1))
+        states: dict[int, Array] = defaultdict(lambda: after)
+        ends, at = np.cumsum(self.size // BLOCKS + (np.arange(BLOCKS) < self.size % BLOCKS)), 0
+        for series, rows in samples() if count else ():
+            along = self._directions.T @ rows[1:]
+            cuts = np.clip(ends - at, 0, along.shape[1])
+            pulls = np.hstack([np.zeros((count, 1)), np.cumsum(along * rows[0], axis=1)])
+            sums += np.diff(pulls[:, np.append(0, cuts)]).T
+            at += along.shape[1]
+            filtered, states[series] = lfilter([1.0], weights, along, axis=1, zi=states[series])
+            energy += np.square(filtered).sum(axis=1)
+        for state in states.values():
+            energy += died_away(weights, state, energy, self.size)
+        return sums, variance * energy
+
+
+def died_away(weights: Array, state: Array, energy: Array, most: int) -> Array:
+    """Squares of what comes out of a filter after its input has ended: (directions,)."""
+    from scipy.signal import lfilter
+
+    total = np.zeros(len(state))
+    for _ in range(0, most if state.any() else 0, STRETCH):
+        rest, state = lfilter([1.0], weights, np.zeros((len(state), STRETCH)), axis=1, zi=state)
+        more = np.square(rest).sum(axis=1)
+        total += more
+        if (more <= DIED * (energy + total)).all():
+            break
+    return total
+
+
+def covariance_of(jacobian: Array, residual: Array) -> Array:
+    """Covariance from the derivatives of one series of samples, (samples, free), and its residual, (samples,)."""
+    return Sandwich(lambda: [(0, np.vstack([residual, jacobian.T]))]).covariance
+
+
+class Lags:
+    """Sums of products of the residual with itself so many samples later: `sums`, from lag 0 on. size: of samples."""
+
+    def __init__(self, most: int = 100) -> None:
+        self.sums, self.size = np.zeros(most + 1), 0
+        self._before: dict[int, Array] = defaultdict(lambda: np.zeros(0))
+
+    def add(self, series: int, residual: Array) -> None:
+        """Take up the next samples of a series."""
+        known = self._before[series]
+        both = np.concatenate([known, residual])
+        most = min(self.sums.size, both.size)
+        for lag in range(most):
+            late = residual[max(0, lag - known.size) :]
+            self.sums[lag] += late @ both[both.size - late.size - lag : both.size - lag]
+        self.size += residual.size
+        self._before[series] = both[-(self.sums.size - 1) :]
+
+
+def autoregression(lags: Lags) -> tuple[Array, float]:
+    """Weights a, from 1, and variance of e in sum_i a_i r[k - i] = e[k], from the equations of Yule and Walker. The
+    order is that of the least AIC (Akaike 1974), 10 log10 of the number of samples at most."""
+    from scipy.linalg import solve_toeplitz
+
+    size, lagged = lags.size, lags.sums / lags.size
+    most = min(size - 1, int(10 * np.log10(size)), lagged.size - 1)
+    best, least = (np.ones(1), float(lagged[0])), 0.0
+    for order in range(1, most + 1 if lagged[0] > 0 else 1):
+        weights = np.append(1.0, solve_toeplitz(lagged[:order], -lagged[1 : order + 1]))
+        variance = float(weights @ lagged[: order + 1])
+        if not variance > 1e-12 * lagged[0]:
+            break
+        criterion = size * np.log(variance / lagged[0]) + 2 * order
+        if criterion < least:
+            best, least = (weights, variance), criterion
+    return best
