@@ -53,7 +53,7 @@ def steps(
 ) -> Iterator[tuple[Array, float]]:
     """Steps of Levenberg and Marquardt: points of lower and lower loss in the unit cube, and by which share of the loss
     each fell, until none is lower."""
-    loss = problem.loss(point)[0]
+    loss = problem.best(point[None], point)[1]
     movable = np.arange(point.size) != held
     while 0 < loss < np.inf and going():
         jacobian, residual = (part / loss for part in problem.equations(point))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass
 from typing import Protocol
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from pzt_ident.data.record import Record, drive_correlation
 from pzt_ident.data.units import factor
 from pzt_ident.engine.gather import Triangle, rotated, stretches
+from pzt_ident.engine.gather import squares as exact_squares
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.errors import InputError
 from pzt_ident.model.chain import Chain
@@ -22,6 +23,7 @@ from pzt_ident.search.scales import bounds_of, size_of, unit_of
 from pzt_ident.search.stencil import stencil
 
 Array = NDArray[np.float64]
+Squares = Callable[[Simulator, Array], Array]
 
 
 class ParameterSpec(Protocol):
@@ -169,33 +171,33 @@ class Problem:
         self.linear.fill(theta)
         return theta
 
-    def by_axis(self, points: Array, use: str = "identify") -> Array:
+    def by_axis(self, points: Array, use: str = "identify", squares: Squares = Simulator.squares) -> Array:
         """RMSE of each measured axis over all records of a use, in SI units: (candidates, axes)."""
         theta = self.parameters(points)
         simulators = self.simulators[use]
-        squares = simulators[0].squares(theta)
+        total = squares(simulators[0], theta)
         for simulator in simulators[1:]:
-            squares = squares + simulator.squares(theta)
-        rmse = np.sqrt(squares / sum(simulator.scored for simulator in simulators))
+            total = total + squares(simulator, theta)
+        rmse = np.sqrt(total / sum(simulator.scored for simulator in simulators))
         failed = ~(rmse < np.inf)
         if failed.any():
             self.failed += int(failed.any(axis=1).sum())
             rmse[failed] = np.inf
         return rmse
 
-    def loss(self, points: Array, use: str = "identify") -> Array:
+    def loss(self, points: Array, use: str = "identify", squares: Squares = Simulator.squares) -> Array:
         """(candidates,); infinite if the simulation failed, NaN if there is no record of this use."""
         if not self.simulators[use]:
             return np.full(np.atleast_2d(points).shape[0], np.nan)
-        rmse = self.by_axis(points, use) / self.sizes
+        rmse = self.by_axis(points, use, squares) / self.sizes
         return rmse[:, 0] if rmse.shape[1] == 1 else np.sqrt(np.mean(rmse**2, axis=1))
 
     def best(self, points: Array, near: Array) -> tuple[Array, float]:
-        """The point of least loss of those beside another one, and its loss; where parameters are solved for, they
-        follow to first order until a point is chosen."""
+        """The point of least loss of those beside another one, and its loss, to the last digits; where parameters are
+        solved for, they follow to first order until a point is chosen."""
         tangent = self.tangent(near)
         if tangent is None:
-            losses = self.loss(points)
+            losses = self.loss(points, squares=exact_squares)
             best = int(np.argmin(losses))
             return points[best], float(losses[best])
         point = points[np.argmin(np.linalg.norm(self.along(tangent).residuals(points), axis=1))]
