@@ -18,8 +18,7 @@ from pzt_ident.api.printed import html, table_text
 from pzt_ident.api.refit import as_given, from_refit
 from pzt_ident.data.notation import number, percent, quantity, unit
 from pzt_ident.diagnosis import refit as fits
-from pzt_ident.diagnosis import staircase
-from pzt_ident.diagnosis import verdict as verdicts
+from pzt_ident.diagnosis import thinning
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.run.computing import computing
@@ -138,7 +137,7 @@ def diagnose(fit: Fit) -> Diagnosis:
     """Which effect the model of a fit misses, by the steps of `pzt-ident diagnose`: every effect scored, the best
     refitted, judged on both kinds of records."""
     with _case(fit) as (case, first, folder):
-        content = diagnosis_of(fit.statement.job, case, verdicts.diagnose(case, first), folder)
+        content = diagnosis_of(fit.statement.job, case, thinning.diagnosed(case, first), folder)
         return Diagnosis(
             content["verdict"], content["reason"], content["candidates"], _proposed(content, folder), content
         )
@@ -149,7 +148,7 @@ def improve(fit: Fit, budget: float | None = None) -> Improvement:
     after which the verdict is on what was found by then. Without end if None."""
     with _case(fit) as (case, first, folder):
         case.budget = Budget(budget)
-        job, stairs = fit.statement.job, staircase.improve(case, first)
+        job, stairs = fit.statement.job, thinning.improve(case, first)
         content = improvement_of(job, case, stairs, diagnosis_of(job, case, stairs.last, folder))
         steps = [
             Step(Fit(*from_refit(fit, case, step.fit)), step.added, step.removed, step.tied, step.explained)
@@ -159,14 +158,17 @@ def improve(fit: Fit, budget: float | None = None) -> Improvement:
 
 
 @contextmanager
-def _case(fit: Fit) -> Iterator[tuple[fits.Case, fits.Fit, Path]]:
-    """The case of a fit, the better of it and of a fit from other starts, and a folder for what is written."""
+def _case(fit: Fit) -> Iterator[tuple[fits.Case, thinning.First, Path]]:
+    """The case of a fit, how to come to the better of it and of a fit from other starts, and a folder for what is
+    written."""
     of_kind(fit, Fit, "fit", "give what pzt_ident.identify or pzt_ident.load returned")
     with computing(), TemporaryDirectory() as folder:
-        case = case_of(fit.statement)
-        other = first_fit(case, fit.statement.job.seed)
-        given = as_given(case, fit)
-        yield case, other if other.identify <= given.identify else given, Path(folder)
+
+        def first(case: fits.Case) -> fits.Fit:
+            other, given = first_fit(case, fit.statement.job.seed), as_given(case, fit)
+            return other if other.identify <= given.identify else given
+
+        yield case_of(fit.statement), first, Path(folder)
 
 
 def _proposed(content: dict[str, Any], folder: Path) -> NextExperiment | None:

@@ -72,6 +72,7 @@ class Case:
     def _altered(self, words: Sequence[str | Choice], specs: Any) -> Case:
         other = Case(words, self.effects, self.records, specs, self.ruled_out, self.shared, self.on_event)
         other._resampled, other.budget = self._resampled, self.budget
+        other.error_scales, other.floor = self.error_scales, self.floor
         return other
 
     def problem(self, effects: Sequence[str], steps: Sequence[int] = (), measured_only: bool = False) -> Problem:

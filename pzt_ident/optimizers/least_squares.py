@@ -66,8 +66,8 @@ def descend(x: Array, answer: Array) -> Generator[Array, Array, None]:
         if not np.isfinite(shifted).all():
             return
         if np.ndim(answer):
-            answer, *shifted = shifted  # residuals of one batch are rotated together
-            jacobian = ((np.array(shifted) - answer) / steps[:, None]).T
+            answer = shifted[0]  # residuals of one batch are rotated together
+            jacobian = ((shifted[1:] - answer) / steps[:, None]).T
             gradient, hessian = jacobian.T @ answer, jacobian.T @ jacobian
         else:
             gradient = (shifted - answer) / steps

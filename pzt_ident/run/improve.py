@@ -12,12 +12,13 @@ import numpy as np
 from pzt_ident.data.record import Record
 from pzt_ident.data.signals import write_signals
 from pzt_ident.diagnosis import staircase as stairs
+from pzt_ident.diagnosis import thinning
 from pzt_ident.diagnosis.bounds import bounds_that_changed
 from pzt_ident.diagnosis.budget import Budget, sensible
 from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.diagnosis.thinning import diagnosed
 from pzt_ident.diagnosis.verdict import Diagnosis
-from pzt_ident.diagnosis.verdict import diagnose as judge
 from pzt_ident.files import write_sealed, write_text
 from pzt_ident.job.edit import edited
 from pzt_ident.job.schema import Job
@@ -89,6 +90,12 @@ def announce(case: Case, step: stairs.Step) -> None:
     case.on_event({"event": "stair", "units": case.records[0].units, **stair(case, step)})
 
 
+def announced(case: Case, first: Fit) -> Fit:
+    """The fit of the model as given, of which whoever follows the case is told."""
+    announce(case, stairs.Step(first))
+    return first
+
+
 def diagnose(
     job: Job,
     out: Path | None = None,
@@ -99,9 +106,8 @@ def diagnose(
     """Fit the job's model, say where it fails and what it misses; writes `diagnosis.json`, `residuals.json` and
     `signals.nc` into the folder returned. budget, start: as of `improve`."""
     with opened_case(job, out, listen, budget, start, task="diagnose") as (case, folder):
-        first = fitted(case, job, start)
-        announce(case, stairs.Step(first))
-        diagnosis = diagnosis_of(job, case, judge(case, first), folder)
+        found = diagnosed(case, lambda case: announced(case, fitted(case, job, start)))
+        diagnosis, first = diagnosis_of(job, case, found, folder), found.before
         write_signals(folder / "signals.nc", first.problem.errors(first.point))
         write_sealed(folder / "diagnosis.json", diagnosis)
         compare(folder, folder)
@@ -134,7 +140,7 @@ def improve(
     of the model as given and of the last one.
     """
     with opened_case(job, out, listen, budget, start, records) as (case, folder):
-        staircase = stairs.improve(case, fitted(case, job, start), SoFar(job, case, folder))
+        staircase = thinning.improve(case, lambda case: fitted(case, job, start), lambda case: SoFar(job, case, folder))
         steps, end = staircase.steps, staircase.case or case
         diagnosis = diagnosis_of(job, end, staircase.last, folder)
         for name, step in (("signals_as_given.nc", steps[0]), ("signals.nc", steps[-1])):

@@ -1,0 +1,101 @@
+"""Whether thinning turns a verdict: cases of hidden_effect improved with all samples and with fewer."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from experiments.hidden_effect import campaign, cases
+
+SHARE = 3  # the records are taken for long where they have more than a third of their samples
+KINDS = {"single": 30, "pair": 8, "none": 6, "outside": 6}
+SEED, TIMES, BACK = 9000, 4, 0.05  # s, in which a drive goes back to 0 V before it is played again
+Json = dict[str, Any]
+
+
+def long(rng: np.random.Generator) -> list[campaign.Drive]:
+    """The short campaign of hidden_effect, sampled four times as fast or played four times."""
+    drives = campaign.short(rng)
+    return [faster(drive) for drive in drives] if rng.random() < 0.5 else [again(drive) for drive in drives]
+
+
+def faster(drive: campaign.Drive) -> campaign.Drive:
+    fine = np.arange(TIMES * (len(drive.u_x) - 1) + 1) / (TIMES * drive.rate)
+    u_x, u_y = (np.interp(fine, drive.time, u) for u in (drive.u_x, drive.u_y))
+    return campaign.Drive(drive.name, drive.use, TIMES * drive.rate, u_x, u_y)
+
+
+def again(drive: campaign.Drive) -> campaign.Drive:
+    back = 1 - np.arange(1, round(BACK * drive.rate) + 1) / round(BACK * drive.rate)
+    u_x, u_y = (np.tile(np.append(u, u[-1] * back), TIMES) for u in (drive.u_x, drive.u_y))
+    return campaign.Drive(drive.name, drive.use, drive.rate, u_x, u_y)
+
+
+campaign.CAMPAIGNS["rich"] = long
+
+
+def drawn(folder: Path, kinds: dict[str, int]) -> list[Path]:
+    """The folders of the cases, kind after kind in turn, so that the first ones are of every kind."""
+    names = []
+    for kind, count in kinds.items():
+        for number in range(count):
+            if not (folder / "cases" / f"{kind}-{SEED + number}").exists():
+                cases.write(*cases.draw(kind, SEED + number, None), folder)
+            names.append((number / count, kind, folder / "cases" / f"{kind}-{SEED + number}"))
+    return [path for _, _, path in sorted(names)]
+
+
+def compare(folder: Path, kinds: dict[str, int], workers: int) -> Iterator[Json]:
+    """What was found in each case both ways; goes on where it was stopped."""
+    with ThreadPoolExecutor(workers) as pool:
+        yield from pool.map(lambda case: both(case, folder / "verdicts"), drawn(folder, kinds))
+
+
+def both(case: Path, out: Path) -> Json:
+    result = out / f"{case.name}.json"
+    if not result.exists():
+        out.mkdir(parents=True, exist_ok=True)
+        found = {"case": case.name}
+        for way in ("all", "fewer"):
+            command = [sys.executable, "-m", "experiments.long_records.verdicts", str(case), way]
+            found[way] = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+        result.write_text(json.dumps(found, indent=1))
+    return json.loads(result.read_text())
+
+
+def found_in(case: Path, way: str) -> Json:
+    """Verdict, effects, CPU seconds, and how many samples it took."""
+    from tempfile import TemporaryDirectory
+
+    from pzt_ident.diagnosis import thinning
+    from pzt_ident.job.schema import load_job
+    from pzt_ident.run.improve import improve
+    from pzt_ident.run.statement import Statement
+
+    job = load_job(case / "job.yaml")
+    samples = sum(record.samples for record in Statement(job).records)
+    thinning.LONG = samples // SHARE if way == "fewer" else samples
+    begun = time.process_time()
+    with TemporaryDirectory() as folder:
+        content = json.loads((improve(job, Path(folder) / "out") / "improvement.json").read_text())
+    facts = {name: content[name] for name in ("verdict", "effects", "forms", "reason")}
+    facts["suspects"] = [suspect["effect"] for suspect in content["suspects"]]
+    floors = [step["rmse"]["identify"] / content["floor"] for step in content["steps"]]
+    seconds = time.process_time() - begun
+    return (
+        facts
+        | {"samples": samples, "seconds": seconds, "held": "Effects were sought on" in content["reason"]}
+        | {"floors": floors}
+    )
+
+
+if __name__ == "__main__":
+    print(json.dumps(found_in(Path(sys.argv[1]), sys.argv[2])))
