@@ -10,7 +10,7 @@ from pathlib import Path
 
 from experiments.long_records.stage import problem, write
 from pzt_ident.model.registry import optimizers
-from pzt_ident.search.descent import polish
+from pzt_ident.search.descent import DAMPINGS, polish
 from pzt_ident.search.loop import Stop, optimize
 from pzt_ident.search.uncertainty import estimates
 
@@ -29,7 +29,8 @@ def measured(folder: Path, records: int, axes: int, free: int) -> dict[str, floa
     found |= {"search": time.process_time() - begun, "search_peak": peak(), "rmse_before": outcome.loss}
     begun = time.process_time()
     point, spent = polish(made, outcome.point)
-    found |= {"polish": time.process_time() - begun, "polish_peak": peak(), "evaluations": spent}
+    a_step = 2 * made.dimensions + 1 + len(DAMPINGS)
+    found |= {"polish": time.process_time() - begun, "polish_peak": peak(), "steps": spent // a_step}
     found["rmse"] = float(made.loss(point)[0])
     begun = time.process_time()
     estimates(made, point)

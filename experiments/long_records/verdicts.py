@@ -77,6 +77,7 @@ def found_in(case: Path, way: str) -> Json:
 
     from pzt_ident.diagnosis import thinning
     from pzt_ident.job.schema import load_job
+    from pzt_ident.run.computing import computing
     from pzt_ident.run.improve import improve
     from pzt_ident.run.statement import Statement
 
@@ -84,7 +85,7 @@ def found_in(case: Path, way: str) -> Json:
     samples = sum(record.samples for record in Statement(job).records)
     thinning.LONG = samples // SHARE if way == "fewer" else samples
     begun = time.process_time()
-    with TemporaryDirectory() as folder:
+    with TemporaryDirectory() as folder, computing():
         content = json.loads((improve(job, Path(folder) / "out") / "improvement.json").read_text())
     facts = {name: content[name] for name in ("verdict", "effects", "forms", "reason")}
     facts["suspects"] = [suspect["effect"] for suspect in content["suspects"]]
@@ -94,6 +95,25 @@ def found_in(case: Path, way: str) -> Json:
         facts
         | {"samples": samples, "seconds": seconds, "held": "Effects were sought on" in content["reason"]}
         | {"floors": floors}
+    )
+
+
+def same(found: Json) -> bool:
+    """Whether both ways end with the same verdict and the same effects."""
+    return all(found["all"][word] == found["fewer"][word] for word in ("verdict", "effects"))
+
+
+def table(found: list[Json]) -> str:
+    """One line for a single case, else the counts."""
+    if len(found) == 1:
+        both = [f"{found[0][way]['verdict']} {' '.join(found[0][way]['effects'])}" for way in ("all", "fewer")]
+        return f"{found[0]['case']}: {both[0]}; with fewer samples {both[1] if not same(found[0]) else 'the same'}"
+    held = [one for one in found if one["fewer"]["held"]]
+    seconds = [sum(one[way]["seconds"] for one in found) for way in ("all", "fewer")]
+    return (
+        f"{len(found)} cases: {sum(map(same, found))} with the same verdict and effects; what fewer samples said held"
+        f" on all in {len(held)}, in {sum(map(same, held))} of these the same; {seconds[0]:.0f} s CPU with all samples,"
+        f" {seconds[1]:.0f} s with fewer"
     )
 
 

@@ -29,7 +29,7 @@ TURNING = 1.0  # noise floors: the most that it may
 INTERPOLATED = 1.75  # noise variances: as much is between a noisy response and the line between the samples kept
 PLACES = 10  # of a drive, and of its speed, that are told apart
 UNSEEN = 0.01  # of the samples left out that may be where the drive has not been before
-SAME = 0.1  # of the RMSE, or SAME_FLOORS noise floors, root mean square, by which a fit may differ on all samples
+SAME = 0.2  # of the RMSE, or SAME_FLOORS noise floors, root mean square, by which a fit may differ on all samples
 SAME_FLOORS = 0.3
 
 
@@ -145,8 +145,8 @@ def off_line(signal: Array, step: int) -> Array:
 
 
 def on_all_samples(case: Case, thin: Case, found: Staircase) -> Staircase | None:
-    """A staircase of fewer samples with its fits on all of them; None where one of them is another fit there, where the
-    model is not adequate on both alike, or where an effect is not proven there."""
+    """A staircase of fewer samples with its fits on all of them; None where the last one leaves more or less there,
+    where it is not adequate on both alike, or where an effect is not proven there."""
     if found.last.verdict == "refused":
         return None
     wide = case.with_specs(found.case.specs) if found.case else case
@@ -154,13 +154,12 @@ def on_all_samples(case: Case, thin: Case, found: Staircase) -> Staircase | None
     for step in found.steps:
         home = wide if step.change == WIDER or any(before.change == WIDER for before in steps) else case
         fit = on_all(home, step.fit)
-        if not holds(case, step.fit, fit):
-            return None
         share = explained_share(case, steps[-1].fit, fit) if steps else step.explained
         steps.append(replace(step, fit=fit, explained=share, case=step.case and wide))
     first, last = steps[0].fit, steps[-1].fit
     rivals = {step.added: step.tied for step in found.steps if step.added}
-    if adequate(case, first, last) != adequate(thin, found.steps[0].fit, found.steps[-1].fit):
+    few_first, few_last = found.steps[0].fit, found.steps[-1].fit
+    if not holds(case, few_last, last) or adequate(case, first, last) != adequate(thin, few_first, few_last):
         return None
     if last.effects != first.effects and unproven(wide if found.case else case, first, last, rivals):
         return None

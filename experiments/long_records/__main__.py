@@ -1,0 +1,42 @@
+"""python -m experiments.long_records growth | verdicts"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+HERE = Path(__file__).parents[2] / "results"
+
+
+@click.group()
+def main() -> None:
+    """What long records cost, and whether fewer samples lead to the same verdict."""
+
+
+@main.command()
+@click.option("--out", type=click.Path(path_type=Path), default=HERE / "reference" / "long_records")
+@click.option("--most", default=10_000_000, show_default=True, help="Samples of the longest record.")
+def growth(out: Path, most: int) -> None:
+    """Measure search, polish and errors against samples, records, axes and parameters; tables and pictures."""
+    from experiments.long_records.growth import measure_all
+
+    click.echo(measure_all(out, most))
+
+
+@main.command()
+@click.option("--out", type=click.Path(path_type=Path), default=HERE / "long_records")
+@click.option("--workers", type=click.IntRange(1), default=2, show_default=True)
+def verdicts(out: Path, workers: int) -> None:
+    """Improve the same cases with all samples and with fewer, and count which verdicts turn."""
+    from experiments.long_records.verdicts import KINDS, compare, table
+
+    found = []
+    for one in compare(out, KINDS, workers):
+        found.append(one)
+        click.echo(table(found[-1:]))
+    click.echo(table(found))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,86 @@
+"""Cost and memory against samples, records, axes and parameters: each point in a process of its own."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+Json = dict[str, Any]
+STEPS = {"search": "3,500 candidates", "polish": "polish", "errors": "standard errors"}
+LENGTHS = (100_000, 300_000, 1_000_000, 3_000_000, 10_000_000)
+COLOURS = ("#0072B2", "#D55E00", "#009E73")
+
+
+def cases(most: int) -> dict[str, list[tuple[int, int, int, int]]]:
+    """(samples of all records, records, axes, free parameters)"""
+    return {
+        "samples": [(count, 1, 1, 7) for count in LENGTHS if count <= most],
+        "records": [(500_000, count, 1, 7) for count in (1, 5, 10, 50)],
+        "axes": [(100_000, 1, count, 7 * count) for count in (1, 2, 3)],
+        "parameters": [(100_000, 1, 3, count) for count in (1, 4, 7, 14, 21)],
+    }
+
+
+def measure(samples: int, records: int, axes: int, free: int) -> Json:
+    """What `measure.py` says of one of them."""
+    tool = [sys.executable, "-m", "experiments.long_records.measure"]
+    with TemporaryDirectory() as folder:
+        subprocess.run([*tool, "write", folder, str(samples), str(records), str(axes)], check=True)
+        run = [*tool, "run", folder, str(records), str(axes), str(free)]
+        return json.loads(subprocess.run(run, check=True, capture_output=True, text=True).stdout)
+
+
+def measure_all(out: Path, most: int) -> str:
+    """Write the tables and the picture into a folder; returns the tables."""
+    out.mkdir(parents=True, exist_ok=True)
+    place = {"samples": 0, "records": 1, "axes": 2, "parameters": 3}
+    found: dict[str, list[tuple[int, Json]]] = {}
+    for what, numbers in cases(most).items():
+        found[what] = [(case[place[what]], measure(*case)) for case in numbers]
+        (out / "growth.json").write_text(json.dumps(found))
+    text = "\n\n".join(table(what, rows) for what, rows in found.items()) + "\n"
+    (out / "tables.md").write_text(text)
+    draw(found, out)
+    return text
+
+
+def table(what: str, rows: list[tuple[int, Json]]) -> str:
+    spent = [f"{word} [s CPU]" for word in STEPS.values()]
+    head = [what, *spent, "steps of the polish", "peak memory [MiB]", "RMSE [nm]"]
+    lines = [f"| {' | '.join(head)} |", f"|{'---|' * len(head)}"]
+    for size, row in rows:
+        numbers = [f"{row[step]:.3g}" for step in STEPS]
+        cells = [f"{size:,}", *numbers, str(row["steps"]), f"{row['peak']:.0f}", f"{1e9 * row['rmse']:.4f}"]
+        lines.append(f"| {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def draw(found: dict[str, list[tuple[int, Json]]], out: Path) -> None:
+    """CPU of each part and the peak memory, against what grows."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    fig, panels = plt.subplots(2, 4, figsize=(180 / 25.4, 95 / 25.4), layout="constrained", sharey="row")
+    for (what, rows), (above, below) in zip(found.items(), panels.T, strict=True):
+        sizes = [size for size, _ in rows]
+        for (step, label), colour in zip(STEPS.items(), COLOURS, strict=True):
+            polish = step == "polish"
+            spent = [row[step] / (row["steps"] if polish else 1) for _, row in rows]
+            above.plot(sizes, spent, "o-", ms=3, lw=1, color=colour, label=label + ", a step" * polish)
+        below.plot(sizes, [row["peak"] for _, row in rows], "o-", ms=3, lw=1, color="black")
+        for panel in (above, below):
+            panel.set(xscale="log", yscale="log")
+            panel.grid(alpha=0.25, lw=0.5)
+            panel.tick_params(labelsize=7)
+        below.set_xlabel(what, fontsize=8)
+    panels[0, 0].set_ylabel("CPU (s)", fontsize=8)
+    panels[1, 0].set_ylabel("peak memory (MiB)", fontsize=8)
+    panels[0, 0].legend(fontsize=6)
+    for kind in ("svg", "png"):
+        fig.savefig(out / f"growth.{kind}", dpi=200)
