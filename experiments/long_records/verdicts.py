@@ -16,7 +16,7 @@ import numpy as np
 from experiments.hidden_effect import campaign, cases
 
 SHARE = 3  # the records are taken for long where they have more than a third of their samples
-KINDS = {"single": 30, "pair": 8, "none": 6, "outside": 6}
+KINDS = {"single": 32, "pair": 8, "none": 6, "outside": 4}
 SEED, TIMES, BACK = 9000, 4, 0.05  # s, in which a drive goes back to 0 V before it is played again
 Json = dict[str, Any]
 
@@ -42,33 +42,32 @@ def again(drive: campaign.Drive) -> campaign.Drive:
 campaign.CAMPAIGNS["rich"] = long
 
 
-def drawn(folder: Path, kinds: dict[str, int]) -> list[Path]:
-    """The folders of the cases, kind after kind in turn, so that the first ones are of every kind."""
-    names = []
-    for kind, count in kinds.items():
-        for number in range(count):
-            if not (folder / "cases" / f"{kind}-{SEED + number}").exists():
-                cases.write(*cases.draw(kind, SEED + number, None), folder)
-            names.append((number / count, kind, folder / "cases" / f"{kind}-{SEED + number}"))
-    return [path for _, _, path in sorted(names)]
+def named(kinds: dict[str, int]) -> list[tuple[str, int]]:
+    """Kinds and seeds of the cases, kind after kind in turn, so that the first ones are of every kind."""
+    places = [(number / count, kind, SEED + number) for kind, count in kinds.items() for number in range(count)]
+    return [(kind, seed) for _, kind, seed in sorted(places)]
 
 
 def compare(folder: Path, kinds: dict[str, int], workers: int) -> Iterator[Json]:
     """What was found in each case both ways; goes on where it was stopped."""
     with ThreadPoolExecutor(workers) as pool:
-        yield from pool.map(lambda case: both(case, folder / "verdicts"), drawn(folder, kinds))
+        yield from pool.map(lambda case: both(*case, folder), named(kinds))
 
 
-def both(case: Path, out: Path) -> Json:
-    result = out / f"{case.name}.json"
+def both(kind: str, seed: int, folder: Path) -> Json:
+    """What was found in one case, which is drawn where it is not there yet."""
+    name = f"{kind}-{seed}"
+    result, case = folder / "verdicts" / f"{name}.json", folder / "cases" / name
     if not result.exists():
-        out.mkdir(parents=True, exist_ok=True)
-        found = {"case": case.name}
+        result.parent.mkdir(parents=True, exist_ok=True)
+        if not (case / "job.yaml").exists():
+            cases.write(*cases.draw(kind, seed), folder)
+        found: Json = {"case": name}
         for way in ("all", "fewer"):
             command = [sys.executable, "-m", "experiments.long_records.verdicts", str(case), way]
             found[way] = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
         result.write_text(json.dumps(found, indent=1))
-    return json.loads(result.read_text())
+    return dict(json.loads(result.read_text()))
 
 
 def found_in(case: Path, way: str) -> Json:
