@@ -15,7 +15,7 @@ from pzt_ident.diagnosis import staircase as stairs
 from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.proof import unproven
 from pzt_ident.diagnosis.refit import Case, Fit, fit_at, refine_steps
-from pzt_ident.diagnosis.staircase import WIDER, Staircase, StepListener
+from pzt_ident.diagnosis.staircase import Staircase, StepListener
 from pzt_ident.diagnosis.step import explained_share
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
 from pzt_ident.search.descent import descend
@@ -149,24 +149,28 @@ def on_all_samples(case: Case, thin: Case, found: Staircase) -> Staircase | None
     where it is not adequate on both alike, or where an effect is not proven there."""
     if found.last.verdict == "refused":
         return None
-    wide = case.with_specs(found.case.specs) if found.case else case
-    steps: list[stairs.Step] = []
+    homes = {id(None): case}
+    for few in [found.case, *(step.case for step in found.steps)]:
+        if few is not None and id(few) not in homes:
+            homes[id(few)] = case.with_words(few.words).with_specs(few.specs)
+    home, steps = case, list[stairs.Step]()
     for step in found.steps:
-        home = wide if step.change == WIDER or any(before.change == WIDER for before in steps) else case
+        home = homes[id(step.case)] if step.case else home
         fit = on_all(home, step.fit)
         share = explained_share(case, steps[-1].fit, fit) if steps else step.explained
-        steps.append(replace(step, fit=fit, explained=share, case=step.case and wide))
+        steps.append(replace(step, fit=fit, explained=share, case=step.case and home))
     first, last = steps[0].fit, steps[-1].fit
     rivals = {step.added: step.tied for step in found.steps if step.added}
     few_first, few_last = found.steps[0].fit, found.steps[-1].fit
     if not holds(case, few_last, last) or adequate(case, first, last) != adequate(thin, few_first, few_last):
         return None
-    if last.effects != first.effects and unproven(wide if found.case else case, first, last, rivals):
+    if last.effects != first.effects and unproven(home, first, last, rivals):
         return None
-    few, all_ = (sum(record.samples for record in each.records) for each in (thin, case))
-    reason = f"{found.last.reason} Effects were sought on {few:,} of {all_:,} samples; what was found holds on all."
+    counts = [sum(record.samples for record in each.records) for each in (thin, case)]
+    sought = f" Effects were sought on {counts[0]:,} of {counts[1]:,} samples; what was found holds on all."
+    last_case = homes[id(found.case)] if found.case else None
     return replace(
-        found, steps=steps, last=replace(found.last, before=last, reason=reason), case=wide if found.case else None
+        found, steps=steps, last=replace(found.last, before=last, reason=found.last.reason + sought), case=last_case
     )
 
 

@@ -12,7 +12,7 @@ from pzt_ident.diagnosis.score import fits
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.model.block import Place
 from pzt_ident.model.registry import blocks, word_of
-from pzt_ident.search.uncertainty import covariance_of
+from pzt_ident.search.sandwich import Sandwich
 
 SURE = 0.1  # of the search range: a direction of parameters with a smaller standard error is determined
 OF_A_MODE = 2  # numbers that the data determine of a mode which they show: its frequency and its damping
@@ -59,7 +59,7 @@ def undetermined_mechanics(fit: Fit) -> str | None:
     places = [place for place, column in enumerate(problem.free) if column in columns]
     if len(places) < len(columns):
         return None
-    covariance = covariance_of(problem.jacobian(fit.point), problem.residuals(fit.point)[0])
+    covariance = Sandwich(lambda: problem.samples(fit.point)).covariance
     variances = np.linalg.eigvalsh(covariance[np.ix_(places, places)])
     determined = np.count_nonzero(variances < SURE**2)
     return chain[0].name if determined < OF_A_MODE * len(problem.model.measured) else None
