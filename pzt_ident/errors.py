@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable
 
 
@@ -37,3 +38,12 @@ def nearest(word: str, words: Iterable[str]) -> str:
     if close:
         return "did you mean " + " or ".join(repr(item) for item in close) + "?"
     return "known: " + ", ".join(known)
+
+
+FOR_PROGRAMMERS = re.compile(r"\b[A-Z]\w*(Error|Exception)\b|\b0x[0-9a-f]+|[<>]|::|\bdtype\b|\bNoneType\b")
+
+
+def in_words(error: Exception) -> str:
+    """The first line of what another library said of a file, unless it is for programmers."""
+    said = str(error).strip().partition("\n")[0]
+    return said if said.isprintable() and said and not FOR_PROGRAMMERS.search(said) else "it is damaged"

@@ -31,12 +31,18 @@ def _records(document: Document, sources: tuple[Source, ...], earlier: Earlier) 
     names: set[str] = set()
     for i, source in enumerate(sources):
         loc: Loc = ("records", i)
+        _file(document, loc, source.file)
         _record_numbers(document, loc, source)
         for word, limits in (("rows", source.rows), ("time", source.time)):
             _interval(document, (*loc, word), limits)
         if source.name is not None and source.name in names:
             document.fault((*loc, "name"), f"duplicate record name {source.name!r}", "name each record differently")
         names |= {source.name} if source.name is not None else set()
+
+
+def _file(document: Document, loc: Loc, file: str | None) -> None:
+    if file is not None and not file.strip():
+        document.fault((*loc, "file"), f"{file!r} names no file", "give its path, relative to the job")
 
 
 def _record_numbers(document: Document, loc: Loc, source: Source) -> None:
@@ -95,6 +101,7 @@ def _channel(document: Document, loc: Loc, channel: Channel | None, complete: bo
         document.fault((*loc, "column"), f"there is no column {channel.column}", "columns count from 1")
     if channel.unit is not None:
         _unit(document, (*loc, "unit"), channel.unit)
+    _file(document, loc, channel.file)
 
 
 def _unit(document: Document, loc: Loc, unit: str) -> None:

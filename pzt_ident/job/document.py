@@ -82,6 +82,11 @@ class Document:
         """The part of a place that the text has."""
         return loc[: len(self._path(loc))]
 
+    def keys(self, loc: Loc) -> list[str]:
+        """Those of the mapping at a place, as written."""
+        node = [self._root, *(value for _, value in self._path(loc))][-1]
+        return [key.value for key, _ in node.value if key.id == "scalar"] if node.id == "mapping" else []
+
     def source(self, loc: Loc) -> str:
         """The text at a place, as written, shortened."""
         node = [self._root, *(value for _, value in self._path(loc))][-1]

@@ -7,7 +7,9 @@ import copy
 import hashlib
 import json
 import re
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -64,6 +66,7 @@ class Job(BaseModel):
     limits: Annotated[Limits, Field(description="What a proposed drive may do.")] = Limits()
 
     _text: str = PrivateAttr("")
+    _file: str = PrivateAttr("")
     _folder: Path = PrivateAttr(Path())
     _cached_chain: CachedChain = PrivateAttr(default_factory=CachedChain)
 
@@ -85,8 +88,29 @@ class Job(BaseModel):
         job = cls._read(document)
         if job is None or document.faults:
             reject(file, document.faults)
-        job._text, job._folder, job._cached_chain = text, folder, document.chain
+        job._text, job._file, job._folder, job._cached_chain = text, file, folder, document.chain
         return job
+
+    @contextmanager
+    def placed(self) -> Iterator[None]:
+        """An error inside about what the job says names its file, and the line of the key where there is one."""
+        try:
+            yield
+        except InputError as error:
+            if not self._file or error.where in {
+                name for source in self.records for name in (source.file, source.name)
+            }:
+                raise
+            raise self._placed(error) from None
+
+    def _placed(self, error: InputError) -> InputError:
+        document = Document(self._text, self._file)
+        for loc in (tuple(error.where.split(".")), ("parameters", error.where)):
+            if document.reach(loc) == loc:
+                document.fault(loc, error.message, error.remedy)
+                return document.faults[-1].error(self._file)
+        where = ": ".join(filter(None, (self._file, error.where)))
+        return InputError(error.message, where=where, remedy=error.remedy)
 
     @classmethod
     def _read(cls, document: Document) -> Job | None:
@@ -212,7 +236,9 @@ def _add_faults(document: Document, error: ValidationError) -> None:
             remedy = nearest(str(loc[-1]), _known_keys(loc[:-1]))
             document.fault(loc, f"unknown key {loc[-1]!r}", remedy, at_key=True)
         elif kind == "missing" and isinstance(loc[-1], str):
-            document.fault(loc[:-1], f"missing key {loc[-1]!r}", f"add `{loc[-1]}: ...`")
+            close = get_close_matches(loc[-1], document.keys(loc[:-1]), 1)
+            remedy = f"add `{loc[-1]}: ...`" + "".join(f", or write it for {key!r}" for key in close)
+            document.fault(loc[:-1], f"missing key {loc[-1]!r}", remedy)
         else:
             expected, remedy = _EXPECTED.get(kind, (item["msg"], "see `pzt-ident init` for an example"))
             facts = item.get("ctx", {})

@@ -157,7 +157,9 @@ def stop_of(statement: Statement) -> dict[str, float | int | None]:
 
 def tasks_of(statement: Statement, folder: Path, starts: Starts = Starts()) -> list[Task]:  # noqa: B008
     """Optimizers times repeats, then the fits to start from. Raises InputError as `stop_of` does."""
-    job, stop = statement.job, stop_of(statement)
+    job = statement.job
+    with job.placed():
+        stop = stop_of(statement)
     searches = [
         Task(f"{choice.name}-{repeat}", choice.name, choice.settings, repeat, job.seed, stop, job.polish, folder)
         for choice in job.optimizers

@@ -26,7 +26,8 @@ class Statement:
 
     @cached_property
     def problem(self) -> Problem:
-        return Problem(self.job.chain, self.records, self.job.parameters, error_scales(self.records))
+        with self.job.placed():
+            return Problem(self.job.chain, self.records, self.job.parameters, error_scales(self.records))
 
     @property
     def unit(self) -> str:

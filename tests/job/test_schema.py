@@ -130,6 +130,8 @@ ONE_FAULT = [
     ("use: identify", "use: identfy", "3:24: records[0].use: 'identfy' is not 'identify' or 'validate'", "write"),
     ("use: identify", "use: validate", "3:3: records: no identification record", "use: identify"),
     ("file: a.csv, ", "", "3:5: records[0]: missing key 'file'", "add `file: ...`"),
+    ("{name: fake", "{nmae: fake", "optimizers[0]: missing key 'name'", "or write it for 'nmae'"),
+    ("file: a.csv", 'file: " "', "3:12: records[0].file: ' ' names no file", "relative to the job"),
     ("settle: 500 ms", "setle: 500 ms", "3:56: records[0].setle: unknown key 'setle'", "'settle'"),
     ("0.2 kHz", "5 ms", "3:47: records[0].sample_rate: '5 ms' is not in Hz", "a unit such as Hz"),
     ("0.2 kHz", "fast", "3:47: records[0].sample_rate: 'fast' is not a number with a unit", "such as `1 Hz`"),
@@ -214,6 +216,23 @@ def test_a_fault_is_told_with_place_value_and_remedy(old, new, expected, remedy)
     assert first.startswith("job.yaml:")
     assert expected in first
     assert remedy in advice
+
+
+@pytest.mark.parametrize(
+    ("where", "shown"),
+    [
+        ("stop.target", "job.yaml:20:16: stop.target: does not fit"),
+        ("x.lumped.mass", "job.yaml:14:18: parameters.x.lumped.mass: does not fit"),
+        ("lumped.damping", "job.yaml: lumped.damping: does not fit"),
+        ("a.csv", "a.csv: does not fit"),
+    ],
+)
+def test_what_the_data_refuse_of_a_job_has_its_place_in_the_file(where, shown):
+    with pytest.raises(InputError) as error, Job.from_text(GOOD).placed():
+        raise InputError("does not fit", where=where, remedy="change it")
+    assert str(error.value) == f"{shown}\n  change it"
+    with pytest.raises(InputError, match=f"^{where}: does"), Job.from_text(GOOD, file="").placed():
+        raise InputError("does not fit", where=where)
 
 
 ROD = GOOD.replace("lumped]", "{name: rod, elements: 9, modes: 3}]").replace("x.lumped.mass", "x.rod.density")

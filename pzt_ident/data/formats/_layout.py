@@ -99,7 +99,8 @@ def _start(lines: Sequence[str], data: Sequence[int], layout: Layout, width: int
     def is_partial(i: int) -> bool:
         row = layout.split(lines[i])
         numbers = [cell.strip() != "" and layout.is_number(cell) for cell in row]
-        return len(row) == width and any(numbers) and not _are_units(row)
+        torn = len(row) > 1 and all(numbers)  # of another width: who parses it says so
+        return (torn or (len(row) == width and any(numbers))) and not _are_units(row)
 
     rows: list[int] = []
     for i in data:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.readers.table import Column, Table
 from pzt_ident.data.record import Source
+from pzt_ident.errors import InputError
 
 SUFFIXES = (".tdms",)
 MAGIC = (b"TDSm",)
@@ -18,8 +20,14 @@ MAGIC = (b"TDSm",)
 
 def read(path: Path, source: Source) -> Table:
     from nptdms import TdmsFile
+    from nptdms.log import log_manager
+
+    log_manager.set_level(logging.ERROR)
 
     content = TdmsFile.read_metadata(path)
+    if content.file_status.incomplete_final_segment:
+        message = "is cut short: its last segment has fewer values than it says"
+        raise InputError(message, where=str(path), remedy="copy it again, or export what is whole")
     columns: list[Column] = []
     scalars: list[Column] = []
     for channel in (channel for group in content.groups() for channel in group.channels()):

@@ -8,7 +8,7 @@ from pathlib import Path
 from pzt_ident.data.readers.registry import Parts, Reader, readers
 from pzt_ident.data.readers.table import Table
 from pzt_ident.data.record import Source
-from pzt_ident.errors import InputError, nearest
+from pzt_ident.errors import InputError, in_words, nearest
 
 
 def open_table(path: Path, source: Source) -> Table:
@@ -22,7 +22,7 @@ def open_table(path: Path, source: Source) -> Table:
     except InputError:
         raise
     except Exception as error:  # a damaged file can raise anything in the library that reads its format
-        message = f"cannot be read as {reader.name}: {str(error) or type(error).__name__}"
+        message = f"cannot be read as {reader.name}: {in_words(error)}"
         remedy = "is it complete, and of the type that its name says?"
         raise InputError(message, where=str(path), remedy=remedy) from error
     if not isinstance(table, Table):

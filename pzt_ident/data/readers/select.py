@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pzt_ident.data.readers.table import Column, Table
 from pzt_ident.data.record import Channel, Source
 from pzt_ident.data.units import plain
-from pzt_ident.errors import InputError, nearest
+from pzt_ident.errors import InputError, in_words, nearest
 
 
 def select_column(table: Table, source: Source, channel: Channel, where: str) -> tuple[Column, NDArray[Any]]:
@@ -41,7 +41,7 @@ def _loaded(column: Column, where: str) -> NDArray[Any]:
     try:
         return column.load()
     except Exception as error:  # a damaged file can raise anything in the library that reads its format
-        problem = f"cannot be read: {str(error) or type(error).__name__}"
+        problem = f"cannot be read: {in_words(error)}"
         raise InputError(problem, where=where, remedy="is the file complete?") from error
 
 

@@ -118,6 +118,13 @@ def test_ragged_lines(tmp_path, problem, row, fields):
     assert error.message == f"line 5 has {fields} fields instead of 3"
 
 
+def test_a_first_line_of_numbers_that_is_torn_is_no_header(tmp_path, problem):
+    path = tmp_path / "bare.txt"
+    path.write_text("0 0 0 9 1\n" + "".join(f"{i} {i % 2} {i % 3}\n" for i in range(8)))
+    columns = (Channel(column=i, unit=unit) for i, unit in ((2, "V"), (3, "um"), (1, "s")))
+    assert problem(path, *columns).message == "line 1 has 5 fields instead of 3"
+
+
 @pytest.mark.parametrize(
     ("stamp", "message"),
     [

@@ -9,11 +9,12 @@ import zipfile
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from nptdms import ChannelObject, TdmsWriter
 
 from pzt_ident.cli.commands import main
 from pzt_ident.data.readers import read_records
 from pzt_ident.data.record import Axis, Channel, Source
-from pzt_ident.errors import InputError
+from pzt_ident.errors import InputError, in_words
 from pzt_ident.report import figures
 from sheets import write_sheets
 
@@ -66,6 +67,23 @@ def test_a_value_beyond_all_measure(tmp_path, problem, value, column):
     path.write_text(HEADER + "".join(",".join(row) + "\n" for row in rows))
     error = problem(path)
     assert "row 3 (line 5)" in error.message or "time" in error.message
+
+
+def test_a_measurement_of_ni_that_was_cut_short(tmp_path, problem, capfd):
+    path = tmp_path / "loop.tdms"
+    with TdmsWriter(path) as writer:
+        writer.write_segment([ChannelObject("a", name, np.arange(9.0)) for name in "tux"])
+    path.write_bytes(path.read_bytes()[:-20])
+    assert problem(path).message == "is cut short: its last segment has fewer values than it says"
+    assert capfd.readouterr().err == ""
+
+
+@pytest.mark.parametrize(
+    "said", ["", "TProtocolException: invalid", "<ast.Name object at 0x7f56>", "no type \x1b", "bad dtype"]
+)
+def test_what_a_library_says_to_programmers_is_not_passed_on(said):
+    assert in_words(ValueError(said)) == "it is damaged"
+    assert in_words(ValueError("the file has no end\nmore")) == "the file has no end"
 
 
 def test_the_names_of_thousands_of_records_of_one_file(tmp_path):

@@ -1,0 +1,74 @@
+"""python -m experiments.trust jobs | files | kills | surroundings | numerics | constraints | versions"""
+
+from __future__ import annotations
+
+import csv
+import shutil
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import click
+
+OUT = click.option("--out", type=click.Path(path_type=Path), default=Path("results/trust"), show_default=True)
+SEED = click.option("--seed", type=int, required=True)
+
+
+def cases(default: int) -> Any:
+    return click.option("--cases", type=int, default=default, show_default=True)
+
+
+@click.group()
+def main() -> None:
+    """Break, kill and turn round what pzt-ident works on, and count what comes of it."""
+
+
+def count(name: str, rows: Iterable[dict[str, Any]], out: Path) -> None:
+    """Write the rows of a campaign and print how many came to what, with those that are wrong."""
+    out.mkdir(parents=True, exist_ok=True)
+    counts: dict[str, int] = {}
+    with (out / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
+        table = csv.DictWriter(file, ("case", "how", "came", "faults"))
+        table.writeheader()
+        for row in rows:
+            table.writerow(row)
+            file.flush()
+            for key in ("cases", row["came"], *["wrong"] * bool(row["faults"])):
+                counts[key] = counts.get(key, 0) + 1
+            if row["faults"]:
+                click.echo(f"{row['case']}: {row['how']}: {row['came']}: {row['faults']}")
+    click.echo(f"{name}: " + ", ".join(f"{number} {key}" for key, number in counts.items()))
+
+
+def in_scratch(draw: Callable[[range, int, Path], Iterable[Any]], cases: int, seed: int) -> Iterator[dict[str, Any]]:
+    with TemporaryDirectory(prefix="trust-") as scratch:
+        for case in draw(range(cases), seed, Path(scratch)):
+            yield case.row()
+            shutil.rmtree(Path(scratch) / str(case.number), ignore_errors=True)
+
+
+@main.command()
+@SEED
+@cases(500)
+@OUT
+def jobs(seed: int, cases: int, out: Path) -> None:
+    """Malformed jobs."""
+    from experiments.trust.malformed import job_cases
+
+    count("jobs", in_scratch(job_cases, cases, seed), out)
+
+
+@main.command()
+@SEED
+@cases(500)
+@OUT
+def files(seed: int, cases: int, out: Path) -> None:
+    """Malformed data files."""
+    from experiments.trust.malformed import file_cases
+
+    count("files", in_scratch(file_cases, cases, seed), out)
+
+
+if __name__ == "__main__":
+    main()
