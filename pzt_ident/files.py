@@ -18,8 +18,9 @@ from pzt_ident.errors import DamagedError
 
 
 @contextmanager
-def replaced(path: Path) -> Iterator[Path]:
-    """A temporary path beside `path` that takes its place when the block ends without an error.
+def replaced(path: Path, lasting: bool = False) -> Iterator[Path]:
+    """A temporary path beside `path` that takes its place when the block ends without an error. lasting: once it is on
+    the disk, for what cannot be made again after a power cut.
 
     An OSError names `path`.
     """
@@ -30,6 +31,9 @@ def replaced(path: Path) -> Iterator[Path]:
     try:
         yield beside
         beside.chmod(0o644)
+        if lasting:
+            with beside.open("rb+") as file:
+                os.fsync(file)
         os.replace(beside, path)
     except OSError as error:
         error.filename = str(path)
@@ -38,8 +42,8 @@ def replaced(path: Path) -> Iterator[Path]:
         beside.unlink(missing_ok=True)
 
 
-def write_text(path: Path, text: str) -> None:
-    with replaced(path) as beside:
+def write_text(path: Path, text: str, lasting: bool = False) -> None:
+    with replaced(path, lasting) as beside:
         beside.write_text(text, encoding="utf-8", errors="backslashreplace")  # a path need not be UTF-8
 
 
@@ -66,19 +70,19 @@ def write_columns(path: Path, columns: Mapping[str, Any]) -> None:
     write_text(path, "\n".join([header, *(",".join(map(repr, row)) for row in rows)]) + "\n")
 
 
-def write_json(path: Path, content: Any) -> None:
+def write_json(path: Path, content: Any, lasting: bool = False) -> None:
     """NaN and infinity become null: JSON has no words for them."""
-    write_text(path, json.dumps(plain(content), indent=2, allow_nan=False) + "\n")
+    write_text(path, json.dumps(plain(content), indent=2, allow_nan=False) + "\n", lasting)
 
 
 DIGEST = "digest"
 
 
-def write_sealed(path: Path, content: Mapping[str, Any]) -> dict[str, Any]:
+def write_sealed(path: Path, content: Mapping[str, Any], lasting: bool = False) -> dict[str, Any]:
     """Write a JSON object with the digest of what is in it, and return it: `read_sealed` finds every change of it."""
     facts = plain({key: value for key, value in content.items() if key != DIGEST})
     facts[DIGEST] = _digest(facts)
-    write_json(path, facts)
+    write_json(path, facts, lasting)
     return dict(facts)
 
 

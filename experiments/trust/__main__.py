@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import shutil
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -42,10 +41,10 @@ def count(name: str, rows: Iterable[dict[str, Any]], out: Path) -> None:
 
 
 def in_scratch(draw: Callable[[range, int, Path], Iterable[Any]], cases: int, seed: int) -> Iterator[dict[str, Any]]:
-    with TemporaryDirectory(prefix="trust-") as scratch:
+    with TemporaryDirectory(prefix="trust-", ignore_cleanup_errors=True) as scratch:
+        Path(scratch).chmod(0o755)
         for case in draw(range(cases), seed, Path(scratch)):
             yield case.row()
-            shutil.rmtree(Path(scratch) / str(case.number), ignore_errors=True)
 
 
 @main.command()
@@ -68,6 +67,39 @@ def files(seed: int, cases: int, out: Path) -> None:
     from experiments.trust.malformed import file_cases
 
     count("files", in_scratch(file_cases, cases, seed), out)
+
+
+@main.command()
+@SEED
+@cases(60)
+@OUT
+def cuts(seed: int, cases: int, out: Path) -> None:
+    """Power cuts, so many a command, at writes spread over it."""
+    from experiments.trust.kills import cuts
+
+    count("cuts", in_scratch(cuts, cases, seed), out)
+
+
+@main.command()
+@SEED
+@cases(40)
+@OUT
+def kills(seed: int, cases: int, out: Path) -> None:
+    """Processes that are killed by chance."""
+    from experiments.trust.kills import chances
+
+    count("kills", in_scratch(chances, cases, seed), out)
+
+
+@main.command()
+@SEED
+@cases(20)
+@OUT
+def surroundings(seed: int, cases: int, out: Path) -> None:
+    """Full disks, no HOME, a clock that goes back."""
+    from experiments.trust.surroundings import cases as draw
+
+    count("surroundings", in_scratch(draw, cases, seed), out)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import os
 import signal
 import traceback
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,20 @@ class Ended:
     code: int | None
     said: str
     answer: str = ""
+
+
+@dataclass
+class Case:
+    """What came of a case, and what is wrong with that."""
+
+    number: int
+    how: str
+    came: str
+    faults: list[str] = field(default_factory=list)
+    said: str = ""
+
+    def row(self) -> dict[str, Any]:
+        return {"case": self.number, "how": self.how, "came": self.came, "faults": "; ".join(self.faults)}
 
 
 def command(words: Sequence[str], folder: Path) -> Ended:

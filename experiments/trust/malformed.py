@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,7 @@ import h5py
 import numpy as np
 
 from experiments.trust import files, jobs, spoilt
-from experiments.trust.bench import Bench, Ended, InThisProcess, command
+from experiments.trust.bench import Bench, Case, Ended, InThisProcess, command
 from experiments.trust.good import JOBS, write_good
 from experiments.trust.judge import faults_of, files_in
 from experiments.trust.mutants import REFUSE, SAME, Mutant
@@ -21,20 +20,6 @@ from experiments.trust.trees import read
 
 MOST_EVALUATIONS = 2000
 """Of a run that a mutant asks for; what asks for more is only checked."""
-
-
-@dataclass
-class Case:
-    """What came of a mutant: refused or accepted, and what is wrong with that."""
-
-    number: int
-    how: str
-    came: str
-    faults: list[str] = field(default_factory=list)
-    said: str = ""
-
-    def row(self) -> dict[str, Any]:
-        return {"case": self.number, "how": self.how, "came": self.came, "faults": "; ".join(self.faults)}
 
 
 def identified(folder: Path) -> Ended:
@@ -173,12 +158,3 @@ def understood(tree: Any, facts: dict[str, Any]) -> Iterator[str]:
         yield from jobs.misread(tree, facts)
     except Exception as error:
         yield f"not a job to another reader ({error!r})"
-
-
-def campaign(cases: Iterator[Case], out: Callable[[Case], None]) -> dict[str, int]:
-    counts: dict[str, int] = {}
-    for case in cases:
-        out(case)
-        for key in ("cases", case.came, *(["wrong"] if case.faults else [])):
-            counts[key] = counts.get(key, 0) + 1
-    return counts

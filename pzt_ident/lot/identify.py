@@ -45,7 +45,7 @@ def fleet(
     folder = out or Path("results") / job.name / "fleet"
     devices = devices_of(patterns, job)
     if not (folder / "fleet.json").is_file():
-        make_empty(folder)
+        make_empty(folder, job.text)
     stated: dict[str, Any] = {
         "job_name": job.name,
         "job_folder": str(job.folder.resolve()),
@@ -56,8 +56,8 @@ def fleet(
         "budget": budget,
         "command": " ".join(["pzt-ident", *sys.argv[1:]]),
     }
-    write_text(folder / "job.yaml", job.text)
-    write_sealed(folder / "fleet.json", stated)
+    write_text(folder / "job.yaml", job.text, lasting=True)
+    write_sealed(folder / "fleet.json", stated, lasting=True)
     orders = Orders(Template(job), job.folder.resolve(), stated["command"], improve, budget)
     return Identification(folder, devices, job, orders, listen).identify(place)
 

@@ -9,8 +9,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from pzt_ident.data.record import Record
-from pzt_ident.errors import InputError, RunError
-from pzt_ident.files import read_files, write_files, write_json, write_text
+from pzt_ident.errors import DamagedError, InputError, RunError
+from pzt_ident.files import read_files, read_sealed, write_files, write_json, write_text
 from pzt_ident.job.files import moved
 from pzt_ident.job.schema import Job
 from pzt_ident.run.events import Listen, nobody
@@ -39,7 +39,8 @@ def improve_at(
     task = (job.text, job.folder.resolve(), statement.records, folder.resolve(), budget, known)
 
     def keep(name: str, files: dict[str, bytes]) -> None:
-        write_files(folder, {file: content for file, content in files.items() if file not in OF_THIS_PROCESS})
+        names = sorted(files.keys() - set(OF_THIS_PROCESS), key=end_last)
+        write_files(folder, {name: files[name] for name in names})
 
     listen({"event": "start", "runs": [], "budget": 0, "unit": statement.unit, "together": "", "folder": str(folder)})
     failed = place.run_all(improve_there, (), [(job.name, task)], listen, keep)
@@ -68,6 +69,11 @@ def improve_there(
         return read_files(results)
 
 
+def end_last(name: str) -> tuple[bool, str]:
+    """A key to sort files by: `diagnosis.json`, which says that all are there, comes last."""
+    return name == "diagnosis.json", name
+
+
 def move(results: Path, folder: Path) -> None:
     """Let the paths of the jobs in a folder of results be those from another one, which it is to become."""
     for path in results.glob("*.yaml"):
@@ -79,11 +85,20 @@ def task_of(folder: Path) -> str:
     return str(read_environment(folder).get("task", {}).get("name", "run"))
 
 
+def is_whole(folder: Path) -> bool:
+    """Whether a diagnosis or an improvement came to its end, and is as it was written."""
+    names = ["diagnosis.json", *(name for name in ("improvement.json", "residuals.json") if (folder / name).exists())]
+    try:
+        return all(read_sealed(folder / name) for name in names)
+    except DamagedError:
+        return False
+
+
 def begin_again(folder: Path, listen: Listen = nobody, plugins: bool = False) -> Path:
     """An improvement or a diagnosis that did not come to its end, from its beginning, beside what is there until it is
     done. Raises InputError where the folder holds none."""
     task = read_environment(folder)["task"]
-    if (folder / "diagnosis.json").exists():
+    if is_whole(folder):
         listen({"event": "finished"})
         return folder
     job = Job.from_text(read_job(folder), folder, str(folder / "job.yaml"), plugins)
@@ -94,6 +109,9 @@ def begin_again(folder: Path, listen: Listen = nobody, plugins: bool = False) ->
         raise InputError(f"was begun with {task['name']!r}", where=str(folder), remedy="start it anew")
     start = task.get("start")
     again(job, new, listen, task.get("budget"), start and Path(start))
-    shutil.rmtree(folder)
-    new.rename(folder)
+    names = (path.relative_to(new).as_posix() for path in new.rglob("*") if path.is_file())
+    for name in sorted(names, key=end_last):
+        (folder / name).parent.mkdir(exist_ok=True)
+        (new / name).replace(folder / name)
+    shutil.rmtree(new)
     return folder

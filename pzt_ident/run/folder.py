@@ -30,21 +30,30 @@ def begin(folder: Path, job: Job, text: str, records: Sequence[Record], task: Ma
 
     Raises InputError where that cannot be, or something is in it.
     """
-    make_empty(folder)
-    write_text(folder / "job.yaml", text)
-    write_json(folder / "environment.json", environment(job, records) | ({"task": dict(task)} if task else {}))
+    make_empty(folder, text)
+    write_text(folder / "job.yaml", text, lasting=True)
+    content = environment(job, records) | ({"task": dict(task)} if task else {})
+    write_json(folder / "environment.json", content, lasting=True)
 
 
-def make_empty(folder: Path) -> None:
-    """Make the folder. Raises InputError where that cannot be, or something is in it."""
+def make_empty(folder: Path, text: str) -> None:
+    """Make the folder. Raises InputError where that cannot be, or something is in it but what is left of a beginning
+    with this text of a job."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        full = any(folder.iterdir())
+        full = any(not _is_left(path, text) for path in folder.iterdir())
     except OSError as error:
         remedy = "give another folder with --out"
         raise InputError(error.strerror or str(error), where=str(folder), remedy=remedy) from None
     if full:
         raise InputError("this folder is not empty", where=str(folder), remedy="give another --out, or resume it")
+
+
+def _is_left(path: Path, text: str) -> bool:
+    """Whether a file is of a beginning that was killed: the job, or what was to become a file."""
+    if path.name == "job.yaml":
+        return path.is_file() and path.read_bytes() == text.encode("utf-8", "backslashreplace")
+    return path.name.startswith((".job.yaml.", ".environment.json.", ".fleet.json.")) and path.suffix == ".tmp"
 
 
 def environment(job: Job, records: Sequence[Record]) -> dict[str, Any]:

@@ -26,7 +26,7 @@ from pzt_ident.model.registry import word_of
 from pzt_ident.run.events import Event, Listen, event_log, nobody, sentence
 from pzt_ident.run.findings import diagnosis_of, improvement_of, size_of, stair, ties
 from pzt_ident.run.folder import begin, results_folder
-from pzt_ident.run.misfit import compare
+from pzt_ident.run.misfit import misfits
 from pzt_ident.run.next_drive import separating
 from pzt_ident.run.start import read_start, start_point
 from pzt_ident.run.statement import Statement
@@ -109,9 +109,15 @@ def diagnose(
         found = diagnosed(case, lambda case: announced(case, fitted(case, job, start)))
         diagnosis, first = diagnosis_of(job, case, found, folder), found.before
         write_signals(folder / "signals.nc", first.problem.errors(first.point))
-        write_sealed(folder / "diagnosis.json", diagnosis)
-        compare(folder, folder)
+        write_diagnosis(folder, job, case, diagnosis)
     return folder
+
+
+def write_diagnosis(folder: Path, job: Job, case: Case, diagnosis: dict[str, Any]) -> None:
+    """Write `residuals.json` and, last of all, `diagnosis.json`: where it is, the folder is whole."""
+    names = [record.name for record in case.records]
+    write_sealed(folder / "residuals.json", misfits(folder, job.name, diagnosis, names))
+    write_sealed(folder / "diagnosis.json", diagnosis)
 
 
 def fitted(case: Case, job: Job, start: Path | None) -> Fit:
@@ -148,9 +154,8 @@ def improve(
         proposals = (separating(job, end, step.rivals, folder) for step in ties(steps))
         proposed = diagnosis["next_experiment"] or next(filter(None, proposals), None)
         content = improvement_of(job, case, staircase, diagnosis, proposed)
-        write_sealed(folder / "diagnosis.json", diagnosis)
         write_improvement(folder, content, improved(job, case, steps[-1].fit, folder))
-        compare(folder, folder)
+        write_diagnosis(folder, job, case, diagnosis)
     return folder
 
 

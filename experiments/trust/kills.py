@@ -1,0 +1,266 @@
+"""Kills: of a command by power cut after every write, of its processes by chance; and whether `resume` comes to the
+same result bit for bit."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from experiments.trust.bench import Case, InThisProcess
+from experiments.trust.good import write_good
+
+COMMANDS = ("run", "improve", "fleet")
+WRITES = ("open", "os.rename", "os.remove", "os.mkdir", "os.rmdir", "os.truncate", "os.link", "os.chmod")
+CLOCK = ("seconds", "created", "command", "digest", "history.csv", "environment.json")
+NOT_BEGUN = "holds no "
+Words = list[str]
+
+
+def words_of(command: str, job: Path, out: Path) -> Words:
+    given = {"fleet": [str(job), str(job.parent / "d*/")], "improve": [str(job), "--budget", "30s"]}
+    quiet = ["--quiet", "--no-report"] if command != "fleet" else ["--quiet"]
+    return [command, *given.get(command, [str(job)]), "--out", str(out), *quiet]
+
+
+def write_lot(folder: Path, seed: int) -> Path:
+    """A job and three devices, one of them broken."""
+    job = write_good(folder, seed)
+    for number in range(3):
+        write_good(folder / f"d{number}", seed + number)
+    (folder / "d1" / "a.csv").write_text("broken\n")
+    return job
+
+
+def essence(folder: Path) -> dict[str, Any]:
+    """What a folder of results says, less the clock."""
+    names = ("result.json", "improvement.json", "diagnosis.json", "device.json", "residuals.json")
+    files = sorted(path for path in folder.rglob("*") if path.name in names)
+    found = {str(path.relative_to(folder)): timeless(json.loads(path.read_text())) for path in files}
+    for path in sorted(folder.rglob("signals.nc")):
+        found[str(path.relative_to(folder))] = arrays(path)
+    return found
+
+
+def timeless(content: Any) -> Any:
+    if isinstance(content, dict):
+        return {key: timeless(value) for key, value in content.items() if not any(c in key for c in CLOCK)}
+    return [timeless(value) for value in content] if isinstance(content, list) else content
+
+
+def arrays(path: Path) -> dict[str, bytes]:
+    import h5py
+
+    found: dict[str, bytes] = {}
+    with h5py.File(path) as file:
+        file.visititems(lambda name, item: found.update({name: item[()].tobytes()} if hasattr(item, "shape") else {}))
+    return found
+
+
+def in_fork(words: Words, prepare: Callable[[], None] = lambda: None) -> tuple[int, str]:
+    """Exit code and standard error of a command in a fork of this process, which has imported it; its tasks run in it
+    too."""
+    said, out = os.pipe()
+    if pid := os.fork():
+        os.close(out)
+        with os.fdopen(said, "rb") as pipe:
+            text = pipe.read().decode("utf-8", "replace")
+        return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), text
+    code = 1
+    try:
+        os.setpgid(0, 0)
+        os.dup2(out, 2)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        sys.stderr = os.fdopen(2, "w", closefd=False)
+        code = here(words, prepare)
+        sys.stderr.flush()
+    finally:
+        os._exit(code)
+
+
+def here(words: Words, prepare: Callable[[], None] = lambda: None) -> int:
+    """The command with its tasks in this process."""
+    from pzt_ident.cli.commands import main
+    from pzt_ident.run import place
+
+    place.Local.run_all = InThisProcess.run_all  # type: ignore[method-assign]
+    prepare()
+    try:
+        main(words, standalone_mode=True)
+    except SystemExit as error:
+        return int(error.code or 0)
+    return 0
+
+
+class PowerCut:
+    """Kills this process ahead of its n-th write below a folder. torn: cut by chance the ends off the files that were
+    written last and never made lasting, as a disk may after a power cut."""
+
+    def __init__(self, folder: Path, write: int, torn: np.random.Generator | None = None) -> None:
+        self.folder, self.left, self.torn = str(folder.resolve()), write, torn
+        self.written: list[str] = []
+        self.lasting: set[int] = set()
+
+    def __call__(self) -> None:
+        synced = os.fsync
+
+        def fsync(file: Any) -> None:
+            number = file if isinstance(file, int) else file.fileno()
+            synced(number)
+            self.lasting.add(os.fstat(number).st_ino)
+
+        os.fsync = fsync
+        sys.addaudithook(self.hear)
+
+    def hear(self, event: str, arguments: tuple[Any, ...]) -> None:
+        if event not in WRITES or self.left < 0:
+            return
+        if event == "open" and not (isinstance(arguments[2], int) and arguments[2] & (os.O_WRONLY | os.O_RDWR)):
+            return
+        path = os.path.abspath(os.fsdecode(arguments[0])) if isinstance(arguments[0], str | bytes | os.PathLike) else ""
+        if not path.startswith(self.folder):
+            return
+        if self.left == 0:
+            self.left = -1
+            self.cut()
+        self.left -= 1
+        self.written.append(os.path.abspath(os.fsdecode(arguments[1])) if event == "os.rename" else path)
+
+    def cut(self) -> None:
+        for path in dict.fromkeys(self.written[-4:] if self.torn is not None else []):
+            if os.path.isfile(path) and os.stat(path).st_ino not in self.lasting and self.torn.random() < 0.6:
+                os.truncate(path, int(os.path.getsize(path) * self.torn.random() * self.torn.integers(0, 2)))
+        os.kill(os.getpid(), signal.SIGKILL)
+
+
+def writes_of(words: Words, out: Path) -> int:
+    """How often a command writes below its folder."""
+    told = out.with_suffix(".writes")
+
+    def prepare() -> None:
+        cut, exit_ = PowerCut(out, 10**9), os._exit
+        cut()
+
+        def leave(code: int) -> None:
+            told.write_text(str(len(cut.written)))
+            exit_(code)
+
+        os._exit = leave
+
+    code, said = in_fork(words, prepare)
+    assert code == 0, said
+    return int(told.read_text())
+
+
+def goes_on(out: Path, words: Words, call: Callable[[Words], tuple[int, str]]) -> tuple[str, list[str]]:
+    """Resume what was killed, or begin it again where resume says that it had not begun; how, and what is wrong."""
+    code, said = call(["resume", str(out), "--quiet", "--no-report"])
+    if code == 2 and (NOT_BEGUN in said or "not been begun" in said):
+        code, said = call(words)
+        return "begun again", [] if code == 0 else [f"cannot be begun again: {said.strip()}"]
+    return "resumed", [] if code == 0 else [f"exit code {code}: {said.strip()[:300]}"]
+
+
+def cuts(numbers: range, seed: int, scratch: Path) -> Iterator[Case]:
+    """Power cuts, so many a command, at writes spread over it, half of them torn."""
+
+    number = 0
+    for command in COMMANDS:
+        job = write_lot(scratch / command, seed)
+        whole = scratch / command / "whole"
+        here(words_of(command, job, scratch / command / "warm"))  # what it imports and compiles, its forks have
+        writes = writes_of(words_of(command, job, whole), whole)
+        true = essence(whole)
+        for write in np.unique(np.linspace(0, writes - 1, len(numbers)).astype(int)):
+            rng = np.random.default_rng([seed, number])
+            torn = rng if rng.random() < 0.5 else None
+            out = scratch / command / f"cut{write}"
+            words = words_of(command, job, out)
+            code, said = in_fork(words, PowerCut(out, int(write), torn))
+            case = Case(number, f"{command}: power cut {'torn ' if torn is not None else ''}ahead of write {write}", "")
+            if code != -signal.SIGKILL:
+                case.faults.append(f"was not cut: {code} {said[-300:]}")
+            case.came, faults = goes_on(out, words, in_fork)
+            case.faults += faults or differences(true, essence(out))
+            yield case
+            if not case.faults:
+                shutil.rmtree(out)
+            number += 1
+
+
+def differences(true: dict[str, Any], found: dict[str, Any]) -> list[str]:
+    return [f"{file} differs" for file in sorted({*true, *found}) if true.get(file) != found.get(file)]
+
+
+VICTIMS = ("main", "worker", "all")
+
+
+def chances(cases: range, seed: int, scratch: Path) -> Iterator[Case]:
+    """Commands in processes of their own, of which some are killed at a time by chance."""
+    jobs = {command: write_lot(scratch / f"by chance {command}", seed) for command in COMMANDS}
+    true, lasts = {}, {}
+    for command, job in jobs.items():
+        whole, start = job.parent / "whole", time.monotonic()
+        subprocess.run([*PROGRAM, *words_of(command, job, whole)], check=True, capture_output=True)
+        true[command], lasts[command] = essence(whole), time.monotonic() - start
+    for number in cases:
+        rng = np.random.default_rng([seed, number])
+        command, victim = COMMANDS[rng.integers(3)], VICTIMS[rng.integers(3)]
+        out = jobs[command].parent / f"out{number}"
+        words = words_of(command, jobs[command], out)
+        after = rng.uniform(0.2, 1) * lasts[command]
+        ended, said = killed(words, victim, after)
+        case = Case(number, f"{command}: {victim} killed after {after:.1f} s", "")
+        if ended == 0:
+            case.came, faults = "came to its end", []
+        elif victim == "worker":
+            case.came, faults = "failed", [f"exit code {ended}: {said[-300:]}"]
+        else:
+            case.came, faults = goes_on(out, words, in_process)
+        case.faults += faults or differences(true[command], essence(out))
+        yield case
+        if not case.faults:
+            shutil.rmtree(out)
+
+
+PROGRAM = [sys.executable, "-m", "pzt_ident"]
+
+
+def in_process(words: Words) -> tuple[int, str]:
+    ended = subprocess.run([*PROGRAM, *words], capture_output=True, text=True, timeout=300)
+    return ended.returncode, ended.stderr
+
+
+def killed(words: Words, victim: str, after: float) -> tuple[int, str]:
+    """Exit code and standard error of a command of which the main process, its youngest child or all are killed."""
+    process = subprocess.Popen(
+        [*PROGRAM, *words], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+    time.sleep(after)
+    pids = {"main": [process.pid], "worker": family(process.pid)[-1:], "all": [process.pid, *family(process.pid)]}
+    for pid in pids[victim]:
+        with suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGKILL)
+    said = process.communicate(timeout=300)[1]
+    return process.returncode, said
+
+
+def family(main: int) -> list[int]:
+    """The other processes of a session that are at work, by age: those of Python alone that nobody waits for."""
+    found = []
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):
+            facts = stat.read_text().rpartition(")")[2].split()
+            if int(facts[3]) == main and int(stat.parent.name) != main:
+                found.append((int(facts[19]), int(stat.parent.name)))
+    return [pid for _, pid in sorted(found)]
