@@ -31,8 +31,9 @@ def _wait(process, limit):
         time.sleep(0.2)
 
 
-def solve(home, limit):
-    """Answer of the tool on the case in `home`; it is given home/rig only. A case that has one is skipped."""
+def solve(home, limit, on=""):
+    """Answer of the tool on the case in `home`; it is given home/rig only. A case that has one is skipped. on: the
+    place where the tool works, if not here; what it does there is not counted as its CPU."""
     home = Path(home)
     done = home / "solved.json"
     if done.exists():
@@ -40,7 +41,7 @@ def solve(home, limit):
     answer = home / "answer"
     shutil.rmtree(answer, ignore_errors=True)
     command = [COMMAND, "improve", (home / "rig" / "job.yaml").resolve(), "--out", answer.resolve()]
-    command += ["--no-report", "--quiet"]
+    command += ["--no-report", "--quiet", *(["--on", on] if on else [])]
     started = time.monotonic()
     environment = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     with open(home / "said.txt", "w") as said:

@@ -34,11 +34,14 @@ def draw(seed: int, count: int, kind: str, effect: str | None, out: Path) -> Non
 @click.argument("folder", type=FOLDER)
 @click.option("--workers", type=click.IntRange(1), default=2, show_default=True)
 @click.option("--retry", is_flag=True, help="Try again what failed before.")
-def solve(folder: Path, workers: int, retry: bool) -> None:
+@click.option(
+    "--on", default="", help="Where `improve` works, as of `pzt-ident improve --on`; --workers cases at once."
+)
+def solve(folder: Path, workers: int, retry: bool, on: str) -> None:
     """Run `pzt-ident improve` on each case of FOLDER that has no result yet."""
     from experiments.hidden_effect.solve import solve
 
-    for case in solve(folder, workers, retry):
+    for case in solve(folder, workers, retry, on):
         click.echo(f"{case.name}: failed, see {folder / 'solved' / case.name}", err=True)
 
 

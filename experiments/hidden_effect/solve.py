@@ -13,29 +13,34 @@ TWO_ROUNDS = ("loops", "one_frequency")  # kinds of campaign that may end in a t
 PATIENCE = 1800  # s a command
 
 
-def solve(folder: Path, workers: int = 2, retry: bool = False) -> list[Path]:
-    """Solve each of folder/cases that has no result yet; the folders of those that failed."""
+def solve(folder: Path, workers: int = 2, retry: bool = False, on: str = "") -> list[Path]:
+    """Solve each of folder/cases that has no result yet; the folders of those that failed. on: the place where the
+    commands let their tasks run."""
     cases = sorted(path.parent for path in (folder / "cases").glob("*/job.yaml"))
     with ThreadPoolExecutor(workers) as pool:
-        done = list(pool.map(lambda case: solve_case(case, folder / "solved" / case.name, retry), cases))
+        done = list(pool.map(lambda case: solve_case(case, folder / "solved" / case.name, retry, on), cases))
     return [case for case, well in zip(cases, done, strict=True) if not well]
 
 
-def solve_case(case: Path, out: Path, retry: bool = False) -> bool:
+def solve_case(case: Path, out: Path, retry: bool = False, on: str = "") -> bool:
     kind = case.name.rpartition("-")[0]
     diagnosed = kind not in TWO_ROUNDS or run("diagnose", case / "job.yaml", out, retry)
-    return run("improve", case / "job.yaml", out, retry) and diagnosed
+    return run("improve", case / "job.yaml", out, retry, on) and diagnosed
 
 
-def run(command: str, job: Path, out: Path, retry: bool) -> bool:
-    """One command into out/COMMAND; whether its result is there."""
+def place(on: str) -> list[str]:
+    return ["--on", on] if on else []
+
+
+def run(command: str, job: Path, out: Path, retry: bool, on: str = "") -> bool:
+    """One command into out/COMMAND; whether its result is there. `diagnose` works on this machine."""
     result = out / command / {"improve": "improvement.json", "diagnose": "diagnosis.json"}[command]
     failure = out / f"{command}_failed.json"
     if result.exists() or (failure.exists() and not retry):
         return result.exists()
     out.mkdir(parents=True, exist_ok=True)
     program = Path(sys.executable).with_name("pzt-ident")
-    line = [str(program), command, str(job), "--json", "--quiet", "--no-report", "--out"]
+    line = [str(program), command, str(job), "--json", "--quiet", "--no-report", *place(on), "--out"]
     start = time.monotonic()
     try:
         ended = subprocess.run([*line, str(result.parent)], capture_output=True, text=True, timeout=PATIENCE)

@@ -102,5 +102,37 @@ def surroundings(seed: int, cases: int, out: Path) -> None:
     count("surroundings", in_scratch(draw, cases, seed), out)
 
 
+@main.command()
+@SEED
+@cases(45)
+@OUT
+def numerics(seed: int, cases: int, out: Path) -> None:
+    """The same measurement in other units, under other names and in another order."""
+    from experiments.trust.numerics import cases as draw
+
+    count("numerics", in_scratch(draw, cases, seed), out)
+
+
+@main.command()
+def constraints() -> None:
+    """Print the oldest versions of the dependencies that are allowed, as a constraints file of pip."""
+    from experiments.trust.versions import oldest
+
+    click.echo("\n".join(oldest()))
+
+
+@main.command()
+@click.argument("python")
+@click.option("--oldest", is_flag=True, help="With the oldest versions instead of the newest.")
+def versions(python: str, oldest: bool) -> None:
+    """Install the package from wheels for PYTHON, let it work, and print what it identified."""
+    from experiments.trust import versions
+
+    with TemporaryDirectory(prefix="trust-") as scratch:
+        mine = versions.installed(python, Path(scratch), list(versions.oldest()) if oldest else [])
+        for name, value in versions.at_work(mine, Path(scratch)).items():
+            click.echo(f"{name}: {value!r}")
+
+
 if __name__ == "__main__":
     main()

@@ -75,7 +75,8 @@ SURROUNDINGS = (
     Surrounding("a clock that goes back", {"PYTHONPATH": "clock"}),
     Surrounding("another time zone", {"TZ": "Pacific/Kiritimati"}),
     Surrounding("few files at once", before=few_open_files),
-    Surrounding("optimised Python", {"PYTHONOPTIMIZE": "2"}),
+    Surrounding("optimised Python", {"PYTHONOPTIMIZE": "1"}),
+    Surrounding("Python without docstrings", {"PYTHONOPTIMIZE": "2"}, says=("without docstrings",)),
     Surrounding("full disk", before=small_files, says=("File too large", "No space left")),
     Surrounding("read-only folder", before=nobody, says=("Permission denied", "Read-only")),
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import tomllib
 from collections.abc import Iterator, Sequence
@@ -11,7 +12,6 @@ from pathlib import Path
 from experiments.trust.good import write_good
 
 ROOT = Path(__file__).parents[2]
-SEVERAL = ("run", "resume", "improve", "compare", "export", "fleet")
 
 
 def oldest(pyproject: Path = ROOT / "pyproject.toml") -> Iterator[str]:
@@ -35,10 +35,15 @@ def installed(python: str, home: Path, constraints: Sequence[str] = ()) -> Path:
     return mine
 
 
+def installed_alone() -> dict[str, str]:
+    """The environment without the folder of this checkout."""
+    return {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+
+
 def at_work(python: Path, home: Path) -> dict[str, float]:
     """The parameters that the installed package identifies; it also draws, compares, exports, diagnoses and runs a
     lot. Raises CalledProcessError where a command fails."""
-    job = write_good(home / "rig", 1)
+    job = write_good(home / "rig", 1).resolve()
     steps = (
         ["run", job, "--out", "run", "--workers", "1"],
         ["compare", "run"],
@@ -48,6 +53,7 @@ def at_work(python: Path, home: Path) -> dict[str, float]:
         ["fleet", "report", "lot"],
     )
     for words in steps:
-        subprocess.run([python, "-m", "pzt_ident", *map(str, words)], cwd=home, check=True, capture_output=True)
+        line = [str(python), "-m", "pzt_ident", *map(str, words)]
+        subprocess.run(line, cwd=home, env=installed_alone(), check=True, capture_output=True)
     best = json.loads((home / "run" / "result.json").read_text())["best"]
     return {name: parameter["value"] for name, parameter in best["parameters"].items()}

@@ -31,7 +31,7 @@ from pzt_ident.cli.options import (
     write_report,
 )
 from pzt_ident.cli.word_commands import atlas, list_, show
-from pzt_ident.errors import DamagedError
+from pzt_ident.errors import DamagedError, InputError
 
 if TYPE_CHECKING:
     from pzt_ident.cli.progress import Listener
@@ -46,6 +46,9 @@ def main(debug: bool) -> None:
 
     Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted.
     """
+    if sys.flags.optimize > 1:
+        problem = "Python was started without docstrings, where the equations are"
+        raise InputError(problem, where="PYTHONOPTIMIZE", remedy="unset it, or set it to 1")
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads wait for each other: 63 s of CPU instead of 19
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # a terminal may lack a letter of a name

@@ -1,0 +1,76 @@
+"""A slice of each campaign of trust."""
+
+import numpy as np
+import pytest
+
+from experiments.trust import kills, numerics, surroundings, versions
+from experiments.trust.bench import Bench, Ended
+from experiments.trust.judge import faults_of
+from experiments.trust.malformed import file_cases, job_cases
+
+
+def wrong(cases):
+    return [(case.how, case.faults, case.said) for case in cases if case.faults]
+
+
+def test_malformed_jobs(tmp_path):
+    assert not wrong(job_cases(range(30), 77, tmp_path))
+
+
+def test_malformed_files(tmp_path):
+    assert not wrong(file_cases(range(40), 77, tmp_path))
+
+
+def test_power_cuts(tmp_path):
+    assert not wrong(kills.cuts(range(4), 77, tmp_path))
+
+
+def test_the_same_measurement_in_other_words(tmp_path):
+    told = [case for case in numerics.cases(range(9), 77, tmp_path) if case.how != "records in another order"]
+    assert len(told) == 8 and not wrong(told)
+
+
+def test_a_clock_that_goes_back_and_a_full_disk(tmp_path, monkeypatch):
+    monkeypatch.setattr(
+        surroundings,
+        "SURROUNDINGS",
+        [around for around in surroundings.SURROUNDINGS if around.name in ("a clock that goes back", "full disk")],
+    )
+    assert not wrong(surroundings.cases(range(2), 77, tmp_path))
+
+
+@pytest.mark.parametrize(
+    ("code", "said", "fault"),
+    [
+        (2, "Error: a.csv: row 3 holds 'x'\n  delete it", None),
+        (1, "Error: a.csv: row 3 holds 'x'\n  delete it", "exit code 1"),
+        (2, "Error: a.csv: KeyError: 'x'\n  delete it", "Python: KeyError"),
+        (2, "Error: row 3 holds 'x'\n  delete it", "names no file"),
+        (2, "Error: a.csv: row 3\n  delete it", "does not show \"'x'\""),
+        (2, "Error: a.csv: row 3 holds 'x'", "names no remedy"),
+        (None, "hangs", "hangs"),
+    ],
+)
+def test_a_refusal_is_judged(code, said, fault):
+    assert list(faults_of(Ended(code, said), ["a.csv"], "'x'")) == ([fault] if fault else [])
+
+
+def slow(seconds):
+    import os
+    import time
+
+    time.sleep(seconds)
+    os._exit(3)
+
+
+def test_what_hangs_or_dies_is_told():
+    with Bench(patience=1.0) as bench:
+        assert bench.call(slow, 9) == Ended(None, "hangs")
+    with Bench() as bench:
+        assert bench.call(slow, 0) == Ended(None, "its process died")
+
+
+def test_every_dependency_has_an_oldest_version():
+    lines = list(versions.oldest())
+    assert "numpy==2.0" in lines and len(lines) > 20
+    assert all(np.prod([part.isdigit() for part in line.partition("==")[2].split(".")]) for line in lines)
