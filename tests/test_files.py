@@ -54,3 +54,12 @@ def test_the_variable_wins_over_the_users_cache_folder(tmp_path, monkeypatch):
     assert cache_folder.__wrapped__() == tmp_path / "user/pzt_ident"
     monkeypatch.setenv("PZT_IDENT_CACHE", str(tmp_path / "chosen"))
     assert cache_folder.__wrapped__() == tmp_path / "chosen/pzt_ident"
+
+
+def test_what_is_lasting_is_on_the_disk_before_it_takes_its_place(tmp_path, monkeypatch):
+    done, synced, renamed = [], os.fsync, os.replace
+    monkeypatch.setattr(os, "fsync", lambda file: done.append("fsync") or synced(file))
+    monkeypatch.setattr(os, "replace", lambda *paths: done.append("replace") or renamed(*paths))
+    write_text(tmp_path / "a", "a")
+    write_text(tmp_path / "b", "b", lasting=True)
+    assert done == ["replace", "fsync", "replace"]

@@ -14,15 +14,15 @@ def wrong(cases):
 
 
 def test_malformed_jobs(tmp_path):
-    assert not wrong(job_cases(range(30), 77, tmp_path))
+    assert not wrong(job_cases(range(15), 77, tmp_path))
 
 
 def test_malformed_files(tmp_path):
-    assert not wrong(file_cases(range(40), 77, tmp_path))
+    assert not wrong(file_cases(range(25), 77, tmp_path))
 
 
 def test_power_cuts(tmp_path):
-    assert not wrong(kills.cuts(range(4), 77, tmp_path))
+    assert not wrong(kills.cuts(range(3), 77, tmp_path))
 
 
 def test_the_same_measurement_in_other_words(tmp_path):

@@ -6,9 +6,11 @@ import shutil
 import pytest
 
 from experiments.fleet.lot import write_lot
+from pzt_ident.errors import InputError
 from pzt_ident.job.schema import load_job
 from pzt_ident.model.registry import blocks
-from pzt_ident.run.elsewhere import begin_again, improve_at, task_of
+from pzt_ident.run.elsewhere import begin_again, end_last, improve_at, is_whole, task_of
+from pzt_ident.run.folder import make_empty
 from pzt_ident.run.place import HERE, place_of
 
 
@@ -58,3 +60,23 @@ def test_an_improvement_that_was_killed_is_begun_again(here, tmp_path):
     events = []
     begin_again(out, events.append)
     assert events == [{"event": "finished"}]
+
+
+def test_an_improvement_is_whole_only_with_all_of_its_files_as_written(here, tmp_path):
+    assert is_whole(here)
+    for name in ("diagnosis.json", "improvement.json", "residuals.json"):
+        out = shutil.copytree(here, tmp_path / name)
+        (out / name).write_bytes((out / name).read_bytes()[:-40])
+        assert not is_whole(out)
+    assert sorted(["diagnosis.json", "signals.nc", "improvement.json"], key=end_last)[-1] == "diagnosis.json"
+
+
+def test_what_a_killed_beginning_left_is_begun_again_and_nothing_else(tmp_path):
+    for name in ("job.yaml", ".job.yaml.x7.tmp", ".environment.json.x7.tmp"):
+        (tmp_path / name).write_text("name: a")
+    make_empty(tmp_path, "name: a")
+    with pytest.raises(InputError, match="not empty"):
+        make_empty(tmp_path, "name: another")
+    (tmp_path / "environment.json").write_text("{}")
+    with pytest.raises(InputError, match="not empty"):
+        make_empty(tmp_path, "name: a")
