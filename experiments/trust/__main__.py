@@ -28,7 +28,7 @@ def count(name: str, rows: Iterable[dict[str, Any]], out: Path) -> None:
     out.mkdir(parents=True, exist_ok=True)
     counts: dict[str, int] = {}
     with (out / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
-        table = csv.DictWriter(file, ("case", "how", "came", "faults"))
+        table = csv.DictWriter(file, ("case", "how", "came", "faults"), lineterminator="\n")
         table.writeheader()
         for row in rows:
             table.writerow(row)
