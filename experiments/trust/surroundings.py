@@ -79,11 +79,11 @@ SURROUNDINGS = (
 def run(job: Path, out: Path, around: Surrounding) -> subprocess.CompletedProcess[str]:
     changed = os.environ | {name: value for name, value in around.variables.items() if value is not None}
     environment = {name: value for name, value in changed.items() if around.variables.get(name, "") is not None}
-    if environment["PYTHONPATH"] == "clock":
+    if environment.get("PYTHONPATH") == "clock":
         clock = job.parent / "clock"
         clock.mkdir(exist_ok=True)
         (clock / "sitecustomize.py").write_text(CLOCK_BACK)
-        environment["PYTHONPATH"] = os.pathsep.join([str(clock), os.environ["PYTHONPATH"]])
+        environment["PYTHONPATH"] = os.pathsep.join([str(clock), os.environ.get("PYTHONPATH", os.getcwd())])
     words = ["run", str(job), "--out", str(out), "--no-report", "--workers", str(around.workers)]
     line = [sys.executable, "-m", "pzt_ident", *words]
     return subprocess.run(

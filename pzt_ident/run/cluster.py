@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 
 AHEAD = 2
 """Tasks that are on their way to each thread of the cluster."""
+ATTEMPTS = 3
+"""How often a task is sent whose outcome a living scheduler lost."""
 SECONDS_TO_JOIN = 30.0
 SECONDS_WITHOUT_WORKERS = 60.0
 SECONDS_BETWEEN_EVENTS = 1.0
@@ -120,8 +122,10 @@ class Session:
         self.arrived: SimpleQueue[Event | tuple[str, Future]] = SimpleQueue()
         self.topic = f"pzt-ident-{uuid4().hex}"
         self.client.subscribe_topic(self.topic, lambda event: self.arrived.put(event[1]))
-        self.common = client.submit(bytes, pickle.dumps(common), key=f"{self.topic}-common")
+        self.data = pickle.dumps(common)
+        self.common: Future | None = None
         self.running: dict[str, Future] = {}
+        self.sent: dict[str, list[Arguments]] = {}
         self.failed: Failures = {}
         self.threads, self.counted, self.staffed = 0, 0.0, time.monotonic()
 
@@ -137,7 +141,7 @@ class Session:
         finally:
             self.client.unsubscribe_topic(self.topic)
             if self.client.status == "running":
-                self.client.cancel([*self.running.values(), self.common])
+                self.client.cancel([*self.running.values(), *([self.common] if self.common else [])])
 
     def room(self) -> int:
         """How many tasks may be sent. Raises LostError where the scheduler is gone, or every worker for long."""
@@ -153,7 +157,11 @@ class Session:
         return AHEAD * max(self.threads, 1) - len(self.running)
 
     def begin(self, name: str, arguments: Arguments) -> None:
-        key, raw = f"{self.topic}-{name}", pickle.dumps(arguments)
+        attempts = self.sent.setdefault(name, [])
+        attempts.append(arguments)
+        key, raw = f"{self.topic}-{name}-{len(attempts)}", pickle.dumps(arguments)
+        if self.common is None or self.common.cancelled():
+            self.common = self.client.submit(bytes, self.data, key=f"{key}-common")
         future = self.client.submit(attempt_there, self.entry, self.common, raw, self.topic, key=key, pure=False)
         self.running[name] = future
         future.add_done_callback(lambda future: self.arrived.put((name, future)))
@@ -176,9 +184,11 @@ class Session:
             kind, content = future.result()
         elif future.status == "error":
             kind, content = "failed", reason_of(future.exception())
+        elif len(self.sent[name]) < ATTEMPTS and self.client.status == "running":
+            return self.begin(name, self.sent[name][0])
         else:
             raise lost(self.words)
-        del self.running[name]
+        del self.running[name], self.sent[name]
         if kind == "done":
             self.done(name, content)
         else:

@@ -34,7 +34,7 @@ def search_here(statement: Statement, tasks: Sequence[Task], tell: Tell) -> tupl
         if event["event"] == "generation" and task is not tasks[-1]:
             now = time.process_time()
             end = min(end, now + SECONDS)
-            if now > end:
+            if now >= end:
                 raise Enough
             if now > end - SECONDS_TO_START:
                 context()

@@ -14,6 +14,7 @@ import measured
 from experiments.fleet.cluster import TCP
 from pzt_ident.errors import InputError, LostError
 from pzt_ident.job.schema import load_job
+from pzt_ident.run.cluster import Session
 from pzt_ident.run.identify import resume, run
 from pzt_ident.run.place import Local, place_of
 
@@ -95,6 +96,21 @@ def test_what_a_killed_worker_was_at_is_done_again(tmp_path):
         )
     assert failed == {}
     assert results == {str(i): i**2 for i in range(12)}
+
+
+def test_a_task_whose_outcome_a_living_scheduler_lost_is_sent_again(cluster, tmp_path):
+    class Forgetful(Session):
+        def end(self, name, future):
+            if name == "1" and len(self.sent[name]) == 1:
+                future.cancel()
+            super().end(name, future)
+
+    results: dict = {}
+    (tmp_path / "begun").write_text("by another")
+    with distributed.Client(cluster.address, set_as_default=False) as client:
+        session = Forgetful(client, "here", slow_once, (tmp_path,), lambda event: None, results.__setitem__)
+        assert session.run(iter([(str(i), (i,)) for i in range(3)]), lambda: None) == {}
+    assert results == {"0": 0, "1": 1, "2": 4}
 
 
 def test_a_lost_scheduler_ends_in_a_folder_that_resume_goes_on_with(job, tmp_path):
