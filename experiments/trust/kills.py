@@ -93,12 +93,15 @@ def here(words: Words, prepare: Callable[[], None] = lambda: None) -> int:
     from pzt_ident.cli.commands import main
     from pzt_ident.run import place
 
+    elsewhere = place.Local.run_all
     place.Local.run_all = InThisProcess.run_all  # type: ignore[method-assign]
     prepare()
     try:
         main(words, standalone_mode=True)
     except SystemExit as error:
         return int(error.code or 0)
+    finally:
+        place.Local.run_all = elsewhere  # type: ignore[method-assign]
     return 0
 
 
