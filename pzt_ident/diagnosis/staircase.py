@@ -82,10 +82,10 @@ def improve_lean(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepList
     settled = diagnosis.verdict in ("adequate", "refused") or any(
         adequate(case, first, candidate.fit) for candidate in diagnosis.passing if candidate.fit
     )
-    found = None if settled else without_mechanics(case, first)
-    if found is None:
+    alternative = None if settled else without_mechanics(case, first)
+    if alternative is None:
         return None
-    word, lean, start = found
+    word, lean, start = alternative
     step = Step(start, explained=explained_share(case, first, start), change=f"without {word}", case=lean)
     staircase = improve_within(lean, [Step(first), step], on_step)
     share = explained_share(case, start, first)

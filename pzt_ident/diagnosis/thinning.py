@@ -40,9 +40,9 @@ def improve(
     the model as given. on_step: the listener to the steps of a case."""
     thin = thinned(case)
     if thin is not None:
-        found = on_all_samples(case, thin, stairs.improve(thin, first(thin), on_step(thin)))
-        if found is not None:
-            return found
+        staircase = on_all_samples(case, thin, stairs.improve(thin, first(thin), on_step(thin)))
+        if staircase is not None:
+            return staircase
     return stairs.improve(case, first(case), on_step(case))
 
 
@@ -50,9 +50,9 @@ def diagnosed(case: Case, first: First) -> Diagnosis:
     """The diagnosis of the model as given; where the records are long, that of fewer samples, if it holds on all."""
     thin = thinned(case)
     if thin is not None:
-        found = diagnose(thin, first(thin))
-        kept = on_all_samples(case, thin, Staircase([stairs.Step(found.before)], found))
-        missing = [item for item in found.candidates if item.fit and item.decision == "missing"]
+        diagnosis = diagnose(thin, first(thin))
+        kept = on_all_samples(case, thin, Staircase([stairs.Step(diagnosis.before)], diagnosis))
+        missing = [item for item in diagnosis.candidates if item.fit and item.decision == "missing"]
         fits = [on_all(case, item.fit) for item in missing if item.fit]
         if kept is not None and all(
             holds(case, item.fit, fit) for item, fit in zip(missing, fits, strict=True) if item.fit
@@ -144,33 +144,36 @@ def off_line(signal: Array, step: int) -> Array:
     return np.asarray(signal - np.interp(at, at[::step], signal[::step]))
 
 
-def on_all_samples(case: Case, thin: Case, found: Staircase) -> Staircase | None:
+def on_all_samples(case: Case, thin: Case, staircase: Staircase) -> Staircase | None:
     """A staircase of fewer samples with its fits on all of them; None where the last one leaves more or less there,
     where it is not adequate on both alike, or where an effect is not proven there."""
-    if found.last.verdict == "refused":
+    if staircase.last.verdict == "refused":
         return None
     homes = {id(None): case}
-    for few in [found.case, *(step.case for step in found.steps)]:
+    for few in [staircase.case, *(step.case for step in staircase.steps)]:
         if few is not None and id(few) not in homes:
             homes[id(few)] = case.with_words(few.words).with_specs(few.specs)
     home, steps = case, list[stairs.Step]()
-    for step in found.steps:
+    for step in staircase.steps:
         home = homes[id(step.case)] if step.case else home
         fit = on_all(home, step.fit)
         share = explained_share(case, steps[-1].fit, fit) if steps else step.explained
         steps.append(replace(step, fit=fit, explained=share, case=step.case and home))
     first, last = steps[0].fit, steps[-1].fit
-    rivals = {step.added: step.tied for step in found.steps if step.added}
-    few_first, few_last = found.steps[0].fit, found.steps[-1].fit
+    rivals = {step.added: step.tied for step in staircase.steps if step.added}
+    few_first, few_last = staircase.steps[0].fit, staircase.steps[-1].fit
     if not holds(case, few_last, last) or adequate(case, first, last) != adequate(thin, few_first, few_last):
         return None
     if last.effects != first.effects and unproven(home, first, last, rivals):
         return None
-    counts = [sum(record.samples for record in each.records) for each in (thin, case)]
+    counts = [sum(record.samples for record in sampled.records) for sampled in (thin, case)]
     sought = f" Effects were sought on {counts[0]:,} of {counts[1]:,} samples; what was found holds on all."
-    last_case = homes[id(found.case)] if found.case else None
+    last_case = homes[id(staircase.case)] if staircase.case else None
     return replace(
-        found, steps=steps, last=replace(found.last, before=last, reason=found.last.reason + sought), case=last_case
+        staircase,
+        steps=steps,
+        last=replace(staircase.last, before=last, reason=staircase.last.reason + sought),
+        case=last_case,
     )
 
 

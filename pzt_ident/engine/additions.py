@@ -50,8 +50,8 @@ class Additions:
 
     def groups(self, axis: int, theta: Array) -> list[NDArray[np.intp]]:
         """The candidates that have the same signals on an axis, group by group."""
-        own = [entry.axis == axis and entry.block in self.model.additions for entry in self.model.entries]
-        distinct, index = np.unique(theta[:, own], axis=0, return_inverse=True)
+        columns = [entry.axis == axis and entry.block in self.model.additions for entry in self.model.entries]
+        distinct, index = np.unique(theta[:, columns], axis=0, return_inverse=True)
         return [np.flatnonzero(index.ravel() == number) for number in range(len(distinct))]
 
     def _project(self, error: Array, candidates: NDArray[np.intp], i: int, basis: Array) -> None:

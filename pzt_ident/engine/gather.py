@@ -80,24 +80,24 @@ def without(basis: Array, signals: Array) -> Array:
 def remainders(simulator: Simulator, theta: Array) -> list[list[tuple[NDArray[np.intp], Remainder]]]:
     """For each measured axis the candidates with the same signals of additions, and what these leave of the errors."""
     additions = simulator.additions
-    found = [
+    groups = [
         [(group, Remainder(additions.count(axis, theta), len(group))) for group in additions.groups(axis, theta)]
         for axis in simulator.model.measured
     ]
     for at, error in simulator.tiles(theta):
         for i, axis in enumerate(simulator.model.measured):
-            for group, remainder in found[i]:
+            for group, remainder in groups[i]:
                 remainder.add(additions.stretch(axis, theta[group[0]], at), error[group, i])
-    return found
+    return groups
 
 
 def squares(simulator: Simulator, theta: Array) -> Array:
     """Sum of squared errors without offset and additions: (candidates, measured axes)."""
-    found = np.empty((len(theta), len(simulator.model.measured)))
+    sums = np.empty((len(theta), len(simulator.model.measured)))
     for i, groups in enumerate(remainders(simulator, theta)):
         for group, remainder in groups:
-            found[group, i] = remainder.squares
-    return found
+            sums[group, i] = remainder.squares
+    return sums
 
 
 def stretches(simulator: Simulator, theta: Array) -> Iterator[tuple[int, Array]]:
@@ -152,7 +152,7 @@ class Rotated:
         bases, errors = np.split(self.triangle.r, [len(self.groups) * self.count], axis=1)
         if self.alike:
             return without(bases, errors)
-        own = np.split(bases, len(self.groups), axis=1)
-        for group, basis in zip(self.groups, own, strict=True):
+        of_groups = np.split(bases, len(self.groups), axis=1)
+        for group, basis in zip(self.groups, of_groups, strict=True):
             errors[:, group] = without(basis, errors[:, group])
         return errors @ self.weights.T

@@ -91,16 +91,16 @@ class Simulator:
         self._run(scratch, self._scoring, np.empty((0, 0, 0)), 0, self.record.samples * (self.record.run_in + 1))
         if self.model.additions:
             table = sums.reshape(-1, len(self.model.measured), self._each, WIDTH).transpose(0, 3, 1, 2)
-            found, sure = self.additions.squares(table.reshape(-1, *table.shape[2:])[: theta.shape[0]], self.scored)
+            squared, sure = self.additions.squares(table.reshape(-1, *table.shape[2:])[: theta.shape[0]], self.scored)
             if not sure.all():
-                found[~sure] = squares(self, theta[~sure])
-            return found
+                squared[~sure] = squares(self, theta[~sure])
+            return squared
         with np.errstate(invalid="ignore", over="ignore"):
-            found = (
+            squared = (
                 sums[:, 1::2] - (sums[:, 0::2] / np.sqrt(self.scored)) ** 2
             )  # overflows only where the sum of squares does
-        found = np.maximum(found, 0)  # negative by rounding for a perfect fit
-        return found.swapaxes(1, 2).reshape(-1, len(self.model.measured))[: theta.shape[0]]
+        squared = np.maximum(squared, 0)  # negative by rounding for a perfect fit
+        return squared.swapaxes(1, 2).reshape(-1, len(self.model.measured))[: theta.shape[0]]
 
     def residuals(self, theta: Array) -> Array:
         """Model minus measurement over the scored samples, without offset and additions; see `errors`."""

@@ -19,7 +19,7 @@ LOOSE = 0.2  # of the search range: with a larger standard error a parameter is 
 FLAT = 0.01  # of the RMSE: a smaller change of the RMSE is negligible
 WIDE = 0.5  # of the search range: with a negligible change over more, a parameter is not determined
 EDGE = 1e-4  # of the search range: a parameter this close to a bound is on it
-SAME = 1.001  # times the best RMSE: what runs with less reach is the same
+SAME = 1 + FLAT  # times the best RMSE: what runs with less reach is the same
 SCATTER = 0.01  # of the search range, by which such runs may put a parameter beyond its interval
 TIED = 0.995  # correlation above which two parameters are known only together
 
@@ -155,7 +155,7 @@ def place_of(parameter: Mapping[str, Any], value: float) -> float:
 
 def scattered(parameter: Mapping[str, Any], values: Sequence[float]) -> dict[str, Any]:
     unit = f" {parameter['unit']}".removesuffix(" 1")
-    note = f"runs of the same RMSE put it at {min(values):.3g} to {max(values):.3g}{unit}"
+    note = f"runs whose RMSE differs by less than 1 % put it at {min(values):.3g} to {max(values):.3g}{unit}"
     return {"verdict": "not determined", "note": note, "standard_error": None, "interval": None}
 
 

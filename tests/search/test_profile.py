@@ -69,7 +69,7 @@ def test_runs_of_one_rmse_that_scatter_a_value_do_not_determine_it():
     best = run(1.0, 0.062)
     tau = judged(best, [best, run(1.0002, 1.46), run(1.3, 9.0)])["parameters"]["creep.tau"]
     assert tau["verdict"] == "not determined" and tau["standard_error"] is None
-    assert tau["note"] == "runs of the same RMSE put it at 0.062 to 1.46 s"
+    assert tau["note"] == "runs whose RMSE differs by less than 1 % put it at 0.062 to 1.46 s"
     assert best["parameters"]["creep.tau"]["verdict"] == "determined"
 
 
