@@ -41,13 +41,24 @@ def descend(
 
 def polish(problem: Problem, point: Array, evaluations: int = 2000) -> tuple[Array, int]:
     """The minimum next to a point, as exactly as the loss tells, and the number of simulations."""
-    best, number = np.clip(point, 0, 1), 0
     a_step = 2 * problem.dimensions + 1 + len(DAMPINGS)
-    for step, fall in islice(steps(problem, best), max(1, evaluations // a_step)):
-        best, number = step, number + 1
+    most = max(1, evaluations // a_step)
+    best, number = settling(problem, np.clip(point, 0, 1), most)
+    narrowed = problem.narrowed(best)
+    if narrowed is not problem:
+        best, more = settling(narrowed, best, max(1, most - number))
+        number += more
+    return settled(narrowed, best), number * a_step + 1
+
+
+def settling(problem: Problem, point: Array, most: int) -> tuple[Array, int]:
+    """Where so many steps end, or fewer where the loss falls no more, and how many they are."""
+    number = 0
+    for step, fall in islice(steps(problem, point), most):
+        point, number = step, number + 1
         if fall < SETTLED:
             break
-    return settled(problem, best), number * a_step + 1
+    return point, number
 
 
 def settled(problem: Problem, point: Array) -> Array:

@@ -20,7 +20,7 @@ from pzt_ident.model.chain import Chain
 from pzt_ident.search.feasibility import check_feasible, check_units
 from pzt_ident.search.linear import Linear, Tangent
 from pzt_ident.search.scales import bounds_of, size_of, unit_of
-from pzt_ident.search.stencil import stencil
+from pzt_ident.search.stencil import DIFFERENCE, half_widths, stencil
 
 Array = NDArray[np.float64]
 Squares = Callable[[Simulator, Array], Array]
@@ -63,6 +63,7 @@ class Problem:
         self.model, self.records = model, tuple(records)
         self.sizes: Array = np.ones(len(model.measured)) if sizes is None else np.asarray(sizes, dtype=np.float64)
         self.failed = 0
+        self.half_width: Array | float = DIFFERENCE
         identify = [record for record in records if record.use == "identify"]
         if not identify:
             raise InputError("no record to identify from", where="records", remedy="give one of them `use: identify`")
@@ -238,36 +239,46 @@ class Problem:
         near.linear = Linear(self.model, columns[~followed], self.linear.units[~followed], near._scaled)
         return near
 
+    def narrowed(self, point: Array) -> Problem:
+        """The problem with differences that do not reach beyond a narrow minimum, see `half_widths`; itself where the
+        usual ones do not."""
+        widths = half_widths(point, self.along(self.tangent(point)).rotated_residuals)
+        if np.all(widths == self.half_width):
+            return self
+        narrow = copy(self)
+        narrow.half_width = widths
+        return narrow
+
     def jacobian(self, point: Array) -> Array:
         """Jacobian of the residuals over the cube, (samples, free), see `stencil`. What is solved for follows to first
         order (Kaufman 1975, BIT 15, 49)."""
         near = self.along(self.tangent(point))
-        points, weights = stencil(point)
+        points, weights = stencil(point, self.half_width)
         residuals = near.residuals(points)
         failed = np.isinf(residuals[:, 0])
         if failed.any():
             residuals[failed] = residuals[0]
-            weights = stencil(point, failed)[1]
+            weights = stencil(point, self.half_width, failed)[1]
         return (weights[1:] @ residuals).T
 
     def equations(self, point: Array) -> tuple[Array, Array]:
         """Jacobian (rows, free) and residual (rows,) as of `jacobian` and `residuals`, rotated together so that a few
         rows are left: J' J, J' r and r' r are those of the samples."""
         near = self.along(self.tangent(point))
-        points, weights = stencil(point)
+        points, weights = stencil(point, self.half_width)
         rotated, failed = near.rotated(points, weights)
         if failed[1:].any():
-            rotated, failed = near.rotated(*stencil(point, failed))
+            rotated, failed = near.rotated(*stencil(point, self.half_width, failed))
         return rotated[:, 1:], np.full(len(rotated), np.inf) if failed[0] else rotated[:, 0]
 
     def samples(self, point: Array) -> Iterator[tuple[int, Array]]:
         """Residual and Jacobian as of `equations`, but sample by sample, stretch after stretch: the number of a series
         of samples, of a record and axis, and (1 + free, samples)."""
         near = self.along(self.tangent(point))
-        points, weights = stencil(point)
+        points, weights = stencil(point, self.half_width)
         losses = near.loss(points)
         if np.isinf(losses).any():
-            points, weights = stencil(point, np.isinf(losses))
+            points, weights = stencil(point, self.half_width, np.isinf(losses))
         if near._tangent:
             yield 0, weights @ near.residuals(points)
             return

@@ -50,6 +50,7 @@ def estimates(problem: Problem, point: Array, going: Callable[[], bool] = lambda
     not determined if its standard error exceeds LOOSE, or if it changes the RMSE by less than one percent over more
     than WIDE, of its search range. going: as of `intervals`.
     """
+    problem = problem.narrowed(point)
     sandwich = Sandwich(lambda: problem.samples(point))
     covariance = sandwich.covariance
     error = np.sqrt(np.diag(covariance))
@@ -92,7 +93,7 @@ def interval_of(problem: Problem, point: Array, i: int, ends: Array) -> tuple[fl
 def covariance(problem: Problem, point: Array) -> Array:
     """Covariance of the free parameters in the user's units, (free, free)."""
     slope = (problem.physical(point + 1e-6) - problem.physical(point - 1e-6))[0] / 2e-6
-    return Sandwich(lambda: problem.samples(point)).covariance * np.outer(slope, slope)
+    return Sandwich(lambda: problem.narrowed(point).samples(point)).covariance * np.outer(slope, slope)
 
 
 def linear_estimates(problem: Problem, point: Array) -> list[Estimate]:
@@ -138,7 +139,7 @@ def judged(best: dict[str, Any], runs: Sequence[Mapping[str, Any]]) -> dict[str,
 
 def agree(parameter: Mapping[str, Any], values: Sequence[float]) -> bool:
     """Whether the values of a parameter lie within its interval, or close to it. True where it has none."""
-    if parameter["verdict"] != "determined" or not parameter.get("interval"):
+    if parameter["verdict"] == "not determined" or not parameter.get("interval"):
         return True
     places = [place_of(parameter, value) for value in values]
     low, high = (place_of(parameter, end) for end in parameter["interval"])

@@ -11,7 +11,7 @@ from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks
 from pzt_ident.search.descent import polish
 from pzt_ident.search.problem import Problem
-from pzt_ident.search.stencil import stencil
+from pzt_ident.search.stencil import DIFFERENCE, NARROW, half_widths, stencil
 from pzt_ident.search.uncertainty import covariance
 from rig import record, response
 
@@ -27,6 +27,9 @@ class Linear:
 
     def residual(self, point):
         return self.matrix @ point - self.target
+
+    def narrowed(self, point):
+        return self
 
     def equations(self, point):
         return self.matrix, self.residual(point)
@@ -112,5 +115,13 @@ def test_differences_are_exact_of_a_parabola_inside_and_one_sided_on_a_face():
     assert points.min() >= 0 and points.max() <= 1
     np.testing.assert_allclose(weights @ value(points), [3, 6 - 3e-5, -1], atol=1e-9)
     failed = np.array([False, False, True, False, False])
-    points, weights = stencil(np.array([0.4, 0.7]), failed)
+    points, weights = stencil(np.array([0.4, 0.7]), failed=failed)
     np.testing.assert_allclose(weights @ value(points), [3 * 0.16 - 0.7, 2.4, -1], atol=1e-9)
+
+
+@pytest.mark.parametrize("place", [0.0, 0.3, 1.0])
+def test_differences_are_narrow_along_what_bends_within_them(place):
+    """Turns of a mode over a record: so many that a usual step is a tenth of a radian, and few."""
+    times = np.linspace(0, 1, 500)
+    ringing = lambda x: np.array([np.sin(1 + 1e4 * p[0] * times) + np.sin(1 + 10 * p[1] * times) for p in x])  # noqa: E731
+    np.testing.assert_array_equal(half_widths(np.array([place, 0.5]), ringing), [NARROW, DIFFERENCE])
