@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +12,22 @@ Array = NDArray[np.float64]
 NEGLIGIBLE = 1e-7  # of the largest singular value: directions below are rounding
 ROUNDING = 1e-12  # of a signal
 OVERSHOOT = 1e-9  # of its range, by which a parameter may pass its bound
+
+
+@dataclass(frozen=True)
+class Split:
+    """Signals in two parts: inside what small steps of the parameters can produce, as (signals, directions), and
+    outside of it, (signals, samples)."""
+
+    inside: Array
+    outside: Array
+
+    def __getitem__(self, rows: slice) -> Split:
+        return Split(self.inside[rows], self.outside[rows])
+
+    @property
+    def norms(self) -> Array:
+        return np.hypot(np.linalg.norm(self.inside, axis=1), np.linalg.norm(self.outside, axis=1))
 
 
 class Projection:
@@ -25,43 +43,52 @@ class Projection:
         scales = np.where(norms > 0, norms, 1)
         u, s, vt = np.linalg.svd(jacobian / scales, full_matrices=False)
         kept = s > NEGLIGIBLE * s.max(initial=1e-300)
-        self.basis = u[:, kept]
+        self._basis = u[:, kept]
         self._steps = (vt[kept].T / s[kept]) / scales[:, None]  # (free, kept): basis coefficients to parameter steps
         self._responses = s[kept, None] * vt[kept] * scales  # (kept, free): parameter steps to basis coefficients
         self._least, self._most = np.minimum(-point, 0), np.maximum(1 - point, 0)
 
-    def remainder(self, signal: Array) -> Array:
-        """What is left of a signal (samples,) at best."""
-        return self.fit(signal, np.zeros((signal.size, 0)), np.zeros(0, dtype=bool))[1]
+    def split(self, signals: Array) -> Split:
+        """Of signals, (signals, samples)."""
+        inside = signals @ self._basis
+        return Split(inside, signals - inside @ self._basis.T)
 
-    def fit(self, signal: Array, traces: Array, one_sided: NDArray[np.bool_]) -> tuple[Array, Array]:
-        """Multiples of the traces (samples, amplitudes) that, together with the parameters, leave least of the signal,
-        and what is left. A multiple is not negative where `one_sided`."""
-        inside, trace_inside = self.basis.T @ signal, self.basis.T @ traces
-        outside, trace_outside = signal - self.basis @ inside, traces - self.basis @ trace_inside
-        amounts = _amounts(outside, trace_outside, one_sided)
-        coefficients = inside + trace_inside @ amounts
-        if self._reachable(-self._steps @ coefficients):
-            return amounts, outside + trace_outside @ amounts
-        q, r = np.linalg.qr(trace_outside)
-        matrix = np.block([[self._responses, trace_inside], [np.zeros((len(r), self._least.size)), r]])
+    def left(self, signals: Split) -> Array:
+        """Norms of what is left of signals at best: (signals,)."""
+        beside = np.array([np.linalg.norm(self._left_inside(inside)) for inside in signals.inside])
+        return np.hypot(beside, np.linalg.norm(signals.outside, axis=1))
+
+    def _left_inside(self, inside: Array) -> Array:
+        if self._reachable(-self._steps @ inside):
+            return np.zeros(0)
+        return inside + self._responses @ bounded(self._responses, inside, self._least, self._most)
+
+    def fit(self, signal: Split, traces: Split, one_sided: NDArray[np.bool_]) -> tuple[Array, float]:
+        """Multiples of the traces that, together with the parameters, leave least of the signal, and the norm of what
+        is left. A multiple is not negative where `one_sided`."""
+        triangle = np.asarray(np.linalg.qr(np.vstack([traces.outside, signal.outside]).T, mode="r"))
+        matrix, target = triangle[:, :-1], triangle[:, -1]
+        inside, trace_inside = signal.inside[0], traces.inside.T
+        amounts = _amounts(matrix, target, one_sided)
+        if self._reachable(-self._steps @ (inside + trace_inside @ amounts)):
+            return amounts, float(np.linalg.norm(target + matrix @ amounts))
+        both = np.block([[self._responses, trace_inside], [np.zeros((len(matrix), self._least.size)), matrix]])
         least = np.concatenate([self._least, np.where(one_sided, 0, -np.inf)])
         most = np.concatenate([self._most, np.full(one_sided.size, np.inf)])
-        steps = bounded(matrix, np.concatenate([inside, q.T @ outside]), least, most)
-        amounts, coefficients = steps[self._least.size :], inside + matrix[: inside.size] @ steps
-        return amounts, outside + trace_outside @ amounts + self.basis @ coefficients
+        wanted = np.concatenate([inside, target])
+        steps = bounded(both, wanted, least, most)
+        return steps[self._least.size :], float(np.linalg.norm(wanted + both @ steps))
 
     def _reachable(self, steps: Array) -> bool:
         return bool((steps >= self._least - OVERSHOOT).all() and (steps <= self._most + OVERSHOOT).all())
 
 
-def _amounts(signal: Array, traces: Array, one_sided: NDArray[np.bool_]) -> Array:
-    """Least-squares multiples of the traces (samples, amplitudes) that take the signal away."""
+def _amounts(traces: Array, signal: Array, one_sided: NDArray[np.bool_]) -> Array:
+    """Least-squares multiples of the traces, (rows, amplitudes), that take the signal away."""
     amounts = np.asarray(np.linalg.lstsq(traces, -signal, rcond=1e-8)[0])
     if not (one_sided & (amounts < 0)).any():
         return amounts
-    q, r = np.linalg.qr(traces)
-    return bounded(r, q.T @ signal, np.where(one_sided, 0, -np.inf), np.full(one_sided.size, np.inf))
+    return bounded(traces, signal, np.where(one_sided, 0, -np.inf), np.full(one_sided.size, np.inf))
 
 
 def bounded(matrix: Array, target: Array, least: Array, most: Array) -> Array:

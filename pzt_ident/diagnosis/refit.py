@@ -161,12 +161,14 @@ class Fit:
         """The free parameters by name, in the user's units."""
         return dict(zip(self.problem.names, self.problem.physical(self.point)[0].tolist(), strict=True))
 
-    def estimates(self, budget: Budget) -> list[Estimate]:
-        """What the data determine of the parameters, by as many profiles of the loss as the budget suffices for."""
-        if "determined" not in self.__dict__:
-            going = partial(budget.allows, "intervals by profiles", LAST)
-            self.__dict__["determined"] = estimates(self.problem, self.point, going)[0]
-        return list(self.__dict__["determined"])
+    def estimates(self, budget: Budget | None = None) -> list[Estimate]:
+        """What the data determine of the parameters: by the curvature of the loss, and with a budget by as many
+        profiles of it as that suffices for."""
+        word = "profiled" if budget else "curved"
+        if word not in self.__dict__:
+            going = partial(budget.allows, "intervals by profiles", LAST) if budget else lambda: False
+            self.__dict__[word] = estimates(self.problem, self.point, going)[0]
+        return list(self.__dict__[word])
 
 
 def side_by_side(function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:

@@ -10,12 +10,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import product
 from math import prod
+from operator import itemgetter
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.diagnosis import misfit
-from pzt_ident.diagnosis.projection import Projection
+from pzt_ident.diagnosis.projection import Projection, Split
 from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.model.block import Addition, Coupling, Term
 from pzt_ident.model.registry import blocks, word_of
@@ -37,8 +38,7 @@ class Score:
     explained: share of the misfit that the effect would remove if it were linear and without bounds;
     explained_in_bounds: the share within the bounds. guess: expected parameters, in the user's `units`. visibility:
     share of the effect's trace, at the least size that leaves one, that the fitted parameters cannot produce. power:
-    that share of the largest plausible trace, root mean square in noise floors. remaining: the residual that would be
-    left, (samples,).
+    that share of the largest plausible trace, root mean square in noise floors.
     """
 
     effect: str
@@ -48,7 +48,6 @@ class Score:
     units: dict[str, str] = field(default_factory=dict)
     visibility: float = 0.0
     power: float = 0.0
-    remaining: Array = field(default_factory=lambda: np.zeros(0), repr=False)
 
 
 @dataclass(frozen=True)
@@ -99,13 +98,14 @@ class Scorer:
         self.case, self.fit = case, fit
         self.projection = Projection(fit.problem.jacobian(fit.point), fit.point)
         self.tangent = fit.problem.tangent(fit.point)
-        self.full_residual = fit.problem.residuals(fit.point)[0]
-        self.residual = self.projection.remainder(self.full_residual)
+        self.residual = fit.problem.residuals(fit.point)[0]
+        self.split = self.projection.split(self.residual[None])
+        self.left = float(self.projection.left(self.split)[0])
         self.misfit = squared_misfit(case, fit)
 
-    def explained(self, remaining: Array) -> float:
-        """Share of the misfit that is gone where so much of the residual remains."""
-        return float((self.residual @ self.residual - remaining @ remaining) / self.misfit)
+    def explained(self, left: float) -> float:
+        """Share of the misfit that is gone where a residual of so large a norm is left."""
+        return (self.left**2 - left**2) / self.misfit
 
     def scores(self, effect: str) -> list[Score]:
         """The scores of all forms of an effect, the first form first; of one with many trials the others only where
@@ -137,16 +137,16 @@ class Scorer:
         score, visible, strongest = Score(effect), dict[float, float](), 0.0
         guesses: list[dict[str, float]] = []
         for trial, traces in self._trials(effect, problem):
-            norm = np.linalg.norm(traces, axis=1).max()
-            if norm > LEAST_TRACE * np.linalg.norm(self.full_residual):
-                projected_norm = max(np.linalg.norm(self.projection.remainder(trace)) for trace in traces)
-                visible[trial.size] = max(visible.get(trial.size, 0.0), float(projected_norm / norm))
+            norm = traces.norms.max()
+            if norm > LEAST_TRACE * self.split.norms[0] and trial.size <= min(visible, default=np.inf):
+                seen = self.projection.left(traces).max() / norm
+                visible[trial.size] = max(visible.get(trial.size, 0.0), float(seen))
             if trial.size == max(blocks[effect].sizes):
                 strongest = max(strongest, float(norm / trial.size / self.case.floor))
             one_sided = problem.lower[trial.amplitudes] >= trial.start[trial.amplitudes]
-            amounts, remaining = self.projection.fit(self.full_residual, traces.T, one_sided)
-            if self.explained(remaining) > score.explained:
-                score.explained, score.remaining = self.explained(remaining), remaining
+            amounts, left = self.projection.fit(self.split, traces, one_sided)
+            if self.explained(left) > score.explained:
+                score.explained = self.explained(left)
                 guesses = [self._guess(problem, trial, scales) for scales in (amounts, np.ones(amounts.size))]
         self._take_best_guess(score, problem, guesses)
         visibility = visible[min(visible)] if visible else 0.0
@@ -154,12 +154,13 @@ class Scorer:
 
     def _take_best_guess(self, score: Score, problem: Problem, guesses: list[dict[str, float]]) -> None:
         """Put the guess of the least residual into the score, and what it explains within the bounds."""
-        norms = [(self._residual_norm(problem, guess), guess) for guess in guesses]
-        least, score.guess = min(norms, key=lambda norm_and_guess: norm_and_guess[0], default=(0.0, {}))
+        known = self.fit.values
+        points = [[(known | guess)[name] for name in problem.names] for guess in guesses]
+        norms = self._left(problem, np.array(points)) if guesses else np.empty(0)
+        least, score.guess = min(zip(norms, guesses, strict=True), key=itemgetter(0), default=(0.0, {}))
         score.explained_in_bounds = score.explained
         if on_bound(problem, score.guess):
-            explained = (self.residual @ self.residual - least**2) / self.misfit
-            score.explained_in_bounds = float(np.clip(explained, 0, score.explained))
+            score.explained_in_bounds = float(np.clip(self.explained(least), 0, score.explained))
 
     def _guess(self, problem: Problem, trial: Trial, amounts: Array) -> dict[str, float]:
         """The effect's parameters at multiples of the trial's steps, within their bounds."""
@@ -168,22 +169,25 @@ class Scorer:
         values = np.clip(values, problem.lower, problem.upper)
         return {problem.names[i]: float(values[i]) for i in (*trial.amplitudes, *trial.shapes)}
 
-    def _residual_norm(self, problem: Problem, guess: dict[str, float]) -> float:
-        """Norm of the projected residual with a guess, simulated and not linearised."""
-        known = self.fit.values | guess
-        values = np.array([known[name] for name in problem.names])
-        return float(np.linalg.norm(self.projection.remainder(self._residuals(problem, values[None])[0])))
+    def _left(self, problem: Problem, physical: Array) -> Array:
+        """Norms of the residuals that are left at points (candidates, free) in the user's units, simulated and not
+        linearised: (candidates,)."""
+        return self.projection.left(self.projection.split(self._residuals(problem, physical)))
 
-    def _trials(self, effect: str, problem: Problem) -> Iterator[tuple[Trial, Array]]:
-        """Each trial, and the changes of the response (amplitudes, samples) by its steps."""
+    def _trials(self, effect: str, problem: Problem) -> Iterator[tuple[Trial, Split]]:
+        """Each trial, and the changes of the response by its steps, one of each amplitude."""
         trials = list(self._planned_trials(effect, problem))
         batch_size = max(1, BATCH // max(1, len(trials[0].amplitudes)))
         for first in range(0, len(trials), batch_size):
             batch = trials[first : first + batch_size]
             residuals = self._residuals(problem, np.concatenate([trial.stepped for trial in batch]))
-            for trial, stepped in zip(batch, np.split(residuals, len(batch)), strict=True):
-                if np.isfinite(stepped).all():
-                    yield trial, stepped - self.full_residual
+            held = np.isfinite(residuals.sum(axis=1))
+            residuals[~held] = self.residual
+            traces, count = self.projection.split(residuals - self.residual), len(trials[0].amplitudes)
+            for number, trial in enumerate(batch):
+                rows = slice(number * count, (number + 1) * count)
+                if held[rows].all():
+                    yield trial, traces[rows]
 
     def _planned_trials(self, effect: str, problem: Problem) -> Iterator[Trial]:
         """A trial for each value of the shape parameters and each size."""
@@ -216,9 +220,9 @@ class Scorer:
         for values in self._addition_trials(effect, problem, columns):
             point = np.array([known.get(name, 0.0) for name in problem.names])
             point[columns] = values
-            remaining = self.projection.remainder(self._residuals(problem, point[None])[0])
-            if self.explained(remaining) > score.explained:
-                score.explained, score.remaining = self.explained(remaining), remaining
+            explained = self.explained(float(self._left(problem, point[None])[0]))
+            if explained > score.explained:
+                score.explained = explained
                 score.guess = {problem.names[i]: float(value) for i, value in zip(columns, values, strict=True)}
         score.explained_in_bounds, score.visibility, score.power = score.explained, 1.0, float("inf")
         return score
@@ -232,7 +236,7 @@ class Scorer:
             return
         measured, simulators = problem.model.measured, self.fit.problem.simulators["identify"]
         ends = np.cumsum([simulator.scored * len(measured) for simulator in simulators])
-        residuals = [part.reshape(len(measured), -1) for part in np.split(self.full_residual, ends[:-1])]
+        residuals = [part.reshape(len(measured), -1) for part in np.split(self.residual, ends[:-1])]
         times = [simulator.record.time[simulator.record.settle :] for simulator in simulators]
         drives = [simulator.record.drive[:, simulator.record.settle :] for simulator in simulators]
         guesses = []

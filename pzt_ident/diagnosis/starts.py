@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,10 +17,12 @@ STARTS = 240  # random points; the best are refined, a batch at a time, until tw
 REFINED, MOST_REFINED = 4, 24  # points in a batch, and in all batches
 AGREEMENT = 0.01  # of the loss, between the two best minima
 RESTARTS = 2  # random points of one block that are refined
+MOST_RESTARTED = 4  # times that all blocks are restarted, where no two minima agree
 
 
 def first_fit(case: Case, seed: int, known: Array | None = None) -> Fit:
-    """The job's own model, fitted from random points; not converged where the two best minima differ. known: the point
+    """The job's own model, fitted from random points; not converged where the two best minima differ, and restarts of
+    single blocks still lead lower. known: the point
     of a fit that was searched for, beside which one batch of random points is enough."""
     problem = case.problem(case.effects)
     minima = (
@@ -37,7 +41,18 @@ def first_fit(case: Case, seed: int, known: Array | None = None) -> Fit:
         if agreed:
             break
     point = min((minima[np.argmin(losses)], best_of_each_axis(case, problem, minima)), key=lambda p: problem.loss(p)[0])
-    return refine_steps(case, fit_at(case.effects, problem, point, agreed or known is not None))
+    fit = fit_at(case.effects, problem, point, agreed or known is not None)
+    return refine_steps(case, fit if fit.converged else settled(case, fit))
+
+
+def settled(case: Case, fit: Fit) -> Fit:
+    """The fit that restarts of single blocks lead to; converged if the last of them led no lower."""
+    for _ in range(MOST_RESTARTED):
+        lower = restart(case, fit)
+        if not lower.identify < (1 - AGREEMENT) * fit.identify - 0.1 * case.floor:
+            return replace(lower, converged=bool(np.isfinite(lower.identify)))
+        fit = lower
+    return fit
 
 
 def ranked_points(problem: Problem, seed: int) -> Array:

@@ -12,6 +12,7 @@ from pzt_ident.data.noise import units_and_floors
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis import staircase as stairs
 from pzt_ident.diagnosis.bounds import bounds_that_changed, narrow_bounds_sentence
+from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.candidates import Candidate
 from pzt_ident.diagnosis.caveats import broken_conditions, caveats, misfit_sentences
 from pzt_ident.diagnosis.refit import Case, Fit
@@ -25,9 +26,15 @@ from pzt_ident.run.statement import loss_unit
 
 
 def improvement_of(
-    job: Job, case: Case, staircase: stairs.Staircase, last: dict[str, Any], proposed: dict[str, Any] | None = None
+    job: Job,
+    case: Case,
+    staircase: stairs.Staircase,
+    last: dict[str, Any],
+    proposed: dict[str, Any] | None = None,
+    budget: Budget | None = None,
 ) -> dict[str, Any]:
-    """The content of `improvement.json`. proposed: the next experiment, None where there is none."""
+    """The content of `improvement.json`. proposed: the next experiment, None where there is none. budget: for the
+    intervals of the last model."""
     steps, suspects = staircase.steps, staircase.suspects
     reason, end = last["reason"], steps[-1].fit
     added = [effect for effect in end.effects if effect not in job.effects]
@@ -40,7 +47,7 @@ def improvement_of(
     reason += "" if of_end in reason else of_end  # the last diagnosis may be of this fit
     return {
         "name": job.name,
-        "steps": [stair(case, step) for step in steps],
+        "steps": [*(stair(case, step) for step in steps[:-1]), stair(case, steps[-1], budget)],
         "verdict": last["verdict"],
         "reason": reason,
         "effects": list(map(word_of, added)),
@@ -79,7 +86,7 @@ def by_record(case: Case, fit: Fit) -> list[dict[str, Any]]:
     return [errors_in(record, fit.problem, fit.point) for record in fit.problem.records]
 
 
-def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
+def stair(case: Case, step: stairs.Step, budget: Budget | None = None) -> dict[str, Any]:
     return {
         "added": step.added and word_of(step.added),
         "removed": step.removed and word_of(step.removed),
@@ -90,7 +97,7 @@ def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
         "records": by_record(case, step.fit),
         "explained": step.explained,
         "expected": step.expected,
-        "parameters": parameters_of(case, step.fit),
+        "parameters": parameters_of(step.fit, budget),
         "model": list(map(word_of, case.words_of(step.fit))),
         "bounds": bounds_that_changed(case, step.fit),
         "effects": list(step.fit.effects),
@@ -98,11 +105,11 @@ def stair(case: Case, step: stairs.Step) -> dict[str, Any]:
     }
 
 
-def parameters_of(case: Case, fit: Fit) -> dict[str, dict[str, Any]]:
+def parameters_of(fit: Fit, budget: Budget | None) -> dict[str, dict[str, Any]]:
     """The free parameters of a fit with their units and standard errors, None where the data do not determine them."""
     return {
         estimate.name: {"value": estimate.value, "unit": estimate.unit, "standard_error": estimate.standard_error}
-        for estimate in fit.estimates(case.budget)
+        for estimate in fit.estimates(budget)
     }
 
 
@@ -136,7 +143,7 @@ def diagnosis_of(job: Job, case: Case, diagnosis: Diagnosis, folder: Path) -> di
         "rmse": errors_of(case, before),
         "records": by_record(case, before),
         "effects": list(before.effects),
-        "parameters": parameters_of(case, before),
+        "parameters": parameters_of(before, case.budget),
         "candidates": [candidate_of(case, candidate, diagnosis.tied) for candidate in diagnosis.candidates],
         "next_experiment": proposed,
     }

@@ -153,7 +153,7 @@ def improve(
             write_signals(folder / name, step.fit.problem.errors(step.fit.point))
         proposals = (separating(job, end, step.rivals, folder) for step in ties(steps))
         proposed = diagnosis["next_experiment"] or next(filter(None, proposals), None)
-        content = improvement_of(job, case, staircase, diagnosis, proposed)
+        content = improvement_of(job, case, staircase, diagnosis, proposed, case.budget)
         write_improvement(folder, content, improved(job, case, steps[-1].fit, folder))
         write_diagnosis(folder, job, case, diagnosis)
     return folder

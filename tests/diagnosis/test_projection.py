@@ -29,33 +29,38 @@ def bounded(jacobian, point, signal, traces, one_sided):
     return signal + matrix @ lsq_linear(matrix, -signal, (least, most), method="bvls", tol=1e-14).x
 
 
+def left(projection, signal):
+    return projection.left(projection.split(signal[None]))[0]
+
+
 @given(st.integers(0, 10_000), st.integers(1, 6))
 def test_what_remains_is_the_least_within_the_bounds(seed, free):
     jacobian, point, signal, traces = drawn(seed, free)
-    remaining = Projection(jacobian, point).remainder(signal)
     expected = bounded(jacobian, point, signal, traces, NOBODY)
-    assert np.linalg.norm(remaining) == pytest.approx(np.linalg.norm(expected), rel=1e-6)
+    assert left(Projection(jacobian, point), signal) == pytest.approx(np.linalg.norm(expected), rel=1e-6)
 
 
 @given(st.integers(0, 10_000), st.integers(1, 5), st.integers(1, 3), st.booleans())
 def test_so_it_is_beside_an_effect(seed, free, amplitudes, sided):
     jacobian, point, signal, traces = drawn(seed, free, amplitudes)
     one_sided = np.full(amplitudes, sided)
-    amounts, remaining = Projection(jacobian, point).fit(signal, traces, one_sided)
+    projection = Projection(jacobian, point)
+    amounts, beside = projection.fit(projection.split(signal[None]), projection.split(traces.T), one_sided)
     expected = bounded(jacobian, point, signal, traces, one_sided)
     assert not (one_sided & (amounts < 0)).any()
-    assert np.linalg.norm(remaining) <= np.linalg.norm(expected) * (1 + 1e-6) + 1e-12
-    alone = Projection(jacobian, point).remainder(signal)
-    assert np.linalg.norm(remaining) <= np.linalg.norm(alone) * (1 + 1e-9)
+    assert beside <= np.linalg.norm(expected) * (1 + 1e-6) + 1e-12
+    assert beside <= left(projection, signal) * (1 + 1e-9)
 
 
 @given(st.integers(0, 10_000), st.integers(1, 6))
 def test_where_all_may_go_as_far_as_they_like_it_is_the_orthogonal_projection(seed, free):
     jacobian, _, signal, _ = drawn(seed, free)
     jacobian *= 1e6 / np.linalg.norm(jacobian, axis=0)
-    remaining = Projection(jacobian, np.full(free, 0.5)).remainder(signal)
+    split = Projection(jacobian, np.full(free, 0.5)).split(signal[None])
     q = np.linalg.qr(jacobian)[0]
-    np.testing.assert_allclose(remaining, signal - q @ (q.T @ signal), atol=1e-9)
+    np.testing.assert_allclose(split.outside[0], signal - q @ (q.T @ signal), atol=1e-9)
+    assert split.norms[0] == pytest.approx(np.linalg.norm(signal))
+    assert left(Projection(jacobian, np.full(free, 0.5)), signal) == pytest.approx(np.linalg.norm(split.outside))
 
 
 @pytest.mark.parametrize(("place", "sign"), [(1.0, 1), (0.0, -1)])
@@ -63,11 +68,11 @@ def test_a_parameter_on_its_bound_is_no_excuse_for_what_lies_beyond_it(place, si
     derivative = np.sin(np.arange(SAMPLES))
     projection = Projection(derivative[:, None], np.array([place]))
     beyond = -0.3 * sign * derivative  # what a step beyond the bound would take away
-    np.testing.assert_allclose(projection.remainder(beyond), beyond)
-    np.testing.assert_allclose(projection.remainder(-beyond), 0, atol=1e-12)
+    assert left(projection, beyond) == pytest.approx(np.linalg.norm(beyond))
+    assert left(projection, -beyond) == pytest.approx(0, abs=1e-12)
 
 
 def test_a_parameter_that_hardly_moves_the_response_takes_up_its_range_of_it():
     derivative = np.sin(np.arange(SAMPLES))
     projection = Projection(1e-3 * derivative[:, None], np.array([0.25]))
-    np.testing.assert_allclose(projection.remainder(-derivative), -(1 - 0.75e-3) * derivative)
+    assert left(projection, -derivative) == pytest.approx((1 - 0.75e-3) * np.linalg.norm(derivative))

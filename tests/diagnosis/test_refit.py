@@ -51,6 +51,8 @@ def test_the_first_fit_is_a_function_of_its_seed(creeping):
 
 def test_a_fit_whose_starts_end_apart_has_not_converged(plain, monkeypatch):
     monkeypatch.setattr(starts, "descend", lambda problem, point, going: point)
+    assert first_fit(plain, 0).converged  # no restart leads lower
+    monkeypatch.setattr(starts, "restart", lambda case, fit: replace(fit, identify=0.9 * fit.identify))
     assert not first_fit(plain, 0).converged
 
 
