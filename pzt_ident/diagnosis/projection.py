@@ -11,6 +11,7 @@ Array = NDArray[np.float64]
 
 NEGLIGIBLE = 1e-7  # of the largest singular value: directions below are rounding
 ROUNDING = 1e-12  # of a signal
+MOST_EXCHANGES = 12  # of bounds, all at once
 OVERSHOOT = 1e-9  # of its range, by which a parameter may pass its bound
 
 
@@ -92,19 +93,39 @@ def _amounts(traces: Array, signal: Array, one_sided: NDArray[np.bool_]) -> Arra
 
 
 def bounded(matrix: Array, target: Array, least: Array, most: Array) -> Array:
-    """Steps x, least <= 0 <= most, that leave least of target + matrix x.
-
-    Active sets from x = 0 (Nocedal & Wright 2006, algorithm 16.3), so that never more is left than without a step,
-    however ill-conditioned the matrix.
-    """
+    """Steps x, least <= 0 <= most, that leave least of target + matrix x: by exchanges of all bounds at once where
+    these settle, else by exchanges of one. Never more is left than without a step, however ill-conditioned the matrix."""
     norms = np.linalg.norm(matrix, axis=0)
     scales = np.where(norms > 0, norms, 1)
-    scaled, low, high = matrix / scales, least * scales, most * scales
-    x, free = np.zeros(scales.size), high > low
-    for _ in range(10 * scales.size):
-        left = target + scaled @ x
-        step = np.zeros(scales.size)
-        step[free] = np.linalg.lstsq(scaled[:, free], -left, rcond=ROUNDING)[0]
+    box = (matrix / scales, target, least * scales, most * scales)
+    x = exchanged_together(*box)
+    return (exchanged_singly(*box) if x is None else x) / scales
+
+
+def exchanged_together(matrix: Array, target: Array, low: Array, high: Array) -> Array | None:
+    """The steps by block pivoting (Portugal, Judice & Vicente 1994, Math. Comp. 63, 625); None where it does not
+    settle."""
+    x, free = np.zeros(low.size), low < high
+    for _ in range(MOST_EXCHANGES):
+        beside = target + matrix[:, ~free] @ x[~free]
+        x[free] = np.linalg.lstsq(matrix[:, free], -beside, rcond=ROUNDING)[0]
+        beyond = free & ((x < low) | (x > high))
+        x = np.clip(x, low, high)
+        pull = pull_inward(matrix, target, x, low, high)
+        back = ~free & (low < high) & (pull > ROUNDING * np.linalg.norm(target))
+        if not (beyond | back).any():
+            return x if np.linalg.norm(target + matrix @ x) <= np.linalg.norm(target) else None
+        free = free & ~beyond | back
+    return None
+
+
+def exchanged_singly(matrix: Array, target: Array, low: Array, high: Array) -> Array:
+    """The steps by active sets from x = 0 (Nocedal & Wright 2006, algorithm 16.3)."""
+    x, free = np.zeros(low.size), low < high
+    for _ in range(10 * low.size):
+        left = target + matrix @ x
+        step = np.zeros(low.size)
+        step[free] = np.linalg.lstsq(matrix[:, free], -left, rcond=ROUNDING)[0]
         with np.errstate(divide="ignore", invalid="ignore"):
             room = np.where(step > 0, (high - x) / step, np.where(step < 0, (low - x) / step, np.inf))
         nearest = int(np.argmin(room))
@@ -114,9 +135,14 @@ def bounded(matrix: Array, target: Array, least: Array, most: Array) -> Array:
             free[nearest] = False
             continue
         x = np.clip(x + step, low, high)
-        gradient = scaled.T @ (target + scaled @ x)
-        pull = np.where(free | (high <= low), 0, np.where(x >= high, gradient, np.where(x <= low, -gradient, 0)))
+        pull = np.where(free | (high <= low), 0, pull_inward(matrix, target, x, low, high))
         if not pull.max(initial=0) > ROUNDING * np.linalg.norm(target):
             break
         free[np.argmax(pull)] = True
-    return x / scales
+    return x
+
+
+def pull_inward(matrix: Array, target: Array, x: Array, low: Array, high: Array) -> Array:
+    """By how much the sum of squares falls along each step that rests on its bound, as that leaves it; 0 for others."""
+    gradient = matrix.T @ (target + matrix @ x)
+    return np.where(x >= high, gradient, np.where(x <= low, -gradient, 0))

@@ -41,7 +41,7 @@ def descend(
 
 def polish(problem: Problem, point: Array, evaluations: int = 2000) -> tuple[Array, int]:
     """The minimum next to a point, as exactly as the loss tells, and the number of simulations."""
-    a_step = 2 * problem.dimensions + 1 + len(DAMPINGS)
+    a_step = problem.dimensions + 1 + len(DAMPINGS)
     most = max(1, evaluations // a_step)
     best, number = settling(problem, np.clip(point, 0, 1), most)
     narrowed = problem.narrowed(best)
@@ -84,7 +84,7 @@ def steps(
     loss = problem.best(point[None], point)[1]
     movable = np.arange(point.size) != held
     while 0 < loss < np.inf and going():
-        jacobian, residual = (part / loss for part in problem.equations(point))
+        jacobian, residual = (part / loss for part in problem.equations(point, central=False))
         gradient, curvature = jacobian.T @ residual, jacobian.T @ jacobian
         moves = [bounded_step(point, gradient, curvature, damping, movable) for damping in DAMPINGS]
         best, least = problem.best(np.clip(point + np.clip(moves, -FARTHEST, FARTHEST), 0, 1), point)

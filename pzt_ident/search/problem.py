@@ -20,7 +20,7 @@ from pzt_ident.model.chain import Chain
 from pzt_ident.search.feasibility import check_feasible, check_units
 from pzt_ident.search.linear import Linear, Tangent
 from pzt_ident.search.scales import bounds_of, size_of, unit_of
-from pzt_ident.search.stencil import DIFFERENCE, half_widths, stencil
+from pzt_ident.search.stencil import DIFFERENCE, forward, half_widths, stencil
 
 Array = NDArray[np.float64]
 Squares = Callable[[Simulator, Array], Array]
@@ -261,13 +261,16 @@ class Problem:
             weights = stencil(point, self.half_width, failed)[1]
         return (weights[1:] @ residuals).T
 
-    def equations(self, point: Array) -> tuple[Array, Array]:
+    def equations(self, point: Array, central: bool = True) -> tuple[Array, Array]:
         """Jacobian (rows, free) and residual (rows,) as of `jacobian` and `residuals`, rotated together so that a few
-        rows are left: J' J, J' r and r' r are those of the samples."""
+        rows are left: J' J, J' r and r' r are those of the samples. central: both sides of the point, for twice the
+        simulations."""
         near = self.along(self.tangent(point))
-        points, weights = stencil(point, self.half_width)
+        points, weights = (stencil if central else forward)(point, self.half_width)
         rotated, failed = near.rotated(points, weights)
         if failed[1:].any():
+            if not central:
+                return self.equations(point)
             rotated, failed = near.rotated(*stencil(point, self.half_width, failed))
         return rotated[:, 1:], np.full(len(rotated), np.inf) if failed[0] else rotated[:, 0]
 

@@ -1,4 +1,4 @@
-"""Points of central differences in the unit cube."""
+"""Points of differences in the unit cube."""
 
 from __future__ import annotations
 
@@ -31,6 +31,16 @@ def stencil(
     weights = np.zeros((1 + count, 1 + 2 * count))
     weights[0, 0], weights[1:, 1 : 1 + count], weights[1:, 1 + count :] = 1, slope, -slope
     return points, weights
+
+
+def forward(point: Array, half_width: Array | float = DIFFERENCE) -> tuple[Array, Array]:
+    """Half the points of a stencil, itself the first, the others inward: (1 + free, free). And the weights as of
+    `stencil`: (1 + free, 1 + free)."""
+    point = np.asarray(point, dtype=float)
+    steps = np.where(point < 0.5, 1.0, -1.0) * half_width
+    weights = np.vstack([np.zeros(point.size), np.diag(1 / steps)])
+    first = np.append(1.0, -1 / steps)
+    return np.vstack([point, point + np.diag(steps)]), np.column_stack([first, weights])
 
 
 def half_widths(point: Array, residuals: Callable[[Array], Array]) -> Array:

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
 
-from pzt_ident.diagnosis.projection import Projection
+from pzt_ident.diagnosis.projection import Projection, exchanged_singly, exchanged_together
 
 SAMPLES = 40
 NOBODY = np.zeros(0, dtype=bool)
@@ -38,6 +38,17 @@ def test_what_remains_is_the_least_within_the_bounds(seed, free):
     jacobian, point, signal, traces = drawn(seed, free)
     expected = bounded(jacobian, point, signal, traces, NOBODY)
     assert left(Projection(jacobian, point), signal) == pytest.approx(np.linalg.norm(expected), rel=1e-6)
+
+
+@given(st.integers(0, 10_000), st.integers(1, 6))
+def test_bounds_are_exchanged_together_or_one_by_one(seed, free):
+    jacobian, point, signal, _ = drawn(seed, free)
+    box = (jacobian, signal, -point, 1 - point)
+    together, singly = exchanged_together(*box), exchanged_singly(*box)
+    if together is not None:
+        np.testing.assert_allclose(together, singly, rtol=1e-6, atol=1e-9)
+    expected = bounded(jacobian, point, signal, np.zeros((SAMPLES, 0)), NOBODY)
+    assert np.linalg.norm(signal + jacobian @ singly) == pytest.approx(np.linalg.norm(expected), rel=1e-6)
 
 
 @given(st.integers(0, 10_000), st.integers(1, 5), st.integers(1, 3), st.booleans())

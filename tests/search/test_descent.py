@@ -11,7 +11,7 @@ from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks
 from pzt_ident.search.descent import polish
 from pzt_ident.search.problem import Problem
-from pzt_ident.search.stencil import DIFFERENCE, NARROW, half_widths, stencil
+from pzt_ident.search.stencil import DIFFERENCE, NARROW, forward, half_widths, stencil
 from pzt_ident.search.uncertainty import covariance
 from rig import record, response
 
@@ -31,7 +31,7 @@ class Linear:
     def narrowed(self, point):
         return self
 
-    def equations(self, point):
+    def equations(self, point, central=True):
         return self.matrix, self.residual(point)
 
     def best(self, points, near):
@@ -112,6 +112,9 @@ def test_differences_are_exact_of_a_parabola_inside_and_one_sided_on_a_face():
     points, weights = stencil(np.array([0.4, 0.7]))
     np.testing.assert_allclose(weights @ value(points), [3 * 0.16 - 0.7, 2.4, -1], atol=1e-9)
     points, weights = stencil(np.array([1.0, 0.0]))
+    assert points.min() >= 0 and points.max() <= 1
+    np.testing.assert_allclose(weights @ value(points), [3, 6 - 3e-5, -1], atol=1e-9)
+    points, weights = forward(np.array([1.0, 0.0]))
     assert points.min() >= 0 and points.max() <= 1
     np.testing.assert_allclose(weights @ value(points), [3, 6 - 3e-5, -1], atol=1e-9)
     failed = np.array([False, False, True, False, False])

@@ -23,7 +23,7 @@ class Toy:
         losses = self.loss(points)
         return points[np.argmin(losses)], losses.min()
 
-    def equations(self, point, step=1e-6):
+    def equations(self, point, central=True, step=1e-6):
         moved = np.eye(self.dimensions) * step
         jacobian = (self.residuals(point + moved) - self.residuals(point - moved)).T / (2 * step)
         return jacobian, self.residuals(point)[0]
