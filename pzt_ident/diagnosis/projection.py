@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,9 +27,13 @@ class Split:
     def __getitem__(self, rows: slice) -> Split:
         return Split(self.inside[rows], self.outside[rows])
 
-    @property
+    @cached_property
+    def norms_outside(self) -> Array:
+        return np.linalg.norm(self.outside, axis=1)
+
+    @cached_property
     def norms(self) -> Array:
-        return np.hypot(np.linalg.norm(self.inside, axis=1), np.linalg.norm(self.outside, axis=1))
+        return np.hypot(np.linalg.norm(self.inside, axis=1), self.norms_outside)
 
 
 class Projection:
@@ -57,27 +62,30 @@ class Projection:
     def left(self, signals: Split) -> Array:
         """Norms of what is left of signals at best: (signals,)."""
         beside = np.array([np.linalg.norm(self._left_inside(inside)) for inside in signals.inside])
-        return np.hypot(beside, np.linalg.norm(signals.outside, axis=1))
+        return np.hypot(beside, signals.norms_outside)
 
     def _left_inside(self, inside: Array) -> Array:
         if self._reachable(-self._steps @ inside):
             return np.zeros(0)
         return inside + self._responses @ bounded(self._responses, inside, self._least, self._most)
 
-    def fit(self, signal: Split, traces: Split, one_sided: NDArray[np.bool_]) -> tuple[Array, float]:
+    def fit(
+        self, signal: Split, traces: Split, one_sided: NDArray[np.bool_], least: float = np.inf
+    ) -> tuple[Array, float]:
         """Multiples of the traces that, together with the parameters, leave least of the signal, and the norm of what
-        is left. A multiple is not negative where `one_sided`."""
+        is left. A multiple is not negative where `one_sided`. least: no less needs to be told exactly."""
         triangle = np.asarray(np.linalg.qr(np.vstack([traces.outside, signal.outside]).T, mode="r"))
         matrix, target = triangle[:, :-1], triangle[:, -1]
         inside, trace_inside = signal.inside[0], traces.inside.T
         amounts = _amounts(matrix, target, one_sided)
-        if self._reachable(-self._steps @ (inside + trace_inside @ amounts)):
-            return amounts, float(np.linalg.norm(target + matrix @ amounts))
+        left = float(np.linalg.norm(target + matrix @ amounts))
+        if left >= least or self._reachable(-self._steps @ (inside + trace_inside @ amounts)):
+            return amounts, left
         both = np.block([[self._responses, trace_inside], [np.zeros((len(matrix), self._least.size)), matrix]])
-        least = np.concatenate([self._least, np.where(one_sided, 0, -np.inf)])
-        most = np.concatenate([self._most, np.full(one_sided.size, np.inf)])
+        low = np.concatenate([self._least, np.where(one_sided, 0, -np.inf)])
+        high = np.concatenate([self._most, np.full(one_sided.size, np.inf)])
         wanted = np.concatenate([inside, target])
-        steps = bounded(both, wanted, least, most)
+        steps = bounded(both, wanted, low, high)
         return steps[self._least.size :], float(np.linalg.norm(wanted + both @ steps))
 
     def _reachable(self, steps: Array) -> bool:
@@ -93,8 +101,8 @@ def _amounts(traces: Array, signal: Array, one_sided: NDArray[np.bool_]) -> Arra
 
 
 def bounded(matrix: Array, target: Array, least: Array, most: Array) -> Array:
-    """Steps x, least <= 0 <= most, that leave least of target + matrix x: by exchanges of all bounds at once where
-    these settle, else by exchanges of one. Never more is left than without a step, however ill-conditioned the matrix."""
+    """Steps x, least <= 0 <= most, that leave least of target + matrix x: by exchanges of all bounds at once
+    where these settle, else of one. Never more is left than without a step, however ill-conditioned the matrix."""
     norms = np.linalg.norm(matrix, axis=0)
     scales = np.where(norms > 0, norms, 1)
     box = (matrix / scales, target, least * scales, most * scales)

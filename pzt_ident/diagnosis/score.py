@@ -37,8 +37,8 @@ class Score:
 
     explained: share of the misfit that the effect would remove if it were linear and without bounds;
     explained_in_bounds: the share within the bounds. guess: expected parameters, in the user's `units`. visibility:
-    share of the effect's trace, at the least size that leaves one, that the fitted parameters cannot produce. power:
-    that share of the largest plausible trace, root mean square in noise floors.
+    share of the effect's clearest trace, at the least size that leaves one, that the fitted parameters cannot
+    produce. power: that share of the largest plausible trace, root mean square in noise floors.
     """
 
     effect: str
@@ -134,22 +134,23 @@ class Scorer:
 
     def _score_block(self, effect: str, problem: Problem) -> Score:
         """The score of an effect in the chain, by the change of the response as it leaves its null."""
-        score, visible, strongest = Score(effect), dict[float, float](), 0.0
+        score, least, strongest, order = Score(effect), self.left, 0.0, (np.inf, 0.0)
+        clearest: Split | None = None
         guesses: list[dict[str, float]] = []
         for trial, traces in self._trials(effect, problem):
             norm = traces.norms.max()
-            if norm > LEAST_TRACE * self.split.norms[0] and trial.size <= min(visible, default=np.inf):
-                seen = self.projection.left(traces).max() / norm
-                visible[trial.size] = max(visible.get(trial.size, 0.0), float(seen))
+            if norm > LEAST_TRACE * self.split.norms[0]:
+                place = (trial.size, -float(traces.norms_outside.max() / norm))
+                order, clearest = (place, traces) if place < order else (order, clearest)
             if trial.size == max(blocks[effect].sizes):
                 strongest = max(strongest, float(norm / trial.size / self.case.floor))
             one_sided = problem.lower[trial.amplitudes] >= trial.start[trial.amplitudes]
-            amounts, left = self.projection.fit(self.split, traces, one_sided)
+            amounts, left = self.projection.fit(self.split, traces, one_sided, least)
             if self.explained(left) > score.explained:
-                score.explained = self.explained(left)
+                score.explained, least = self.explained(left), left
                 guesses = [self._guess(problem, trial, scales) for scales in (amounts, np.ones(amounts.size))]
         self._take_best_guess(score, problem, guesses)
-        visibility = visible[min(visible)] if visible else 0.0
+        visibility = float(self.projection.left(clearest).max() / clearest.norms.max()) if clearest else 0.0
         return replace(score, visibility=visibility, power=visibility * strongest)
 
     def _take_best_guess(self, score: Score, problem: Problem, guesses: list[dict[str, float]]) -> None:
