@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -82,19 +82,26 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
 
 def choose_forms(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:
     """Mean the form of each effect that fits best where one effect alone makes the model adequate, or where it leaves
-    half as much as any effect in its first form; else the first form.
+    half as much as any effect in its first form; else the best of those that have no more parameters than the first.
 
     Beside other effects that are missing too, a form that fits better may only be the more flexible one.
     """
     enough = any(adequate(case, first, fit) for item in candidates for fit in item.refits.values())
     least = min((item.refits[item.forms[0].effect].total for item in candidates), default=np.inf)
     for candidate in candidates:
-        usual = candidate.forms[0].effect
-        best = min(candidate.refits, key=lambda item: candidate.refits[item].total)
-        total = candidate.refits[best].total
-        better = removed_rms(candidate.refits[usual].total, total) > TIE * case.floor
-        decisive = share_explained(least, total, case.floor) >= DECISIVE
-        candidate.take(best if better and (enough or decisive) else usual)
+        usual, refits = candidate.forms[0].effect, candidate.refits
+        chosen = clearly_best(case, refits, usual)
+        if not enough and share_explained(least, refits[chosen].total, case.floor) < DECISIVE:
+            most = refits[usual].problem.dimensions
+            simple = {item: fit for item, fit in refits.items() if fit.problem.dimensions <= most}
+            chosen = clearly_best(case, simple, usual)
+        candidate.take(chosen)
+
+
+def clearly_best(case: Case, refits: Mapping[str, Fit], usual: str) -> str:
+    """The item that fits best, or the usual one where that is hardly worse."""
+    best = min(refits, key=lambda item: refits[item].total)
+    return best if removed_rms(refits[usual].total, refits[best].total) > TIE * case.floor else usual
 
 
 def restart_look_alikes(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> None:

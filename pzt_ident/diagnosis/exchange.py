@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pzt_ident.diagnosis.candidates import is_tied
+from pzt_ident.diagnosis.candidates import TIE, is_tied
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.score import Scorer, applicable, fitting_forms
@@ -34,7 +34,7 @@ def exchange_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
     steps: list[Step] = []
     added = now.effects[len(first.effects) :]
     for effect in added:
-        rivals = look_alikes(case, now, effect) if len(added) > 1 else []
+        rivals = look_alikes(case, now, effect, in_every_form=not at_noise(case, now)) if len(added) > 1 else []
         items = rivals if adequate(case, first, now) else [*rivals, *other_forms(case, now, effect)]
         if items and not case.budget.allows("other forms and look-alikes"):
             break
@@ -55,11 +55,17 @@ def other_forms(case: Case, now: Fit, effect: str) -> list[str]:
     return [item for item in possible if blocks[item].item() != blocks[effect].item()]
 
 
-def look_alikes(case: Case, now: Fit, effect: str) -> list[str]:
-    """The look-alikes that could be in the place of an effect, each in the first form that fits."""
+def look_alikes(case: Case, now: Fit, effect: str, in_every_form: bool = False) -> list[str]:
+    """The look-alikes that could be in the place of an effect, each in the first form that fits or in all that do."""
     effects = effects_without(now, effect)
     possible = applicable(case, effects)
-    return [fitting_forms(case, effects, word)[0] for word in blocks[effect].look_alikes if word in possible]
+    forms = [fitting_forms(case, effects, word) for word in blocks[effect].look_alikes if word in possible]
+    return [item for items in forms for item in (items if in_every_form else items[:1])]
+
+
+def at_noise(case: Case, fit: Fit) -> bool:
+    """Whether what a fit leaves above the noise would not distinguish two look-alikes."""
+    return removed_rms(fit.total, case.floor) < 2 * TIE * case.floor
 
 
 def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str]) -> list[Fit]:

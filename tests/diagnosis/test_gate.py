@@ -190,21 +190,32 @@ def test_of_pairs_that_earn_the_best_on_both_uses_is_taken(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("usual", "other", "rival", "taken"),
+    ("usual", "other", "more", "rival", "taken"),
     [
-        (5.0, 3.0, 4.0, "friction"),
-        (5.0, 2.5, 4.0, "friction.coulomb"),
-        (5.0, 1.1, 4.0, "friction.coulomb"),
-        (1.1, 1.0, 4.0, "friction.coulomb"),
-        (1.1, 1.09, 4.0, "friction"),
-        (5.0, 3.0, 1.1, "friction.coulomb"),
+        (5.0, 3.0, 1, 4.0, "friction"),
+        (5.0, 3.0, 0, 4.0, "friction.coulomb"),
+        (5.0, 4.997, 0, 4.0, "friction"),
+        (5.0, 2.5, 1, 4.0, "friction.coulomb"),
+        (5.0, 1.1, 1, 4.0, "friction.coulomb"),
+        (1.1, 1.0, 1, 4.0, "friction.coulomb"),
+        (1.1, 1.09, 1, 4.0, "friction"),
+        (5.0, 3.0, 1, 1.1, "friction.coulomb"),
     ],
-    ids=["not enough", "decisive", "enough", "better", "as good", "beside one that is enough"],
+    ids=[
+        "not enough",
+        "as simple",
+        "as simple and as good",
+        "decisive",
+        "enough",
+        "better",
+        "as good",
+        "beside enough",
+    ],
 )
-def test_another_form_is_meant_only_where_one_effect_is_enough(usual, other, rival, taken):
+def test_a_form_of_more_parameters_is_meant_only_where_one_effect_is_enough(usual, other, more, rival, taken):
     """RMSE in noise floors, of a model that is adequate up to 1.17; forms are as good to a fifth of the noise."""
     friction = Candidate.of([Score("friction", explained=0.5), Score("friction.coulomb", explained=0.9)])
-    friction.refits = {"friction": fit(usual, usual), "friction.coulomb": fit(other, other)}
+    friction.refits = {"friction": fit(usual, usual), "friction.coulomb": fit(other, other, dimensions=4 + more)}
     creep = Candidate.of([Score("creep", explained=0.5)])
     creep.refits = {"creep": fit(rival, rival)}
     choose_forms(CASE, fit(10.0, 10.0), [friction, creep])
