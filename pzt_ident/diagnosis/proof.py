@@ -13,7 +13,9 @@ from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.step import effects_without
 from pzt_ident.model.registry import phrase_of, word_of
 
-JOINT = 2 / 3  # of the misfit of the model as given: what all that is added must remove together
+JOINT = (
+    2 / 3
+)  # of the misfit of the model as given: what one effect must remove; two as if one removed it after the other
 ALONE = 1 / 3  # of the misfit without it: what each must remove beside the others
 
 
@@ -59,15 +61,17 @@ def unproven(case: Case, first: Fit, now: Fit, rivals: Mapping[str, Collection[s
     """The effects to be taken out again, the least first.
 
     Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may stand
-    in for what is not in the catalogue: together they must also remove the share JOINT of the misfit as given, and
-    each beside the others the share ALONE, on the identification and on the validation records, and none may have had
-    rivals that fit as well and are not its look-alikes: what any effect takes up is not that of one.
+    in for what is not in the catalogue: together they must also remove as much of the misfit as given as if one after
+    the other removed the share JOINT, and each beside the others the share ALONE, on the identification and on the
+    validation records, and none may have had rivals that fit as well and are not its look-alikes: what any effect takes
+    up is not that of one.
     """
     suspects: list[Suspect] = []
     while added := now.effects[len(first.effects) :]:
         suspected = [suspect(case, first, now, effect, rivals.get(effect, ())) for effect in added]
         least = min(suspected, key=lambda item: item.rank)
-        decisive = not least.strangers and least.share >= ALONE and removed_by_all(case, first, now) >= JOINT
+        together = removed_by_all(case, first, now) >= 1 - (1 - JOINT) ** len(added)
+        decisive = not least.strangers and least.share >= ALONE and together
         if least.beyond_form and (decisive or near_noise(case, first, now)):
             break
         suspects.append(least)

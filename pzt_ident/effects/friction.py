@@ -10,7 +10,11 @@ from pzt_ident.model.registry import blocks
 class Rubbing:
     """What all forms of friction declare."""
 
-    form = Form("lugre", ("lugre", "coulomb", "motion", "coulomb_motion"), "The law of friction, and where it acts.")
+    form = Form(
+        "lugre",
+        ("lugre", "lugre_viscous", "coulomb", "motion", "coulomb_motion"),
+        "The law of friction, and where it acts.",
+    )
     sizes = (0.02, 0.1, 0.5)
     look_alikes = ("distributed_memory", "delay", "amplifier_lag", "viscous_damping")
     separate_by = (
@@ -60,6 +64,29 @@ class Friction(Ahead, Block):
         return friction, u, u - friction
 
 
+class LuGreViscous(Friction):
+    """LuGre with its viscous friction: x + F + viscous dx/dt = f,  dF/dx = (g - F sgn dx/dt) / (reach g / force),
+    g = force (1 + stiction exp(-(v / stribeck)^2)).
+
+    Canudas de Wit, Olsson, Astrom & Lischinsky (1995), IEEE Trans. Autom. Control 40, 419, eq. 2 to 5, with bristles
+    that bend without damping of their own. The viscous part against the stiffness is a lag, stepped exactly, of the
+    force that bends the bristles.
+    """
+
+    viscous = Parameter("s", (0, 5e-3), "Viscous friction over the stiffness.", null=0)
+
+    def prepare(force, reach, stiction, stribeck, viscous, dt):
+        return force, reach, stiction, 1 / (stribeck * dt), *decay(viscous, dt)
+
+    def start(u, force, reach, stiction, fast, keep, share):
+        return 0.0, u, 0.0, u
+
+    def step(friction, before, w, lagged, u, force, reach, stiction, fast, keep, share):
+        w = keep * w - share * (u - before)
+        friction = rub(friction, u + w - lagged, force, reach, stiction, fast, 1.0)
+        return friction, u, w, u + w, u + w - friction
+
+
 class Coulomb(Ahead, Block):
     """Dry and viscous friction: x + viscous dx/dt = f - force tanh(v / speed), v = df/dt.
 
@@ -103,4 +130,4 @@ class CoulombMotion(Rubbing, Term):
     solvable = False
 
 
-Friction.forms = {"coulomb": Coulomb, "motion": Motion, "coulomb_motion": CoulombMotion}
+Friction.forms = {"lugre_viscous": LuGreViscous, "coulomb": Coulomb, "motion": Motion, "coulomb_motion": CoulombMotion}

@@ -115,6 +115,18 @@ def test_coulomb_friction_depends_on_the_velocity_alone(speed):
     np.testing.assert_allclose(lagging, alone("amplifier_lag", tau=3e-3), atol=1e-12)
 
 
+@pytest.mark.parametrize("reach", [0.05, 0.5])
+def test_viscous_friction_lags_the_force_that_bends_the_bristles(reach):
+    known = {"reach": reach, "stiction": 0.2, "stribeck": 10.0}
+    lagged = alone("friction.lugre_viscous", force=0.0, viscous=3e-3, **known)
+    np.testing.assert_allclose(lagged, alone("amplifier_lag", tau=3e-3), atol=1e-12)
+    free = alone("friction.lugre_viscous", force=0.5, viscous=0.0, **known)
+    np.testing.assert_allclose(free, alone("friction", force=0.5, **known), atol=1e-12)
+    named = {f"friction.{word}": value for word, value in {"force": 0.5, "viscous": 3e-3, **known}.items()}
+    slowed = response(["friction"], {f"friction.{word}": v for word, v in {"force": 0.5, **known}.items()}, lagged)
+    np.testing.assert_allclose(response(["friction.lugre_viscous"], named, DRIVE), slowed, atol=1e-12)
+
+
 def test_the_second_harmonic_of_the_grating():
     wave = 2 * np.pi / 7
     known = {"sine": 0.1, "cosine": -0.2, "second_sine": 0.03, "second_cosine": 0.04, "pitch": 7.0}
