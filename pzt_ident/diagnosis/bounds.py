@@ -27,10 +27,15 @@ def beyond_bounds(case: Case, first: Fit, fit: Fit) -> tuple[Case, Fit] | None:
     if not specs:
         return None
     wide = case.with_specs(specs)
-    problem = wide.problem(fit.effects, fit.steps, fit.measured_only)
-    point = descend(problem, problem.unit_point(fit.values), going=case.budget.lasts)
-    after = refine_steps(wide, fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
+    after = continued(wide, fit)
     return (wide, after) if removes_enough(case, first, fit, after) else None
+
+
+def continued(wide: Case, fit: Fit) -> Fit:
+    """A fit gone on with in a case with wider bounds."""
+    problem = wide.problem(fit.effects, fit.steps, fit.measured_only)
+    point = descend(problem, problem.unit_point(fit.values), going=wide.budget.lasts)
+    return refine_steps(wide, fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
 
 
 def stands_in(wide: Case, case: Case, fit: Fit) -> bool:

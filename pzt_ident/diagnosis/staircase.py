@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from pzt_ident.diagnosis.bounds import beyond_bounds, brought_back, stands_in
+from pzt_ident.diagnosis.bounds import beyond_bounds, brought_back, continued, stands_in
 from pzt_ident.diagnosis.budget import LAST
 from pzt_ident.diagnosis.candidates import TIE, Candidate
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms, removes_enough
@@ -59,11 +59,23 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
     given = with_least_bounds(case, improve_within(case, [Step(first)], on_step, diagnosis))
     if lean and given.last.verdict != "adequate" and end_of(lean).total < end_of(given).total:
         given = lean
-    if given.last.verdict == "adequate" or not beyond:
+    if given.last.verdict == "adequate":
+        return given
+    beyond = beyond or bounds_beside(case, first, diagnosis)
+    if not beyond:
         return given
     if wide is None and case.budget.allows("wider bounds"):
         wide = improve_beyond(case, first, *beyond, on_step)
     return wide if wide and (accounts(wide, case, first) or clearly_better(wide, given, case)) else given
+
+
+def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fit] | None:
+    """The case with the wider bounds that the model with one effect needs, where no effect removes enough within those
+    of the job, and the fit of the model as given in it; None where there are none."""
+    fits = [candidate.fit for candidate in diagnosis.candidates if candidate.fit]
+    best = min(fits, key=lambda fit: fit.identify, default=first)
+    beyond = None if diagnosis.passing else beyond_bounds(case, first, best)
+    return (beyond[0], continued(beyond[0], first)) if beyond else None
 
 
 def settles_for(case: Case, first: Fit, lean: Staircase) -> bool:

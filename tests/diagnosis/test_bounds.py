@@ -1,5 +1,7 @@
 """A bound that is too narrow is a cheaper account than an effect, and is told from one."""
 
+from dataclasses import replace
+
 import pytest
 
 import stage
@@ -12,8 +14,9 @@ from pzt_ident.diagnosis.bounds import (
     widened,
 )
 from pzt_ident.diagnosis.refit import fit_at
-from pzt_ident.diagnosis.staircase import improve
+from pzt_ident.diagnosis.staircase import bounds_beside, improve
 from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.diagnosis.verdict import diagnose
 from pzt_ident.model.registry import word_of
 
 GAIN = 1e6 * stage.STAGE["bouc_wen.gain"]  # um/V
@@ -71,6 +74,18 @@ def test_a_bound_that_only_the_first_effect_reaches_is_widened_before_a_second_o
     assert found.last.verdict == "adequate"
     assert [step.added or step.change for step in found.steps[1:]] == ["quadratic_gain", "wider bounds"]
     assert found.steps[-1].fit.values["bouc_wen.gain"] == pytest.approx(GAIN, rel=1e-2)
+
+
+def test_where_no_effect_passes_the_bounds_that_the_best_one_reaches_are_widened():
+    case = stage.case({"quadratic_gain.curvature": 2e-3}).with_specs(
+        {"bouc_wen.gain": Widened((1.05 * GAIN, 1.6 * GAIN))}
+    )
+    first = first_fit(case, 0)
+    diagnosis = diagnose(case, first)
+    assert bounds_beside(case, first, diagnosis) is None
+    wide, start = bounds_beside(case, first, replace(diagnosis, passing=[]))
+    assert wide.specs["bouc_wen.gain"].bounds[0] < GAIN
+    assert start.effects == () and start.identify == pytest.approx(first.identify, rel=1e-6)
 
 
 def test_bounds_that_hold_the_truth_are_kept():
