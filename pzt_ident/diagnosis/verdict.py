@@ -57,6 +57,12 @@ class Diagnosis:
     def best(self) -> Candidate | None:
         return next((candidate for candidate in self.candidates if candidate.decision == "missing"), None)
 
+    @property
+    def rivals(self) -> dict[str, Fit]:
+        """The refits with the tied effects, by effect, the best first."""
+        fits = {candidate.score.effect: candidate.fit for candidate in self.candidates}
+        return {word: fit for word in self.tied if (fit := fits[word])}
+
 
 def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     """Score every effect, refit the short list, judge; `first` as in `threshold`, by default the model itself."""

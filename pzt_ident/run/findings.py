@@ -126,7 +126,7 @@ def refitted(case: Case, fit: Fit) -> dict[str, Any]:
 def diagnosis_of(job: Job, case: Case, diagnosis: Diagnosis, folder: Path) -> dict[str, Any]:
     """The content of `diagnosis.json`; the drive that it proposes is written into the folder."""
     before, best = diagnosis.before, diagnosis.best
-    rivals = stairs.rivals_of(diagnosis)
+    rivals = diagnosis.rivals
     proposed = separating(job, case, rivals, folder)
     reason = diagnosis.reason
     if diagnosis.verdict == "unexplained":

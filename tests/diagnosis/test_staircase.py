@@ -7,21 +7,16 @@ import numpy as np
 import pytest
 
 import stage
+from pzt_ident.diagnosis import climb
 from pzt_ident.diagnosis import staircase as improving
 from pzt_ident.diagnosis.budget import Budget
+from pzt_ident.diagnosis.climb import Staircase, add_pair, add_restarted
 from pzt_ident.diagnosis.exchange import exchange_any, remove_unneeded
 from pzt_ident.diagnosis.refit import fit_at, refit
 from pzt_ident.diagnosis.score import Score
-from pzt_ident.diagnosis.staircase import (
-    Staircase,
-    Step,
-    add_pair,
-    add_restarted,
-    explained_share,
-    improve,
-    improve_within,
-)
+from pzt_ident.diagnosis.staircase import improve, improve_within
 from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.diagnosis.step import Step, explained_share
 from pzt_ident.diagnosis.verdict import Candidate, Diagnosis, diagnose
 from pzt_ident.model.registry import blocks
 
@@ -137,7 +132,7 @@ def test_two_effects_that_hide_each_other_are_two_stairs_the_better_one_first():
 
 @pytest.mark.parametrize("hopeless", [0, np.inf])
 def test_an_effect_that_rests_in_a_side_minimum_is_a_stair_once_nothing_else_is_left(monkeypatch, hopeless):
-    monkeypatch.setattr(improving, "HOPELESS", hopeless)
+    monkeypatch.setattr(climb, "HOPELESS", hopeless)
     case = stage.case(stage.EFFECTS["quadratic_gain"])
     first = first_fit(case, 0)
     problem = case.problem(("quadratic_gain",))

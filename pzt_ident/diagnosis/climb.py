@@ -1,0 +1,146 @@
+"""One path to a model with what it misses: effects are added, and removed again where nothing needs them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from pzt_ident.diagnosis.bounds import beyond_bounds, stands_in
+from pzt_ident.diagnosis.candidates import Candidate
+from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removes_enough
+from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, remove_unneeded
+from pzt_ident.diagnosis.proof import Suspect
+from pzt_ident.diagnosis.refit import Case, Fit, refit
+from pzt_ident.diagnosis.starts import restart
+from pzt_ident.diagnosis.step import Step, explained_share
+from pzt_ident.diagnosis.undetermined import Undetermined
+from pzt_ident.diagnosis.verdict import Diagnosis, best_pair, diagnose
+
+MOST_STEPS = 8
+PATIENCE = 3  # effects that take up less than half of the misfit, after which no other is tried
+WIDER = "wider bounds"  # the step that widens those of the job
+HOPELESS = 5.0  # noise floors: where the first path ends above that, another order of the same effects does not help
+
+
+StepListener = Callable[[Step], None]
+
+
+@dataclass
+class Staircase:
+    """The steps, the model as given first; the diagnosis of the last model; the effects that were added and taken out
+    again, because they are not proven, and the mechanics that the last model does without; the case of the last model,
+    which may have wider bounds or other blocks."""
+
+    steps: list[Step]
+    last: Diagnosis
+    suspects: list[Suspect | Undetermined] = field(default_factory=list)
+    case: Case | None = None
+
+
+def climb(
+    case: Case, base: Sequence[Step], diagnosis: Diagnosis, candidate: Candidate | None, on_step: StepListener
+) -> Staircase:
+    """One path: the candidate is added first, then always the best one, within wider bounds where these are a cheaper
+    account."""
+    steps, first = [*base], base[-1].fit
+    for step in base:
+        on_step(step)
+    while (
+        len(steps) - len(base) < MOST_STEPS and not stuck(steps) and (candidate or case.budget.allows("more effects"))
+    ):
+        new = next_steps(case, first, steps, diagnosis, candidate)
+        if not new:
+            break
+        restart_if_inadequate(case, first, (*steps, *new)[-2].fit, new[-1])
+        new += remove_unneeded(case, first, new[-1].fit)
+        new += exchange_accounts(case, first, new[-1].fit)
+        if frozenset(new[-1].fit.effects) in {frozenset(step.fit.effects) for step in steps}:
+            break
+        for step in new:
+            on_step(step)
+        steps += new
+        if (wider := wider_bounds(case, first, steps[-1].fit)) and wider.case:
+            case = wider.case
+            on_step(wider)
+            steps.append(wider)
+        diagnosis = diagnose(case, steps[-1].fit, first)
+        candidate = diagnosis.best
+    changed = next((step.case for step in reversed(steps) if step.case), None)
+    return Staircase(steps, diagnosis, case=changed)
+
+
+def wider_bounds(case: Case, first: Fit, fit: Fit) -> Step | None:
+    """The step to wider bounds, where these remove most of what a fit that rests on them
+    leaves, and hold its estimates: an effect would only stand in for what the bounds of the job keep out."""
+    beyond = None if adequate(case, first, fit) else beyond_bounds(case, first, fit)
+    if beyond is None:
+        return None
+    wide, after = beyond
+    share = explained_share(case, fit, after)
+    if share < DECISIVE or stands_in(wide, case, after):
+        return None
+    return Step(after, explained=share, change=WIDER, case=wide)
+
+
+def stuck(steps: list[Step]) -> bool:
+    """Whether one effect after the other took up a part of the misfit, and none most of it."""
+    latest = [step.explained for step in steps if step.added][-PATIENCE:]
+    return len(latest) == PATIENCE and max(latest) < DECISIVE
+
+
+def restart_if_inadequate(case: Case, first: Fit, before: Fit, step: Step) -> None:
+    """Where a step does not reach the noise, restart its fit before anything else is blamed."""
+    if not adequate(case, first, step.fit) and case.budget.allows("other starts"):
+        step.fit = restart(case, step.fit)
+        step.explained = explained_share(case, before, step.fit)
+
+
+def next_steps(
+    case: Case, first: Fit, steps: list[Step], diagnosis: Diagnosis, candidate: Candidate | None
+) -> list[Step]:
+    """The candidate; without one a pair of effects, else an effect whose fit is restarted, else, once in a path, an
+    effect in the place of another. Empty where the path ends."""
+    now = steps[-1].fit
+    if candidate is not None and candidate.fit is not None:
+        word, fit = candidate.score.effect, candidate.fit
+        rivals = diagnosis.rivals if candidate is diagnosis.best else {word: fit}
+        return [Step(fit, word, None, rivals, explained_share(case, now, fit), candidate.score.explained)]
+    if diagnosis.verdict in ("adequate", "refused"):
+        return []
+    if not case.budget.allows("pairs and exchanges of effects"):
+        return []
+    exchanged = any(step.added and step.removed for step in steps)
+    return (
+        add_pair(case, first, now, diagnosis)
+        or add_restarted(case, first, now, diagnosis)
+        or ([] if exchanged else exchange_any(case, first, now))
+    )
+
+
+def add_pair(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Step]:
+    """Two effects that hide each other, as two steps, the one that fits better alone first."""
+    both = best_pair(case, first, now, diagnosis.candidates)
+    if both is None:
+        return []
+    values = {name: value for name, value in both.values.items() if name not in now.problem.names}
+    alone = [refit(case, now, (*now.effects, word), values) for word in both.effects[-2:]]
+    single = min(alone, key=lambda fit: fit.total)
+    word = single.effects[-1]
+    other = next(effect for effect in both.effects[-2:] if effect != word)
+    return [
+        Step(single, word, None, {word: single}, explained_share(case, now, single)),
+        Step(both, other, None, {other: both}, explained_share(case, single, both)),
+    ]
+
+
+def add_restarted(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Step]:
+    """An effect of the short list that fits once its own or another block, such as the hysteresis, starts elsewhere."""
+    if now.identify > HOPELESS * case.floor:
+        return []
+    refitted = [(candidate.score, restart(case, candidate.fit)) for candidate in diagnosis.candidates if candidate.fit]
+    passing = [(score, fit) for score, fit in refitted if removes_enough(case, first, now, fit)]
+    if not passing:
+        return []
+    score, fit = min(passing, key=lambda score_and_fit: score_and_fit[1].total)
+    word = score.effect
+    return [Step(fit, word, None, {word: fit}, explained_share(case, now, fit), score.explained)]
