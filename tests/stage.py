@@ -7,7 +7,7 @@ import numpy as np
 import measured
 import rig
 from pzt_ident.diagnosis.refit import Case
-from pzt_ident.search.problem import FixedValue
+from pzt_ident.search.cube import FixedValue
 
 NOISE = 5e-9  # m
 STAGE = {

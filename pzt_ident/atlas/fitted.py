@@ -9,8 +9,9 @@ from pzt_ident.atlas.stage import MECHANICS, OPERATOR, VALUES, Drive, Stage, dri
 from pzt_ident.errors import RunError
 from pzt_ident.model.block import Place
 from pzt_ident.model.registry import blocks, optimizers
+from pzt_ident.search.cube import FixedValue
 from pzt_ident.search.loop import Stop, optimize
-from pzt_ident.search.problem import FixedValue, Problem
+from pzt_ident.search.problem import Problem
 
 Values = dict[str, float]
 

@@ -16,7 +16,8 @@ from pzt_ident.data.record import Record
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.model.block import Coupling
 from pzt_ident.model.chain import Chain
-from pzt_ident.search.problem import FixedValue, Problem
+from pzt_ident.search.cube import FixedValue
+from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
 

@@ -20,8 +20,9 @@ from pzt_ident.engine.simulator import Simulator
 from pzt_ident.model.block import Coupling
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import Choice, blocks, word_of
+from pzt_ident.search.cube import FixedValue, ParameterSpec
 from pzt_ident.search.descent import descend
-from pzt_ident.search.problem import FixedValue, ParameterSpec, Problem
+from pzt_ident.search.problem import Problem
 from pzt_ident.search.uncertainty import Estimate, estimates
 
 Array = NDArray[np.float64]

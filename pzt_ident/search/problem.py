@@ -4,46 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pzt_ident.data.record import Record, drive_correlation
-from pzt_ident.data.units import factor
 from pzt_ident.engine.gather import Triangle, rotated, stretches
 from pzt_ident.engine.gather import squares as exact_squares
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.errors import InputError
 from pzt_ident.model.chain import Chain
-from pzt_ident.search.feasibility import check_feasible, check_units
+from pzt_ident.search.cube import Cube, ParameterSpec
+from pzt_ident.search.feasibility import check_feasible
 from pzt_ident.search.linear import Linear, Tangent
-from pzt_ident.search.scales import bounds_of, size_of, unit_of
+from pzt_ident.search.scales import size_of
 from pzt_ident.search.stencil import DIFFERENCE, forward, half_widths, stencil
 
 Array = NDArray[np.float64]
 Squares = Callable[[Simulator, Array], Array]
 
 
-class ParameterSpec(Protocol):
-    """What a job may give for a parameter, in the user's units: bounds make it free, a value alone fixes it."""
-
-    @property
-    def bounds(self) -> tuple[float, float] | None: ...
-    @property
-    def value(self) -> float | None: ...
-
-
-@dataclass(frozen=True)
-class FixedValue:
-    """A specification that fixes a parameter at a value."""
-
-    value: float
-    bounds: None = None
-
-
-class Problem:
+class Problem(Cube):
     """Find the free parameters with the least RMSE on the identification records.
 
     The loss is sqrt(mean over measured axes of (RMSE / size)^2), pooled over records, without the free offset of each
@@ -60,7 +41,7 @@ class Problem:
         specs: Mapping[str, ParameterSpec] | None = None,
         sizes: ArrayLike | None = None,
     ) -> None:
-        self.model, self.records = model, tuple(records)
+        self.records = tuple(records)
         self.sizes: Array = np.ones(len(model.measured)) if sizes is None else np.asarray(sizes, dtype=np.float64)
         self.failed = 0
         self.half_width: Array | float = DIFFERENCE
@@ -70,43 +51,9 @@ class Problem:
         self.simulators = {
             use: [Simulator(model, r) for r in records if r.use == use] for use in ("identify", "validate")
         }
-        self._assign(identify, specs or {})
+        super().__init__(model, identify, specs or {})
+        self._set_linear(self.linear_columns, identify)
         check_feasible(self, identify)
-
-    def _assign(self, identify: list[Record], specs: Mapping[str, ParameterSpec]) -> None:
-        """Sort the parameters into free ones with bounds, fixed ones and linear ones."""
-        check_units(self.model, identify[0])
-        self.all_units = [unit_of(self.model, entry, identify[0]) for entry in self.model.entries]
-        self.factors = np.array([factor(unit) for unit in self.all_units])
-        self.theta = np.full(len(self.model.entries), np.nan)
-        free, lower, upper, linear = [], [], [], []
-        for column, entry in enumerate(self.model.entries):
-            spec = next((specs[name] for name in self.model.spellings(entry) if name in specs), None)
-            parameter = entry.parameter
-            if spec and spec.bounds is None and spec.value is not None:
-                self.theta[column] = spec.value * self.factors[column]
-            elif parameter.value is not None and not spec:
-                self.theta[column] = parameter.value * size_of(self.model, entry, identify)
-            elif parameter.linear and not spec:
-                linear.append(column)
-            else:
-                given_bounds = spec.bounds if spec else None
-                low, high = given_bounds or bounds_of(self.model, entry, identify) / self.factors[column]
-                free.append(column)
-                lower.append(low)
-                upper.append(high)
-        self.lower, self.upper = np.array(lower), np.array(upper)
-        self._describe_free(free)
-        self._set_linear(linear, identify)
-
-    def _describe_free(self, free: list[int]) -> None:
-        """Names, units and scales of the free columns of theta."""
-        self.free = np.array(free, dtype=int)
-        self.names = tuple(self.model.names[column] for column in free)
-        self.units = tuple(self.all_units[column] for column in free)
-        scales = np.array([self.model.entries[column].parameter.scale == "log" for column in free], dtype=bool)
-        self.log = scales & (self.lower > 0)
-        self._has_log_scale = bool(self.log.any())
 
     def _set_linear(self, linear: list[int], identify: list[Record]) -> None:
         """Columns of theta that are solved for, with the sign of the slope of response over drive."""
@@ -118,50 +65,10 @@ class Problem:
         self.linear = Linear(self.model, linear, units, self._scaled)
         self._tangent: Tangent | None = None
 
-    def parameters_at(self, values: Array) -> Array:
-        """All parameters in SI units, the free ones at `values` (free,) in the user's units: (parameters,)."""
-        theta = self.theta.copy()
-        theta[self.free] = values * self.factors[self.free]
-        return theta
-
-    def declared_bounds(self, column: int) -> tuple[float, float]:
-        """Bounds of a parameter where the job gives none, in the user's units."""
-        identify = [record for record in self.records if record.use == "identify"]
-        low, high = bounds_of(self.model, self.model.entries[column], identify) / self.factors[column]
-        return float(low), float(high)
-
-    def range_of(self, column: int) -> tuple[float, float]:
-        """Bounds of a parameter in the user's units; (value, value) if it is fixed."""
-        place = np.flatnonzero(self.free == column)
-        if place.size:
-            return float(self.lower[place[0]]), float(self.upper[place[0]])
-        return (float(self.theta[column] / self.factors[column]),) * 2
-
     @property
     def scored(self) -> int:
         """Number of scored samples of the identification records, over all measured axes."""
         return sum(simulator.scored for simulator in self.simulators["identify"]) * len(self.model.measured)
-
-    @property
-    def dimensions(self) -> int:
-        return len(self.free)
-
-    def physical(self, points: Array) -> Array:
-        """Free parameters in the user's units: (candidates, free)."""
-        points = np.atleast_2d(points)
-        linear = self.lower + points * (self.upper - self.lower)
-        if not self._has_log_scale:
-            return linear
-        base = np.where(self.log, self.lower, 1.0)
-        return np.where(self.log, base * (np.where(self.log, self.upper, 1.0) / base) ** points, linear)
-
-    def unit_point(self, values: Mapping[str, float]) -> Array:
-        """The point of the cube for values by name in the user's units, clipped to the bounds."""
-        given = np.array([values[name] for name in self.names])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            logarithmic = np.log(given / self.lower) / np.log(self.upper / self.lower)
-        linear = (given - self.lower) / (self.upper - self.lower)
-        return np.clip(np.where(self.log, logarithmic, linear), 0, 1)
 
     def parameters(self, points: Array) -> Array:
         """All parameters of the model in SI units: (candidates, parameters)."""

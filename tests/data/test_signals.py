@@ -10,7 +10,8 @@ from pzt_ident.data.signals import read_signals, read_traces, write_signals
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks
 from pzt_ident.run.misfit import misfits
-from pzt_ident.search.problem import FixedValue, Problem
+from pzt_ident.search.cube import FixedValue
+from pzt_ident.search.problem import Problem
 
 AXES, DRIVES, RESPONSES = ("y", "v", "x"), ("mV", "kV", "V"), ("nm", None, "um")
 VOLTS = {"y": 1e-3, "v": 1e3, "x": 1.0}

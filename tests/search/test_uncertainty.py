@@ -8,8 +8,9 @@ from scipy.signal import lfilter
 
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks
+from pzt_ident.search.cube import FixedValue
 from pzt_ident.search.descent import polish
-from pzt_ident.search.problem import FixedValue, Problem
+from pzt_ident.search.problem import Problem
 from pzt_ident.search.sandwich import Lags, autoregression, covariance_of
 from pzt_ident.search.uncertainty import caution, estimates
 from rig import record
