@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -37,7 +38,8 @@ def search_here(statement: Statement, tasks: Sequence[Task], tell: Tell) -> tupl
             if now >= end:
                 raise Enough
             if now > end - SECONDS_TO_START:
-                context()
+                with suppress(OSError):  # whether one can be started is asked when it is needed
+                    context()
 
     def entry(tell: Tell, task: Task) -> None:
         with np.errstate(all="ignore"), without_working_folder():

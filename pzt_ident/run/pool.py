@@ -7,6 +7,7 @@ import os
 import signal
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -14,7 +15,7 @@ from itertools import chain
 from multiprocessing.connection import wait
 from typing import Any
 
-from pzt_ident.errors import InputError, RunError
+from pzt_ident.errors import InputError, LostError, RunError
 from pzt_ident.model.registry import blocks, optimizers
 
 Event = dict[str, Any]
@@ -135,7 +136,6 @@ class Pool:
 
     def __init__(self, entry: Entry, common: Arguments, most: int) -> None:
         self.entry, self.common, self.most = entry, common, most
-        self.context = context()
         self.idle: list[Worker] = []
         self.busy: dict[Any, Worker] = {}
 
@@ -149,8 +149,21 @@ class Pool:
         worker.begin(name, arguments)
 
     def _started(self) -> Worker:
-        ours, theirs = self.context.Pipe()
-        process = self.context.Process(target=serve, args=(self.entry, self.common, theirs), daemon=True)
+        """A worker that has not begun. Raises LostError where each one dies as it starts, or the server with it."""
+        for _ in range(ATTEMPTS):
+            try:
+                return self._start()
+            except (EOFError, ConnectionError):
+                reason = "each one is killed as it starts"
+            except OSError as error:
+                reason = error.strerror or str(error)
+            time.sleep(SECONDS_DEAF)
+        raise LostError(f"no process can be started on this machine: {reason}")
+
+    def _start(self) -> Worker:
+        starting = context()
+        ours, theirs = starting.Pipe()
+        process = starting.Process(target=serve, args=(self.entry, self.common, theirs), daemon=True)
         with without_working_folder():
             process.start()
         theirs.close()
@@ -171,7 +184,8 @@ def run_all(
     told on, what it returns is given to done(name, result). `common` goes to a process once; the tasks are taken as
     there is room for them. A task whose process dies is begun again, ATTEMPTS times in all.
 
-    Returns the reason for each name that failed. Ends all processes when interrupted.
+    Returns the reason for each name that failed. Ends all processes when interrupted. Raises LostError where none can be
+    started.
     """
     waiting, failed, deaths = iter(tasks), Failures(), dict[str, int]()
     with interrupts_deferred() as check:
@@ -234,7 +248,7 @@ def message_of(worker: Worker) -> tuple[str, Any]:
     """What came through the pipe; where it broke, why."""
     try:
         message: tuple[str, Any] = worker.pipe.recv()
-    except (EOFError, ConnectionError):
+    except (EOFError, OSError):  # at the end of a message, or in the middle of it
         message = "died", died(worker.process)
     return message
 

@@ -2,15 +2,19 @@
 
 import os
 import signal
+import struct
+import subprocess
 import sys
 from itertools import count
 from multiprocessing import Pipe
+from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 from pzt_ident.errors import RunError
 from pzt_ident.run.place import Local
-from pzt_ident.run.pool import ATTEMPTS, serve
+from pzt_ident.run.pool import ATTEMPTS, Worker, message_of, search_path, serve
 
 
 def unlucky(tell, common, number):
@@ -90,3 +94,44 @@ def test_a_worker_ends_quietly_with_its_parent(capfd):
     signal.signal(signal.SIGINT, handler)
     np.seterr(**errors)
     assert capfd.readouterr().err == ""
+
+
+KILLED_AS_IT_STARTS = """\
+import os, signal
+from pathlib import Path
+
+deaths = Path("deaths")
+if len(deaths.read_text()) < {times}:
+    deaths.write_text(deaths.read_text() + "x")
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+ONE_TASK = """\
+from types import SimpleNamespace
+from pzt_ident.run import pool
+
+pool.PRELOADED, pool.blocks = ("killed",), SimpleNamespace(modules=tuple)
+try:
+    print(pool.run_all(pool.forget, (), [("only", (1,))], 1, print, print))
+except pool.RunError as error:
+    print(error)
+"""
+
+
+@pytest.mark.parametrize(
+    ("times", "said"), [(2, "only None\n{}\n"), (ATTEMPTS, "no process can be started on this machine: each one is killed as it starts\n")]
+)
+def test_where_the_server_of_the_workers_is_killed_as_one_starts_another_is_begun(tmp_path, times, said):
+    (tmp_path / "killed.py").write_text(KILLED_AS_IT_STARTS.format(times=times))
+    (tmp_path / "deaths").touch()
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(tmp_path), *search_path()])}
+    line = [sys.executable, "-c", ONE_TASK]
+    ended = subprocess.run(line, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=60)
+    assert (ended.stdout, ended.stderr, ended.returncode) == (said, "", 0)
+
+
+def test_a_worker_that_dies_in_the_middle_of_a_message_has_died():
+    ours, theirs = Pipe()
+    os.write(theirs.fileno(), struct.pack("!i", 100) + b"half of it")
+    theirs.close()
+    worker = Worker(SimpleNamespace(join=lambda: None, exitcode=-9), ours)
+    assert message_of(worker) == ("died", "its process was killed by signal 9")
