@@ -205,7 +205,16 @@ def differences(true: dict[str, Any], found: dict[str, Any]) -> list[str]:
     return [f"{file} differs" for file in sorted({*true, *found}) if true.get(file) != found.get(file)]
 
 
-VICTIMS = ("main", "worker", "all")
+VICTIMS: dict[str, Callable[[list[int]], list[int]]] = {
+    "main": lambda pids: pids[:1],
+    "server": lambda pids: pids[2:3],
+    "worker": lambda pids: pids[3:][-1:],
+    "all": list,
+}
+"""Of the processes of a command, by age: the main one, the tracker of Python's resources, the server that workers are
+forked from, and these, which are there while there is work for them."""
+LONG = 1500
+"""Generations of a search that can be hit."""
 
 
 def chances(cases: range, seed: int, scratch: Path) -> Iterator[Case]:
@@ -213,23 +222,27 @@ def chances(cases: range, seed: int, scratch: Path) -> Iterator[Case]:
     jobs = {command: write_lot(scratch / f"by chance {command}", seed) for command in COMMANDS}
     true, lasts = {}, {}
     for command, job in jobs.items():
-        whole, start = job.parent / "whole", time.monotonic()
-        subprocess.run([*PROGRAM, *words_of(command, job, whole)], check=True, capture_output=True)
-        true[command], lasts[command] = essence(whole), time.monotonic() - start
+        job.write_text(job.read_text().replace("generations: 6", f"generations: {LONG}"))
+        for attempt in ("cold", "warm"):
+            whole, start = job.parent / attempt, time.monotonic()
+            subprocess.run([*PROGRAM, *beside(command, job, whole)], check=True, capture_output=True)
+            true[command], lasts[command] = essence(whole), time.monotonic() - start
     for number in cases:
         rng = np.random.default_rng([seed, number])
-        command, victim = COMMANDS[rng.integers(3)], VICTIMS[rng.integers(3)]
+        command = COMMANDS[rng.integers(len(COMMANDS))]
+        victim = "main" if command == "improve" else list(VICTIMS)[rng.integers(len(VICTIMS))]  # it works alone
         out = jobs[command].parent / f"out{number}"
-        words = words_of(command, jobs[command], out)
-        after = rng.uniform(0.2, 1) * lasts[command]
-        ended, said = killed(words, victim, after)
-        case = Case(number, f"{command}: {victim} killed after {after:.1f} s", "")
-        if ended == 0:
-            case.came, faults = "came to its end", []
-        elif victim == "worker":
-            case.came, faults = "failed", [f"exit code {ended}: {said[-300:]}"]
-        else:
+        words = beside(command, jobs[command], out)
+        after = rng.uniform(0.1, 0.8) * lasts[command]
+        struck, code, said = killed(words, victim, after)
+        case = Case(number, f"{command}: {victim} killed after {after:.1f} s", "came to its end")
+        faults = []
+        if not struck:
+            case.came = "was over before"
+        elif victim in ("main", "all"):
             case.came, faults = goes_on(out, words, in_process)
+        elif code != 0:
+            case.came, faults = "failed", [f"exit code {code}: {said[-300:]}"]
         case.faults += faults or differences(true[command], essence(out))
         yield case
         if not case.faults:
@@ -239,31 +252,38 @@ def chances(cases: range, seed: int, scratch: Path) -> Iterator[Case]:
 PROGRAM = [sys.executable, "-m", "pzt_ident"]
 
 
+def beside(command: str, job: Path, out: Path) -> Words:
+    """A command whose tasks run in other processes."""
+    return [*words_of(command, job, out), "--workers", "2"]
+
+
 def in_process(words: Words) -> tuple[int, str]:
     ended = subprocess.run([*PROGRAM, *words], capture_output=True, text=True, timeout=300)
     return ended.returncode, ended.stderr
 
 
-def killed(words: Words, victim: str, after: float) -> tuple[int, str]:
-    """Exit code and standard error of a command of which the main process, its youngest child or all are killed."""
+def killed(words: Words, victim: str, after: float) -> tuple[bool, int, str]:
+    """Whether somebody was killed, at that time or as soon as there was one; exit code and standard error."""
     process = subprocess.Popen(
         [*PROGRAM, *words], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True
     )
     time.sleep(after)
-    pids = {"main": [process.pid], "worker": family(process.pid)[-1:], "all": [process.pid, *family(process.pid)]}
-    for pid in pids[victim]:
+    while not (pids := VICTIMS[victim](family(process.pid))) and process.poll() is None:
+        time.sleep(0.01)
+    struck = process.poll() is None
+    for pid in pids:
         with suppress(ProcessLookupError):
             os.kill(pid, signal.SIGKILL)
     said = process.communicate(timeout=300)[1]
-    return process.returncode, said
+    return struck, process.returncode, said
 
 
 def family(main: int) -> list[int]:
-    """The other processes of a session that are at work, by age: those of Python alone that nobody waits for."""
-    found = []
+    """The processes of a session that are at work, by age."""
+    ages = []
     for stat in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):
             facts = stat.read_text().rpartition(")")[2].split()
-            if int(facts[3]) == main and int(stat.parent.name) != main:
-                found.append((int(facts[19]), int(stat.parent.name)))
-    return [pid for _, pid in sorted(found)]
+            if int(facts[3]) == main and facts[0] != "Z":
+                ages.append((int(facts[19]), int(stat.parent.name)))
+    return [pid for _, pid in sorted(ages)]
