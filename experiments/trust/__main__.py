@@ -104,10 +104,10 @@ def surroundings(seed: int, cases: int, out: Path) -> None:
 
 @main.command()
 @SEED
-@cases(45)
+@cases(80)
 @OUT
 def numerics(seed: int, cases: int, out: Path) -> None:
-    """The same measurement in other units, under other names and in another order."""
+    """The same measurement in other units, under other names, in another order and by every second sample."""
     from experiments.trust.numerics import cases as draw
 
     count("numerics", in_scratch(draw, cases, seed), out)

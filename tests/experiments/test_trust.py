@@ -7,6 +7,7 @@ from experiments.trust import kills, numerics, surroundings, versions
 from experiments.trust.bench import Bench, Ended
 from experiments.trust.judge import faults_of
 from experiments.trust.malformed import file_cases, job_cases
+from experiments.trust.tellings import OTHERWISE
 
 
 def wrong(cases):
@@ -26,8 +27,15 @@ def test_power_cuts(tmp_path):
 
 
 def test_the_same_measurement_in_other_words(tmp_path):
-    told = list(numerics.cases(range(9), 77, tmp_path))
-    assert len(told) == 9 and not wrong(told)
+    told = list(numerics.cases(range(10), 77, tmp_path))
+    assert told[-1].how == "every second sample" and not wrong(told)
+
+
+def test_a_diagnosis_does_not_turn_with_units_and_order(tmp_path):
+    tellings = [telling for telling in OTHERWISE if telling.name in ("kV, m and ms", "records in another order")]
+    with Bench() as bench:
+        diagnoses = list(numerics.diagnosed_otherwise(bench, tmp_path, 77, tellings))
+    assert [case.came for case in diagnoses] == ["missing"] * 2 and not wrong(diagnoses)
 
 
 def test_a_full_disk(tmp_path, monkeypatch):
