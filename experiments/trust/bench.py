@@ -16,10 +16,10 @@ PATIENCE = 60.0  # s
 
 @dataclass(frozen=True)
 class Ended:
-    """How a command ended. code: None where it hung or its process died."""
+    """How a command ended. code: None where it hung or its process died. message: its standard error."""
 
     code: int | None
-    said: str
+    message: str
     answer: str = ""
 
 
@@ -31,7 +31,7 @@ class Case:
     how: str
     came: str
     faults: list[str] = field(default_factory=list)
-    said: str = ""
+    message: str = ""
 
     def row(self) -> dict[str, Any]:
         return {"case": self.number, "how": self.how, "came": self.came, "faults": "; ".join(self.faults)}
@@ -100,11 +100,11 @@ class Bench:
         try:
             if self.pipe.poll(self.patience):
                 return self.pipe.recv()
-            said = "hangs"
+            message = "hangs"
         except (EOFError, ConnectionError):
-            said = "its process died"
+            message = "its process died"
         self.end()
-        return Ended(None, said)
+        return Ended(None, message)
 
     def end(self) -> None:
         if self.process is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -116,7 +116,3 @@ def write_good(folder: Path, seed: int, kind: str = "plain") -> Path:
     job = folder / "job.yaml"
     job.write_text(JOBS[kind], encoding="utf-8")
     return job
-
-
-Random = np.random.Generator
-Change = Callable[[str, Random], str]

@@ -32,14 +32,8 @@ def commented(text: str, rng: Random) -> Any:
     return "# a comment: {\n\n" + "\n".join(f"{line}  # [{i}" for i, line in enumerate(text.splitlines())) + "\n", SAME
 
 
-@kind(TEXT)
-def carriage_returns(text: str, rng: Random) -> Any:
-    return text.replace("\n", "\r\n"), SAME
-
-
-@kind(TEXT)
-def byte_order_mark(text: str, rng: Random) -> Any:
-    return b"\xef\xbb\xbf" + text.encode(), SAME
+kind(TEXT)(mutants.carriage_returns)
+kind(TEXT)(mutants.byte_order_mark)
 
 
 @kind(TEXT)
@@ -53,9 +47,7 @@ def keys_in_another_order(text: str, rng: Random) -> Any:
     return flow({key: tree[key] for key in rng.permutation(list(tree)).tolist()}), SAME
 
 
-@kind(TEXT)
-def without_last_newline(text: str, rng: Random) -> Any:
-    return text.rstrip("\n"), SAME
+kind(TEXT)(mutants.without_last_newline)
 
 
 @kind(TEXT)
@@ -142,11 +134,11 @@ def misread(tree: Tree, facts: dict[str, Any]) -> Iterator[str]:
     if budget is not None and budget * len(runs) != facts["evaluations"]:
         yield "other evaluations"
     for name, setting in (tree.get("parameters") or {}).items():
-        said = [row for row in facts["parameters"] if name.endswith(row["name"]) or row["name"].endswith(name)]
+        rows = [row for row in facts["parameters"] if name.endswith(row["name"]) or row["name"].endswith(name)]
         wanted = setting.get("bounds", setting.get("value"))
-        if said and wanted is not None and not any(same(wanted, row.get("bounds", row.get("value"))) for row in said):
+        if rows and wanted is not None and not any(same(wanted, row.get("bounds", row.get("value"))) for row in rows):
             yield f"another {name}"
 
 
-def same(wanted: Any, found: Any) -> bool:
-    return found is not None and bool(np.allclose(np.float64(wanted), np.float64(found), rtol=1e-9, atol=0))
+def same(wanted: Any, value: Any) -> bool:
+    return value is not None and bool(np.allclose(np.float64(wanted), np.float64(value), rtol=1e-9, atol=0))

@@ -15,23 +15,23 @@ PLACE = re.compile(r":\d+:\d+:|\b(line|row|rows|column|columns|sheet|dataset|fie
 def faults_of(ended: Ended, files: Iterable[str], value: str = "") -> Iterator[str]:
     """What is wrong with a refusal: nothing where it names one of the files, a place, the value and the remedy, in
     words and not in Python's."""
-    said = ended.said
+    message = ended.message
     if ended.code is None:
-        yield said
+        yield message
         return
     if ended.code != 2:
         yield f"exit code {ended.code}"
-    if PYTHON.search(said):
-        yield f"Python: {PYTHON.search(said)[0]}"  # type: ignore[index]
-    if not any(file in said for file in files):
+    if PYTHON.search(message):
+        yield f"Python: {PYTHON.search(message)[0]}"  # type: ignore[index]
+    if not any(file in message for file in files):
         yield "names no file"
-    if value and value not in said:
+    if value and value not in message:
         yield f"does not show {value!r}"
-    if not re.search(r"\n  \S", said) and ended.code == 2:
+    if not re.search(r"\n  \S", message) and ended.code == 2:
         yield "names no remedy"
-    if len(said) > 4000 or max(map(len, said.splitlines()), default=0) > 600:
+    if len(message) > 4000 or max(map(len, message.splitlines()), default=0) > 600:
         yield "is no sentence: too long"
-    if not said.isprintable() and any(not (letter.isprintable() or letter == "\n") for letter in said):
+    if not message.isprintable() and any(not (letter.isprintable() or letter == "\n") for letter in message):
         yield "has letters that no terminal shows"
 
 

@@ -46,10 +46,10 @@ def essence(folder: Path) -> dict[str, Any]:
     """What a folder of results says, less the clock."""
     names = ("result.json", "improvement.json", "diagnosis.json", "device.json", "residuals.json")
     files = sorted(path for path in folder.rglob("*") if path.name in names)
-    found = {str(path.relative_to(folder)): timeless(json.loads(path.read_text())) for path in files}
+    contents = {str(path.relative_to(folder)): timeless(json.loads(path.read_text())) for path in files}
     for path in sorted(folder.rglob("signals.nc")):
-        found[str(path.relative_to(folder))] = arrays(path)
-    return found
+        contents[str(path.relative_to(folder))] = arrays(path)
+    return contents
 
 
 def timeless(content: Any) -> Any:
@@ -61,25 +61,25 @@ def timeless(content: Any) -> Any:
 def arrays(path: Path) -> dict[str, bytes]:
     import h5py
 
-    found: dict[str, bytes] = {}
+    values: dict[str, bytes] = {}
     with h5py.File(path) as file:
-        file.visititems(lambda name, item: found.update({name: item[()].tobytes()} if hasattr(item, "shape") else {}))
-    return found
+        file.visititems(lambda name, item: values.update({name: item[()].tobytes()} if hasattr(item, "shape") else {}))
+    return values
 
 
 def in_fork(words: Words, prepare: Callable[[], None] = lambda: None) -> tuple[int, str]:
     """Exit code and standard error of a command in a fork of this process, which has imported it; its tasks run in it
     too."""
-    said, out = os.pipe()
+    reading, writing = os.pipe()
     if pid := os.fork():
-        os.close(out)
-        with os.fdopen(said, "rb") as pipe:
+        os.close(writing)
+        with os.fdopen(reading, "rb") as pipe:
             text = pipe.read().decode("utf-8", "replace")
         return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), text
     code = 1
     try:
         os.setpgid(0, 0)
-        os.dup2(out, 2)
+        os.dup2(writing, 2)
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         sys.stderr = os.fdopen(2, "w", closefd=False)
         code = here(words, prepare)
@@ -160,18 +160,18 @@ def writes_of(words: Words, out: Path) -> int:
 
         os._exit = leave
 
-    code, said = in_fork(words, prepare)
-    assert code == 0, said
+    code, message = in_fork(words, prepare)
+    assert code == 0, message
     return int(told.read_text())
 
 
 def goes_on(out: Path, words: Words, call: Callable[[Words], tuple[int, str]]) -> tuple[str, list[str]]:
     """Resume what was killed, or begin it again where resume says that it had not begun; how, and what is wrong."""
-    code, said = call(["resume", str(out), "--quiet", "--no-report"])
-    if code == 2 and (NOT_BEGUN in said or "not been begun" in said):
-        code, said = call(words)
-        return "begun again", [] if code == 0 else [f"cannot be begun again: {said.strip()}"]
-    return "resumed", [] if code == 0 else [f"exit code {code}: {said.strip()[:300]}"]
+    code, message = call(["resume", str(out), "--quiet", "--no-report"])
+    if code == 2 and (NOT_BEGUN in message or "not been begun" in message):
+        code, message = call(words)
+        return "begun again", [] if code == 0 else [f"cannot be begun again: {message.strip()}"]
+    return "resumed", [] if code == 0 else [f"exit code {code}: {message.strip()[:300]}"]
 
 
 def cuts(numbers: range, seed: int, scratch: Path) -> Iterator[Case]:
@@ -189,10 +189,10 @@ def cuts(numbers: range, seed: int, scratch: Path) -> Iterator[Case]:
             torn = rng if rng.random() < 0.5 else None
             out = scratch / command / f"cut{write}"
             words = words_of(command, job, out)
-            code, said = in_fork(words, PowerCut(out, int(write), torn))
+            code, message = in_fork(words, PowerCut(out, int(write), torn))
             case = Case(number, f"{command}: power cut {'torn ' if torn is not None else ''}ahead of write {write}", "")
             if code != -signal.SIGKILL:
-                case.faults.append(f"was not cut: {code} {said[-300:]}")
+                case.faults.append(f"was not cut: {code} {message[-300:]}")
             case.came, faults = goes_on(out, words, in_fork)
             case.faults += faults or differences(true, essence(out))
             yield case
@@ -201,8 +201,8 @@ def cuts(numbers: range, seed: int, scratch: Path) -> Iterator[Case]:
             number += 1
 
 
-def differences(true: dict[str, Any], found: dict[str, Any]) -> list[str]:
-    return [f"{file} differs" for file in sorted({*true, *found}) if true.get(file) != found.get(file)]
+def differences(true: dict[str, Any], other: dict[str, Any]) -> list[str]:
+    return [f"{file} differs" for file in sorted({*true, *other}) if true.get(file) != other.get(file)]
 
 
 VICTIMS: dict[str, Callable[[list[int]], list[int]]] = {
@@ -234,7 +234,7 @@ def chances(cases: range, seed: int, scratch: Path) -> Iterator[Case]:
         out = jobs[command].parent / f"out{number}"
         words = beside(command, jobs[command], out)
         after = rng.uniform(0.1, 0.8) * lasts[command]
-        struck, code, said = killed(words, victim, after)
+        struck, code, message = killed(words, victim, after)
         case = Case(number, f"{command}: {victim} killed after {after:.1f} s", "came to its end")
         faults = []
         if not struck:
@@ -242,7 +242,7 @@ def chances(cases: range, seed: int, scratch: Path) -> Iterator[Case]:
         elif victim in ("main", "all"):
             case.came, faults = goes_on(out, words, in_process)
         elif code != 0:
-            case.came, faults = "failed", [f"exit code {code}: {said[-300:]}"]
+            case.came, faults = "failed", [f"exit code {code}: {message[-300:]}"]
         case.faults += faults or differences(true[command], essence(out))
         yield case
         if not case.faults:
@@ -274,8 +274,8 @@ def killed(words: Words, victim: str, after: float) -> tuple[bool, int, str]:
     for pid in pids:
         with suppress(ProcessLookupError):
             os.kill(pid, signal.SIGKILL)
-    said = process.communicate(timeout=300)[1]
-    return struck, process.returncode, said
+    message = process.communicate(timeout=300)[1]
+    return struck, process.returncode, message
 
 
 def family(main: int) -> list[int]:

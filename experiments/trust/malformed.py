@@ -65,7 +65,7 @@ def job_cases(numbers: range, seed: int, scratch: Path) -> Iterator[Case]:
 def judged_job(bench: Bench, folder: Path, case: Case, mutant: Mutant, base: str, good: dict[str, float]) -> Case:
     before = files_in(folder)
     checked = bench.call(command, ["check", "job.yaml", "--json"], folder)
-    case.came, case.said = "accepted" if checked.code == 0 else "refused", checked.said
+    case.came, case.message = "accepted" if checked.code == 0 else "refused", checked.message
     if files_in(folder) != before:
         case.faults.append("check wrote something")
     if checked.code != 0:
@@ -82,14 +82,14 @@ def judged_job(bench: Bench, folder: Path, case: Case, mutant: Mutant, base: str
     case.faults += [f"misread: {fault}" for fault in understood(tree, facts)]
     if facts["evaluations"] <= MOST_EVALUATIONS:
         ran = bench.call(identified, folder)
-        case.said += ran.said
+        case.message += ran.message
         if ran.code == 0:
             is_good = mutant.expect == SAME or tree == read(JOBS[base])
             if is_good and parameters_of(ran.answer) != good:
                 case.faults.append("another result than the good job's")
         else:
             case.came = "accepted, no result"
-            case.faults += list(faults_of(ran, ("",))) if ran.code != 1 or "Error: " in ran.said[7:] else []
+            case.faults += list(faults_of(ran, ("",))) if ran.code != 1 or "Error: " in ran.message[7:] else []
     return case
 
 
@@ -116,7 +116,7 @@ def judged_file(
 ) -> Case:
     before = files_in(folder)
     ran = bench.call(identified, folder)
-    case.came, case.said = "accepted" if ran.code == 0 else "refused", ran.said
+    case.came, case.message = "accepted" if ran.code == 0 else "refused", ran.message
     if ran.code != 0:
         if mutant.expect == SAME:
             case.faults.append("refused, though it is the good file")
@@ -127,11 +127,11 @@ def judged_file(
     if mutant.expect == REFUSE:
         case.faults.append("accepted")
         return case
-    found = signals(folder / "out" / "signals.nc")
+    worked_on = signals(folder / "out" / "signals.nc")
     true = np.column_stack(list(columns.values())) if mutant.expect == SAME else files.read(mutant.content, form)
     if true is None:
         case.faults.append("no data to another reader")
-    elif found.shape != true.shape or not np.allclose(found[:, 1:], true[:, 1:], rtol=1e-9, atol=1e-15):
+    elif worked_on.shape != true.shape or not np.allclose(worked_on[:, 1:], true[:, 1:], rtol=1e-9, atol=1e-15):
         case.faults.append("other numbers than another reader finds")
     return case
 

@@ -102,3 +102,15 @@ def noise(raw: bytes, rng: Random) -> Any:
 @kind(BYTES)
 def utf_16(raw: bytes, rng: Random) -> Any:
     return raw.decode("latin-1").encode("utf-16"), READ
+
+
+def carriage_returns(text: str, rng: Random) -> Any:
+    return text.replace("\n", "\r\n"), SAME
+
+
+def byte_order_mark(text: str, rng: Random) -> Any:
+    return b"\xef\xbb\xbf" + text.encode(), SAME
+
+
+def without_last_newline(text: str, rng: Random) -> Any:
+    return text.rstrip("\n"), SAME

@@ -148,19 +148,8 @@ def one_stamp_off(cells: Cells, rng: Random) -> Any:
     return cells, REFUSE
 
 
-@kind(LINES)
-def carriage_returns(text: str, rng: Random) -> Any:
-    return text.replace("\n", "\r\n"), SAME
-
-
-@kind(LINES)
-def byte_order_mark(text: str, rng: Random) -> Any:
-    return b"\xef\xbb\xbf" + text.encode(), SAME
-
-
-@kind(LINES)
-def without_last_newline(text: str, rng: Random) -> Any:
-    return text.rstrip("\n"), SAME
+for alike in (mutants.carriage_returns, mutants.byte_order_mark, mutants.without_last_newline):
+    kind(LINES)(alike)
 
 
 @kind(LINES)

@@ -126,9 +126,9 @@ def two_in_one_folder(number: int, job: Path, scratch: Path, true: dict[str, obj
     out, case = scratch / "both", Case(number, "two processes in one folder", "the same result")
     line = [sys.executable, "-m", "pzt_ident", "run", str(job), "--out", str(out), "--no-report", "--workers", "1"]
     both = [subprocess.Popen(line, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True) for _ in range(2)]
-    said = [process.communicate(timeout=300)[1] for process in both]
+    messages = [process.communicate(timeout=300)[1] for process in both]
     codes = sorted(process.returncode for process in both)
-    if codes not in ([0, 0], [0, 2]) or any(PYTHON.search(text) for text in said):
-        case.faults.append(f"exit codes {codes}: {said}")
+    if codes not in ([0, 0], [0, 2]) or any(PYTHON.search(text) for text in messages):
+        case.faults.append(f"exit codes {codes}: {messages}")
     case.faults += differences(true, essence(out))
     return case

@@ -49,10 +49,10 @@ def put(tree: Tree, at: At, value: Tree) -> Tree:
 
 
 def pick(tree: Tree, rng: Random, fits: Callable[[At, Tree], bool]) -> tuple[At, Tree]:
-    found = [(at, value) for at, value in nodes(tree) if at and fits(at, value)]
-    if not found:
+    places = [(at, value) for at, value in nodes(tree) if at and fits(at, value)]
+    if not places:
         raise LookupError
-    return found[rng.integers(len(found))]
+    return places[rng.integers(len(places))]
 
 
 def misspelt(word: str, rng: Random) -> str:
@@ -147,35 +147,35 @@ def key_twice(tree: Tree, rng: Random) -> Any:
 @kind(VALUES)
 def word_misspelt(tree: Tree, rng: Random) -> Any:
     heads = ("model", "effects", "rule_out", "shared", "optimizers", "records")
-    found = pick(
+    at, word = pick(
         tree,
         rng,
         lambda at, value: (
             isinstance(value, str) and at[0] in heads and at[-1] in (["use"] if at[0] == "records" else ["name", 0, 1])
         ),
     )
-    word = misspelt(found[1], rng)
-    return put(tree, found[0], word), REFUSE, word
+    word = misspelt(word, rng)
+    return put(tree, at, word), REFUSE, word
 
 
 @kind(VALUES)
 def number_not_finite(tree: Tree, rng: Random) -> Any:
-    found = pick(tree, rng, lambda at, value: is_number(value))
+    at, _ = pick(tree, rng, lambda at, value: is_number(value))
     value = (float("nan"), float("inf"), -float("inf"))[rng.integers(3)]
-    return put(tree, found[0], value), REFUSE
+    return put(tree, at, value), REFUSE
 
 
 @kind(VALUES)
 def number_out_of_range(tree: Tree, rng: Random) -> Any:
-    found = pick(tree, rng, lambda at, value: is_number(value))
+    at, _ = pick(tree, rng, lambda at, value: is_number(value))
     others = (-1, 0, 1.5, -3.25, 10**30, 1e300, -1e300, 5e-324)
-    return put(tree, found[0], others[rng.integers(len(others))]), READ
+    return put(tree, at, others[rng.integers(len(others))]), READ
 
 
 @kind(VALUES)
 def number_scaled(tree: Tree, rng: Random) -> Any:
-    found = pick(tree, rng, lambda at, value: is_number(value))
-    return put(tree, found[0], found[1] * float(rng.choice([0.5, 3, 1000]))), READ
+    at, number = pick(tree, rng, lambda at, value: is_number(value))
+    return put(tree, at, number * float(rng.choice([0.5, 3, 1000]))), READ
 
 
 @kind(VALUES)
@@ -187,11 +187,11 @@ def bounds_wrong(tree: Tree, rng: Random) -> Any:
 
 @kind(VALUES)
 def unit_of_another_kind(tree: Tree, rng: Random) -> Any:
-    found = pick(
+    at, quantity = pick(
         tree, rng, lambda at, value: at[-1] in ("settle", "sample_rate", "target", "unit") or at[-2:-1] == ("time",)
     )
-    word = "kg" if found[0][-1] == "unit" else f"{str(found[1]).split()[0]} kg"
-    return put(tree, found[0], word), REFUSE, "kg"
+    word = "kg" if at[-1] == "unit" else f"{str(quantity).split()[0]} kg"
+    return put(tree, at, word), REFUSE, "kg"
 
 
 @kind(VALUES)
@@ -214,14 +214,16 @@ def file_not_there(tree: Tree, rng: Random) -> Any:
 
 @kind(VALUES)
 def column_not_there(tree: Tree, rng: Random) -> Any:
-    found = pick(tree, rng, lambda at, value: at[-1] in ("drive", "response", "column") or at == ("channels", "time"))
-    if found[0][-1] == "column":
+    at, column = pick(
+        tree, rng, lambda at, value: at[-1] in ("drive", "response", "column") or at == ("channels", "time")
+    )
+    if at[-1] == "column":
         value = int(rng.choice([0, -1, 99]))
-        return put(tree, found[0], value), REFUSE, str(value)
-    if found[0][0] == "limits" or isinstance(found[1], dict):
+        return put(tree, at, value), REFUSE, str(value)
+    if at[0] == "limits" or isinstance(column, dict):
         raise LookupError
     word = str(rng.choice(["w [V]", "nothing", "u [kV/mm/s]", "U [V]x"]))
-    return put(tree, found[0], word), REFUSE, word
+    return put(tree, at, word), REFUSE, word
 
 
 @kind(VALUES)

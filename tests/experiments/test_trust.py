@@ -11,7 +11,7 @@ from experiments.trust.tellings import OTHERWISE
 
 
 def wrong(cases):
-    return [(case.how, case.faults, case.said) for case in cases if case.faults]
+    return [(case.how, case.faults, case.message) for case in cases if case.faults]
 
 
 def test_malformed_jobs(tmp_path):
@@ -45,7 +45,7 @@ def test_a_full_disk(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("code", "said", "fault"),
+    ("code", "message", "fault"),
     [
         (2, "Error: a.csv: row 3 holds 'x'\n  delete it", None),
         (1, "Error: a.csv: row 3 holds 'x'\n  delete it", "exit code 1"),
@@ -56,8 +56,8 @@ def test_a_full_disk(tmp_path, monkeypatch):
         (None, "hangs", "hangs"),
     ],
 )
-def test_a_refusal_is_judged(code, said, fault):
-    assert list(faults_of(Ended(code, said), ["a.csv"], "'x'")) == ([fault] if fault else [])
+def test_a_refusal_is_judged(code, message, fault):
+    assert list(faults_of(Ended(code, message), ["a.csv"], "'x'")) == ([fault] if fault else [])
 
 
 def slow(seconds):
