@@ -104,7 +104,7 @@ def surroundings(seed: int, cases: int, out: Path) -> None:
 
 @main.command()
 @SEED
-@cases(80)
+@cases(96)
 @OUT
 def numerics(seed: int, cases: int, out: Path) -> None:
     """The same measurement in other units, under other names, in another order and by every second sample."""

@@ -7,20 +7,31 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import chain, count
 from math import ceil, log10, sqrt
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from experiments.coverage.stage import MASS, displacement
 from experiments.trust.bench import Bench, Case, command
-from experiments.trust.good import measurement
+from experiments.trust.good import Array, Columns, measurement
 from experiments.trust.malformed import identified
-from experiments.trust.oversampled import HIDDEN, NOISE, RATE, SAMPLES, Array, record, step_error, with_mechanics
-from experiments.trust.tellings import OTHERWISE, PLAIN, THINNED, USES, Telling
+from experiments.trust.oversampled import (
+    HIDDEN,
+    NOISE,
+    RATE,
+    SAMPLES,
+    coupled_record,
+    record,
+    step_error,
+    with_mechanics,
+)
+from experiments.trust.tellings import OF_TWO_AXES, OTHERWISE, PLAIN, SI, THINNED, USES, Telling
 
 SAME = 1e-9
 FAR = 3.0
 """Times the noise that is in the parameters: of seven the square sum stays below its sevenfold 9 but once in 10^9."""
-UNITS = {"V": 1.0, "kV": 1e3, "mV": 1e-3, "um": 1e-6, "m": 1.0, "nm": 1e-9, "": 1.0, "1": 1.0}
+SINGLE, COUPLED = "model: [bouc_wen]\n", "model: [bouc_wen]\neffects: [cross_coupling]\n"
+MECHANICAL = f"model: [bouc_wen, lumped]\nparameters: {{lumped.mass: {{value: {MASS}}}}}\n"
 
 
 def cases(numbers: range, seed: int, scratch: Path) -> Iterator[Case]:
@@ -33,54 +44,63 @@ def cases(numbers: range, seed: int, scratch: Path) -> Iterator[Case]:
 
 
 def around(bench: Bench, home: Path, seed: int) -> Iterator[Case]:
-    yield from told_otherwise(bench, home / "told", seed, OTHERWISE)
+    yield from told_otherwise(bench, home / "one axis", seed, measurement, SINGLE, OTHERWISE)
+    yield from told_otherwise(bench, home / "two axes", seed, coupled_record, COUPLED, OF_TWO_AXES)
     yield thinned(bench, home / "thinned", seed)
     yield from diagnosed_otherwise(bench, home / "diagnosed", seed, (*OTHERWISE, THINNED))
 
 
-def told_otherwise(bench: Bench, home: Path, seed: int, tellings: Sequence[Telling]) -> Iterator[Case]:
+def told_otherwise(
+    bench: Bench, home: Path, seed: int, draw: Callable[[int, str], Columns], model: str, tellings: Sequence[Telling]
+) -> Iterator[Case]:
     """The physics of tellings against those of the plain one."""
-    records = {name: measurement(seed + 1000 * place, use) for place, (name, use) in enumerate(USES.items())}
+    records = {name: draw(seed + 1000 * place, use) for place, (name, use) in enumerate(USES.items())}
 
     def answer(telling: Telling) -> str:
-        return bench.call(identified, telling.write(home / telling.name, records, "bouc_wen", seed)).answer
+        return bench.call(identified, telling.write(home / telling.name, records, model, seed)).answer
 
     plain = answer(PLAIN)
     for telling in tellings:
-        yield compared(Case(0, telling.name, ""), plain, answer(telling))
+        yield compared(Case(0, f"{home.name}: {telling.name}", ""), telling, plain, answer(telling))
 
 
-def compared(case: Case, plain: str, other: str) -> Case:
-    true, told = physics(plain), physics(other)
+def compared(case: Case, telling: Telling, plain: str, other: str) -> Case:
+    true, told = physics(plain, PLAIN), physics(other, telling)
     apart = {name: abs(told[name] - value) / abs(value) for name, value in true.items() if value}
     worst = max(apart.values())
     case.came = f"within {10.0 ** ceil(log10(max(worst, 1e-16))):.0e}"
     if worst > SAME:
         case.faults.append(f"{worst:.1e} apart: {', '.join(name for name, far in apart.items() if far > SAME)}")
-    if verdicts(plain) != verdicts(other):
+    if verdicts(plain, PLAIN) != verdicts(other, telling):
         case.faults.append("another verdict")
     return case
 
 
 def in_si(value: float, unit: str) -> float:
     above, _, below = unit.partition("/")
-    return value * UNITS[above] / UNITS[below]
+    return value * SI[above] / SI[below]
 
 
-def physics(answer: str) -> dict[str, float]:
+def parameters(answer: str, telling: Telling) -> dict[str, dict[str, Any]]:
+    """Those of a result by their names in the plain telling."""
+    axes = {told: plain for plain, told in telling.axes.items()}
+    facts: dict[str, dict[str, Any]] = json.loads(answer)["best"]["parameters"]
+    return {".".join(axes.get(word, word) for word in name.split(".")): entry for name, entry in facts.items()}
+
+
+def physics(answer: str, telling: Telling) -> dict[str, float]:
     """Errors, noise, parameters and standard errors of a result, in SI units."""
     result = json.loads(answer)
     facts = {f"RMSE, {use}": in_si(value, result["unit"]) for use, value in result["best"]["rmse"].items()}
     facts["noise floor"] = in_si(result["floor"], result["unit"])
-    for name, parameter in result["best"]["parameters"].items():
-        word = name.split(".", name.count(".") - 1)[-1]
-        facts[word] = in_si(parameter["value"], parameter["unit"])
-        facts[f"{word}, standard error"] = in_si(parameter["standard_error"] or 0.0, parameter["unit"])
+    for name, parameter in parameters(answer, telling).items():
+        facts[name] = in_si(parameter["value"], parameter["unit"])
+        facts[f"{name}, standard error"] = in_si(parameter["standard_error"] or 0.0, parameter["unit"])
     return facts
 
 
-def verdicts(answer: str) -> list[str]:
-    return [parameter["verdict"] for parameter in json.loads(answer)["best"]["parameters"].values()]
+def verdicts(answer: str, telling: Telling) -> dict[str, str]:
+    return {name: parameter["verdict"] for name, parameter in parameters(answer, telling).items()}
 
 
 def thinned(bench: Bench, home: Path, seed: int) -> Case:
@@ -91,22 +111,20 @@ def thinned(bench: Bench, home: Path, seed: int) -> Case:
     second, the share of so many parameters.
     """
     records = {name: record(seed + 1000 * place, use, with_mechanics) for place, (name, use) in enumerate(USES.items())}
-    answers = []
-    for telling in (PLAIN, THINNED):
-        folder = telling.write(home / telling.name, records, "bouc_wen, lumped", seed)
-        with (folder / "job.yaml").open("a", encoding="utf-8") as job:
-            job.write(f"parameters: {{lumped.mass: {{value: {MASS}}}}}\n")
-        answers.append(bench.call(identified, folder).answer)
+    answers = [
+        bench.call(identified, telling.write(home / telling.name, records, MECHANICAL, seed)).answer
+        for telling in (PLAIN, THINNED)
+    ]
     plain, other = map(stage_of, answers)
     fitted = sum(use == "identify" for use in USES.values())
     statistical = FAR * NOISE * sqrt((len(IDENTIFIED) + 1) / (fitted * SAMPLES))
-    case = Case(0, THINNED.name, "within what step and noise allow")
+    case = Case(0, f"mechanics: {THINNED.name}", "within what step and noise allow")
     for name, columns in records.items():
         u = columns["u [V]"]
         apart = float(np.std(other(u, 1 / RATE) - plain(u, 1 / RATE)))
         if apart > (allowed := step_error(u, plain) + statistical):
             case.faults.append(f"{name}: {apart:.1e} um apart, more than {allowed:.1e}")
-    if verdicts(answers[0]) != verdicts(answers[1]):
+    if verdicts(answers[0], PLAIN) != verdicts(answers[1], THINNED):
         case.faults.append("another verdict")
     return case
 
@@ -116,8 +134,8 @@ IDENTIFIED = ("gain", "alpha", "beta", "gamma", "stiffness", "damping")
 
 def stage_of(answer: str) -> Callable[[Array, float], Array]:
     """The stage with the parameters of a result."""
-    parameters = {name.rpartition(".")[2]: facts for name, facts in json.loads(answer)["best"]["parameters"].items()}
-    truth = {name: parameters[name]["value"] for name in IDENTIFIED}
+    values = {name.rpartition(".")[2]: facts["value"] for name, facts in parameters(answer, PLAIN).items()}
+    truth = {name: values[name] for name in IDENTIFIED}
     return lambda u, dt: displacement(u, dt, truth)
 
 
@@ -128,7 +146,7 @@ def diagnosed_otherwise(bench: Bench, home: Path, seed: int, tellings: Sequence[
     words = ["diagnose", "job.yaml", "--budget", "30s", "--no-report", "--json", "--out", "out"]
 
     def verdict(telling: Telling) -> tuple[str, list[list[str]]]:
-        return missing(bench.call(command, words, telling.write(home / telling.name, records, "bouc_wen", seed)).answer)
+        return missing(bench.call(command, words, telling.write(home / telling.name, records, SINGLE, seed)).answer)
 
     plain = verdict(PLAIN)
     for telling in tellings:

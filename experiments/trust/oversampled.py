@@ -6,13 +6,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.signal import lfilter
 
 from experiments.coverage.stage import bouc_wen, displacement
-from experiments.trust.good import TRUTH, Columns
+from experiments.trust.good import TRUTH, Array, Columns
 
-Array = NDArray[np.float64]
 RATE, SAMPLES, FINER = 8000.0, 1600, 4
 NOISE = 0.01  # um
 MECHANICS = {"stiffness": 3e5, "damping": 60.0}  # N/m, N s/m
@@ -35,6 +33,13 @@ def record(seed: int, use: str, stage: Stage) -> Columns:
     noise = np.random.default_rng([seed, 7, use == "validate"]).standard_normal(SAMPLES)
     x = stage(u, 1 / (FINER * RATE))[::FINER] + NOISE * noise
     return {"time [s]": np.arange(SAMPLES) / RATE, "u [V]": u[::FINER], "x [um]": x}
+
+
+def coupled_record(seed: int, use: str) -> Columns:
+    """Of two axes, each of which moves the other one."""
+    x, y = record(seed, use, plain), record(seed + 500, use, plain)
+    own, other = x["x [um]"], y["x [um]"]
+    return x | {"x [um]": own + 0.02 * other, "v [V]": y["u [V]"], "y [um]": other - 0.03 * own}
 
 
 def with_mechanics(u: Array, dt: float) -> Array:

@@ -5,9 +5,11 @@ import pytest
 
 from experiments.trust import kills, numerics, surroundings, versions
 from experiments.trust.bench import Bench, Ended
+from experiments.trust.good import measurement
 from experiments.trust.judge import faults_of
 from experiments.trust.malformed import file_cases, job_cases
-from experiments.trust.tellings import OTHERWISE
+from experiments.trust.oversampled import coupled_record
+from experiments.trust.tellings import AXES_BACKWARDS, OTHERWISE, Telling
 
 
 def wrong(cases):
@@ -27,15 +29,15 @@ def test_power_cuts(tmp_path):
 
 
 def test_the_same_measurement_in_other_words(tmp_path):
-    told = list(numerics.cases(range(10), 77, tmp_path))
-    assert told[-1].how == "every second sample" and not wrong(told)
-
-
-def test_a_diagnosis_does_not_turn_with_units_and_order(tmp_path):
-    tellings = [telling for telling in OTHERWISE if telling.name in ("kV, m and ms", "records in another order")]
     with Bench() as bench:
-        diagnoses = list(numerics.diagnosed_otherwise(bench, tmp_path, 77, tellings))
-    assert [case.came for case in diagnoses] == ["missing"] * 2 and not wrong(diagnoses)
+        told = [
+            *numerics.told_otherwise(bench, tmp_path / "one", 77, measurement, numerics.SINGLE, OTHERWISE),
+            *numerics.told_otherwise(bench, tmp_path / "two", 77, coupled_record, numerics.COUPLED, [AXES_BACKWARDS]),
+            numerics.thinned(bench, tmp_path / "thinned", 77),
+        ]
+        wholly = Telling("wholly", ("ms", "kV", "m"), {"u": "drive"}, {"x": "piezo"}, "records")
+        (diagnosis,) = numerics.diagnosed_otherwise(bench, tmp_path, 77, [wholly])
+    assert not wrong([*told, diagnosis]) and diagnosis.came == "missing"
 
 
 def test_a_full_disk(tmp_path, monkeypatch):
