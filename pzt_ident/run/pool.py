@@ -184,8 +184,8 @@ def run_all(
     told on, what it returns is given to done(name, result). `common` goes to a process once; the tasks are taken as
     there is room for them. A task whose process dies is begun again, ATTEMPTS times in all.
 
-    Returns the reason for each name that failed. Ends all processes when interrupted. Raises LostError where none can be
-    started.
+    Returns the reason for each name that failed. Ends all processes when interrupted. Raises LostError where none can
+    be started.
     """
     waiting, failed, deaths = iter(tasks), Failures(), dict[str, int]()
     with interrupts_deferred() as check:

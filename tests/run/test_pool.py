@@ -118,7 +118,11 @@ except pool.RunError as error:
 
 
 @pytest.mark.parametrize(
-    ("times", "said"), [(2, "only None\n{}\n"), (ATTEMPTS, "no process can be started on this machine: each one is killed as it starts\n")]
+    ("times", "said"),
+    [
+        (2, "only None\n{}\n"),
+        (ATTEMPTS, "no process can be started on this machine: each one is killed as it starts\n"),
+    ],
 )
 def test_where_the_server_of_the_workers_is_killed_as_one_starts_another_is_begun(tmp_path, times, said):
     (tmp_path / "killed.py").write_text(KILLED_AS_IT_STARTS.format(times=times))
