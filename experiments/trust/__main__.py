@@ -93,7 +93,7 @@ def kills(seed: int, cases: int, out: Path) -> None:
 
 @main.command()
 @SEED
-@cases(20)
+@cases(60)
 @OUT
 def surroundings(seed: int, cases: int, out: Path) -> None:
     """Full disks, no HOME, a clock that goes back."""

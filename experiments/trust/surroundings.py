@@ -6,15 +6,15 @@ from __future__ import annotations
 import os
 import resource
 import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 
 from experiments.trust.bench import Case
 from experiments.trust.good import write_good
 from experiments.trust.judge import PYTHON
-from experiments.trust.kills import differences, essence
+from experiments.trust.kills import COMMANDS, PROGRAM, differences, essence, words_of, write_lot
 
 CLOCK_BACK = """\
 import time, datetime
@@ -24,7 +24,6 @@ def back():
     return real() - past[0]
 time.time = back
 """
-MOUNTS = ("mount", "umount")
 
 
 @dataclass(frozen=True)
@@ -76,7 +75,7 @@ SURROUNDINGS = (
 )
 
 
-def run(job: Path, out: Path, around: Surrounding) -> subprocess.CompletedProcess[str]:
+def at_work(command: str, job: Path, out: Path, around: Surrounding) -> subprocess.CompletedProcess[str]:
     changed = os.environ | {name: value for name, value in around.variables.items() if value is not None}
     environment = {name: value for name, value in changed.items() if around.variables.get(name, "") is not None}
     if environment.get("PYTHONPATH") == "clock":
@@ -84,51 +83,59 @@ def run(job: Path, out: Path, around: Surrounding) -> subprocess.CompletedProces
         clock.mkdir(exist_ok=True)
         (clock / "sitecustomize.py").write_text(CLOCK_BACK)
         environment["PYTHONPATH"] = os.pathsep.join([str(clock), os.environ.get("PYTHONPATH", os.getcwd())])
-    words = ["run", str(job), "--out", str(out), "--no-report", "--workers", str(around.workers)]
-    line = [sys.executable, "-m", "pzt_ident", *words]
+    words = [word for word in words_of(command, job, out) if word != "--quiet"]
+    workers = ["--workers", str(around.workers)] if command != "improve" else []
+    line = [*PROGRAM, *words, *workers]
     return subprocess.run(
         line, env=environment, capture_output=True, text=True, errors="replace", timeout=300, preexec_fn=around.before
     )
 
 
 def cases(numbers: range, seed: int, scratch: Path) -> Iterator[Case]:
+    """Each command in each surrounding, then two in one folder."""
+    every = chain.from_iterable(in_all(command, seed, scratch / command) for command in COMMANDS)
+    for number, case in zip(numbers, chain(every, two_in_one_folder(seed, scratch / "two")), strict=False):
+        case.number = number
+        yield case
+
+
+def in_all(command: str, seed: int, scratch: Path) -> Iterator[Case]:
     """The same small job in each; where the surrounding forbids a result, it is resumed outside of it."""
-    job, scratch = write_good(scratch / "job", seed), scratch
-    plain = Surrounding("plain")
-    run(job, scratch / "whole", plain)
+    job, plain = write_lot(scratch, seed), Surrounding("plain")
+    at_work(command, job, scratch / "whole", plain)
     true = essence(scratch / "whole")
-    for number, around in zip(numbers, SURROUNDINGS, strict=False):
+    for number, around in enumerate(SURROUNDINGS):
         out = scratch / f"out{number}"
-        ended = run(job, around.out or out, around)
-        case = Case(number, around.name, "the same result")
-        if PYTHON.search(ended.stderr):
+        ended = at_work(command, job, around.out or out, around)
+        case = Case(0, f"{command}: {around.name}", "the same result")
+        if PYTHON.search(ended.stderr + ended.stdout):
             case.faults.append(f"Python: {ended.stderr[-200:]}")
         if around.says:
             case.came = "an error, then the same result"
             if ended.returncode == 0 or not any(text in ended.stderr for text in around.says):
                 case.faults.append(f"exit code {ended.returncode}: {ended.stderr[-300:]}")
-            ended = run(job, out, plain) if not (out / "environment.json").exists() else resumed(out)
+            ended = resumed(out) if out.exists() else at_work(command, job, out, plain)
         if ended.returncode != 0:
             case.faults.append(f"exit code {ended.returncode}: {ended.stderr[-300:]}")
         else:
             case.faults += differences(true, essence(out))
         yield case
-    yield two_in_one_folder(len(SURROUNDINGS), job, scratch, true)
 
 
 def resumed(out: Path) -> subprocess.CompletedProcess[str]:
-    line = [sys.executable, "-m", "pzt_ident", "resume", str(out), "--no-report"]
+    line = [*PROGRAM, "resume", str(out), "--no-report"]
     return subprocess.run(line, capture_output=True, text=True, timeout=300)
 
 
-def two_in_one_folder(number: int, job: Path, scratch: Path, true: dict[str, object]) -> Case:
+def two_in_one_folder(seed: int, scratch: Path) -> Iterator[Case]:
     """Two commands at once into one folder: one is refused, or both come to the same result."""
-    out, case = scratch / "both", Case(number, "two processes in one folder", "the same result")
-    line = [sys.executable, "-m", "pzt_ident", "run", str(job), "--out", str(out), "--no-report", "--workers", "1"]
+    job, out, case = write_good(scratch, seed), scratch / "both", Case(0, "run: two in one folder", "the same result")
+    at_work("run", job, scratch / "whole", Surrounding("plain"))
+    line = [*PROGRAM, *words_of("run", job, out), "--workers", "1"]
     both = [subprocess.Popen(line, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True) for _ in range(2)]
     messages = [process.communicate(timeout=300)[1] for process in both]
     codes = sorted(process.returncode for process in both)
     if codes not in ([0, 0], [0, 2]) or any(PYTHON.search(text) for text in messages):
         case.faults.append(f"exit codes {codes}: {messages}")
-    case.faults += differences(true, essence(out))
-    return case
+    case.faults += differences(essence(scratch / "whole"), essence(out))
+    yield case

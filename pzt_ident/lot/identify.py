@@ -8,6 +8,7 @@ import os
 import shutil
 import sys
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -105,8 +106,9 @@ class Identification:
         self.tell({})
         try:
             place.run_all(identify_device, (self.orders,), self.tasks(place), self.note, self.keep)
-        except (KeyboardInterrupt, LostError):
-            write_table(self.folder, self.devices)
+        except (KeyboardInterrupt, LostError, OSError):
+            with suppress(OSError):
+                write_table(self.folder, self.devices)
             raise
         shutil.rmtree(self.folder / "devices" / ".new", ignore_errors=True)
         write_table(self.folder, self.devices)

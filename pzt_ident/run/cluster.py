@@ -27,7 +27,7 @@ from pzt_ident.run.pool import (
     Failures,
     Tasks,
     Tell,
-    attempt,
+    attempt_away,
     forget,
     interrupts_deferred,
 )
@@ -188,6 +188,8 @@ class Session:
             return self.begin(name, self.sent[name][0])
         else:
             raise lost(self.words)
+        if kind == "stopped":
+            raise content
         del self.running[name], self.sent[name]
         if kind == "done":
             self.done(name, content)
@@ -252,7 +254,7 @@ def attempt_there(entry: Entry, common: bytes, arguments: bytes, topic: str) -> 
         worker.log_event(topic, plain(event))
 
     with _alone, computing():
-        return attempt(entry, (*pickle.loads(common), *pickle.loads(arguments)), thinned(tell))
+        return attempt_away(entry, (*pickle.loads(common), *pickle.loads(arguments)), thinned(tell))
 
 
 def thinned(tell: Tell) -> Tell:

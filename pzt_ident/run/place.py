@@ -26,7 +26,7 @@ class Place(Protocol):
         return the reason for each that failed. `common` goes to a worker once. What a worker that was killed was at is
         done again. Tasks are taken as there is room, so that a million of them need no more memory than a few.
 
-        Raises LostError where the place itself is gone.
+        Raises LostError where the place itself is gone, OSError where a disk there has no room.
         """
 
 

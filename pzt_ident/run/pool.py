@@ -185,7 +185,7 @@ def run_all(
     there is room for them. A task whose process dies is begun again, ATTEMPTS times in all.
 
     Returns the reason for each name that failed. Ends all processes when interrupted. Raises LostError where none can
-    be started.
+    be started, OSError where one had no room on its disk.
     """
     waiting, failed, deaths = iter(tasks), Failures(), dict[str, int]()
     with interrupts_deferred() as check:
@@ -203,6 +203,8 @@ def run_all(
                     if kind == "event":
                         tell(content)
                         continue
+                    if kind == "stopped":
+                        raise content
                     del pool.busy[ready]
                     deaths[worker.name] = deaths.get(worker.name, 0) + (kind == "died")
                     if kind == "died" and deaths[worker.name] < ATTEMPTS:
@@ -229,14 +231,26 @@ def serve(entry: Entry, common: Arguments, pipe: Any) -> None:
     np.seterr(all="ignore")  # a simulation that overflows is counted, not warned about
     with suppress(ConnectionError, EOFError):
         while True:
-            pipe.send(attempt(entry, (*common, *pipe.recv()), lambda event: pipe.send(("event", event))))
+            pipe.send(attempt_away(entry, (*common, *pipe.recv()), lambda event: pipe.send(("event", event))))
+
+
+def attempt_away(entry: Entry, arguments: Arguments, tell: Tell) -> tuple[str, Any]:
+    """As `attempt`, or `stopped` with the OSError, for the process that gave the task. Raises ConnectionError where
+    that is gone."""
+    try:
+        return attempt(entry, arguments, tell)
+    except ConnectionError:
+        raise
+    except OSError as error:
+        return "stopped", OSError(error.errno, error.strerror or str(error), error.filename)
 
 
 def attempt(entry: Entry, arguments: Arguments, tell: Tell) -> tuple[str, Any]:
-    """`done` with what the entry returns, or `failed` with the reason."""
+    """`done` with what the entry returns, or `failed` with the reason. Raises OSError: a full disk is no fault of the
+    task, which may be done once there is room."""
     try:
         return "done", entry(tell, *arguments)
-    except ConnectionError:
+    except OSError:
         raise
     except (InputError, RunError) as error:
         return "failed", str(error)

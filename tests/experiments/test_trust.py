@@ -43,7 +43,7 @@ def test_the_same_measurement_in_other_words(tmp_path):
 def test_a_full_disk(tmp_path, monkeypatch):
     full = [around for around in surroundings.SURROUNDINGS if around.name == "full disk"]
     monkeypatch.setattr(surroundings, "SURROUNDINGS", full)
-    assert not next(surroundings.cases(range(1), 77, tmp_path)).faults
+    assert not wrong(surroundings.in_all("fleet", 77, tmp_path))
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """Tasks in processes: which of them die, fail or are done again."""
 
+import errno
 import os
 import signal
 import struct
@@ -94,6 +95,18 @@ def test_a_worker_ends_quietly_with_its_parent(capfd):
     signal.signal(signal.SIGINT, handler)
     np.seterr(**errors)
     assert capfd.readouterr().err == ""
+
+
+def full(tell, number):
+    if number == 1:
+        raise OSError(errno.ENOSPC, "No space left on device", "losses")
+
+
+def test_a_full_disk_is_no_fault_of_the_task_but_ends_all(tmp_path):
+    results: dict = {}
+    with pytest.raises(OSError, match="No space left on device: 'losses'") as raised:
+        Local(1).run_all(full, (), [(str(i), (i,)) for i in range(3)], lambda event: None, results.__setitem__)
+    assert (raised.value.errno, list(results)) == (errno.ENOSPC, ["0"])
 
 
 KILLED_AS_IT_STARTS = """\
