@@ -1,5 +1,6 @@
 """Tasks on a cluster of Dask's: a scheduler in a process of its own, workers that are killed, a scheduler that is."""
 
+import errno
 import json
 import os
 import signal
@@ -111,6 +112,15 @@ def test_a_task_whose_outcome_a_living_scheduler_lost_is_sent_again(cluster, tmp
         session = Forgetful(client, "here", slow_once, (tmp_path,), lambda event: None, results.__setitem__)
         assert session.run(iter([(str(i), (i,)) for i in range(3)]), lambda: None) == {}
     assert results == {"0": 0, "1": 1, "2": 4}
+
+
+def full(tell, number):
+    raise OSError(errno.ENOSPC, "No space left on device", "losses")
+
+
+def test_a_full_disk_of_a_worker_is_no_fault_of_the_task_but_ends_all(cluster):
+    with pytest.raises(OSError, match="No space left on device: 'losses'"):
+        place_of(cluster.address).run_all(full, (), [("1", (1,))], lambda event: None, lambda name, result: None)
 
 
 def test_a_lost_scheduler_ends_in_a_folder_that_resume_goes_on_with(job, tmp_path):
