@@ -1,21 +1,25 @@
-"""python -m experiments.trust jobs | files | kills | surroundings | numerics | constraints | versions"""
+"""python -m experiments.trust jobs | files | cuts | kills | surroundings | numerics | constraints | versions"""
 
 from __future__ import annotations
 
 import csv
 from collections.abc import Callable, Iterable, Iterator
+from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 import click
 
-OUT = click.option("--out", type=click.Path(path_type=Path), default=Path("results/trust"), show_default=True)
-SEED = click.option("--seed", type=int, required=True)
-
-
-def cases(default: int) -> Any:
-    return click.option("--cases", type=int, default=default, show_default=True)
+CAMPAIGNS = (
+    ("jobs", 500, "malformed:job_cases", "Malformed jobs."),
+    ("files", 500, "malformed:file_cases", "Malformed data files."),
+    ("cuts", 60, "kills:cuts", "Power cuts, so many a command, at writes spread over it."),
+    ("kills", 40, "kills:chances", "Processes that are killed by chance."),
+    ("surroundings", 55, "surroundings:cases", "Full disks, no HOME, a clock that goes back."),
+    ("numerics", 96, "numerics:cases", "The same measurement in other units, names and orders, and thinned."),
+)
+"""Names, numbers of cases, what draws them and sentences."""
 
 
 @click.group()
@@ -47,70 +51,21 @@ def in_scratch(draw: Callable[[range, int, Path], Iterable[Any]], cases: int, se
             yield case.row()
 
 
-@main.command()
-@SEED
-@cases(500)
-@OUT
-def jobs(seed: int, cases: int, out: Path) -> None:
-    """Malformed jobs."""
-    from experiments.trust.malformed import job_cases
+def campaign(name: str, cases: int, drawn_by: str, sentence: str) -> None:
+    """Add the command of a campaign."""
 
-    count("jobs", in_scratch(job_cases, cases, seed), out)
-
-
-@main.command()
-@SEED
-@cases(500)
-@OUT
-def files(seed: int, cases: int, out: Path) -> None:
-    """Malformed data files."""
-    from experiments.trust.malformed import file_cases
-
-    count("files", in_scratch(file_cases, cases, seed), out)
+    @main.command(name, help=sentence)
+    @click.option("--seed", type=int, required=True)
+    @click.option("--cases", type=int, default=cases, show_default=True)
+    @click.option("--out", type=click.Path(path_type=Path), default=Path("results/trust"), show_default=True)
+    def command(seed: int, cases: int, out: Path) -> None:
+        module, _, function = drawn_by.partition(":")
+        draw = getattr(import_module(f"experiments.trust.{module}"), function)
+        count(name, in_scratch(draw, cases, seed), out)
 
 
-@main.command()
-@SEED
-@cases(60)
-@OUT
-def cuts(seed: int, cases: int, out: Path) -> None:
-    """Power cuts, so many a command, at writes spread over it."""
-    from experiments.trust.kills import cuts
-
-    count("cuts", in_scratch(cuts, cases, seed), out)
-
-
-@main.command()
-@SEED
-@cases(40)
-@OUT
-def kills(seed: int, cases: int, out: Path) -> None:
-    """Processes that are killed by chance."""
-    from experiments.trust.kills import chances
-
-    count("kills", in_scratch(chances, cases, seed), out)
-
-
-@main.command()
-@SEED
-@cases(60)
-@OUT
-def surroundings(seed: int, cases: int, out: Path) -> None:
-    """Full disks, no HOME, a clock that goes back."""
-    from experiments.trust.surroundings import cases as draw
-
-    count("surroundings", in_scratch(draw, cases, seed), out)
-
-
-@main.command()
-@SEED
-@cases(96)
-@OUT
-def numerics(seed: int, cases: int, out: Path) -> None:
-    """The same measurement in other units, under other names, in another order and by every second sample."""
-    from experiments.trust.numerics import cases as draw
-
-    count("numerics", in_scratch(draw, cases, seed), out)
+for entry in CAMPAIGNS:
+    campaign(*entry)
 
 
 @main.command()
