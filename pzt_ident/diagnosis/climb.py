@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from pzt_ident.diagnosis.bounds import beyond_bounds, stands_in
 from pzt_ident.diagnosis.candidates import Candidate
@@ -11,7 +11,7 @@ from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removes_enough
 from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, remove_unneeded
 from pzt_ident.diagnosis.proof import Suspect
 from pzt_ident.diagnosis.refit import Case, Fit, refit
-from pzt_ident.diagnosis.starts import restart
+from pzt_ident.diagnosis.starts import first_fit, restart
 from pzt_ident.diagnosis.step import Step, explained_share
 from pzt_ident.diagnosis.undetermined import Undetermined
 from pzt_ident.diagnosis.verdict import Diagnosis, best_pair, diagnose
@@ -103,6 +103,9 @@ def next_steps(
     now = steps[-1].fit
     if candidate is not None and candidate.fit is not None:
         word, fit = candidate.score.effect, candidate.fit
+        anew = add_restarted(case, first, now, diagnosis) if is_astray(case, first, now, fit) else []
+        if anew and anew[0].explained >= DECISIVE and anew[0].fit.total < fit.total:
+            return anew
         rivals = diagnosis.rivals if candidate is diagnosis.best else {word: fit}
         return [Step(fit, word, None, rivals, explained_share(case, now, fit), candidate.score.explained)]
     if diagnosis.verdict in ("adequate", "refused"):
@@ -115,6 +118,13 @@ def next_steps(
         or add_restarted(case, first, now, diagnosis)
         or ([] if exchanged else exchange_any(case, first, now))
     )
+
+
+def is_astray(case: Case, first: Fit, now: Fit, best: Fit) -> bool:
+    """Whether the model as given is far from the noise, and the best effect takes up less than half of its misfit: the
+    fit may rest where no effect helps it."""
+    far = now.effects == first.effects and now.identify > HOPELESS * case.floor
+    return far and explained_share(case, now, best) < DECISIVE
 
 
 def add_pair(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Step]:
@@ -134,11 +144,17 @@ def add_pair(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Ste
 
 
 def add_restarted(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Step]:
-    """An effect of the short list that fits once its own or another block, such as the hysteresis, starts elsewhere."""
-    if now.identify > HOPELESS * case.floor:
-        return []
-    refitted = [(candidate.score, restart(case, candidate.fit)) for candidate in diagnosis.candidates if candidate.fit]
-    passing = [(score, fit) for score, fit in refitted if removes_enough(case, first, now, fit)]
+    """An effect of the short list that fits once its own or another block, such as the hysteresis, starts elsewhere:
+    far from the noise all blocks, from random points, in each form that was refitted."""
+    passing = []
+    for candidate in diagnosis.candidates:
+        for item, fit in candidate.refits.items() if now.identify > HOPELESS * case.floor else ():
+            if case.budget.allows("other starts"):
+                anew = first_fit(case, 0, effects=fit.effects)
+                passing.append((replace(candidate.score, effect=item), anew))
+        if candidate.fit and now.identify <= HOPELESS * case.floor:
+            passing.append((candidate.score, restart(case, candidate.fit)))
+    passing = [(score, fit) for score, fit in passing if removes_enough(case, first, now, fit)]
     if not passing:
         return []
     score, fit = min(passing, key=lambda score_and_fit: score_and_fit[1].total)

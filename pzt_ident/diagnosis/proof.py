@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from pzt_ident.data.notation import listed
 from pzt_ident.diagnosis.candidates import are_look_alikes
-from pzt_ident.diagnosis.criteria import beyond_form, near_noise
+from pzt_ident.diagnosis.criteria import DECISIVE, beyond_form, near_noise, reaches_noise
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.step import effects_without
@@ -62,15 +62,16 @@ def unproven(case: Case, first: Fit, now: Fit, rivals: Mapping[str, Collection[s
 
     Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may stand
     in for what is not in the catalogue: together they must also remove as much of the misfit as given as if one after
-    the other removed the share JOINT, and each beside the others the share ALONE, on the identification and on the
-    validation records, and none may have had rivals that fit as well and are not its look-alikes: what any effect takes
-    up is not that of one.
+    the other removed the share JOINT, or DECISIVE where the identification records are at the noise, and each beside
+    the others the share ALONE, on the identification and on the validation records, and none may have had rivals that
+    fit as well and are not its look-alikes: what any effect takes up is not that of one.
     """
     suspects: list[Suspect] = []
     while added := now.effects[len(first.effects) :]:
         suspected = [suspect(case, first, now, effect, rivals.get(effect, ())) for effect in added]
         least = min(suspected, key=lambda item: item.rank)
-        together = removed_by_all(case, first, now) >= 1 - (1 - JOINT) ** len(added)
+        each = DECISIVE if reaches_noise(case, first, now) else JOINT
+        together = removed_by_all(case, first, now) >= 1 - (1 - each) ** len(added)
         decisive = not least.strangers and least.share >= ALONE and together
         if least.beyond_form and (decisive or near_noise(case, first, now)):
             break

@@ -20,11 +20,12 @@ RESTARTS = 2  # random points of one block that are refined
 MOST_RESTARTED = 4  # times that all blocks are restarted, where no two minima agree
 
 
-def first_fit(case: Case, seed: int, known: Array | None = None) -> Fit:
-    """The job's own model, fitted from random points; not converged where the two best minima differ, and restarts of
-    single blocks still lead lower. known: the point
-    of a fit that was searched for, beside which one batch of random points is enough."""
-    problem = case.problem(case.effects)
+def first_fit(case: Case, seed: int, known: Array | None = None, effects: tuple[str, ...] | None = None) -> Fit:
+    """The job's own model, or the one with other effects, fitted from random points; not converged where the two best
+    minima differ, and restarts of single blocks still lead lower. known: the point of a fit that was searched for,
+    beside which one batch of random points is enough."""
+    effects = case.effects if effects is None else effects
+    problem = case.problem(effects)
     minima = (
         np.empty((0, problem.dimensions)) if known is None else descend(problem, known, going=case.budget.lasts)[None]
     )
@@ -41,7 +42,7 @@ def first_fit(case: Case, seed: int, known: Array | None = None) -> Fit:
         if agreed:
             break
     point = min((minima[np.argmin(losses)], best_of_each_axis(case, problem, minima)), key=lambda p: problem.loss(p)[0])
-    fit = fit_at(case.effects, problem, point, agreed or known is not None)
+    fit = fit_at(effects, problem, point, agreed or known is not None)
     return refine_steps(case, fit if fit.converged else settled(case, fit))
 
 

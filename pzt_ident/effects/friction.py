@@ -73,7 +73,7 @@ class LuGreViscous(Friction):
     force that bends the bristles.
     """
 
-    viscous = Parameter("s", (0, 5e-3), "Viscous friction over the stiffness.", null=0)
+    viscous = Parameter("s", (0, 0.05), "Viscous friction over the stiffness.", null=0)
 
     def prepare(force, reach, stiction, stribeck, viscous, dt):
         return force, reach, stiction, 1 / (stribeck * dt), *decay(viscous, dt)
@@ -88,25 +88,25 @@ class LuGreViscous(Friction):
 
 
 class Coulomb(Ahead, Block):
-    """Dry and viscous friction: x + viscous dx/dt = f - force tanh(v / speed), v = df/dt.
+    """Dry and viscous friction: x + viscous dx/dt = f - force tanh(v / speed).
 
     Coulomb's law, smoothed over `speed`: Olsson, Astrom, Canudas de Wit, Gafvert & Lischinsky (1998), Eur. J. Control
-    4, 176. The viscous part against the stiffness is a lag, stepped exactly.
+    4, 176. The viscous part against the stiffness is a lag, stepped exactly; v is the rate of the force behind it.
     """
 
     speed = Parameter("response/s", (1e-3, 100), "Velocity over which dry friction builds up.", scale="log")
-    viscous = Parameter("s", (0, 5e-3), "Viscous friction over the stiffness.", null=0)
+    viscous = Parameter("s", (0, 0.05), "Viscous friction over the stiffness.", null=0)
 
     def prepare(force, speed, viscous, dt):
         return force, 2 / (speed * dt), *decay(viscous, dt)
 
     def start(u, force, fast, keep, share):
-        return 0.0, u
+        return 0.0, u, u
 
-    def step(w, before, u, force, fast, keep, share):
+    def step(w, before, lagged, u, force, fast, keep, share):
         w = keep * w - share * (u - before)
-        grown = expm1(max(min((u - before) * fast, 40.0), -40.0))
-        return w, u, u + w - force * (grown / (grown + 2))
+        grown = expm1(max(min((u + w - lagged) * fast, 40.0), -40.0))
+        return w, u, u + w, u + w - force * (grown / (grown + 2))
 
 
 class Motion(Rubbing, Term):
