@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg.lapack import dtbtrs
 
 from pzt_ident.engine.gather import Triangle
 
@@ -48,8 +49,6 @@ class Sandwich:
     def _moments(self, samples: Samples, weights: Array, variance: float) -> tuple[Array, Array]:
         """Sums of the gradient along each direction over each block, and the variance of the sum along each with noise
         of this autoregression: (blocks, directions), (directions,). No block is of two series."""
-        from scipy.signal import lfilter
-
         count, length = self._directions.shape[1], -(-self.size // BLOCKS)
         energy = np.zeros(count)
         sums: dict[tuple[int, int], Array] = defaultdict(lambda: np.zeros(count))
@@ -62,20 +61,33 @@ class Sandwich:
             for begin in range(-(at % length), along.shape[1], length):
                 sums[series, (at + begin) // length] += pulls[:, max(begin, 0) : begin + length].sum(axis=1)
             lengths[series] += along.shape[1]
-            filtered, states[series] = lfilter([1.0], weights, along, axis=1, zi=states[series])
+            filtered, states[series] = answer(weights, states[series], along)
             energy += np.square(filtered).sum(axis=1)
         for state in states.values():
             energy += died_away(weights, state, energy, self.size)
         return np.array([*sums.values()]).reshape(-1, count), variance * energy
 
 
+def answer(weights: Array, before: Array, along: Array) -> tuple[Array, Array]:
+    """y in sum_i a_i y[k - i] = x[k] with a_0 = 1, (directions, samples), and its last values; before: those that came
+    before, (directions, order). The equations of all samples are a triangle with few diagonals."""
+    order, samples = before.shape[1], along.shape[1]
+    if not before.size:
+        return along, before
+    right = np.array(along.T, order="F")
+    for direction, known in enumerate(before):
+        carried = np.convolve(known, weights)[order : order + samples]
+        right[: carried.size, direction] -= carried
+    diagonals = np.tile(weights[:, None], (1, samples))
+    after = dtbtrs(diagonals, right, uplo="L", diag="U", overwrite_b=1)[0].T
+    return after, np.hstack([before, after])[:, samples:]
+
+
 def died_away(weights: Array, state: Array, energy: Array, most: int) -> Array:
     """Squares of what comes out of a filter after its input has ended: (directions,)."""
-    from scipy.signal import lfilter
-
     total = np.zeros(len(state))
     for _ in range(0, most if state.any() else 0, STRETCH):
-        rest, state = lfilter([1.0], weights, np.zeros((len(state), STRETCH)), axis=1, zi=state)
+        rest, state = answer(weights, state, np.zeros((len(state), STRETCH)))
         more = np.square(rest).sum(axis=1)
         total += more
         if (more <= DIED * (energy + total)).all():
