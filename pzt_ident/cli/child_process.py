@@ -14,7 +14,6 @@ WARM = (
     "pzt_ident.run.improve",
     "pzt_ident.engine.kernel",
     "scipy.optimize",
-    "pandas",
     "ruamel.yaml",
 )
 

@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    import pandas as pd
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 SENTENCE = 45  # letters; a column with longer cells is broken into lines
 
 
-def tabular(text: pd.DataFrame, words: Collection[str]) -> str:
-    r"""A `tabular` of `text`, columns in `words` flush left, for `\input`; needs `\usepackage{booktabs}`."""
+def tabular(text: Mapping[str, Sequence[str]], words: Collection[str]) -> str:
+    r"""A `tabular` of the columns `text`, those in `words` flush left, for `\input`; needs `\usepackage{booktabs}`."""
     align = "".join(_alignment(text[column]) if column in words else "r" for column in text)
-    body = [_row(row) for row in text.itertuples(index=False, name=None)]
-    lines = [rf"\begin{{tabular}}{{{align}}}", r"\toprule", _row(text.columns), r"\midrule", *body]
+    body = map(_row, zip(*text.values(), strict=True))
+    lines = [rf"\begin{{tabular}}{{{align}}}", r"\toprule", _row(text), r"\midrule", *body]
     return "\n".join([*lines, r"\bottomrule", r"\end{tabular}", ""])
 
 
-def _alignment(column: pd.Series[str]) -> str:
+def _alignment(column: Sequence[str]) -> str:
     """A paragraph column for sentences, else flush left."""
-    return "p{60mm}" if column.str.len().max() > SENTENCE else "l"
+    return "p{60mm}" if max(map(len, column), default=0) > SENTENCE else "l"
 
 
 def escaped(text: str) -> str:
@@ -55,5 +51,5 @@ _SIGNS = {
 _DIGITS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 
 
-def _row(cells: Any) -> str:
-    return " & ".join(escaped(str(cell)) for cell in cells) + r" \\"
+def _row(cells: Iterable[str]) -> str:
+    return " & ".join(map(escaped, cells)) + r" \\"

@@ -28,10 +28,9 @@ from pzt_ident.report.style import (
     panels,
     width_of,
 )
-from pzt_ident.run.results import Results
+from pzt_ident.run.results import History, Results
 
 if TYPE_CHECKING:
-    import pandas as pd
     from matplotlib.figure import Figure
 
 _COSTS = (("evaluations", "evaluations of the model", ""), ("seconds", "wall time", "s"))
@@ -58,7 +57,9 @@ def draw_convergence(figure: Figure, results: Results) -> None:
     shape = (2, 1) if width_of(figure) == COLUMN else (1, 2)
     for place, (axes, cost) in enumerate(zip(panels(figure, *shape, Frame(top + 4)).ravel(), _COSTS, strict=True)):
         for name, style in styles.items():
-            spent, low, median, high = convergence(results.history[results.history["optimizer"] == name], cost[0])
+            own = results.history["optimizer"] == name
+            history = {column: values[own] for column, values in results.history.items()}
+            spent, low, median, high = convergence(history, cost[0])
             axes.fill_between(spent, low, high, color=style["color"], alpha=0.15, linewidth=0, step="post")
             axes.plot(spent, median, drawstyle="steps-post", **style)
         for _, level, style in levels:
@@ -70,21 +71,21 @@ def draw_convergence(figure: Figure, results: Results) -> None:
         name_panel(axes, f"against {cost[1]}", place=place)
 
 
-def convergence(history: pd.DataFrame, cost: str, points: int = 60) -> tuple[Array, Array, Array, Array]:
+def convergence(history: History, cost: str, points: int = 60) -> tuple[Array, Array, Array, Array]:
     """Cost, and the lower quartile, median and upper quartile over the repeats of the best RMSE at that cost.
 
     A repeat that has stopped keeps its last value. Costs before the first generation of the slowest repeat are left
     out."""
-    repeats = [repeat.sort_values(cost) for _, repeat in history.groupby("repeat")]
+    spent, best = history[cost], history["best"]
+    order = np.argsort(spent, kind="stable")
+    repeats = [order[history["repeat"][order] == repeat] for repeat in np.unique(history["repeat"])]
     if not repeats:
         return np.empty(0), np.empty(0), np.empty(0), np.empty(0)
-    grid = np.unique(history[cost].to_numpy(float))
-    grid = grid[grid >= max(repeat[cost].iloc[0] for repeat in repeats)]
+    grid = np.unique(spent)
+    grid = grid[grid >= max(spent[repeat[0]] for repeat in repeats)]
     if grid.size > points:
         grid = grid[np.unique(np.geomspace(1, grid.size, points).astype(int) - 1)]
-    best = np.array(
-        [repeat["best"].to_numpy(float)[repeat[cost].searchsorted(grid, "right") - 1] for repeat in repeats]
-    )
+    best = np.array([best[repeat][np.searchsorted(spent[repeat], grid, "right") - 1] for repeat in repeats])
     best[~np.isfinite(best)] = np.nan
     known = ~np.isnan(best).all(axis=0)
     best = best[:, known]

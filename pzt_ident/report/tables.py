@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import csv
+import io
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pzt_ident.data.notation import bounds, count, number, percent, quantity, short, unit, with_error
 from pzt_ident.data.over_axes import together
@@ -15,20 +17,18 @@ from pzt_ident.report.sentences import USE_NAMES
 from pzt_ident.run.events import step_name
 from pzt_ident.run.results import Results
 
-if TYPE_CHECKING:
-    import pandas as pd
-
+Columns = dict[str, list[Any]]
 Cell = Callable[[Mapping[str, Any]], str]
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """`data`: the numbers, with units in the headings. `text`: the same as printed. `words`: the columns of `text` that
-    are set flush left; numbers are set flush right."""
+    """`data`: columns of numbers by heading, with units in the headings. `text`: the same as printed. `words`: the
+    columns of `text` that are set flush left; numbers are set flush right."""
 
     name: str
-    data: pd.DataFrame
-    text: pd.DataFrame
+    data: Columns
+    text: Columns
     words: frozenset[str]
 
 
@@ -43,8 +43,15 @@ def make_tables(results: Results) -> dict[str, Table]:
 def write_tables(tables: Mapping[str, Table], folder: Path) -> None:
     """Write `<name>.csv` and `<name>.tex` (a booktabs tabular) of each into the folder."""
     for table in tables.values():
-        write_text(folder / f"{table.name}.csv", table.data.to_csv(index=False, lineterminator="\n"))
+        write_text(folder / f"{table.name}.csv", comma_separated(table.data))
         write_text(folder / f"{table.name}.tex", tabular(table.text, table.words))
+
+
+def comma_separated(columns: Columns) -> str:
+    """CSV with the digits that give each number again, and nothing where there is none."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows([columns, *zip(*columns.values(), strict=True)])
+    return text.getvalue()
 
 
 def league(results: Results) -> Table:
@@ -266,10 +273,9 @@ def table(
     name: str, rows: list[dict[str, Any]], cells: dict[str, Cell], words: set[str], headings: dict[str, str]
 ) -> Table:
     """`cells`: the printed text of a row by column; `headings`: CSV headings by key of a row."""
-    import pandas as pd
-
-    text = pd.DataFrame([{title: str(cell(row)) for title, cell in cells.items()} for row in rows], columns=list(cells))
-    data = pd.DataFrame(rows).rename(columns=headings)
+    text = {title: [str(cell(row)) for row in rows] for title, cell in cells.items()}
+    keys = dict.fromkeys(key for row in rows for key in row)
+    data = {headings.get(key, key): [row.get(key) for row in rows] for key in keys}
     return Table(name, data, text, frozenset(words))
 
 

@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pzt_ident.data.signals import Trace, read_traces
 from pzt_ident.errors import DamagedError, InputError
 from pzt_ident.files import damaged, digest_of, read_sealed
 
-if TYPE_CHECKING:
-    import pandas as pd
-
+History = dict[str, NDArray[Any]]
 
 KEYS = {
     "result.json": ("records", "runs", "league", "unit", "noise_floor"),
@@ -29,13 +28,13 @@ KEYS = {
 @dataclass(frozen=True, eq=False)
 class Results:
     """What a run, a diagnosis or an improvement wrote, empty where it did not: `result`, `diagnosis` and `improvement`
-    are the JSON files of these names, `misfit` is residuals.json. `history` has one row a generation, `job` is the
-    job's text, `before` are the traces of the model as given where that was improved. `damaged` says of each file that
-    could not be read why."""
+    are the JSON files of these names, `misfit` is residuals.json. `history` has columns with a row a generation, `job`
+    is the job's text, `before` are the traces of the model as given where that was improved. `damaged` says of each
+    file that could not be read why."""
 
     folder: Path
     result: dict[str, Any]
-    history: pd.DataFrame
+    history: History
     traces: tuple[Trace, ...]
     environment: dict[str, Any]
     job: str
@@ -162,19 +161,17 @@ class Files:
             raise InputError("no run finished", where=str(self.folder / name), remedy="see `failed_runs` in it")
         return result
 
-    def history(self, digests: Mapping[str, str]) -> pd.DataFrame:
+    def history(self, digests: Mapping[str, str]) -> History:
         """The losses generation by generation; none where the file is damaged."""
-        import pandas as pd
-
         path = self.path("history.csv")
         try:
             _check_digest(path, digests)
-            return pd.read_csv(path)
+            return read_history(path)
         except ValueError as error:
             self.damages.append(
                 str(error).replace("\n ", ";") if isinstance(error, DamagedError) else f"{path} is damaged"
             )
-            return pd.DataFrame()
+            return {}
 
     def job(self) -> str:
         path = self.path("job.yaml")
@@ -189,6 +186,13 @@ class Files:
         path = self.path("signals.nc")
         _check_digest(path, digests)
         return path
+
+
+def read_history(path: Path) -> History:
+    """The columns of a file that `history_text` made. Raises ValueError where it is not as that makes it."""
+    headings, *rows = (line.split(",") for line in path.read_text(encoding="utf-8").splitlines() or ("",))
+    columns = dict(zip(headings, np.array(rows).reshape(-1, len(headings)).T, strict=True))
+    return {name: values if name == "optimizer" else values.astype(float) for name, values in columns.items()}
 
 
 def _check_digest(path: Path, digests: Mapping[str, str]) -> None:
@@ -209,14 +213,12 @@ def read_folder(folder: Path) -> Results:
 
     Raises InputError where a file is missing, cannot be read, or holds no finished run.
     """
-    import pandas as pd
-
     files = Files(Path(folder))
     diagnosis = files.content("diagnosis.json")
     result = files.result(needed=not diagnosis)
     environment = files.content(files.path("environment.json").name)
     digests = result.get("files", {})
-    history = files.history(digests) if result else pd.DataFrame()
+    history = files.history(digests) if result else {}
     job, signals, before = files.job(), files.signals(digests), files.folder / "signals_as_given.nc"
     records = [record["name"] for record in result["records"]] if result else list(environment.get("data", ()))
     return Results(

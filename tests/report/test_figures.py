@@ -1,7 +1,6 @@
 from xml.etree import ElementTree
 
 import numpy as np
-import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -68,10 +67,8 @@ def test_cells_hold_the_mean_residual_at_their_place():
 
 
 def test_descent_of_two_repeats_one_of_which_stops_early():
-    history = pd.DataFrame(
-        [(0, 10, 4.0), (0, 20, 2.0), (0, 30, 1.0), (1, 10, 8.0), (1, 20, 6.0)],
-        columns=["repeat", "evaluations", "best"],
-    )
+    rows = np.array([(0, 10, 4), (0, 20, 2), (0, 30, 1), (1, 10, 8), (1, 20, 6)], dtype=float)
+    history = dict(zip(("repeat", "evaluations", "best"), rows.T, strict=True))
     spent, low, middle, high = convergence(history, "evaluations")
     np.testing.assert_allclose(spent, [10, 20, 30])
     np.testing.assert_allclose(low, [5, 3, 2.25])
@@ -80,7 +77,7 @@ def test_descent_of_two_repeats_one_of_which_stops_early():
 
 
 def test_descent_leaves_out_what_no_repeat_could_simulate():
-    history = pd.DataFrame({"repeat": 0, "evaluations": [1, 2], "best": [np.inf, 3.0]})
+    history = {"repeat": np.zeros(2), "evaluations": np.array([1.0, 2]), "best": np.array([np.inf, 3])}
     spent, _, middle, _ = convergence(history, "evaluations")
     assert (spent.tolist(), middle.tolist()) == ([2.0], [3.0])
 

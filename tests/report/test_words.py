@@ -3,7 +3,6 @@
 import re
 from types import SimpleNamespace
 
-import pandas as pd
 import pytest
 
 from pzt_ident.report.page import write_report
@@ -12,7 +11,7 @@ from run_folders import make_run
 
 
 def table(**columns):
-    return SimpleNamespace(text=pd.DataFrame({name.replace("_", " "): cells for name, cells in columns.items()}))
+    return SimpleNamespace(text={name.replace("_", " "): cells for name, cells in columns.items()})
 
 
 def test_blocks_and_effects_are_named_in_sentences_and_tables():
