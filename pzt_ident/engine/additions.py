@@ -50,6 +50,8 @@ class Additions:
 
     def groups(self, axis: int, theta: Array) -> list[NDArray[np.intp]]:
         """The candidates that have the same signals on an axis, group by group."""
+        if not self.signals:
+            return [np.arange(len(theta))]
         columns = [entry.axis == axis and entry.block in self.model.additions for entry in self.model.entries]
         distinct, index = np.unique(theta[:, columns], axis=0, return_inverse=True)
         return [np.flatnonzero(index.ravel() == number) for number in range(len(distinct))]

@@ -150,6 +150,8 @@ class Rotated:
     def combinations(self) -> Array:
         """(rows, combinations)"""
         bases, errors = np.split(self.triangle.r, [len(self.groups) * self.count], axis=1)
+        if self.count == 1:
+            return errors[1:]  # the ones alone have their row
         if self.alike:
             return without(bases, errors)
         of_groups = np.split(bases, len(self.groups), axis=1)

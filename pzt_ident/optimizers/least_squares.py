@@ -16,6 +16,7 @@ Mask = NDArray[np.bool_]
 ROUNDING = float(np.finfo(np.float64).eps)
 STEP = ROUNDING**0.5  # of a forward difference
 TOGETHER = 64  # points of a batch
+GROWTH = 2.0  # of the damping where a step is not taken, and of itself
 SMALLEST = 1e-11  # step below which a start ends
 
 
@@ -54,23 +55,26 @@ def size(answer: Array) -> float:
 
 
 def descend(x: Array, answer: Array) -> Generator[Array, Array, None]:
-    """From one start to a point at which no step within the bounds reduces the loss. answer: residuals or loss at x."""
-    hessian = None
+    """From one start to a point at which no step within the bounds reduces the loss. answer: residuals or loss at x.
+    Where residuals answer, many points at once cost as much as few: a step is asked for with the differences about where
+    it leads, unless one was just refused."""
+    by_residuals, hessian = bool(np.ndim(answer)), None
     before: tuple[Array, Array] | None = None
-    damping, growth = 1e-3, 2.0
+    damping, growth = 1e-3, GROWTH
+    steps, around = np.empty(0), None
     while True:
-        sizes = np.full(x.size, STEP) if np.ndim(answer) or hessian is None else widths(float(answer), hessian)
-        steps = np.where(x + sizes > 1, -sizes, sizes)
-        points = np.clip(x + np.diag(steps), 0, 1)
-        shifted = yield np.vstack([x, points]) if np.ndim(answer) else points
-        if not np.isfinite(shifted).all():
+        if around is None:
+            sizes = np.full(x.size, STEP) if by_residuals or hessian is None else widths(float(answer), hessian)
+            steps, points = differences(x, sizes)
+            around = yield np.vstack([x, points]) if by_residuals else points
+        if not np.isfinite(around).all():
             return
-        if np.ndim(answer):
-            answer = shifted[0]  # residuals of one batch are rotated together
-            jacobian = ((shifted[1:] - answer) / steps[:, None]).T
+        if by_residuals:
+            answer = around[0]  # residuals of one batch are rotated together
+            jacobian = ((around[1:] - answer) / steps[:, None]).T
             gradient, hessian = jacobian.T @ answer, jacobian.T @ jacobian
         else:
-            gradient = (shifted - answer) / steps
+            gradient = (around - answer) / steps
             hessian = secant(hessian, before, x, gradient)
         before = x, gradient
         while True:
@@ -78,19 +82,29 @@ def descend(x: Array, answer: Array) -> Generator[Array, Array, None]:
             if np.abs(step).max() < SMALLEST or damping > 1e12:
                 return
             candidates = np.clip(x + np.outer([1.0, 0.25], step), 0, 1)
-            answers = yield candidates
-            chosen = int(np.argmin([size(candidate) for candidate in answers[:2]]))
+            steps, ahead = differences(candidates[0], np.full(x.size, STEP))
+            hopeful = by_residuals and growth == GROWTH
+            answers = yield np.vstack([candidates, ahead]) if hopeful else candidates
+            chosen = int(size(answers[1]) < size(answers[0]))
             expected = -(gradient @ step + 0.5 * step @ hessian @ step)
             gained = size(answer) - size(answers[chosen])
             if gained > 0:
                 quality = (size(answer) - size(answers[0])) / max(float(expected), 1e-300)
                 damping *= max(1 / 10, 1 - (2 * min(quality, 1.5) - 1) ** 3) if quality > 0 else 4.0
-                growth = 2.0
+                growth = GROWTH
                 x, answer = candidates[chosen], answers[chosen]
+                around = np.delete(answers, 1, axis=0) if hopeful and chosen == 0 else None
                 break
             damping, growth = damping * growth, growth * 2
         if gained < 1e-14 * size(answer):
             return
+
+
+def differences(x: Array, sizes: Array) -> tuple[Array, Array]:
+    """Steps of forward differences, backward at an upper bound, and the points that they lead to: (free,), (free,
+    free)."""
+    steps = np.where(x + sizes > 1, -sizes, sizes)
+    return steps, np.clip(x + np.diag(steps), 0, 1)
 
 
 def widths(loss: float, hessian: Array) -> Array:
