@@ -6,7 +6,7 @@ from collections.abc import Generator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from pzt_ident.model.optimizer import Array, Budgeted, Search, setting
 from pzt_ident.model.registry import optimizers
@@ -56,8 +56,8 @@ def size(answer: Array) -> float:
 
 def descend(x: Array, answer: Array) -> Generator[Array, Array, None]:
     """From one start to a point at which no step within the bounds reduces the loss. answer: residuals or loss at x.
-    Where residuals answer, many points at once cost as much as few: a step is asked for with the differences about where
-    it leads, unless one was just refused."""
+    Where residuals answer, many points at once cost as much as few: a step is asked for with the differences about
+    where it leads, unless one was just refused."""
     by_residuals, hessian = bool(np.ndim(answer)), None
     before: tuple[Array, Array] | None = None
     damping, growth = 1e-3, GROWTH
@@ -78,7 +78,7 @@ def descend(x: Array, answer: Array) -> Generator[Array, Array, None]:
             hessian = secant(hessian, before, x, gradient)
         before = x, gradient
         while True:
-            step = bounded_step(x, gradient, hessian, damping)
+            step = bounded_steps(x, gradient, hessian, damping)[0]
             if np.abs(step).max() < SMALLEST or damping > 1e12:
                 return
             candidates = np.clip(x + np.outer([1.0, 0.25], step), 0, 1)
@@ -113,22 +113,38 @@ def widths(loss: float, hessian: Array) -> Array:
     return np.clip(2 * np.sqrt(ROUNDING * abs(loss) / curvature), 1e-10, 1e-6)
 
 
-def bounded_step(x: Array, gradient: Array, hessian: Array, damping: float, movable: Mask | bool = True) -> Array:
-    """The damped step over the coordinates that are free to move, cut at the bounds. movable: which may."""
-    free = movable & ~(((x <= 0) & (gradient > 0)) | ((x >= 1) & (gradient < 0)))
-    step = np.zeros_like(x)
+def bounded_steps(x: Array, gradient: Array, hessian: Array, dampings: ArrayLike, movable: Mask | bool = True) -> Array:
+    """The step of each damping over the coordinates that are free to move, cut at the bounds: (dampings, free).
+    movable: which may."""
+    dampings = np.atleast_1d(dampings)
+    inward = ~(((x <= 0) & (gradient > 0)) | ((x >= 1) & (gradient < 0)))
     scale = np.maximum(np.diag(hessian), 1e-12 * max(np.diag(hessian).max(), 1e-300))
-    for _ in range(x.size):
+    steps = np.zeros((len(dampings), x.size))
+    waiting = {tuple(movable & inward): np.arange(len(dampings))}
+    while waiting:
+        word, chosen = waiting.popitem()
+        free = np.array(word)
+        steps[chosen] = 0
         if not free.any():
-            break
+            continue
         inside = np.ix_(free, free)
-        step[:] = 0
-        step[free] = -np.linalg.lstsq(hessian[inside] + damping * np.diag(scale[free]), gradient[free], rcond=None)[0]
-        out = free & (((x <= 0) & (step < 0)) | ((x >= 1) & (step > 0)))
-        if not out.any():
-            break
-        free &= ~out
-    return np.clip(x + step, 0, 1) - x
+        steps[np.ix_(chosen, free)] = damped(hessian[inside], scale[free], gradient[free], dampings[chosen])
+        out = free & (((x <= 0) & (steps[chosen] < 0)) | ((x >= 1) & (steps[chosen] > 0)))
+        for place in np.flatnonzero(out.any(axis=1)):
+            left = tuple(free & ~out[place])
+            waiting[left] = np.append(waiting.get(left, np.empty(0, dtype=int)), chosen[place])
+    return np.clip(x + steps, 0, 1) - x
+
+
+def damped(hessian: Array, scale: Array, gradient: Array, dampings: Array) -> Array:
+    """Solutions of (H + mu diag(scale)) s = -g for each mu: (dampings, free). One decomposition serves all."""
+    root = np.sqrt(scale)
+    values, directions = np.linalg.eigh(hessian / np.outer(root, root))
+    curvature = values + dampings[:, None]
+    along = gradient / root @ directions
+    least = ROUNDING * len(values) * np.abs(curvature).max(axis=1, keepdims=True)
+    shares = np.where(np.abs(curvature) > least, along / np.where(curvature == 0, 1, curvature), 0)
+    return -(shares @ directions.T) / root
 
 
 def secant(hessian: Array | None, before: tuple[Array, Array] | None, x: Array, gradient: Array) -> Array:

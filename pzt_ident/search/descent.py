@@ -8,7 +8,7 @@ from itertools import islice
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.optimizers.least_squares import bounded_step
+from pzt_ident.optimizers.least_squares import bounded_steps
 from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
@@ -67,8 +67,7 @@ def settled(problem: Problem, point: Array) -> Array:
     loss, length = problem.best(point[None], point)[1], NEXT
     while 0 < loss < np.inf:
         jacobian, residual = (part / loss for part in problem.equations(point))
-        every = np.ones(point.size, dtype=bool)
-        move = bounded_step(point, jacobian.T @ residual, jacobian.T @ jacobian, DAMPINGS[0], every)
+        move = bounded_steps(point, jacobian.T @ residual, jacobian.T @ jacobian, DAMPINGS[0])[0]
         moved, least = problem.best(np.clip(point + move, 0, 1)[None], point)
         if not np.abs(moved - point).max() < length / 2 or least > (1 + ROUNDING) * loss:
             break
@@ -86,7 +85,7 @@ def steps(
     while 0 < loss < np.inf and going():
         jacobian, residual = (part / loss for part in problem.equations(point, central=False))
         gradient, curvature = jacobian.T @ residual, jacobian.T @ jacobian
-        moves = [bounded_step(point, gradient, curvature, damping, movable) for damping in DAMPINGS]
+        moves = bounded_steps(point, gradient, curvature, DAMPINGS, movable)
         best, least = problem.best(np.clip(point + np.clip(moves, -FARTHEST, FARTHEST), 0, 1), point)
         if not least < loss:
             break

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
 
-from pzt_ident.optimizers.least_squares import LeastSquares, bounded_step, secant
+from pzt_ident.optimizers.least_squares import LeastSquares, bounded_steps, secant
 from pzt_ident.search.loop import Stop, optimize
 
 seeds = st.integers(0, 2**32 - 1)
@@ -17,13 +17,13 @@ seeds = st.integers(0, 2**32 - 1)
 def test_a_step_without_damping_is_that_of_gauss_and_newton(seed):
     rng = np.random.default_rng(seed)
     jacobian, answer = rng.normal(size=(9, 4)), 1e-3 * rng.normal(size=9)
-    step = bounded_step(np.full(4, 0.5), jacobian.T @ answer, jacobian.T @ jacobian, 0.0)
+    (step,) = bounded_steps(np.full(4, 0.5), jacobian.T @ answer, jacobian.T @ jacobian, 0.0)
     np.testing.assert_allclose(step, -np.linalg.lstsq(jacobian, answer, rcond=None)[0], rtol=1e-6, atol=1e-12)
 
 
 def test_damping_turns_the_step_downhill_and_shortens_it():
     hessian, gradient = np.diag([1.0, 100.0]), np.array([1e-3, 1e-3])
-    steps = [bounded_step(np.full(2, 0.5), gradient, hessian, damping) for damping in (0.0, 1.0, 1e6)]
+    steps = bounded_steps(np.full(2, 0.5), gradient, hessian, [0.0, 1.0, 1e6])
     np.testing.assert_allclose(steps[1], -gradient / (2 * np.diag(hessian)))
     assert [float(np.linalg.norm(step)) for step in steps] == sorted((np.linalg.norm(s) for s in steps), reverse=True)
 
@@ -33,9 +33,24 @@ def test_a_step_stays_inside_and_moves_nothing_that_is_held(point, damping, held
     rng = np.random.default_rng(seed)
     jacobian, residual = rng.normal(size=(20, 3)), rng.normal(size=20)
     movable = np.array([bool(held >> i & 1) for i in range(3)])
-    step = bounded_step(np.array(point), jacobian.T @ residual, jacobian.T @ jacobian, damping, movable)
+    (step,) = bounded_steps(np.array(point), jacobian.T @ residual, jacobian.T @ jacobian, damping, movable)
     assert not step[~movable].any()
     assert np.all((point + step >= 0) & (point + step <= 1))
+
+
+@given(st.lists(st.sampled_from([0.0, 0.3, 1.0]), min_size=4, max_size=4), seeds)
+@settings(max_examples=30, deadline=None)
+def test_steps_side_by_side_are_those_of_each_damping_alone(point, seed):
+    """Coordinates may be of very different size, and steps may end at different bounds."""
+    rng = np.random.default_rng(seed)
+    jacobian, residual = rng.normal(size=(20, 4)) * [1e-2, 1, 10, 1e3], 1e-4 * rng.normal(size=20)
+    hessian, gradient, dampings = jacobian.T @ jacobian, jacobian.T @ residual, np.array([1e-9, 1e-2, 1.0, 1e3])
+    steps = bounded_steps(np.array(point), gradient, hessian, dampings)
+    for step, damping in zip(steps, dampings, strict=True):
+        np.testing.assert_allclose(step, bounded_steps(np.array(point), gradient, hessian, damping)[0], rtol=1e-9)
+        damped = hessian + damping * np.diag(np.diag(hessian))
+        (inside,) = bounded_steps(np.full(4, 0.5), gradient, hessian, damping)
+        np.testing.assert_allclose(inside, np.clip(-np.linalg.solve(damped, gradient), -0.5, 0.5), rtol=1e-5, atol=1e-15)
 
 
 @given(seed=seeds)
