@@ -86,11 +86,14 @@ def test_all_is_on_one_screen(shown, size):
 @contextmanager
 def state_with(page, change):
     """The page with a state that is changed on its way to it."""
-    with page.expect_response("**/api/state") as answer:
-        page.reload()
-    state = answer.value.json()
-    change(state)
-    page.route("**/api/state", lambda route: route.fulfill(json=state))
+
+    def changed(route):
+        answer = route.fetch()
+        state = answer.json()
+        change(state)
+        route.fulfill(json=state)
+
+    page.route("**/api/state", changed)
     page.reload()
     yield
     page.unroute("**/api/state")
