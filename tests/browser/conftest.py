@@ -9,8 +9,14 @@ import subprocess
 import sys
 from contextlib import contextmanager
 from pathlib import Path
+from queue import Queue
+from threading import Thread
 
 import pytest
+import uvicorn
+
+from pzt_ident.workbench.runner import Runner
+from pzt_ident.workbench.serve import serve
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 AXE = Path(__file__).with_name("axe.min.js")
@@ -84,8 +90,37 @@ def workbenches(folder: Path):
 
 @pytest.fixture
 def workbench(tmp_path):
+    """As a user starts it: a process."""
     with workbenches(tmp_path) as start:
         yield start
+
+
+@pytest.fixture
+def workbench_here(tmp_path, monkeypatch):
+    """The same in this process, without one that waits for a command: for what is seen before any."""
+    running, threads = [], []
+
+    class Server(uvicorn.Server):
+        def __init__(self, config):
+            super().__init__(config)
+            running.append(self)
+
+    def start(*source: str) -> str:
+        arguments = [*map(Path, source)] or [None]
+        threads.append(Thread(target=serve, args=(*arguments, Path("workbench"), "127.0.0.1", 0, False, said.put)))
+        threads[-1].start()
+        return said.get(timeout=SECONDS)
+
+    said = Queue()
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(uvicorn, "Server", Server)
+    monkeypatch.setattr(Runner, "warm", lambda self: None)
+    yield start
+    for server in running:
+        server.should_exit = True
+    for thread in threads:
+        thread.join(20)
+        assert not thread.is_alive()
 
 
 def faults_of(page) -> list[str]:

@@ -118,8 +118,8 @@ def test_from_the_file_drop_to_the_fallen_error(workbench, page, tmp_path):
     assert (tmp_path / "workbench/steps/1/run/report.html").exists()
 
 
-def test_a_reload_at_the_columns_loses_no_choice(workbench, page):
-    page.goto(workbench())
+def test_a_reload_at_the_columns_loses_no_choice(workbench_here, page):
+    page.goto(workbench_here())
     page.evaluate(DROP, [["identify.csv"], [text("identify.csv")]])
     expect(page.locator(".handle.split")).to_be_visible()
     page.select_option("[aria-label='Role of u_x [V]']", "y.drive")
@@ -137,8 +137,8 @@ def test_a_reload_at_the_columns_loses_no_choice(workbench, page):
     assert page.get_by_label("Name of the job").input_value() == "bench-7"
 
 
-def test_a_handle_keeps_the_focus_when_the_measurement_is_drawn_again(workbench, page):
-    page.goto(workbench())
+def test_a_handle_keeps_the_focus_when_the_measurement_is_drawn_again(workbench_here, page):
+    page.goto(workbench_here())
     page.evaluate(DROP, [["identify.csv"], [text("identify.csv")]])
     expect(page.locator("#guess")).to_contain_text("sample rate")
     page.route("**/measurement", lambda route: (time.sleep(0.3), route.continue_()))
@@ -151,8 +151,8 @@ def test_a_handle_keeps_the_focus_when_the_measurement_is_drawn_again(workbench,
     expect(settle).to_be_focused()
 
 
-def test_a_crop_past_the_part_for_validation_leaves_a_job_that_can_be_read(workbench, page, tmp_path):
-    page.goto(workbench())
+def test_a_crop_past_the_part_for_validation_leaves_a_job_that_can_be_read(workbench_here, page, tmp_path):
+    page.goto(workbench_here())
     header, *rows = text("identify.csv").splitlines()
     cells = rows[70].split(",")
     rows[70] = ",".join([*cells[:-1], ""])
@@ -187,8 +187,8 @@ def test_a_crop_past_the_part_for_validation_leaves_a_job_that_can_be_read(workb
     assert first.rows[0] == second.rows[0] < first.rows[1] < second.rows[1]
 
 
-def test_nothing_is_said_of_a_session_before_it_is_known(workbench, page):
-    address, held = workbench(), []
+def test_nothing_is_said_of_a_session_before_it_is_known(workbench_here, page):
+    address, held = workbench_here(), []
     page.route("**/api/state*", lambda route: held.append(route))
     page.goto(address)
     expect(page.locator("#verdict")).to_have_text("The session is being opened.")
@@ -237,15 +237,15 @@ def test_a_reload_a_killed_worker_and_a_killed_workbench_lose_nothing(workbench,
     assert {depth(pid, running(tmp_path)) for pid in running(tmp_path)} <= {0, 1}  # one waits to be asked
 
 
-def test_a_session_whose_last_step_is_gone_opens_at_the_one_before(workbench, page, tmp_path):
+def test_a_session_whose_last_step_is_gone_opens_at_the_one_before(workbench_here, page, tmp_path):
     for name in ("identify.csv", "validate.csv"):
         (tmp_path / name).write_text(thinned(text(name)), encoding="utf-8")
     (tmp_path / "job.yaml").write_text(LONG, encoding="utf-8")
-    workbench("job.yaml")
+    workbench_here("job.yaml")
     state = state_of(tmp_path)
     state["steps"].append({"number": 2, "parent": 1, "change": "+ creep"})
     (tmp_path / "workbench" / "state.json").write_text(json.dumps(state | {"at": 2}))
-    page.goto(workbench("job.yaml"))
+    page.goto(workbench_here("job.yaml"))
     expect(page.locator("#error p")).to_contain_text("Step 2 cannot be opened")
     expect(page.locator("#action")).to_be_enabled()
     expect(page.locator(".stairs text.name")).to_have_text("as given")
@@ -273,8 +273,8 @@ def depth(pid, parents):
     return 1 + depth(parents[pid], parents) if parents.get(pid) in parents else 0
 
 
-def test_a_file_of_markup_is_shown_as_text(workbench, page):
-    page.goto(workbench())
+def test_a_file_of_markup_is_shown_as_text(workbench_here, page):
+    page.goto(workbench_here())
     header = '<img src=x onerror=document.title="owned"> [V],"<script>document.title=1</script> [um]"'
     rows = "\n".join(f"{i % 30},{i % 30 / 9}" for i in range(90))
     page.evaluate(DROP, [["a.csv"], [f"{header}\n{rows}\n"]])
@@ -283,13 +283,13 @@ def test_a_file_of_markup_is_shown_as_text(workbench, page):
     assert page.locator("#columns img, #columns script").count() == 0
 
 
-def test_sheets_axes_and_what_is_left_open(workbench, page, tmp_path):
+def test_sheets_axes_and_what_is_left_open(workbench_here, page, tmp_path):
     rows = [
         ["t [s]", "u1 [V]", "u2 [V]", "p1 [nm]", "p2 [nm]"],
         *([i / 9, i % 5, i % 7, i % 3, i % 4] for i in range(90)),
     ]
     write_sheets(tmp_path / "rig.xlsx", Notes=[["Rig 3"]], Loops=rows, Check=rows)
-    page.goto(workbench())
+    page.goto(workbench_here())
     page.click("#here button")
     expect(page.locator("table.guessed tr")).to_have_count(6)
     assert roles(page) == ["time", "x.drive", "y.drive", "x.response", "y.response"]
@@ -316,8 +316,8 @@ def test_sheets_axes_and_what_is_left_open(workbench, page, tmp_path):
     assert roles(page) == ["time", "x.drive", "", "x.response", ""]
 
 
-def test_signals_in_files_of_their_own_and_a_block_drawn_onto_the_chain(workbench, page):
-    page.goto(workbench())
+def test_signals_in_files_of_their_own_and_a_block_drawn_onto_the_chain(workbench_here, page):
+    page.goto(workbench_here())
     expect(page.locator("#blocks li")).to_have_count(3)
     signals = ["\n".join(f"{i % period / 3}" for i in range(900)) for period in (30, 50)]
     tab_to(page, "#choose")

@@ -47,7 +47,9 @@ def test_a_chirp_moves_it_as_the_differential_equation_says(cubic):
             return v, (pull - DAMPING * v) / MASS
 
         rest = bent(force[:2] * 0 + force[0], cubic)[0]
-        truth = solve_ivp(drive_history, (0, time[-1]), (rest, 0), "LSODA", time, max_step=dt, rtol=1e-9, atol=1e-9).y[0]
+        truth = solve_ivp(drive_history, (0, time[-1]), (rest, 0), "LSODA", time, max_step=dt, rtol=1e-9, atol=1e-9).y[
+            0
+        ]
         errors.append(np.abs(bent(force, cubic, dt) - truth).max() / np.ptp(truth))
     assert errors[1] < 2e-3
     assert errors[0] / errors[1] == pytest.approx(4, rel=0.3)

@@ -50,7 +50,9 @@ def test_steps_side_by_side_are_those_of_each_damping_alone(point, seed):
         np.testing.assert_allclose(step, bounded_steps(np.array(point), gradient, hessian, damping)[0], rtol=1e-9)
         damped = hessian + damping * np.diag(np.diag(hessian))
         (inside,) = bounded_steps(np.full(4, 0.5), gradient, hessian, damping)
-        np.testing.assert_allclose(inside, np.clip(-np.linalg.solve(damped, gradient), -0.5, 0.5), rtol=1e-5, atol=1e-15)
+        np.testing.assert_allclose(
+            inside, np.clip(-np.linalg.solve(damped, gradient), -0.5, 0.5), rtol=1e-5, atol=1e-15
+        )
 
 
 @given(seed=seeds)
