@@ -1,6 +1,7 @@
 """Time the kernels, the searches and the command line; print and write the tables and the figure of the README.
 
-python experiments/performance/run.py
+python experiments/performance/run.py             # all
+python experiments/performance/run.py --searches  # the optimizers alone, printed
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import SimpleNamespace
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as every command has it, before NumPy comes
 
 import numpy as np
 from baselines import first_order_hold, lsoda, numpy_population, plain_loop
@@ -265,6 +268,10 @@ def against_roof(title: str, rows: list[tuple[str, float, float]]) -> str:
     return table(title, "CPU µs a candidate | at best | reached, %", reached)
 
 
+def searches() -> str:
+    return table("a search of 17,500 evaluations, warm", "CPU s", whole_search())
+
+
 def main() -> None:
     OUT.mkdir(parents=True, exist_ok=True)
     best = machine()
@@ -278,7 +285,7 @@ def main() -> None:
         against_roof("5,000 samples, 7 parameters, 70 candidates", rows),
         table("in ratio to pzt-ident on the same drive (sine)", "times as much", ratios),
         against_roof("Bouc-Wen + lumped + error on the sine, and an effect more", added(best)),
-        table("a search of 17,500 evaluations, warm", "CPU s", whole_search()),
+        searches(),
         table("command line", "wall s", command_line()),
         table("improve, six records of some 60,000 samples, one or two hidden effects", "wall s", improvement()),
         table("peak memory, population 10", "MiB", memory()),
@@ -290,4 +297,10 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    print(peak(int(sys.argv[2]))) if sys.argv[1:2] == ["--memory"] else main()
+    match sys.argv[1:]:
+        case ["--memory", generations]:
+            print(peak(int(generations)))
+        case ["--searches"]:
+            print(searches())
+        case _:
+            main()
