@@ -23,10 +23,14 @@ class Budget:
 
     def allows(self, what: str, share: float = EXPLORING) -> bool:
         """Whether less than a share of the budget is spent; if not, `what` is untried."""
-        enough = process_time() - self._begun < share * self.seconds
+        enough = not self.spent(share)
         if not enough and what not in self.untried:
             self.untried.append(what)
         return enough
+
+    def spent(self, share: float) -> bool:
+        """Whether a share of the budget is spent."""
+        return process_time() - self._begun >= share * self.seconds
 
     def lasts(self) -> bool:
         """Whether a fit may go on."""

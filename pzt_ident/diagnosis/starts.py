@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.refit import Case, Fit, fit_at, refine_steps, side_by_side
 from pzt_ident.search.descent import descend
 from pzt_ident.search.problem import Problem
@@ -16,14 +17,15 @@ Array = NDArray[np.float64]
 STARTS = 240  # random points; the best are refined, a batch at a time, until two minima agree
 REFINED, MOST_REFINED = 4, 24  # points in a batch, and in all batches
 AGREEMENT = 0.01  # of the loss, between the two best minima
+ON_STARTS = 0.05  # of the budget: a model that is not adequate is fitted from more points, until so much is spent
 RESTARTS = 2  # random points of one block that are refined
 MOST_RESTARTED = 4  # times that all blocks are restarted, where no two minima agree
 
 
 def first_fit(case: Case, seed: int, known: Array | None = None, effects: tuple[str, ...] | None = None) -> Fit:
-    """The job's own model, or the one with other effects, fitted from random points; not converged where the two best
-    minima differ, and restarts of single blocks still lead lower. known: the point of a fit that was searched for,
-    beside which one batch of random points is enough."""
+    """The job's own model, or the one with other effects, fitted from random points, the fewer the better it is; not
+    converged where the two best minima differ, and restarts of single blocks still lead lower. known: the point of a
+    fit that was searched for, beside which one batch of random points is enough."""
     effects = case.effects if effects is None else effects
     problem = case.problem(effects)
     minima = (
@@ -39,7 +41,8 @@ def first_fit(case: Case, seed: int, known: Array | None = None, effects: tuple[
         losses = problem.loss(minima)
         best, second = np.sort(losses)[:2]
         agreed = bool(second <= (1 + AGREEMENT) * best + 0.1 * case.floor and np.isfinite(best))
-        if agreed:
+        lowest = fit_at(effects, problem, minima[np.argmin(losses)])
+        if agreed and (adequate(case, lowest, lowest) or case.budget.spent(ON_STARTS)):
             break
     point = min((minima[np.argmin(losses)], best_of_each_axis(case, problem, minima)), key=lambda p: problem.loss(p)[0])
     fit = fit_at(effects, problem, point, agreed or known is not None)

@@ -119,7 +119,7 @@ def test_descent_comes_to_rest(creeping):
     end = first_fit(creeping, 0).point
     gradient = problem.jacobian(end).T @ problem.residuals(end)[0]
     inside = (end > 0) & (end < 1)
-    assert np.abs(gradient[inside]).max() < 1e-4 * problem.loss(end)[0] ** 2 / 1e-2
+    assert np.abs(gradient[inside]).max() < 5e-4 * problem.loss(end)[0] ** 2 / 1e-2
 
 
 class Failing(Block):
@@ -279,3 +279,18 @@ def test_threads_are_as_silent_about_floating_point_as_the_caller(recwarn):
         quotients = list(side_by_side(lambda divisor: np.ones(1) / divisor, [0.0, 2.0]))
     assert quotients == [np.inf, 0.5]
     assert not recwarn.list
+
+
+def test_two_starts_that_agree_far_from_the_noise_do_not_end_the_search(plain, monkeypatch):
+    """Of the first eight points all end in one side minimum."""
+    points, descent = [], refit.descend
+    astray = descent(plain.problem(()), np.full(plain.problem(()).dimensions, 0.9), most=1)
+
+    def lame(problem, point, going):
+        points.append(point)
+        return descent(problem, point, going=going) if len(points) > 8 else astray
+
+    monkeypatch.setattr(starts, "descend", lame)
+    fit = first_fit(plain, 0)
+    assert fit.converged and fit.identify < 1.1 * plain.floor
+    assert len(points) == 12
