@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from pzt_ident.diagnosis.bounds import beyond_bounds, stands_in
@@ -11,6 +11,7 @@ from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removes_enough
 from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, remove_unneeded
 from pzt_ident.diagnosis.proof import Suspect
 from pzt_ident.diagnosis.refit import Case, Fit, refit
+from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.starts import first_fit, restart
 from pzt_ident.diagnosis.step import Step, explained_share
 from pzt_ident.diagnosis.undetermined import Undetermined
@@ -144,19 +145,26 @@ def add_pair(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Ste
 
 
 def add_restarted(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Step]:
-    """An effect of the short list that fits once its own or another block, such as the hysteresis, starts elsewhere:
-    far from the noise all blocks, from random points, in each form that was refitted."""
-    passing = []
-    for candidate in diagnosis.candidates:
-        for item, fit in candidate.refits.items() if now.identify > HOPELESS * case.floor else ():
-            if case.budget.allows("other starts"):
-                anew = first_fit(case, 0, effects=fit.effects)
-                passing.append((replace(candidate.score, effect=item), anew))
-        if candidate.fit and now.identify <= HOPELESS * case.floor:
-            passing.append((candidate.score, restart(case, candidate.fit)))
-    passing = [(score, fit) for score, fit in passing if removes_enough(case, first, now, fit)]
+    """An effect of the short list that fits once its own or another block, such as the hysteresis, starts elsewhere."""
+    restarted = started_anew if now.identify > HOPELESS * case.floor else restarted_by_block
+    passing = [(score, fit) for score, fit in restarted(case, diagnosis) if removes_enough(case, first, now, fit)]
     if not passing:
         return []
     score, fit = min(passing, key=lambda score_and_fit: score_and_fit[1].total)
     word = score.effect
     return [Step(fit, word, None, {word: fit}, explained_share(case, now, fit), score.explained)]
+
+
+def restarted_by_block(case: Case, diagnosis: Diagnosis) -> Iterator[tuple[Score, Fit]]:
+    """The short list, each with single blocks restarted."""
+    for candidate in diagnosis.candidates:
+        if candidate.fit:
+            yield candidate.score, restart(case, candidate.fit)
+
+
+def started_anew(case: Case, diagnosis: Diagnosis) -> Iterator[tuple[Score, Fit]]:
+    """The short list in each form that was refitted, with all blocks from random points."""
+    for candidate in diagnosis.candidates:
+        for item, fit in candidate.refits.items():
+            if case.budget.allows("other starts"):
+                yield replace(candidate.score, effect=item), first_fit(case, 0, effects=fit.effects)

@@ -137,10 +137,17 @@ def test_an_effect_that_rests_in_a_side_minimum_is_a_stair_once_nothing_else_is_
     first = first_fit(case, 0)
     problem = case.problem(("quadratic_gain",))
     resting = fit_at(("quadratic_gain",), problem, problem.unit_point(first.values | {"quadratic_gain.curvature": 0.0}))
-    diagnosis = Diagnosis("unexplained", "", first, [Candidate(Score("quadratic_gain"), resting)], [])
-    steps = add_restarted(case, first, first, diagnosis)
-    assert [step.added for step in steps] == (["quadratic_gain"] if hopeless else [])
-    assert all(step.fit.identify == pytest.approx(stage.NOISE, rel=0.1) for step in steps)
+    candidate = Candidate(Score("quadratic_gain"), resting, refits={"quadratic_gain": resting})
+    (step,) = add_restarted(case, first, first, Diagnosis("unexplained", "", first, [candidate], []))
+    assert step.added == "quadratic_gain"
+    assert step.fit.identify == pytest.approx(stage.NOISE, rel=0.1)
+
+
+@pytest.mark.parametrize(("noise", "takes", "astray"), [(1.0, 0.2, True), (1.0, 0.9, False), (30.0, 0.2, False)])
+def test_a_model_is_astray_far_from_the_noise_where_no_effect_takes_up_half(noise, takes, astray):
+    case = SimpleNamespace(floor=noise)
+    now, best = (SimpleNamespace(effects=(), identify=np.sqrt(1e4 * share)) for share in (1, 1 - takes))
+    assert climb.is_astray(case, SimpleNamespace(effects=()), now, best) == astray
 
 
 def test_a_proxy_is_exchanged_for_what_is_missing():
