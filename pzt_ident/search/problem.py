@@ -173,7 +173,7 @@ class Problem(Cube):
         rows are left: J' J, J' r and r' r are those of the samples. central: both sides of the point, for twice the
         simulations."""
         near = self.along(self.tangent(point))
-        points, weights = (stencil if central else forward)(point, self.half_width)
+        points, weights = stencil(point, self.half_width) if central else forward(point)
         rotated, failed = near.rotated(points, weights)
         if failed[1:].any():
             if not central:

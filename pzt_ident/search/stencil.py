@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-DIFFERENCE, NARROW = 1e-5, 1e-8  # half their width; beside what bends within it
+DIFFERENCE, NARROW = 1e-5, 1e-8  # half their width; beside what bends within it, and from one side
 BENT = 0.01  # of the change between the ends, by which their mean differs from the middle
 
 
@@ -33,11 +33,11 @@ def stencil(
     return points, weights
 
 
-def forward(point: Array, half_width: Array | float = DIFFERENCE) -> tuple[Array, Array]:
-    """Half the points of a stencil, itself the first, the others inward: (1 + free, free). And the weights as of
-    `stencil`: (1 + free, 1 + free)."""
+def forward(point: Array) -> tuple[Array, Array]:
+    """A point and points narrowly beside it, inward: (1 + free, free). And the weights as of `stencil`: (1 + free,
+    1 + free). From one side an error is of first order in the width."""
     point = np.asarray(point, dtype=float)
-    steps = np.where(point < 0.5, 1.0, -1.0) * half_width
+    steps = np.where(point < 0.5, NARROW, -NARROW)
     weights = np.vstack([np.zeros(point.size), np.diag(1 / steps)])
     first = np.append(1.0, -1 / steps)
     return np.vstack([point, point + np.diag(steps)]), np.column_stack([first, weights])
