@@ -22,6 +22,7 @@ LONG = [
     "slew_limit bouc_wen saturation friction cross_coupling lumped kinematic_coupling encoder_cyclic_error",
     "amplitude_gain:running homogenized_energy thermal_relaxation creep:elements cross_coupling modal",
     "delay bouc_wen_oscillator drift",
+    "periodic_disturbance.ripple bouc_wen creep",
 ]
 
 

@@ -9,13 +9,7 @@ import sys
 from importlib import import_module
 from threading import Thread
 
-WARM = (
-    "pzt_ident.run.identify",
-    "pzt_ident.run.improve",
-    "pzt_ident.engine.kernel",
-    "scipy.optimize",
-    "ruamel.yaml",
-)
+WARM = ("pzt_ident.run.identify", "pzt_ident.run.improve", "pzt_ident.engine.kernel", "ruamel.yaml")
 
 
 def end_with_parent() -> None:

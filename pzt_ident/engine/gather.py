@@ -12,12 +12,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dtpmqrt, dtpqrt
+
+from pzt_ident.libraries import extension
 
 if TYPE_CHECKING:
     from pzt_ident.engine.simulator import Simulator
 
 Array = NDArray[np.float64]
+
+lapack = extension("scipy.linalg", "_flapack")
 
 BLOCK = 8  # columns that LAPACK takes together
 DEPENDENT = 1e-6  # of the largest singular value: signals of additions are the same direction below
@@ -34,7 +37,7 @@ class Triangle:
         if not rows.size:
             return np.zeros((0, 0)), np.zeros((0, 0))
         block = min(BLOCK, len(self.r))
-        self.r, reflectors, factors, _ = dtpqrt(0, block, self.r, rows.T, overwrite_a=1, overwrite_b=1)
+        self.r, reflectors, factors, _ = lapack.dtpqrt(0, block, self.r, rows.T, overwrite_a=1, overwrite_b=1)
         return reflectors, factors
 
 
@@ -48,7 +51,7 @@ class Remainder:
     def add(self, basis: Array, signals: Array) -> None:
         """Take up (signals of the basis, samples) and (candidates, samples), which are overwritten."""
         reflectors, factors = self.basis.add(basis)
-        self.inside, rest, _ = dtpmqrt(
+        self.inside, rest, _ = lapack.dtpmqrt(
             0, reflectors, factors, self.inside, signals.T, trans="T", overwrite_a=1, overwrite_b=1
         )
         self.outside += np.einsum("sm,sm->m", rest, rest)
@@ -81,7 +84,7 @@ def remainders(simulator: Simulator, theta: Array) -> list[list[tuple[NDArray[np
     """For each measured axis the candidates with the same signals of additions, and what these leave of the errors."""
     additions = simulator.additions
     groups = [
-        [(group, Remainder(additions.count(axis, theta), len(group))) for group in additions.groups(axis, theta)]
+        [(group, Remainder(additions.count(axis), len(group))) for group in additions.groups(axis, theta)]
         for axis in simulator.model.measured
     ]
     for at, error in simulator.tiles(theta):
@@ -132,7 +135,7 @@ class Rotated:
 
     def __init__(self, simulator: Simulator, axis: int, theta: Array, weights: Array) -> None:
         self.additions, self.axis, self.theta, self.weights = simulator.additions, axis, theta, weights
-        self.groups, self.count = self.additions.groups(axis, theta), self.additions.count(axis, theta)
+        self.groups, self.count = self.additions.groups(axis, theta), self.additions.count(axis)
         self.alike = len(self.groups) == 1
         self.triangle = Triangle(len(self.groups) * self.count + (len(weights) if self.alike else len(theta)))
 

@@ -6,23 +6,11 @@ import numpy as np
 from numba import njit
 
 from pzt_ident.engine import root
-from pzt_ident.engine.kernel import call, compiled
+from pzt_ident.engine.jit import call
 from pzt_ident.model.block import TILES
 
 SWEEPS = 100  # of an axis after the other, where axes act on each other
 EXACT = 1e-14  # of the largest output
-
-
-@compiled
-def keep_prompt(samples, first, fresh, drive, runs, scratch, tile):
-    """Keep the drive ahead of the readout blocks, the input of the operator's prompt response."""
-    tile[1] = tile[0]
-
-
-@compiled
-def keep_force(samples, first, fresh, drive, runs, scratch, tile):
-    """Keep the force on the mechanics."""
-    tile[2] = tile[0]
 
 
 @njit(nogil=True, cache=True)

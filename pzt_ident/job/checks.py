@@ -115,10 +115,10 @@ def _model(document: Document, items: tuple[str | Choice, ...], earlier: Earlier
     if not items:
         document.fault(("model",), "the model has no block", "list at least one, see `pzt-ident list blocks`")
     folders: dict[str, str] = {}
-    operators = [word for word in blocks.usable() if not blocks.is_effect(word)]
     for i, item in enumerate(items):
         word, loc = word_of(item), document.reach(("model", i, "name"))
         if word not in blocks:
+            operators = [word for word in blocks.usable() if not blocks.is_effect(word)]
             document.fault(loc, f"unknown block {word!r}", nearest(word, operators))
             continue
         folder = blocks.folder(word)

@@ -75,7 +75,7 @@ def _block(name: str) -> Facts:
     settings = {word: item for form in forms for word, item in form.settings().items() if word != "form"}
     choices = [{"name": word, "default": item.value, "unit": "1"} | _choices(item) for word, item in settings.items()]
     chosen = {"settings": choices} if choices else {}
-    rows = _parameters(block) + _parameters_of_effect(name)
+    rows = _parameters(block) + (_parameters_of_effect(name) if kind == "effects" else [])
     return facts | {"place": block.place.name.lower(), "parameters": rows} | chosen
 
 

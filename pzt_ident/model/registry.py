@@ -7,7 +7,7 @@ import importlib.util
 import pkgutil
 import sys
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import cached_property
 from importlib.machinery import SourceFileLoader
 from importlib.metadata import EntryPoint, entry_points
@@ -69,10 +69,10 @@ class Registry(Generic[T]):
         """Every known word, without importing its module."""
         return sorted({*self._items, *self._files, *self._entries})
 
-    def usable(self) -> list[str]:
-        """The words that can be loaded; warns of faulty entry points."""
+    def usable(self, among: Collection[str] | None = None) -> list[str]:
+        """The words that can be loaded, of all or of some; warns of faulty entry points."""
         usable = []
-        for word in self.words():
+        for word in (word for word in self.words() if among is None or word in among):
             try:
                 self._load(word)
                 usable.append(word)

@@ -1,7 +1,6 @@
 """Where compiled blocks are kept, and that a stale or half-written one is never used."""
 
 import importlib.util
-import inspect
 import os
 import subprocess
 import sys
@@ -9,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-from pzt_ident.engine import kernel, lanes
+from pzt_ident.engine import kernel, lanes, native
 from pzt_ident.engine.simulator import simulate
 from pzt_ident.files import cache_folder
 from pzt_ident.hysteresis.bouc_wen import BoucWen
@@ -43,19 +42,22 @@ def scaled(u):
 def cache(tmp_path, monkeypatch):
     """An empty cache folder for the time of a test."""
     monkeypatch.setenv("PZT_IDENT_CACHE", str(tmp_path))
-    monkeypatch.setattr(lanes, "cache_folder", cache_folder.__wrapped__)
+    for module in (lanes, native):
+        monkeypatch.setattr(module, "cache_folder", cache_folder.__wrapped__)
     return tmp_path / "pzt_ident"
 
 
 @pytest.fixture
 def uncompiled(monkeypatch):
     """Names and writes kernels, without the seconds of compiling them."""
-    tile = type("Tile", (), {"address": 0})
-    monkeypatch.setattr(lanes, "load", lambda path, block: type("Module", (), {"tile": tile}))
+    monkeypatch.setattr(lanes, "load", lambda path, block: type("Module", (), {"tile": None}))
+    monkeypatch.setattr(native, "stands_alone", lambda function: True)
+    monkeypatch.setattr(native, "emitted", lambda function: ("tile", b"code"))
+    monkeypatch.setattr(native, "load", lambda symbol, code: 0)
 
 
 def kernels(cache):
-    return sorted(path.name for path in cache.glob("*.py"))
+    return sorted(path.name for path in cache.glob("*.o"))
 
 
 def compile_again(block=Lumped, **variant):
@@ -90,26 +92,36 @@ def test_a_kernel_is_written_once(cache, uncompiled):
     assert (cache / name).stat().st_mtime == 1
 
 
+def test_a_damaged_kernel_is_written_again(cache, uncompiled):
+    compile_again()
+    (path,) = cache.glob("*.o")
+    whole = path.read_bytes()
+    for damaged in (whole[:-1], whole[:20], b""):
+        path.write_bytes(damaged)
+        compile_again()
+        assert path.read_bytes() == whole
+
+
 def test_name_holds_all_that_a_kernel_is_made_of(cache, uncompiled, monkeypatch, tmp_path):
     compile_again(BoucWen, driven=True)
     compile_again(BoucWen, driven=False)
     compile_again()
     monkeypatch.setattr(kernel, "VERSION", "another numba")
     compile_again()
-    edited = tmp_path / "kernel.py"
-    edited.write_text(inspect.getsource(kernel) + "# edited")
-    monkeypatch.setattr(kernel, "__file__", str(edited))
+    monkeypatch.setattr(kernel, "sources", lambda *modules: [f"{module}, edited" for module in modules])
+    compile_again()
+    monkeypatch.setenv("NUMBA_CPU_NAME", "another processor")
     compile_again()
     (tmp_path / "plain.jinja").write_text((lanes.TEMPLATES / "plain.jinja").read_text() + "# edited")
     monkeypatch.setattr(lanes, "TEMPLATES", tmp_path)
     compile_again()
     kinds = [name.rsplit("_", 1)[0] for name in kernels(cache)]
-    assert kinds == ["boucwen_driven_operator", "boucwen_operator", *["lumped_plain"] * 4]
+    assert kinds == ["boucwen_driven_operator", "boucwen_operator", *["lumped_plain"] * 5]
 
 
 def test_a_write_that_fails_leaves_no_kernel(cache, uncompiled, monkeypatch):
     def fail(*names):
-        raise OSError("disk full")
+        raise OSError(28, "disk full")
 
     with monkeypatch.context() as broken:
         broken.setattr(os, "replace", fail)
@@ -118,6 +130,17 @@ def test_a_write_that_fails_leaves_no_kernel(cache, uncompiled, monkeypatch):
     assert kernels(cache) == []
     compile_again()
     assert len(kernels(cache)) == 1
+
+
+def test_kept_kernels_need_no_compiler():
+    """numba takes longer to import than a short search."""
+    code = "import sys, numpy as np; from rig import model, record; from pzt_ident.engine.simulator import simulate;"
+    code += "from pzt_ident.mechanics.lumped import Lumped;"
+    code += "simulate(model(Lumped), record(np.arange(5.0)), np.ones((1, 3))); print('numba' in sys.modules)"
+    here = {"PYTHONPATH": os.pathsep.join(sys.path)}
+    for _ in range(2):  # the first one compiles what is not there
+        ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=os.environ | here)
+    assert ran.stdout == "False\n"
 
 
 def test_physics_is_declared_without_a_compiler():

@@ -11,7 +11,7 @@ from pzt_ident.cli.commands import main
 from pzt_ident.diagnosis.score import applicable
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import load_job
-from pzt_ident.model.registry import blocks
+from pzt_ident.model.registry import blocks, optimizers
 from pzt_ident.run.improve import opened_case
 
 JOB = """\
@@ -38,9 +38,13 @@ def folder(tmp_path):
     (tmp_path / "job.yaml").write_text(JOB, encoding="utf-8")
     rows = [f"{i * 1e-2:.2f},{u},{0.08 * u + 1e-6 * u**3:.6f}" for i, u in enumerate([*range(60), *range(60, 0, -1)])]
     (tmp_path / "data.csv").write_text("time [s],u [V],x [um]\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    known = [(registry, dict(registry._items)) for registry in (blocks, optimizers)]
     yield tmp_path
-    blocks._items.pop("cubic_gain", None)
-    sys.modules.pop("pzt_ident_plugins.cubic_gain", None)
+    for registry, items in known:
+        registry._items.clear()
+        registry._items.update(items)
+    for name in ("cubic_gain", "random_walk"):
+        sys.modules.pop(f"pzt_ident_plugins.{name}", None)
 
 
 def call(*arguments):

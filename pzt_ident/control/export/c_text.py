@@ -8,7 +8,7 @@ from collections.abc import Collection, Sequence
 
 from pzt_ident.control.export.expressions import REMEDY
 from pzt_ident.control.export.kinds import Kinds
-from pzt_ident.control.export.trees import Function, direct, reads, words_in
+from pzt_ident.control.export.trees import Function, direct, reads, walk, words_in
 from pzt_ident.errors import InputError
 
 KEYWORDS_TEXT = (
@@ -62,7 +62,7 @@ class Text(Kinds):
         self.tuples = 0
         self.members: dict[str, str] = {}
         inline = self.scopes(function.body)
-        nodes = [node for statement in function.body for node in ast.walk(statement)]
+        nodes = [node for statement in function.body for node in walk(statement)]
         elsewhere = {word for node in nodes if isinstance(node, ast.Assign) and hasattr(node, "together")
                      for word in direct(node)}  # fmt: skip
         elsewhere |= {

@@ -9,7 +9,7 @@ import math
 from types import BuiltinFunctionType, FunctionType
 from typing import Any
 
-from pzt_ident.control.export.trees import Value, assign, flat, name, nested, number, shape
+from pzt_ident.control.export.trees import Value, assign, flat, name, nested, number, shape, walk
 from pzt_ident.errors import InputError
 from pzt_ident.model import elementary
 
@@ -59,7 +59,7 @@ class Expressions:
 
     def calls_function(self, node: ast.AST) -> bool:
         """Whether a function of an author is called in it."""
-        called = [part.func for part in ast.walk(node) if isinstance(part, ast.Call)]
+        called = [part.func for part in walk(node) if isinstance(part, ast.Call)]
         return any(isinstance(self.look_up(func), FunctionType) and not elementary_name(self.look_up(func))
                    for func in called)  # fmt: skip
 

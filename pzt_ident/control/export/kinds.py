@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Collection, Sequence
 
-from pzt_ident.control.export.trees import counts, direct, reads, value_of
+from pzt_ident.control.export.trees import counts, direct, reads, value_of, walk
 
 
 class Kinds:
@@ -22,7 +22,7 @@ class Kinds:
         while before != self.kinds:
             before = dict(self.kinds)
             for statement in body:
-                for node in ast.walk(statement):
+                for node in walk(statement):
                     self.infer_one(node)
 
     def infer_one(self, node: ast.AST) -> None:

@@ -15,7 +15,7 @@ from types import FunctionType
 from typing import Any
 
 from pzt_ident.control.export.expressions import Expressions, elementary_name, prefix_of
-from pzt_ident.control.export.trees import Function, Value, assign, flat, indexed, name, number, shape, stored
+from pzt_ident.control.export.trees import Function, Value, assign, flat, indexed, name, number, shape, stored, walk
 
 
 class Names:
@@ -65,7 +65,7 @@ class Lowering(Expressions):
         ast.increment_lineno(tree, first - 1)
         assert isinstance(tree, ast.FunctionDef)
         words = [argument.arg for argument in tree.args.args]
-        self.taken = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+        self.taken = {node.id for node in walk(tree) if isinstance(node, ast.Name)}
         if tree.args.vararg or tree.args.kwarg or len(words) != len(shapes):
             raise self.refused(tree, "its arguments")
         for word, members in zip(words, shapes, strict=True):
@@ -158,7 +158,7 @@ class Lowering(Expressions):
         pairs = [(p, v) for p, v in zip(places, values, strict=True) if ast.dump(p) != ast.dump(v)]
         written = [ast.unparse(p) for p, _ in pairs]
         for i, (to, one) in enumerate(pairs):
-            later = {ast.unparse(node) for _, other in pairs[i + 1 :] for node in ast.walk(other)}
+            later = {ast.unparse(node) for _, other in pairs[i + 1 :] for node in walk(other)}
             if written[i] in later:
                 kept = name(self.new("kept"))
                 self.out.append(assign(kept, one))

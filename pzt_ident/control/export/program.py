@@ -10,7 +10,7 @@ from typing import Any
 
 from pzt_ident.control.export.lower import Library
 from pzt_ident.control.export.tile import Kernel, kernel_of
-from pzt_ident.control.export.trees import Function, indexed
+from pzt_ident.control.export.trees import Function, indexed, walk
 from pzt_ident.control.identified import Identified
 from pzt_ident.control.stage import EVERYTHING
 from pzt_ident.data.units import factor
@@ -145,7 +145,7 @@ class Exported:
 
     def constants(self) -> dict[str, object]:
         """Those that these functions name."""
-        used = {node.id for f in self.functions() for s in f.body for node in ast.walk(s) if isinstance(node, ast.Name)}
+        used = {node.id for f in self.functions() for s in f.body for node in walk(s) if isinstance(node, ast.Name)}
         return {word: value for word, value in self.library.constants.items() if word in used}
 
     def most_passes(self) -> int:
@@ -154,7 +154,7 @@ class Exported:
 
 
 def called(function: Function) -> set[str]:
-    return {node.id for statement in function.body for node in ast.walk(statement) if isinstance(node, ast.Name)}
+    return {node.id for statement in function.body for node in walk(statement) if isinstance(node, ast.Name)}
 
 
 def is_array(kernel: Kernel, word: str) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from pzt_ident.control.export.fields import InFields
-from pzt_ident.control.export.trees import assigned, copied, in_context, name, number, reads
+from pzt_ident.control.export.trees import assigned, copied, in_context, name, number, reads, walk
 
 
 class Statements:
@@ -65,8 +65,8 @@ class Special(Statements, ast.NodeTransformer):
 
     def is_index(self, value: ast.expr) -> bool:
         arithmetic = (ast.BinOp, ast.Constant, ast.Name, ast.operator, ast.Load)
-        plain = all(isinstance(node, arithmetic) for node in ast.walk(value))
-        whole = all(isinstance(node.value, int) for node in ast.walk(value) if isinstance(node, ast.Constant))
+        plain = all(isinstance(node, arithmetic) for node in walk(value))
+        whole = all(isinstance(node.value, int) for node in walk(value) if isinstance(node, ast.Constant))
         return plain and whole and reads(value) <= self.loops
 
     def loop(self, statement: ast.For, word: str) -> list[ast.stmt]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Sequence
 
-from pzt_ident.control.export.trees import assigned, loaded, reads
+from pzt_ident.control.export.trees import assigned, loaded, reads, walk
 
 SIGNALS = {"t", "u"}
 
@@ -22,7 +22,7 @@ class Split:
 
     def follow(self, statement: ast.stmt) -> None:
         """Words that depend on a signal; in the first sample no coefficient does."""
-        for node in ast.walk(statement):
+        for node in walk(statement):
             if isinstance(node, ast.Assign) and reads(node.value) & self.signals:
                 written = {word for target in node.targets for word in assigned([ast.Expr(target)])}
                 self.signals |= {word for word in written if not is_coefficient(word)}

@@ -57,10 +57,24 @@ def stored(place: ast.expr) -> Any:
     return ast.Name(place.id, ast.Store()) if isinstance(place, ast.Name) else place
 
 
+def walk(tree: ast.AST) -> list[ast.AST]:
+    """A node and all below it, level by level, but for the contexts of names: `ast.walk` was half of an export."""
+    nodes = [tree]
+    for node in nodes:
+        content = vars(node)
+        for word in node._fields:
+            value = content.get(word) if word != "ctx" else None
+            if isinstance(value, ast.AST):
+                nodes.append(value)
+            elif isinstance(value, list):
+                nodes += [item for item in value if isinstance(item, ast.AST)]
+    return nodes
+
+
 def reads(tree: ast.AST | Sequence[ast.AST]) -> set[str]:
     """The names of which something reads the value."""
     trees = [tree] if isinstance(tree, ast.AST) else tree
-    nodes = [node for tree in trees for node in ast.walk(tree)]
+    nodes = [node for tree in trees for node in walk(tree)]
     words = {node.id for node in nodes if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)}
     return words | {
         node.target.id for node in nodes if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name)
@@ -71,7 +85,7 @@ def assigned(body: Sequence[ast.stmt]) -> dict[str, int]:
     """How often each word is assigned."""
     counts: dict[str, int] = {}
     for statement in body:
-        for node in ast.walk(statement):
+        for node in walk(statement):
             if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
                 counts[node.id] = counts.get(node.id, 0) + 1
     return counts
@@ -104,19 +118,19 @@ def indexed(word: str, body: Sequence[ast.stmt]) -> bool:
     return any(
         isinstance(node, ast.Subscript) and isinstance(node.value, ast.Name) and node.value.id == word
         for statement in body
-        for node in ast.walk(statement)
+        for node in walk(statement)
     )
 
 
 def words_in(body: Sequence[ast.stmt]) -> set[str]:
-    return {node.id for statement in body for node in ast.walk(statement) if isinstance(node, ast.Name)}
+    return {node.id for statement in body for node in walk(statement) if isinstance(node, ast.Name)}
 
 
 def counts(body: Sequence[ast.stmt]) -> dict[str, int]:
     """How often each word occurs."""
     counts: dict[str, int] = {}
     for statement in body:
-        for node in ast.walk(statement):
+        for node in walk(statement):
             if isinstance(node, ast.Name):
                 counts[node.id] = counts.get(node.id, 0) + 1
     return counts

@@ -5,19 +5,16 @@ One source file per block, named by the hash of everything it depends on, so tha
 
 from __future__ import annotations
 
-import hashlib
 import importlib.util
 import inspect
-import os
 import sys
-import tempfile
 from functools import cache
 from pathlib import Path
 from types import FunctionType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pzt_ident.engine.lanes.compile_error import compile_error
-from pzt_ident.files import cache_folder
+from pzt_ident.files import cache_folder, write_text
 from pzt_ident.model.block import (
     TILES,
     Addition,
@@ -93,19 +90,21 @@ class Variant(NamedTuple):
 @cache
 def compile_block(block: type[Block], variant: Variant = Variant()) -> Compiled:  # noqa: B008
     """The block's C function, from the cache or newly compiled."""
-    from pzt_ident.engine import elementary, kernel
+    from pzt_ident.engine import kernel, native
 
     template = template_of(block, variant)
     layout = layout_of(block, variant)  # type: ignore[arg-type]
     text = (TEMPLATES / f"{template}.jinja").read_text()
-    modules = [inspect.getsource(module) for module in (kernel, elementary)]
-    sources = [text, kernel.VERSION, str(layout), str(variant), *modules, *author_sources(block)]
-    sources.append(block.__module__)  # the cached code looks it up
-    key = hashlib.sha256("\0".join(sources).encode()).hexdigest()[:16]
-    path = cache_folder() / f"{block.__name__.lower()}_{template}_{key}.py"
-    if not path.exists():
-        write(path, render(text, block, layout, variant))
-    return Compiled(compiled(path, block).tile.address, layout)
+    sources = [text, kernel.VERSION, str(layout), str(variant), *kernel.sources("jit", "elementary")]
+    name = native.name_of(f"{block.__name__.lower()}_{template}", *sources, *author_sources(block))
+
+    def tile() -> Any:
+        path = cache_folder() / f"{name}.py"
+        if not path.exists():
+            write_text(path, render(text, block, layout, variant))
+        return compiled(path, block).tile
+
+    return Compiled(native.address_of(name, tile), layout)
 
 
 def template_of(block: type[Block], variant: Variant) -> str:
@@ -203,15 +202,11 @@ def template_of_text(text: str) -> Template:
     return Environment(trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined).from_string(text)
 
 
-def write(path: Path, text: str) -> None:
-    with tempfile.NamedTemporaryFile("w", dir=path.parent, suffix=".tmp", delete=False) as file:
-        file.write(text)
-    os.replace(file.name, path)
-
-
 def compiled(path: Path, block: type[Block]) -> Any:
     """Raises InputError for an author's function that numba cannot compile."""
     from numba.core.errors import NumbaError
+
+    from pzt_ident.engine import elementary  # noqa: F401  numba learns of them
 
     try:
         return load(path, block)

@@ -14,7 +14,7 @@ from pzt_ident.model.contract.declared import fault, parameters
 from pzt_ident.model.contract.kinds import ANY, BRANCHED, KINDS, Signature, kind_of, signatures
 from pzt_ident.model.parameter import Setting
 
-MEASURED = ("dt", "span", "peak")
+MEASURED = ("dt", "span", "peak", "duration")
 EXAMPLE = {"dt": 1e-3, "span": 1.0, "peak": 1.0, "branch": 0, "low": 0.0, "sign": 1.0, "duration": 1.0}
 Known = dict[str, Any]
 
@@ -178,7 +178,8 @@ def _argument_error(block: Any, word: str, names: Iterable[str], expected: list[
 def _allowed(block: Any, token: str) -> set[str]:
     """The names that a function may ask for."""
     kind = kind_of(block)
-    names = {word for word, item in parameters(block).items() if not item.per_record}
+    addition = kind == "addition"
+    names = {word for word, item in parameters(block).items() if not (addition and item.per_record)}
     if token == "settings":
         return {word for word, item in block.settings().items() if isinstance(item, Setting)}
     if token == "own parameters":
