@@ -14,7 +14,8 @@ import numpy as np
 from numba import njit
 
 from pzt_ident.engine import elementary
-from pzt_ident.engine.kernel import TILE, WIDTH, call, compiled, widen
+from pzt_ident.engine.jit import call, compiled, widen
+from pzt_ident.engine.kernel import TILE, WIDTH
 from pzt_ident.model.block import Addition, Bank, Block, Operator
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.elementary import __name__ as ELEMENTARY

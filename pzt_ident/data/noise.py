@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,6 +20,8 @@ QUIETEST = 0.25  # of all that is measured: as much as no ringing and no transie
 LOUDER = 1.5  # times those: above that an estimate has more in it than noise
 DECAY = 2.0  # of the variance between the halves of a rest: more is a transient, and the later half is taken
 MISMATCH = 0.5  # of the noise: more may not come from periods that are no whole number of samples
+
+GOLDEN = (5**0.5 - 1) / 2
 
 
 class Floor(NamedTuple):
@@ -184,8 +187,6 @@ def detrended_deviation(signal: Array, degree: int) -> float:
 def without_lines(signal: Array, degree: int, most: int = 5, near: int = 25) -> Array:
     """The signal less a polynomial and, fitted together with it, up to `most` sinusoids whose power is LINE_RATIO times
     that of the `near` frequencies around them."""
-    from scipy.optimize import minimize_scalar
-
     t = np.arange(signal.size)
     basis = np.linalg.qr(np.polynomial.legendre.legvander(np.linspace(-1, 1, signal.size), degree))[0]
 
@@ -194,8 +195,8 @@ def without_lines(signal: Array, degree: int, most: int = 5, near: int = 25) -> 
         columns = np.column_stack([np.cos(2 * np.pi * frequency * t), np.sin(2 * np.pi * frequency * t)])
         return np.asarray(np.linalg.qr(columns - basis @ (basis.T @ columns))[0])
 
-    def negative_power(frequency: float) -> float:
-        return -float(np.square(waves(frequency).T @ signal).sum())
+    def power_at(frequency: float) -> float:
+        return float(np.square(waves(frequency).T @ signal).sum())
 
     noise = signal - basis @ (basis.T @ signal)
     for _ in range(most):
@@ -206,11 +207,26 @@ def without_lines(signal: Array, degree: int, most: int = 5, near: int = 25) -> 
         around = np.concatenate([power[max(1, peak - near) : max(1, peak - 2)], power[peak + 3 : peak + near]])
         if not peak or power[peak] <= LINE_RATIO * around.mean():
             break
-        ends = ((peak - 1) / noise.size, (peak + 1) / noise.size)
-        best = minimize_scalar(negative_power, bounds=ends, method="bounded", options={"xatol": 1e-9})
-        basis = np.hstack([basis, waves(float(best.x))])
+        basis = np.hstack([basis, waves(top(power_at, (peak - 1) / noise.size, (peak + 1) / noise.size, 1e-9))])
         noise = signal - basis @ (basis.T @ signal)
     return np.asarray(noise)
+
+
+def top(function: Callable[[float], float], low: float, high: float, width: float) -> float:
+    """Where a function of one hill between two places is largest, to a width: by golden sections (Kiefer 1953, Proc.
+    Am. Math. Soc. 4, 502)."""
+    left, right = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    at_left, at_right = function(left), function(right)
+    while high - low > width:
+        if at_left > at_right:
+            high, right, at_right = right, left, at_left
+            left = high - GOLDEN * (high - low)
+            at_left = function(left)
+        else:
+            low, left, at_left = left, right, at_right
+            right = low + GOLDEN * (high - low)
+            at_right = function(right)
+    return (low + high) / 2
 
 
 def period_of(drive: Array, tolerance: float = 2e-3) -> int:
@@ -222,10 +238,9 @@ def period_of(drive: Array, tolerance: float = 2e-3) -> int:
     if not moving.size or samples < 8:
         return 0
     scaled = moving / span[span > 0][:, None]
-    size = 2 ** int(np.ceil(np.log2(2 * samples)))
-    correlation = np.fft.irfft(np.abs(np.fft.rfft(scaled, size)) ** 2, size).sum(axis=0)
-    power = np.concatenate([[0], np.cumsum((scaled**2).sum(axis=0))])
     lags = np.arange(1, samples // 2 + 1)
+    correlation = np.sum([correlation_of(part, lags.size + 1) for part in scaled], axis=0)
+    power = np.concatenate([[0], np.cumsum((scaled**2).sum(axis=0))])
     distance = (power[-1] - power[lags] + power[samples - lags] - 2 * correlation[lags]) / (samples - lags)
     low = np.flatnonzero(distance < tolerance**2)
     risen = low[low > np.argmax(distance >= tolerance**2)] if distance.max() >= tolerance**2 else low[:0]
@@ -233,3 +248,12 @@ def period_of(drive: Array, tolerance: float = 2e-3) -> int:
         return 0
     valley = risen[: np.argmax(np.diff(risen, append=risen[-1] + 2) > 1) + 1]
     return int(lags[valley[np.argmin(distance[valley])]])
+
+
+def correlation_of(signal: Array, lags: int) -> Array:
+    """Sums of products of a signal with itself so many samples later, from lag 0 on: (lags,)."""
+    least = signal.size + lags  # what is later than the end is zero
+    power = 2 ** int(np.ceil(np.log2(least)))
+    size = power if least > 3 * power // 4 else 3 * power // 4
+    lines = np.fft.rfft(signal, size)
+    return np.asarray(np.fft.irfft(lines.real**2 + lines.imag**2, size)[:lags])

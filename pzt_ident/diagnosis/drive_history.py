@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from pzt_ident.data.noise import difference_noise
 
 Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
 
 
 class DriveHistory(NamedTuple):
@@ -22,11 +21,11 @@ class DriveHistory(NamedTuple):
     two half cycles each.
     """
 
-    direction: Indices
+    direction: NDArray[np.int8]
     amplitude: Array
     rate: Array
     since: Array
-    cycle: Indices
+    cycle: NDArray[np.int32]
 
     def scored(self, settle: int) -> DriveHistory:
         """Without the first `settle` samples."""
@@ -41,21 +40,21 @@ def drive_history(drive: Array, dt: float) -> DriveHistory:
     noise = max([1e-6 * span, *(deviation for deviation, _ in difference_noise(drive[None], drive))])
     least_swing = max(0.005 * span, 8 * noise)
     if span <= least_swing:
-        still, zero = np.zeros(samples, dtype=np.intp), np.zeros(samples)
-        return DriveHistory(still, zero, zero, dt * np.arange(samples, dtype=np.float64), still + 1)
+        zero, first = np.zeros(samples), np.ones(samples, dtype=np.int32)
+        return DriveHistory(zero.astype(np.int8), zero, zero, dt * np.arange(samples, dtype=np.float64), first)
     turns = reversals(drive, least_swing)
     ends = [*turns, samples - 1]
     lengths = np.diff([*turns, samples])
     amplitudes = np.array([np.ptp(drive[first : last + 1]) for first, last in pairwise(ends)])
-    directions = np.sign([drive[last] - drive[first] for first, last in pairwise(ends)]).astype(np.intp)
+    directions = np.sign([drive[last] - drive[first] for first, last in pairwise(ends)]).astype(np.int8)
     holding = is_holding(drive, turns, amplitudes, 8 * noise)
     smoothing = 1 + int(20 * noise * samples / amplitudes.sum())
     return DriveHistory(
-        np.where(holding, 0, np.repeat(directions, lengths)),
+        np.where(holding, np.int8(0), np.repeat(directions, lengths)),
         np.repeat(amplitudes, lengths),
         np.where(holding, 0.0, speed(drive, min(smoothing, samples - 1)) / dt),
         dt * samples_since(turns, holding),
-        np.repeat(np.arange(lengths.size) // 2 + 1, lengths),
+        np.repeat(np.arange(lengths.size, dtype=np.int32) // 2 + 1, lengths),
     )
 
 
@@ -79,8 +78,6 @@ def reversals(drive: Array, least_swing: float) -> list[int]:
 
 def is_holding(drive: Array, turns: list[int], amplitudes: Array, band: float) -> NDArray[np.bool_]:
     """Where the drive stays in a band for twice as long as a sine of the half cycle's amplitude would at its turn."""
-    from scipy.ndimage import maximum_filter1d, minimum_filter1d
-
     holding = np.zeros(drive.size, dtype=bool)
     for (first, last), amplitude in zip(pairwise([*turns, drive.size]), amplitudes, strict=True):
         turn_share = np.arccos(1 - 2 * (band / amplitude if band < amplitude else 1.0)) / np.pi
@@ -88,14 +85,21 @@ def is_holding(drive: Array, turns: list[int], amplitudes: Array, band: float) -
         if least > last - first:
             continue
         part = drive[first:last]
-        calm = maximum_filter1d(part, least) - minimum_filter1d(part, least) <= band
-        calm[: least // 2] = calm[last - first - (least - 1) // 2 :] = False
-        starts = np.flatnonzero(calm) - least // 2
+        starts = np.flatnonzero(extremes(np.maximum, part, least) - extremes(np.minimum, part, least) <= band)
         edges = np.zeros(part.size + 1)
         np.add.at(edges, starts, 1)
         np.add.at(edges, starts + least, -1)
         holding[first:last] = np.cumsum(edges[:-1]) > 0
     return holding
+
+
+def extremes(extreme: np.ufunc, values: Array, length: int) -> Array:
+    """Of every `length` values in a row, from their ends towards the borders of stretches of that length (van Herk
+    1992, Pattern Recognit. Lett. 13, 517)."""
+    stretches = np.pad(values, (0, -values.size % length), mode="edge").reshape(-1, length)
+    ahead = extreme.accumulate(stretches, axis=1).ravel()
+    back = extreme.accumulate(stretches[:, ::-1], axis=1)[:, ::-1].ravel()
+    return np.asarray(extreme(back[: values.size - length + 1], ahead[length - 1 : values.size]))
 
 
 def speed(drive: Array, steps: int) -> Array:

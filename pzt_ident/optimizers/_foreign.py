@@ -1,4 +1,4 @@
-"""Seed the global random states for libraries that draw from them, and restore them afterwards."""
+"""Lend libraries that draw from NumPy's global random state one of their own."""
 
 from __future__ import annotations
 
@@ -7,17 +7,20 @@ from contextlib import contextmanager
 from threading import RLock
 
 import numpy as np
+from numpy.random.mtrand import get_bit_generator, set_bit_generator
 
 _state_lock = RLock()
+_lent = np.random.MT19937(0)
 
 
 @contextmanager
 def numpy_seeded(rng: np.random.Generator) -> Iterator[None]:
-    """Inside, the global NumPy state is seeded from `rng`; afterwards it is restored."""
+    """Inside, the global NumPy state is seeded from `rng`; afterwards it is that of before."""
     with _state_lock:
-        state = np.random.get_state()  # noqa: NPY002
+        given = get_bit_generator()
+        set_bit_generator(_lent)
         np.random.seed(rng.integers(2**32, size=4))  # noqa: NPY002
         try:
             yield
         finally:
-            np.random.set_state(state)  # noqa: NPY002
+            set_bit_generator(given)

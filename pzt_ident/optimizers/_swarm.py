@@ -9,8 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
+from pzt_ident.libraries import modules
 from pzt_ident.model.optimizer import Search
 from pzt_ident.optimizers._foreign import numpy_seeded
+
+PARTS = ("generators", "handlers", "operators", "topology.star")
 
 
 @contextmanager
@@ -35,19 +38,21 @@ def fly(
     Particles are reflected at the bounds; their velocity is then the actual move.
     """
     with without_logging():
-        from pyswarms import backend
-        from pyswarms.backend.topology import Star
-
-        topology, walls, speed = Star(), backend.BoundaryHandler("reflective"), backend.VelocityHandler("unmodified")
+        make, handlers, operators, star = modules(*(f"pyswarms.backend.{name}" for name in PARTS))
+        topology, walls, speed = (
+            star.Star(),
+            handlers.BoundaryHandler("reflective"),
+            handlers.VelocityHandler("unmodified"),
+        )
     cube, clamp = (np.zeros(dimensions), np.ones(dimensions)), (-vmax, vmax)
     launch = min(vmax, 0.5)
     with numpy_seeded(rng):
-        swarm = backend.create_swarm(particles, dimensions, options=options, bounds=cube, clamp=(-launch, launch))
+        swarm = make.create_swarm(particles, dimensions, options=options, bounds=cube, clamp=(-launch, launch))
     swarm.pbest_cost = np.full(particles, np.inf)
     swarm.best_pos = swarm.position[0]
     while True:
         swarm.current_cost = yield swarm.position.copy()
-        swarm.pbest_pos, swarm.pbest_cost = backend.compute_pbest(swarm)
+        swarm.pbest_pos, swarm.pbest_cost = operators.compute_pbest(swarm)
         swarm.best_pos, swarm.best_cost = topology.compute_gbest(swarm)
         with numpy_seeded(rng):
             swarm.velocity = topology.compute_velocity(swarm, clamp, speed, cube)

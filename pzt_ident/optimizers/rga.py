@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.libraries import modules
 from pzt_ident.model.optimizer import Array, Generational, Search, choice, setting
 from pzt_ident.model.registry import optimizers
 
@@ -92,10 +93,10 @@ def select(losses: Array, count: int, rng: np.random.Generator) -> NDArray[np.in
 
 def migrate(losses: Array, demes: list[NDArray[np.int64]], fraction: float) -> NDArray[np.int64]:
     """Rows after migration: the best of each subpopulation replace the worst of the next one on the ring."""
-    from deap import tools
-
+    migration, selection = modules("deap.tools.migration", "deap.tools.selection")
     islands = [[Individual(int(row), Fitness((-losses[row],))) for row in deme] for deme in demes]
-    tools.migRing(islands, round(fraction * min(map(len, demes))), tools.selBest, tools.selWorst)
+    moved = round(fraction * min(map(len, demes)))
+    migration.migRing(islands, moved, selection.selBest, selection.selWorst)
     order = np.arange(len(losses))
     for deme, island in zip(demes, islands, strict=True):
         order[deme] = [individual.row for individual in island]

@@ -5,7 +5,15 @@ import dataclasses
 import numpy as np
 import pytest
 
-from pzt_ident.data.noise import error_scales, noise_floor, period_of, quantiser_step, rest_noise, units_and_floors
+from pzt_ident.data.noise import (
+    correlation_of,
+    error_scales,
+    noise_floor,
+    period_of,
+    quantiser_step,
+    rest_noise,
+    units_and_floors,
+)
 from pzt_ident.data.record import Record
 
 SIGMA = 30e-9
@@ -82,6 +90,13 @@ def test_rest_segments_give_the_noise_despite_hum_far_above_it(cycles):
 def test_period_of_any_shape(period):
     shape = np.random.default_rng(period).normal(size=period).cumsum()
     assert period_of(np.tile(shape - shape.mean(), 5)[None]) == period
+
+
+@pytest.mark.parametrize("samples", [8, 9, 23, 24, 100, 1001])
+def test_a_correlation_is_the_sum_of_products(samples):
+    signal, lags = np.random.default_rng(samples).normal(size=samples), samples // 2 + 1
+    expected = np.correlate(signal, signal, "full")[samples - 1 :][:lags]
+    np.testing.assert_allclose(correlation_of(signal, lags), expected, atol=1e-12 * samples)
 
 
 def test_a_chirp_has_no_period():
