@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -32,13 +32,15 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class Plate:
     """One figure, not drawn yet. `section`: id of its section of the report, None where the report shows the same
-    interactively; `height(width)` in mm; `draw` draws into a figure of that size."""
+    interactively; `height(width)` in mm; `draw` draws into a figure of that size. `parts`: attributes that some of its
+    groups have on a page, by their ids (gid)."""
 
     name: str
     section: str | None
     caption: str
     height: Callable[[float], float]
     draw: Callable[[Figure], None]
+    parts: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
 
 
 def plates(results: Results) -> list[Plate]:
@@ -54,9 +56,9 @@ def plates(results: Results) -> list[Plate]:
 
 def drawn(plate: Plate, width: float, kind: type[Figure] | None = None) -> Figure:
     """A plate `width` mm wide, on a figure of this kind."""
-    from matplotlib.figure import Figure
-
     with style():
+        from matplotlib.figure import Figure
+
         figure = (kind or Figure)(figsize=(width / 25.4, plate.height(width) / 25.4))
         plate.draw(figure)
         make_room(figure)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
@@ -14,9 +16,13 @@ _NO_ROTATION = re.compile(r"rotate\(-?0 ")
 _LINK = re.compile(r"(?<=url\(#)|(?<=^#)")
 
 
-def inline(svg: bytes, name: str) -> Markup:
+_NO_PARTS: Mapping[str, Mapping[str, str]] = MappingProxyType({})
+
+
+def inline(svg: bytes, name: str, parts: Mapping[str, Mapping[str, str]] = _NO_PARTS) -> Markup:
     """An `svg` element for the page: coordinates rounded to 0.1 point, without metadata and font. Its ids start with
-    `name`, so that no two figures of a page share one; the element with the id `<name>-caption` labels it."""
+    `name`, so that no two figures of a page share one; the element with the id `<name>-caption` labels it. parts:
+    attributes by the ids of groups."""
     from markupsafe import Markup
 
     root = ElementTree.fromstring(svg)
@@ -25,14 +31,17 @@ def inline(svg: bytes, name: str) -> Markup:
             parent.remove(child)
     for element in root.iter():
         element.tag = _local(element.tag)
+        part = parts.get(element.attrib.get("id", ""), {})
         element.attrib = {
             _local(key): _attribute(_local(key), value, name)
             for key, value in element.attrib.items()
             if not ((key == "id" and element.tag == "g") or _NO_ROTATION.match(value))
         }
+        element.attrib |= part
         element.text, element.tail = (text and (text.strip() or None) for text in (element.text, element.tail))
     _unwrap(root)
-    root.attrib = {"viewBox": root.attrib["viewBox"], "role": "img", "aria-labelledby": f"{name}-caption"}
+    role = "group" if parts else "img"  # nothing in an image can be reached
+    root.attrib = {"viewBox": root.attrib["viewBox"], "role": role, "aria-labelledby": f"{name}-caption"}
     return Markup(ElementTree.tostring(root, encoding="unicode"))
 
 

@@ -17,7 +17,7 @@ from pzt_ident.atlas.words import Word
 from pzt_ident.data import notation as numbers
 from pzt_ident.data.notation import listed
 from pzt_ident.data.over_axes import together
-from pzt_ident.files import plain, write_text
+from pzt_ident.files import cache_folder, plain, write_text
 from pzt_ident.report.figures import Plate, write_page_figures
 from pzt_ident.report.inline import inline
 from pzt_ident.report.sentences import findings, headline, next_step, verdict
@@ -159,10 +159,16 @@ def bundled_modules() -> str:
 
 @cache
 def environment() -> Environment:
-    from jinja2 import Environment, PackageLoader, StrictUndefined
+    from jinja2 import Environment, FileSystemBytecodeCache, PackageLoader, StrictUndefined
 
-    loader = PackageLoader("pzt_ident", "report")
-    env = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    env = Environment(
+        loader=PackageLoader("pzt_ident", "report"),
+        bytecode_cache=FileSystemBytecodeCache(str(cache_folder()), "%s.page"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
     env.globals.update(zip=zip, anchor=anchor, linked_columns=COLUMNS)
     env.filters.update(linked=linked, without_links=without_links, listed=listed)
     env.filters.update(quantity=numbers.quantity, count=numbers.count, number=numbers.number)

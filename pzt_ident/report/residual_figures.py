@@ -33,6 +33,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _BRANCHES = (("rising drive", 1, PALETTE[0]), ("falling drive", -1, PALETTE[1]))
+AT_ONCE = 65536
+"""Samples that are numbers of Python's at a time."""
 _USE_COLOURS = (("identify", PALETTE[0]), ("validate", PALETTE[1]))
 
 
@@ -110,10 +112,11 @@ def branches(drive: Array) -> NDArray[np.int8]:
     """+1 where the drive rises, -1 where it falls; reversals below 0.5 % of its span are ignored (play operator)."""
     width, play, sign = 0.005 * float(np.ptp(drive)), float(drive[0]), 1
     signs = np.empty(drive.size, dtype=np.int8)
-    for place, value in enumerate(drive.tolist()):
-        output = min(max(play, value - width), value + width)
-        sign = sign if output == play else 1 if output > play else -1
-        play, signs[place] = output, sign
+    for first in range(0, drive.size, AT_ONCE):
+        for place, value in enumerate(drive[first : first + AT_ONCE].tolist(), first):
+            output = min(max(play, value - width), value + width)
+            sign = sign if output == play else 1 if output > play else -1
+            play, signs[place] = output, sign
     return signs
 
 

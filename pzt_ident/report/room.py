@@ -10,6 +10,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.backend_bases import RendererBase
     from matplotlib.figure import Figure
     from matplotlib.transforms import BboxBase
 
@@ -20,12 +21,14 @@ ROUNDS = 3  # a text in the middle of a panel moves less than the edge of the pa
 
 def make_room(figure: Figure) -> None:
     """Shrink the panels of a figure until the texts beside them end EDGE within it."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.transforms import Bbox
 
+    renderer = FigureCanvasAgg(figure).get_renderer()  # matplotlib would make one for each text
     width, height = figure.bbox.size
     edge = EDGE / 25.4 * figure.dpi
     for _ in range(ROUNDS):
-        texts = Bbox.union([box for axes in figure.axes for box in _beside(axes)])
+        texts = Bbox.union([box for axes in figure.axes for box in _beside(axes, renderer)])
         low = np.maximum(0, edge - texts.p0) / (width, height)
         high = np.maximum(0, [texts.x1 - (width - edge), 0]) / (width, height)
         if not (low.any() or high.any()):
@@ -38,10 +41,10 @@ def make_room(figure: Figure) -> None:
             axes.set_position(Bbox(corners))
 
 
-def _beside(axes: Axes) -> Iterator[BboxBase]:
+def _beside(axes: Axes, renderer: RendererBase) -> Iterator[BboxBase]:
     """Where the texts of a panel are, in pixels, but for its title."""
-    boxes = [axis.get_tightbbox() for axis in (axes.xaxis, axes.yaxis) if axes.axison]
-    boxes += [text.get_window_extent() for text in axes.texts]
+    boxes = [axis.get_tightbbox(renderer) for axis in (axes.xaxis, axes.yaxis) if axes.axison]
+    boxes += [text.get_window_extent(renderer) for text in axes.texts]
     yield from (box for box in boxes if box is not None)
 
 

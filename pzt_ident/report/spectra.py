@@ -40,16 +40,15 @@ def _rounded(content: Any) -> Any:
 
 
 def spectrum_of(trace: Trace, most: int = MOST) -> dict[str, Any]:
-    scored = trace.scored
+    scored = slice(int(np.argmax(trace.scored)), None)
     drive, response, model = (getattr(trace, name)[scored] for name in ("drive", "response", "model"))
     residual = trace.residual[scored]
     rate = (trace.time.size - 1) / float(trace.time[-1] - trace.time[0])
     size = min(residual.size, max(8, 2 * residual.size // (SEGMENTS + 1)))
     frequency = np.fft.rfftfreq(size, 1 / rate)
-    moved, left, measured, modelled = (transforms(values, size) for values in (drive, residual, response, model))
-    power, residual_power = density(moved, moved, rate).real, density(left, left, rate).real
-    response_power = density(measured, measured, rate).real
-    cross_spectra = {"measured": density(moved, measured, rate), "model": density(moved, modelled, rate)}
+    spectra = densities([drive, residual, response, model], [(0, 0), (1, 1), (2, 2), (0, 2), (0, 3)], size, rate)
+    power, residual_power, response_power = spectra[:3].real
+    cross_spectra = dict(zip(("measured", "model"), spectra[3:], strict=True))
     lines = np.unique(np.geomspace(1, frequency.size - 1, min(most, frequency.size - 1)).astype(int))
     driven = power[lines] > MOVED * power.max()
     spectrum: dict[str, Any] = {
@@ -73,22 +72,35 @@ def spectrum_of(trace: Trace, most: int = MOST) -> dict[str, Any]:
     return spectrum
 
 
-def transforms(values: Array, size: int) -> NDArray[np.complex128]:
-    """Fourier transforms of half overlapping segments of so many samples, each less its straight line and under a Hann
-    window of unit power: (segments, size // 2 + 1). Welch (1967); SciPy's module takes a second to import."""
-    segments = np.lib.stride_tricks.sliding_window_view(values, size)[:: size - size // 2]
+def densities(
+    signals: Sequence[Array], pairs: Sequence[tuple[int, int]], size: int, rate: float
+) -> NDArray[np.complex128]:
+    """One-sided cross spectral densities of pairs of signals, the products of their units over Hz: (pairs, lines). Of
+    half overlapping segments of so many samples, one after the other. Welch (1967); SciPy's module takes a second to
+    import."""
+    sums, starts = (
+        np.zeros((len(pairs), size // 2 + 1), complex),
+        range(0, signals[0].size - size + 1, size - size // 2),
+    )
+    for start in starts:
+        lines = transforms(np.array([values[start : start + size] for values in signals]))
+        for place, (first, second) in enumerate(pairs):
+            sums[place] += lines[first].conj() * lines[second]
+    sums *= 2 / (len(starts) * rate)
+    return sums
+
+
+def transforms(values: Array) -> NDArray[np.complex128]:
+    """Fourier transforms of signals (signals, samples), each less its straight line and under a Hann window of unit
+    power: (signals, lines)."""
+    size = values.shape[1]
     time = np.arange(size) - (size - 1) / 2
-    slopes = segments @ time / max(time @ time, 1e-300)
-    level = segments - segments.mean(axis=1, keepdims=True) - np.outer(slopes, time)
+    slopes = values @ time / max(time @ time, 1e-300)
+    level = values - values.mean(axis=1, keepdims=True) - np.outer(slopes, time)
     window = 0.5 - 0.5 * np.cos(2 * np.pi * np.arange(size) / size)
     lines = np.fft.rfft(level * window / np.sqrt((window @ window).clip(1e-300)), axis=1)
     lines[:, [0] if size % 2 else [0, -1]] /= np.sqrt(2)  # of a real signal they come once
     return lines
-
-
-def density(first: NDArray[np.complex128], second: NDArray[np.complex128], rate: float) -> NDArray[np.complex128]:
-    """One-sided cross spectral density of two signals, the product of their units over Hz: (lines,)."""
-    return 2 * np.mean(first.conj() * second, axis=0) / rate
 
 
 def where(driven: NDArray[np.bool_], values: Array) -> Array:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import re
+import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -85,11 +86,25 @@ def style() -> Iterator[None]:
     """Matplotlib's settings for what is drawn and saved inside."""
     import warnings
 
-    import matplotlib
-
+    matplotlib = without_help()
     with matplotlib.rc_context(_STYLE), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph .* missing from")
         yield
+
+
+def without_help() -> Any:
+    """matplotlib, whose classes write their help while they are imported, a third of the time: not where no prompt is
+    that could ask for it."""
+    import matplotlib
+    from matplotlib import artist
+
+    if "matplotlib.figure" not in sys.modules and not hasattr(sys, "ps1") and "IPython" not in sys.modules:
+        usual, artist.kwdoc = artist.kwdoc, lambda artist: ""
+        try:
+            import matplotlib.figure
+        finally:
+            artist.kwdoc = usual
+    return matplotlib
 
 
 @dataclass(frozen=True)
@@ -181,12 +196,37 @@ def label(axis: Axis, name: str, raw_unit: str, values: Sequence[float] | NDArra
 
 def log_ticks(axis: Axis, name: str, raw_unit: str, span: Sequence[float]) -> None:
     """As `label`, for a logarithmic axis over `span` (lower, upper), with plain numbers at its ticks."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+    from matplotlib.ticker import FuncFormatter, LogLocator
 
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if span[1] / span[0] < 300 else (1.0,), numticks=8))
     axis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
-    axis.set_minor_formatter(NullFormatter())
+    _minor_ticks(axis)
     label(axis, name, raw_unit, span)
+
+
+def _minor_ticks(axis: Axis) -> None:
+    """Draw the minor ticks of a logarithmic axis, whose limits are set, as one line with markers: matplotlib makes five
+    objects of each, and measures all of them again and again."""
+    from matplotlib.lines import Line2D
+    from matplotlib.markers import TICKDOWN, TICKLEFT
+    from matplotlib.ticker import NullLocator
+
+    low, high = sorted(axis.get_view_interval())
+    places = np.array([place for place in axis.get_minorticklocs() if low <= place <= high])
+    axis.set_minor_locator(NullLocator())
+    foot, axes, across = np.zeros(places.size), axis.axes, axis is axis.axes.xaxis
+    ticks = Line2D(
+        *((places, foot) if across else (foot, places)),
+        transform=axes.get_xaxis_transform("tick1") if across else axes.get_yaxis_transform("tick1"),
+        marker=TICKDOWN if across else TICKLEFT,  # type: ignore[arg-type]
+        linestyle="none",
+        color=INK,
+        markersize=_STYLE["xtick.minor.size"],
+        markeredgewidth=_STYLE["xtick.minor.width"],
+        clip_on=False,
+        zorder=2.01,
+    )
+    axes.add_artist(ticks)
 
 
 def decimate(values: NDArray[np.float64], bins: int) -> NDArray[np.intp]:

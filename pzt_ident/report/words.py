@@ -29,8 +29,7 @@ def named(sentences: Iterable[str], tables: Mapping[str, Table]) -> list[Word]:
         cell for table in tables.values() for column in COLUMNS if column in table.text for cell in table.text[column]
     ]
     names = [name for text in [*sentences, *cells] for name in NAME.findall(text)]
-    registered = set(blocks.usable())
-    return [Word(word) for word in sorted({part for name in names for part in name.split(".")} & registered)]
+    return [Word(word) for word in blocks.usable({part for name in names for part in name.split(".")})]
 
 
 def linked(text: str, words: Collection[Word]) -> Markup:
