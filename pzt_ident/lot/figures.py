@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from pzt_ident.data.notation import listed, number
+from pzt_ident.data.notation import quantity as in_words
 from pzt_ident.lot.outcome import Lot
 from pzt_ident.lot.statistics import FAR, Quantity, Trend, groups, numeric
 from pzt_ident.report.figures import Plate
@@ -22,6 +25,7 @@ FRAME = Frame(top=4, left=12, bottom=8, down=13)
 ROW = 34.0  # mm
 USUAL, FAR_OFF = "#5b86a8", str(MODEL["color"])
 MOST = 12  # panels of what depends on what
+NAMED = 6  # devices that a bar names
 
 
 def plates(lot: Lot) -> Iterator[Plate]:
@@ -35,6 +39,7 @@ def plates(lot: Lot) -> Iterator[Plate]:
             "either side of the median. Marked below: devices out of line.",
             partial(_height, count=len(shown)),
             partial(_draw_spreads, lot=lot, shown=shown),
+            bars(lot, shown),
         )
     pairs = [*_trend_panels(lot), *_group_panels(lot)][:MOST]
     if pairs:
@@ -70,24 +75,69 @@ def _far(lot: Lot, quantity: Quantity) -> np.ndarray:
     return np.array([row["device"] in names for row in lot.done])
 
 
+def bars(lot: Lot, shown: Sequence[Quantity]) -> dict[str, dict[str, str]]:
+    """What a page makes of each panel and of each of its bars: buttons that tell their devices, and between which
+    values these lie."""
+    parts = {}
+    names = np.array([row["device"] for row in lot.done])
+    for place, quantity in enumerate(shown):
+        parts[f"panel-{place}"] = {"role": "group", "aria-label": f"Devices by {quantity.name}"}
+        edges, values = _edges(quantity), quantity.values[quantity.usable]
+        inside = np.clip(np.searchsorted(edges, values, "right") - 1, 0, edges.size - 2)
+        for bar in np.unique(inside).tolist():
+            low, high, devices = edges[bar], edges[bar + 1], names[quantity.usable][inside == bar].tolist()
+            last = bar == edges.size - 2
+            parts[f"bar-{place}-{bar}"] = {
+                "role": "button",
+                "tabindex": "-1",
+                "aria-label": f"{quantity.name} {number(low)} to {in_words(high, quantity.unit)}: {_some(devices)}",
+                "data-quantity": quantity.name,
+                "data-count": str(len(devices)),
+                "data-low": repr(float(low)),
+                "data-below": repr(float(np.nextafter(high, np.inf) if last else high)),
+            }
+    return parts
+
+
+def _some(devices: Sequence[str]) -> str:
+    more = [f"{len(devices) - NAMED} more"] * (len(devices) > NAMED)
+    return listed([*devices[:NAMED], *more])
+
+
+def _is_wide(quantity: Quantity) -> bool:
+    """Whether a quantity is drawn on a logarithmic axis."""
+    values = quantity.values[quantity.usable]
+    return quantity.one_sided and bool(values.min() > 0 and values.max() > 5 * quantity.median)
+
+
+def _edges(quantity: Quantity) -> np.ndarray:
+    """Of the bars of a quantity."""
+    values = quantity.values[quantity.usable]
+    count = min(40, max(8, round(2 * math.sqrt(values.size))))
+    if _is_wide(quantity):
+        return np.geomspace(values.min(), values.max(), count)
+    return np.histogram_bin_edges(values, count)
+
+
 def _draw_spreads(figure: Figure, lot: Lot, shown: Sequence[Quantity]) -> None:
-    for axes, quantity in zip(_grid(figure, len(shown)), shown, strict=True):
+    parts = bars(lot, shown)
+    for place, (axes, quantity) in enumerate(zip(_grid(figure, len(shown)), shown, strict=True)):
         values, far = quantity.values[quantity.usable], _far(lot, quantity)[quantity.usable]
         middle, half = quantity.median, FAR * quantity.spread
-        low, high = np.min(values), np.max(values)
-        count = min(40, max(8, round(2 * math.sqrt(values.size))))
-        wide = quantity.one_sided and low > 0 and high > 5 * middle
-        edges = np.geomspace(low, high, count) if wide else np.histogram_bin_edges(values, count)
+        low, high, edges = np.min(values), np.max(values), _edges(quantity)
         below = max(middle - half, low) if quantity.one_sided else middle - half
+        axes.set_gid(f"panel-{place}")
         axes.axvspan(max(below, edges[0]), min(middle + half, edges[-1]), color=SHADE, lw=0)
         axes.axvline(middle, color=QUIET, linewidth=0.6)
-        axes.hist(values[~far], bins=edges.tolist(), color=USUAL)
-        if far.any():
-            axes.hist(values[far], bins=edges.tolist(), color=FAR_OFF)
-            axes.plot(values[far], np.zeros(far.sum()), "^", color=FAR_OFF, markersize=3, clip_on=False)
+        axes.hist([values[far], values[~far]], bins=edges.tolist(), color=[FAR_OFF, USUAL], stacked=True)
+        axes.plot(values[far], np.zeros(far.sum()), "^", color=FAR_OFF, markersize=3, clip_on=False)
+        for bar, (left, right) in enumerate(pairwise(edges)):
+            if (name := f"bar-{place}-{bar}") in parts:
+                axes.axvspan(left, right, facecolor="none", edgecolor="none", zorder=5).set_gid(name)
         axes.set_ylabel("devices")
-        axes.locator_params(axis="both", nbins=5)
-        if wide:
+        axes.locator_params(axis="x", nbins=5)
+        axes.locator_params(axis="y", nbins=5, integer=True)
+        if _is_wide(quantity):
             axes.set_xscale("log")
             log_ticks(axes.xaxis, "", quantity.unit, (low, high))
         else:

@@ -68,7 +68,7 @@ def figures(lot: Lot, draw: Callable[[Plate], bytes]) -> dict[str | None, list[t
     """The figures of the page by their sections. draw: a plate as SVG."""
     sections: dict[str | None, list[tuple[Plate, Markup]]] = {}
     for plate in plates(lot):
-        sections.setdefault(plate.section, []).append((plate, inline(draw(plate), plate.name)))
+        sections.setdefault(plate.section, []).append((plate, inline(draw(plate), plate.name, plate.parts)))
     return sections
 
 

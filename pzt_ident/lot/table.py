@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator, Sequence
 from hashlib import sha256
 from importlib.util import find_spec
@@ -68,9 +69,18 @@ def frame_of(rows: Iterator[Row]) -> pd.DataFrame:
     import pandas as pd
 
     units: dict[str, str] = {}
-    lines = [line_of(row, units) for row in rows]
-    headings = dict.fromkeys(name for line in sorted(lines, key=len, reverse=True) for name in line)
-    return pd.DataFrame(lines, columns=list(headings))
+    columns: dict[str, list[Value]] = {}
+    kinds: dict[tuple[str, ...], None] = {}
+    count = 0
+    for count, row in enumerate(rows, 1):
+        line = line_of(row, units)
+        kinds.setdefault(tuple(line))
+        for name, value in line.items():
+            column = columns.setdefault(name, [])
+            column += [None] * (count - 1 - len(column))
+            column.append(sys.intern(value) if isinstance(value, str) else value)
+    headings = dict.fromkeys(name for kind in sorted(kinds, key=len, reverse=True) for name in kind)
+    return pd.DataFrame({name: columns[name] + [None] * (count - len(columns[name])) for name in headings})
 
 
 def line_of(row: Row, units: dict[str, str]) -> dict[str, Value]:

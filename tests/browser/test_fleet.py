@@ -59,6 +59,27 @@ def test_what_is_said_of_it_is_beside_it_and_leads_to_the_atlas(lot):
     assert len(download.value.path().read_text(encoding="utf-8").splitlines()) == DEVICES + 1
 
 
+def test_a_bar_shows_its_devices_in_the_table_by_key(lot):
+    panel = lot.locator("[aria-label='Devices by bouc_wen.gain']")
+    bar, first = (panel.locator(f"[data-below]{which}").first for which in (":not([data-count='1'])", ""))
+    expect(first).to_have_attribute("tabindex", "0")
+    first.focus()
+    while lot.evaluate("document.activeElement.dataset.count") == "1":
+        lot.keyboard.press("ArrowRight")
+    said = lot.locator("#pointed").text_content()
+    assert said == bar.get_attribute("aria-label")
+    lot.keyboard.press("Enter")
+    rows = lot.locator("#table-devices tbody tr:visible")
+    expect(rows).to_have_count(int(bar.get_attribute("data-count")))
+    assert all(name in said for name in rows.locator("a").all_text_contents())
+    expect(bar).to_have_attribute("aria-pressed", "true")
+    assert faults_of(lot) == []
+    expect(lot.locator("#chosen")).to_be_focused()
+    lot.keyboard.press("Enter")
+    expect(rows).to_have_count(DEVICES - 1)
+    expect(bar).to_be_focused()
+
+
 def test_a_fleet_that_is_not_done_is_followed_and_goes_on(lot, folder):
     name = lot.locator("#table-devices a[data-device]").last.text_content()
     shutil.rmtree(folder / "workbench" / "fleet" / "devices" / name)
@@ -72,8 +93,9 @@ def test_a_fleet_that_is_not_done_is_followed_and_goes_on(lot, folder):
 
 
 def test_a_device_opens_like_a_run_and_leads_back(lot):
-    name = lot.locator("#table-devices a[data-device]").first.text_content()
-    lot.locator("#table-devices a[data-device]").first.press("Enter")
+    bar = lot.locator("[data-count='1']").first
+    name = bar.get_attribute("aria-label").rpartition(": ")[2]
+    bar.click()
     expect(lot.locator("#name")).to_have_text(name)
     expect(lot.locator("#loop canvas.drawn")).to_be_visible()
     expect(lot.locator("#verdict")).to_contain_text("The model is fitted: it leaves an RMSE of")

@@ -10,7 +10,7 @@ import pytest
 from cut_texts import cut_texts
 from pzt_ident.errors import InputError
 from pzt_ident.files import read_sealed, write_sealed
-from pzt_ident.lot.figures import plates
+from pzt_ident.lot.figures import NAMED, bars, plates
 from pzt_ident.lot.outcome import read_lot
 from pzt_ident.lot.report import write_fleet_report
 from pzt_ident.model.registry import blocks
@@ -54,6 +54,22 @@ def test_it_names_what_is_broken_and_what_is_out_of_line(page):
 def test_no_text_of_a_figure_is_cut(page, width):
     drawings = [drawn(plate, width) for plate in plates(read_lot(page.parent))]
     assert drawings and not [text for drawing in drawings for text in cut_texts(drawing)]
+
+
+def test_each_determined_device_is_in_one_bar_of_each_quantity(page):
+    lot = read_lot(page.parent)
+    shown = [quantity for quantity in lot.quantities if quantity.usable.sum() > 1]
+    parts = [part for part in bars(lot, shown).values() if part["role"] == "button"]
+    for quantity in shown:
+        ends = [(part, float(part["data-low"]), float(part["data-below"])) for part in parts]
+        ends = [end for end in ends if end[0]["data-quantity"] == quantity.name]
+        for row, value, known in zip(lot.done, quantity.values, quantity.usable, strict=True):
+            mine = [part for part, low, below in ends if low <= value < below]
+            assert len(mine) == 1 or not known
+            if known and int(mine[0]["data-count"]) <= NAMED:
+                assert row["device"] in re.split(", | and |: ", mine[0]["aria-label"])
+        assert sum(int(part["data-count"]) for part, _, _ in ends) == quantity.usable.sum()
+    assert page.read_text(encoding="utf-8").count("data-below=") == len(parts)
 
 
 def test_every_word_is_explained_on_the_page(page):
