@@ -134,6 +134,16 @@ def plain(content: Any) -> Any:
     return content
 
 
+@contextmanager
+def temporary_files_in(folder: str) -> Iterator[None]:
+    """What is made inside as a temporary file or folder of this process lies in `folder`."""
+    before, tempfile.tempdir = tempfile.tempdir, folder
+    try:
+        yield
+    finally:
+        tempfile.tempdir = before
+
+
 @cache
 def cache_folder() -> Path:
     """$PZT_IDENT_CACHE, else the user's cache folder, else one for this process and those that it starts."""

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from uuid import uuid4
 
 from pzt_ident.errors import InputError, LostError
-from pzt_ident.files import plain
+from pzt_ident.files import plain, temporary_files_in
 from pzt_ident.run.computing import computing
 from pzt_ident.run.folder import version_of
 from pzt_ident.run.pool import (
@@ -245,7 +245,8 @@ _alone = Lock()
 
 
 def attempt_there(entry: Entry, common: bytes, arguments: bytes, topic: str) -> tuple[str, Any]:
-    """What a thread of a Dask worker does. One at a time in a process: optimizers borrow the random state of theirs."""
+    """What a thread of a Dask worker does. One at a time in a process: optimizers borrow the random state of theirs.
+    Temporary files lie in the worker's own folder, which Dask removes once the worker is gone."""
     from distributed import get_worker
 
     worker = get_worker()
@@ -253,7 +254,7 @@ def attempt_there(entry: Entry, common: bytes, arguments: bytes, topic: str) -> 
     def tell(event: Event) -> None:
         worker.log_event(topic, plain(event))
 
-    with _alone, computing():
+    with _alone, computing(), temporary_files_in(worker.local_directory):
         return attempt_away(entry, (*pickle.loads(common), *pickle.loads(arguments)), thinned(tell))
 
 

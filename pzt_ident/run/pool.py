@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import shutil
 import signal
 import sys
 import threading
@@ -13,9 +14,11 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from itertools import chain
 from multiprocessing.connection import wait
+from tempfile import TemporaryDirectory
 from typing import Any
 
 from pzt_ident.errors import InputError, LostError, RunError
+from pzt_ident.files import temporary_files_in
 from pzt_ident.model.registry import blocks, optimizers
 
 Event = dict[str, Any]
@@ -25,7 +28,7 @@ Entry = Callable[..., Any]
 Arguments = tuple[Any, ...]
 Tasks = Iterable[tuple[str, Arguments]]  # names, with the arguments that each task has of its own
 Failures = dict[str, str]  # reasons by the name of the task
-PRELOADED = ("pzt_ident.run.task", "pzt_ident.job.schema", "pzt_ident.engine.kernel", "scipy.optimize", "ruamel.yaml")
+PRELOADED = ("pzt_ident.run.task", "pzt_ident.job.schema", "pzt_ident.engine.kernel", "ruamel.yaml")
 SECONDS_DEAF = 0.1
 ATTEMPTS = 3
 """How often a task is begun whose processes die."""
@@ -132,12 +135,14 @@ class Worker:
 
 
 class Pool:
-    """The workers of one call of `run_all`: those that wait for a task, and those that are at one."""
+    """The workers of one call of `run_all`: those that wait for a task, and those that are at one. Their temporary
+    files lie in one folder, which goes with the pool: a worker that is killed clears nothing up."""
 
     def __init__(self, entry: Entry, common: Arguments, most: int) -> None:
         self.entry, self.common, self.most = entry, common, most
         self.idle: list[Worker] = []
         self.busy: dict[Any, Worker] = {}
+        self.scratch = TemporaryDirectory(prefix="pzt-ident-", ignore_cleanup_errors=True)
 
     @property
     def has_room(self) -> bool:
@@ -163,7 +168,7 @@ class Pool:
     def _start(self) -> Worker:
         starting = context()
         ours, theirs = starting.Pipe()
-        process = starting.Process(target=serve, args=(self.entry, self.common, theirs), daemon=True)
+        process = starting.Process(target=serve, args=(self.entry, self.common, theirs, self.scratch.name), daemon=True)
         with without_working_folder():
             process.start()
         theirs.close()
@@ -175,6 +180,7 @@ class Pool:
             worker.process.terminate()
         for worker in (*self.idle, *self.busy.values()):
             worker.end()
+        self.scratch.cleanup()
 
 
 def run_all(
@@ -223,15 +229,19 @@ def run_all(
             pool.end()
 
 
-def serve(entry: Entry, common: Arguments, pipe: Any) -> None:
-    """The life of a worker: one task after another, until nobody sends any or nobody listens."""
+def serve(entry: Entry, common: Arguments, pipe: Any, scratch: str) -> None:
+    """The life of a worker: one task after another, until nobody sends any or nobody listens. scratch: the folder of
+    its temporary files, which it removes where its parent was killed."""
     import numpy as np
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     np.seterr(all="ignore")  # a simulation that overflows is counted, not warned about
-    with suppress(ConnectionError, EOFError):
+    with suppress(ConnectionError, EOFError), temporary_files_in(scratch):
         while True:
             pipe.send(attempt_away(entry, (*common, *pipe.recv()), lambda event: pipe.send(("event", event))))
+    parent = multiprocessing.parent_process()
+    if parent and not parent.is_alive():
+        shutil.rmtree(scratch, ignore_errors=True)
 
 
 def attempt_away(entry: Entry, arguments: Arguments, tell: Tell) -> tuple[str, Any]:

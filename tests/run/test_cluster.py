@@ -4,6 +4,7 @@ import errno
 import json
 import os
 import signal
+import tempfile
 import time
 from pathlib import Path
 from threading import Thread
@@ -74,6 +75,7 @@ def slow_once(tell, folder, number):
     """Task 0 names its process and waits to be killed."""
     note = folder / "begun"
     if number == 0 and not note.exists():
+        (folder / "scratch").write_text(tempfile.mkdtemp())
         note.write_text(str(os.getpid()))
         time.sleep(600)
     return number**2
@@ -97,6 +99,7 @@ def test_what_a_killed_worker_was_at_is_done_again(tmp_path):
         )
     assert failed == {}
     assert results == {str(i): i**2 for i in range(12)}
+    assert not Path((tmp_path / "scratch").read_text()).exists()
 
 
 def test_a_task_whose_outcome_a_living_scheduler_lost_is_sent_again(cluster, tmp_path):

@@ -6,8 +6,11 @@ import signal
 import struct
 import subprocess
 import sys
+import time
 from itertools import count
 from multiprocessing import Pipe
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import SimpleNamespace
 
 import numpy as np
@@ -86,15 +89,55 @@ def endless(tell):
         tell({"event": "generation", "number": i})
 
 
-def test_a_worker_ends_quietly_with_its_parent(capfd):
+def test_a_worker_ends_quietly_with_its_parent(capfd, tmp_path):
     ours, theirs = Pipe()
     ours.send(())
     ours.close()
     handler, errors = signal.getsignal(signal.SIGINT), np.geterr()
-    serve(endless, (), theirs)
+    serve(endless, (), theirs, str(tmp_path))
     signal.signal(signal.SIGINT, handler)
     np.seterr(**errors)
     assert capfd.readouterr().err == ""
+
+
+def littered(tell, folder):
+    """The first time it is killed with a scratch folder of its own."""
+    with TemporaryDirectory() as scratch:
+        if not (note := folder / "scratch").exists():
+            note.write_text(scratch)
+            os.kill(os.getpid(), signal.SIGKILL)
+
+
+def test_a_killed_worker_leaves_no_scratch(tmp_path):
+    assert Local(1).run_all(littered, (tmp_path,), [("only", ())], lambda event: None) == {}
+    assert not Path((tmp_path / "scratch").read_text()).exists()
+
+
+ORPHANED = """\
+import os, signal, tempfile
+from pathlib import Path
+from pzt_ident.run import pool
+
+def orphaned(tell, parent):
+    Path("scratch").write_text(tempfile.mkdtemp())
+    os.kill(parent, signal.SIGKILL)
+
+if __name__ == "__main__":
+    import orphan
+    pool.run_all(orphan.orphaned, (os.getpid(),), [("only", ())], 1, print)
+"""
+
+
+def test_a_worker_whose_parent_is_killed_clears_up(tmp_path):
+    (tmp_path / "orphan.py").write_text(ORPHANED)
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(tmp_path), *search_path()])}
+    subprocess.run([sys.executable, "-m", "orphan"], cwd=tmp_path, env=environment, timeout=60)
+    scratch = Path((tmp_path / "scratch").read_text())
+    until = time.monotonic() + 30
+    while scratch.parent.exists() and time.monotonic() < until:
+        time.sleep(0.02)
+    assert scratch.parent.name.startswith("pzt-ident-")
+    assert not scratch.parent.exists()
 
 
 def full(tell, number):
