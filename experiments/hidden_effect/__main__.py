@@ -9,6 +9,7 @@ import click
 from experiments.hidden_effect import cases
 
 FOLDER = click.Path(file_okay=False, path_type=Path)
+ON = click.option("--on", default="", help="Where the commands work, as of `pzt-ident improve --on`.")
 
 
 @click.group()
@@ -34,11 +35,9 @@ def draw(seed: int, count: int, kind: str, effect: str | None, out: Path) -> Non
 @click.argument("folder", type=FOLDER)
 @click.option("--workers", type=click.IntRange(1), default=2, show_default=True)
 @click.option("--retry", is_flag=True, help="Try again what failed before.")
-@click.option(
-    "--on", default="", help="Where `improve` works, as of `pzt-ident improve --on`; --workers cases at once."
-)
+@ON
 def solve(folder: Path, workers: int, retry: bool, on: str) -> None:
-    """Run `pzt-ident improve` on each case of FOLDER that has no result yet."""
+    """Run `pzt-ident improve` on each case of FOLDER that has no result yet, --workers of them at once."""
     from experiments.hidden_effect.solve import solve
 
     for case in solve(folder, workers, retry, on):
@@ -48,12 +47,13 @@ def solve(folder: Path, workers: int, retry: bool, on: str) -> None:
 @main.command()
 @click.argument("folder", type=FOLDER)
 @click.option("--out", type=FOLDER, help="Default: FOLDER/score.")
-def score(folder: Path, out: Path | None) -> None:
+@ON
+def score(folder: Path, out: Path | None, on: str) -> None:
     """Hold the results in FOLDER against the truth: tables, confusion matrix and staircases."""
     from experiments.hidden_effect import figures, score
 
     out = out or folder / "score"
-    scores, failed = score.score(folder)
+    scores, failed = score.score(folder, on)
     score.write(scores, failed, out)
     if scores:
         figures.draw(scores, out)

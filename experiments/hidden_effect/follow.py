@@ -16,8 +16,8 @@ from experiments.hidden_effect.solve import run
 LATER = 7  # the record's number, after all others
 
 
-def follow(folder: Path, name: str) -> Path | None:
-    """The folder of the second solution; None where no drive was proposed."""
+def follow(folder: Path, name: str, on: str = "") -> Path | None:
+    """The folder of the second solution, found at the place `on`; None where no drive was proposed."""
     proposed = _proposed(folder / "solved" / name / "diagnose")
     if proposed is None:
         return None
@@ -31,7 +31,7 @@ def follow(folder: Path, name: str) -> Path | None:
         more = "records:\n  - {file: proposed.csv, use: identify}\n"
         (job / "job.yaml").write_text(text.replace("records:\n", more, 1), encoding="utf-8")
     solved = folder / "followed" / name / "solved"
-    run("improve", job / "job.yaml", solved, retry=False)
+    run("improve", job / "job.yaml", solved, retry=False, on=on)
     return solved
 
 

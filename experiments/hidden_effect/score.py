@@ -102,19 +102,20 @@ def _pair(rest: list[str], free: list[str], found: Answer) -> list[tuple[str, st
     return max(options, key=len)
 
 
-def score(folder: Path) -> tuple[list[Score], list[str]]:
-    """The scores of the cases that were solved, and the names of the others."""
+def score(folder: Path, on: str = "") -> tuple[list[Score], list[str]]:
+    """The scores of the cases that were solved, and the names of the others. on: the place where drives that were
+    proposed are followed."""
     scores, failed = [], []
     for path in sorted((folder / "sealed").glob("*.json")):
         solved = folder / "solved" / path.stem
         if (solved / "improve" / "improvement.json").exists():
-            scores.append(score_case(folder, load(path), solved))
+            scores.append(score_case(folder, load(path), solved, on))
         else:
             failed.append(path.stem)
     return scores, failed
 
 
-def score_case(folder: Path, truth: Json, solved: Path) -> Score:
+def score_case(folder: Path, truth: Json, solved: Path, on: str) -> Score:
     improvement = load(solved / "improve" / "improvement.json")
     hidden, found = tuple(entry["effect"] for entry in truth["effects"]), answer(improvement)
     steps = tuple({**step, **_floors(step["rmse"], truth["noise_floor"])} for step in improvement["steps"])
@@ -123,7 +124,7 @@ def score_case(folder: Path, truth: Json, solved: Path) -> Score:
     if truth["kind"] in TWO_ROUNDS:
         if not found.effects:
             found = _first_candidate(solved / "diagnose" / "diagnosis.json", found)
-        second = follow(folder, truth["name"])
+        second = follow(folder, truth["name"], on)
         more = {"proposed": second is not None, "separated": _separated(second, hidden)}
     return Score(
         truth["name"],

@@ -24,23 +24,19 @@ def solve(folder: Path, workers: int = 2, retry: bool = False, on: str = "") -> 
 
 def solve_case(case: Path, out: Path, retry: bool = False, on: str = "") -> bool:
     kind = case.name.rpartition("-")[0]
-    diagnosed = kind not in TWO_ROUNDS or run("diagnose", case / "job.yaml", out, retry)
+    diagnosed = kind not in TWO_ROUNDS or run("diagnose", case / "job.yaml", out, retry, on)
     return run("improve", case / "job.yaml", out, retry, on) and diagnosed
 
 
-def place(on: str) -> list[str]:
-    return ["--on", on] if on else []
-
-
 def run(command: str, job: Path, out: Path, retry: bool, on: str = "") -> bool:
-    """One command into out/COMMAND; whether its result is there. `diagnose` works on this machine."""
+    """One command into out/COMMAND; whether its result is there."""
     result = out / command / {"improve": "improvement.json", "diagnose": "diagnosis.json"}[command]
     failure = out / f"{command}_failed.json"
     if result.exists() or (failure.exists() and not retry):
         return result.exists()
     out.mkdir(parents=True, exist_ok=True)
     program = Path(sys.executable).with_name("pzt-ident")
-    line = [str(program), command, str(job), "--json", "--quiet", "--no-report", *place(on), "--out"]
+    line = [str(program), command, str(job), "--json", "--quiet", "--no-report", *(["--on", on] if on else []), "--out"]
     start = time.monotonic()
     try:
         ended = subprocess.run([*line, str(result.parent)], capture_output=True, text=True, timeout=PATIENCE)

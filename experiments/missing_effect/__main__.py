@@ -21,12 +21,13 @@ def main() -> None:
 @click.option("--seeds", default="7000:7005", show_default=True, help="First seed, and the one behind the last.")
 @click.option("--effects", default=",".join(tracking.EFFECTS), show_default=True)
 @click.option("--out", type=FOLDER, default=OUT, show_default=True)
-def run(seeds: str, effects: str, out: Path) -> None:
+@click.option("--on", default="", help="Where models are improved, as of `pzt-ident improve --on`.")
+def run(seeds: str, effects: str, out: Path, on: str) -> None:
     """Draw a stage with one hidden effect a seed, improve the model, drive the stage, and write what it did."""
     first, last = map(int, seeds.split(":"))
     for effect in effects.split(","):
         for seed in range(first, last):
-            tracking.solve(effect, seed, out)
+            tracking.solve(effect, seed, out, on)
             click.echo(f"{effect}-{seed}")
 
 

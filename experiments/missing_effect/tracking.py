@@ -45,15 +45,15 @@ def reference() -> tuple[Array, Array, Array]:
     return time, x, 40 * (1 - np.cos(2 * np.pi * 0.7 * time)) / 2
 
 
-def solve(effect: str, seed: int, out: Path) -> None:
-    """Everything of one case, each step once."""
+def solve(effect: str, seed: int, out: Path, on: str) -> None:
+    """Everything of one case, each step once. on: the place where the model is improved."""
     folder = out / f"{effect}-{seed}"
     if (folder / "tracking.json").exists():
         return
     name = f"single-{seed}"
     if not (folder / "sealed" / f"{name}.json").exists():
         cases.write(*cases.draw("single", seed, effect), folder)
-    run("improve", folder / "cases" / name / "job.yaml", folder / "solved", retry=False)
+    run("improve", folder / "cases" / name / "job.yaml", folder / "solved", retry=False, on=on)
     case = cases.opened(folder / "sealed" / f"{name}.json")
     time, x, u_y = reference()
     np.savetxt(folder / "reference.csv", np.transpose([time, x, u_y]), "%.10g", ",", header=HEADER, comments="")

@@ -19,12 +19,13 @@ if TYPE_CHECKING:
 
 @click.command()
 @diagnosis_options
-def diagnose(job: Path, **options: Any) -> None:
+@place_option
+def diagnose(job: Path, place: Place, **options: Any) -> None:
     """Say which physical effect the model of a job file JOB misses."""
     from pzt_ident.cli import verdict_tables
-    from pzt_ident.run.improve import diagnose
+    from pzt_ident.run.elsewhere import sought_at
 
-    _diagnose(diagnose, "diagnosis", verdict_tables.show_diagnosis, job, **options)
+    _diagnose(partial(sought_at, place, "diagnose"), "diagnosis", verdict_tables.show_diagnosis, job, **options)
 
 
 @click.command()
@@ -33,9 +34,9 @@ def diagnose(job: Path, **options: Any) -> None:
 def improve(job: Path, place: Place, **options: Any) -> None:
     """Add what the model of a job file JOB misses, effect by effect, and watch the error fall."""
     from pzt_ident.cli import verdict_tables
-    from pzt_ident.run.elsewhere import improve_at
+    from pzt_ident.run.elsewhere import sought_at
 
-    _diagnose(partial(improve_at, place), "improvement", verdict_tables.show_improvement, job, **options)
+    _diagnose(partial(sought_at, place, "improve"), "improvement", verdict_tables.show_improvement, job, **options)
 
 
 def _diagnose(

@@ -1,4 +1,5 @@
-"""An improvement at a place that may share no disk with this process, and one that was killed, begun again."""
+"""An improvement or a diagnosis at a place that may share no disk with this process, and one that was killed, begun
+again."""
 
 from __future__ import annotations
 
@@ -21,36 +22,40 @@ from pzt_ident.run.pool import Tell
 from pzt_ident.run.start import file_of, read_start
 
 OF_THIS_PROCESS = ("job.yaml", "environment.json")
+TASKS = {"improve": improve, "diagnose": diagnose}
 
 
-def improve_at(
+def sought_at(
     place: Place,
+    task: str,
     job: Job,
     out: Path | None = None,
     listen: Listen = nobody,
     budget: float | None = None,
     start: Path | None = None,
 ) -> Path:
-    """As `improve`, at a place. Raises RunError where it came to nothing there, LostError where the place is gone."""
+    """As what TASKS has under the name `task`, at a place. Raises RunError where it came to nothing there, LostError
+    where the place is gone."""
     if place.shares_disk:
-        return improve(job, out, listen, budget, start)
+        return TASKS[task](job, out, listen, budget, start)
     known = None if start is None else file_of(read_start(start, job))
-    statement, folder = begin_task(job, out, budget, start)
-    task = (job.text, job.folder.resolve(), statement.records, folder.resolve(), budget, known)
+    statement, folder = begin_task(job, out, budget, start, task=task)
+    given = (task, job.text, job.folder.resolve(), statement.records, folder.resolve(), budget, known)
 
     def keep(name: str, files: dict[str, bytes]) -> None:
         names = sorted(files.keys() - set(OF_THIS_PROCESS), key=end_last)
         write_files(folder, {name: files[name] for name in names})
 
     listen({"event": "start", "runs": [], "budget": 0, "unit": statement.unit, "together": "", "folder": str(folder)})
-    failed = place.run_all(improve_there, (), [(job.name, task)], listen, keep)
+    failed = place.run_all(sought_there, (), [(job.name, given)], listen, keep)
     for reason in failed.values():
         raise RunError(reason)
     return folder
 
 
-def improve_there(
+def sought_there(
     tell: Tell,
+    task: str,
     text: str,
     job_folder: Path,
     records: Sequence[Record],
@@ -58,13 +63,13 @@ def improve_there(
     budget: float | None,
     known: dict[str, Any] | None,
 ) -> dict[str, bytes]:
-    """Entry of a worker; returns the files of the improvement. known: the content of a file of values to start from."""
+    """Entry of a worker; returns the files of the results. known: the content of a file of values to start from."""
     with TemporaryDirectory(prefix="pzt-ident-") as scratch:
         start = None if known is None else Path(scratch) / "start.json"
         if start:
             write_json(start, known)
         job = Job.from_text(text, job_folder, plugins=True)
-        results = improve(job, Path(scratch) / "improved", tell, budget, start, records)
+        results = TASKS[task](job, Path(scratch) / "results", tell, budget, start, records)
         move(results, folder)
         return read_files(results)
 
@@ -104,11 +109,10 @@ def begin_again(folder: Path, listen: Listen = nobody, plugins: bool = False) ->
     job = Job.from_text(read_job(folder), folder, str(folder / "job.yaml"), plugins)
     new = folder.with_name(f".{folder.name}.again")
     shutil.rmtree(new, ignore_errors=True)
-    again = {"improve": improve, "diagnose": diagnose}.get(task["name"])
-    if again is None:
+    if task["name"] not in TASKS:
         raise InputError(f"was begun with {task['name']!r}", where=str(folder), remedy="start it anew")
     start = task.get("start")
-    again(job, new, listen, task.get("budget"), start and Path(start))
+    TASKS[task["name"]](job, new, listen, task.get("budget"), start and Path(start))
     names = (path.relative_to(new).as_posix() for path in new.rglob("*") if path.is_file())
     for name in sorted(names, key=end_last):
         (folder / name).parent.mkdir(exist_ok=True)

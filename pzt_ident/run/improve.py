@@ -102,10 +102,11 @@ def diagnose(
     listen: Listen = nobody,
     budget: float | None = None,
     start: Path | None = None,
+    records: Sequence[Record] | None = None,
 ) -> Path:
     """Fit the job's model, say where it fails and what it misses; writes `diagnosis.json`, `residuals.json` and
-    `signals.nc` into the folder returned. budget, start: as of `improve`."""
-    with opened_case(job, out, listen, budget, start, task="diagnose") as (case, folder):
+    `signals.nc` into the folder returned. budget, start, records: as of `improve`."""
+    with opened_case(job, out, listen, budget, start, records, task="diagnose") as (case, folder):
         found = diagnosed(case, lambda case: announced(case, fitted(case, job, start)))
         diagnosis, first = diagnosis_of(job, case, found, folder), found.before
         write_signals(folder / "signals.nc", first.problem.errors(first.point))

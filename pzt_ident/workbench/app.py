@@ -61,10 +61,8 @@ def make_app(session: Session, hosts: set[str], token: str, fleet: Fleet | None 
 
 
 def prepare(bench: Bench) -> None:
-    """Have in this process what judges a measurement, the compiled kernels and the model of the current step before the
-    page asks for them."""
-    for name in ("scipy.optimize", "pzt_ident.engine.kernel"):
-        import_module(name)
+    """Have in this process the compiled kernels and the model of the current step before the page asks for them."""
+    import_module("pzt_ident.engine.kernel")
     with suppress(InputError):
         bench.state()
 

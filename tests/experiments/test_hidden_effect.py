@@ -3,18 +3,21 @@
 import ast
 import json
 import math
+import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from experiments.fleet.cluster import TCP
 from experiments.hidden_effect import score
 from experiments.hidden_effect.__main__ import main
 from experiments.hidden_effect.campaign import CAMPAIGNS, Drive, Track
 from experiments.hidden_effect.cases import Bench, Sensor
 from experiments.hidden_effect.hidden import CATALOGUE, EFFECTS, Dose, respond
 from experiments.hidden_effect.stage import Axis, Stage, simulate
+from pzt_ident.files import read_files
 
 FOLDER = Path(__file__).parents[2] / "experiments/hidden_effect"
 X = Axis(0.1566, 66.0, 7.0028e7, 0.081947, 0.5590, 0.0148, 0.0552)
@@ -120,6 +123,24 @@ def test_sliding_takes_the_force_of_friction():
     linear = STAGE._replace(x=X._replace(alpha=0.0), friction=0.1, presliding=0.3)
     up = Track(500).ramp(1, x=100).drive("up", "identify")
     assert response(linear, up)[-1] == pytest.approx(100 * X.gain - 0.1, abs=1e-3)
+
+
+def test_a_case_is_solved_on_a_cluster_to_the_same_bytes(tmp_path):
+    pytest.importorskip("distributed")
+    line = ["draw", "--seed", "5", "--kind", "short", "--effect", "quadratic_gain", "--out", str(tmp_path / "here")]
+    assert CliRunner().invoke(main, line, catch_exceptions=False).exit_code == 0
+    shutil.copytree(tmp_path / "here", tmp_path / "there")
+    cluster = TCP(workers=1)
+    try:
+        for folder, on in (("here", ""), ("there", cluster.address)):
+            assert CliRunner().invoke(main, ["solve", str(tmp_path / folder), "--on", on]).exit_code == 0
+    finally:
+        cluster.end()
+    here, there = (read_files(tmp_path / folder / "solved" / "short-5" / "improve") for folder in ("here", "there"))
+    assert cluster.address in there["environment.json"].decode()
+    assert json.loads(there["improvement.json"])["effects"] == ["quadratic_gain"]
+    for name in here.keys() - {"environment.json", "events.jsonl"}:
+        assert there[name] == here[name], name
 
 
 def dose(word, share=0.3):

@@ -9,7 +9,7 @@ from experiments.fleet.lot import write_lot
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import load_job
 from pzt_ident.model.registry import blocks
-from pzt_ident.run.elsewhere import begin_again, end_last, improve_at, is_whole, task_of
+from pzt_ident.run.elsewhere import begin_again, end_last, is_whole, sought_at, task_of
 from pzt_ident.run.folder import make_empty
 from pzt_ident.run.place import HERE, place_of
 
@@ -29,16 +29,17 @@ def job(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def here(job, tmp_path_factory):
-    return improve_at(HERE, job, tmp_path_factory.mktemp("here") / "out")
+    return sought_at(HERE, "improve", job, tmp_path_factory.mktemp("here") / "out")
 
 
-def test_the_same_improvement_on_a_cluster(job, here, tmp_path):
+def test_the_same_improvement_and_diagnosis_on_a_cluster(job, here, tmp_path):
     pytest.importorskip("distributed")
     from experiments.fleet.cluster import TCP
 
     cluster, events = TCP(workers=1), []
     try:
-        away = improve_at(place_of(cluster.address), job, tmp_path / "out", events.append)
+        away = sought_at(place_of(cluster.address), "improve", job, tmp_path / "out", events.append)
+        diagnosed = sought_at(place_of(cluster.address), "diagnose", job, tmp_path / "diagnosed")
     finally:
         cluster.end()
     assert (away / "improvement.json").read_bytes() == (here / "improvement.json").read_bytes()
@@ -46,7 +47,9 @@ def test_the_same_improvement_on_a_cluster(job, here, tmp_path):
     for source in load_job(away / "improved.yaml").records:
         assert (away / source.file).is_file()
     assert "quadratic_gain" in [event["added"] for event in events if event["event"] == "stair"]
-    assert task_of(away) == "improve"
+    assert (task_of(away), task_of(diagnosed)) == ("improve", "diagnose")
+    found = sought_at(HERE, "diagnose", job, tmp_path / "found") / "diagnosis.json"
+    assert (diagnosed / "diagnosis.json").read_bytes() == found.read_bytes()
 
 
 def test_an_improvement_that_was_killed_is_begun_again(here, tmp_path):
