@@ -11,7 +11,7 @@ import click
 
 from experiments.fleet.cluster import TCP
 from experiments.fleet.lot import write_lot
-from experiments.fleet.measure import Memory, overhead, write_rows
+from experiments.fleet.measure import Memory, overhead, peak, write_rows
 from pzt_ident.job.schema import load_job
 from pzt_ident.lot.identify import fleet
 from pzt_ident.lot.outcome import read_lot
@@ -58,12 +58,14 @@ def overhead_(tasks: int, seconds: float) -> None:
 @FOLDER
 @click.option("--every", type=int, default=250, show_default=True)
 @click.option("--budget", type=float, default=1e9, help="Stop after so many seconds.")
-def memory(folder: Path, every: int, budget: float) -> None:
-    """The memory of scheduler, client and workers over the devices of the lot in FOLDER, on two workers on TCP."""
-    cluster = TCP(workers=2)
-    numbers = {"client": os.getpid(), "scheduler": cluster.scheduler.pid, "worker": cluster.workers[0].pid}
+@click.option("--on", help="As of `pzt-ident fleet --on`; a scheduler and two workers on TCP if not given.")
+def memory(folder: Path, every: int, budget: float, on: str | None) -> None:
+    """The memory of client, scheduler and workers over the devices of the lot in FOLDER, and the client's time."""
+    cluster, numbers = None if on else TCP(workers=2), {"client": os.getpid()}
+    if cluster:
+        numbers |= {"scheduler": cluster.scheduler.pid, "worker": cluster.workers[0].pid}
     note = Memory(numbers, every)
-    start = time.perf_counter()
+    start, cpu = time.perf_counter(), time.process_time()
 
     def listen(event: dict) -> None:
         note(event)
@@ -75,18 +77,20 @@ def memory(folder: Path, every: int, budget: float) -> None:
             load_job(folder / "job.yaml"),
             [str(folder / "lot.csv")],
             folder / "out",
-            place=place_of(cluster.address),
+            place=place_of(on or cluster.address),
             listen=listen,
         )
     except KeyboardInterrupt:
         click.echo("stopped")
     finally:
-        cluster.end()
+        if cluster:
+            cluster.end()
     write_rows(folder / "memory.csv", note.rows)
-    last = note.rows[-1]
+    last, spent = note.rows[-1], time.process_time() - cpu
     click.echo(f"{last['devices']:.0f} devices in {last['seconds']:.0f} s")
     for name in numbers:
         click.echo(f"{name}: {last[name]:.0f} MiB, {note.growth(name):+.2f} KiB a device")
+    click.echo(f"client: {1000 * spent / last['devices']:.1f} ms of CPU a device, {peak():.0f} MiB with the table")
 
 
 @main.command()

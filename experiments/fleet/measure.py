@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import resource
 import time
 from pathlib import Path
 from statistics import median
@@ -62,6 +63,11 @@ class Memory:
             (b[name] - a[name]) / (b["devices"] - a["devices"]) for i, a in enumerate(late) for b in late[i + 1 :]
         ]
         return median(slopes) * 1024
+
+
+def peak() -> float:
+    """The most memory that this process has had, MiB."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 
 def write_rows(path: Path, rows: list[dict[str, float]]) -> None:
