@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pzt_ident.atlas.fitted import fitted
-from pzt_ident.atlas.stage import MECHANICS, OPERATOR, STROKE, VALUES, Array, Drive, Stage, drives, record
+from pzt_ident.atlas.stage import MECHANICS, OPERATOR, SPAN, STROKE, VALUES, Array, Drive, Stage, drives, record
 from pzt_ident.engine.additions import Additions
 from pzt_ident.engine.program import Program
 from pzt_ident.model.block import Addition, Place, Term
@@ -21,7 +21,7 @@ SEEN_IN = ("loops", "fast", "holds", "other", "rest")
 
 
 class Value(NamedTuple):
-    """A parameter, or the amount of an addition, in the user's units."""
+    """A parameter, or an amount of a record, in the user's units."""
 
     name: str
     value: float
@@ -69,7 +69,9 @@ class Shown:
         theta = self._theta(self.share) / problem.factors
         rows = zip(chain.entries, theta, problem.all_units, strict=True)
         mine = [Value(e.name, float(v), u) for e, v, u in rows if self._declares(e.parameter, e.block)]
-        return mine + [Value(f"{self.block.name}.{name}", 1e6 * a, "um") for name, a in self._amounts(self.share)]
+        units = {"drive": ("V", 1.0), "response": ("um", 1e6)}
+        amounts = [(p, amount, *units[p.unit]) for p, amount in self._amounts(self.share)]
+        return mine + [Value(f"{self.block.name}.{p.name}", scale * amount, unit) for p, amount, unit, scale in amounts]
 
     def _declares(self, parameter: Parameter, block: type) -> bool:
         return parameter.effect in (self.block.name, self.block.item()) if parameter.effect else block is self.block
@@ -81,20 +83,22 @@ class Shown:
         values = [_value(entry.parameter, float(low), float(high), share) for entry, low, high in ranges]
         return problem.parameters_at(np.array(values))
 
-    def _amounts(self, share: float) -> list[tuple[str, float]]:
-        """Of an addition, m."""
-        declared = self.block.parameters().items() if issubclass(self.block, Addition) else ()
-        return [(name, share * parameter.bounds[1] * STROKE) for name, parameter in declared if parameter.per_record]
+    def _amounts(self, share: float) -> list[tuple[Parameter, float]]:
+        """The parameters of which each record has its own, V or m."""
+        spans = {"drive": SPAN, "response": STROKE}
+        declared = [parameter for parameter in self.block.parameters().values() if parameter.per_record]
+        return [(parameter, share * parameter.bounds[1] * spans[parameter.unit]) for parameter in declared]
 
     def respond(self, drive: Drive) -> Array:
         """The response with the item, m: (samples,)."""
         return self._respond(drive, self.share)
 
     def _respond(self, drive: Drive, share: float) -> Array:
-        theta = self._theta(share)
+        theta, amounts = self._theta(share), [amount for _, amount in self._amounts(share)]
+        added = issubclass(self.block, Addition)
         with np.errstate(all="ignore"):
-            response = self.stage.respond(drive, theta)
-        if amounts := [amount for _, amount in self._amounts(share)]:
+            response = self.stage.respond(drive, theta if added else np.append(theta, amounts))
+        if added:
             response = response + Additions(Program(self.stage.chain, record(drive))).basis(0, theta)[:, 1:] @ amounts
         return response
 

@@ -11,7 +11,7 @@ from pzt_ident.control.identified import Identified
 from pzt_ident.control.inverse import Feedforward, Inverse
 from pzt_ident.data.notation import listed, percent, quantity, spelled
 from pzt_ident.data.units import factor
-from pzt_ident.model.block import Addition, Place
+from pzt_ident.model.block import Place
 
 Array = NDArray[np.float64]
 
@@ -36,8 +36,8 @@ class Notes:
     def left_out(self) -> Iterator[str]:
         """Blocks that the drive does not make up for."""
         blocks = self.inverse.stage.left_out
-        readings = [b.name for b in blocks if not issubclass(b, Addition) and b.place != Place.SLEW]
-        disturbances = [block.name for block in blocks if issubclass(block, Addition)]
+        readings = [b.name for b in blocks if not b.amounts() and b.place != Place.SLEW]
+        disturbances = [block.name for block in blocks if block.amounts()]
         if readings:
             yield f"{listed(readings)} acts on the reading, not on the stage, and is not fed forward"
         if disturbances:

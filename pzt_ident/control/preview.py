@@ -38,10 +38,13 @@ class Preview:
 
         if self.is_identity:
             return signal
-        length = self.taps.shape[2]
-        ends = ((0, 0), (length - 1 - self.ahead, self.ahead))
-        held = np.pad(signal, ends, "edge")
-        return np.array([sum(map(lambda h, x: oaconvolve(x, h, "valid"), row, held)) for row in self.taps])
+        samples = signal.shape[1]
+        least, most = max(self.ahead - samples + 1, 0), min(self.ahead + samples, self.taps.shape[2])
+        near = self.taps[:, :, least:most]  # the others lead from no sample to another
+        held = np.pad(signal, ((0, 0), (most - 1 - self.ahead, self.ahead - least)), "edge")
+        before, after = (taps.sum(axis=2) for taps in (self.taps[:, :, most:], self.taps[:, :, :least]))
+        ends = before @ signal[:, :1] + after @ signal[:, -1:]
+        return ends + np.array([sum(map(lambda h, x: oaconvolve(x, h, "valid"), row, held)) for row in near])
 
 
 def preview(stage: Stage, places: frozenset[Place], gain: float, size: Array, without: Blocks = ()) -> Preview:
@@ -62,11 +65,19 @@ def preview(stage: Stage, places: frozenset[Place], gain: float, size: Array, wi
         return Preview(back[:, :, None], 0, rings=True)
     count = 4 * pulses.shape[2]
     response = np.fft.rfft(back @ pulses.transpose(2, 0, 1), count, axis=0)
-    u, s, v = np.linalg.svd(response)
-    limited = (1 + gain**-4.0) * s**3 / (s**4 + gain**-4.0)
-    inverse = np.conj(v.transpose(0, 2, 1)) @ (limited[:, :, None] * np.conj(u.transpose(0, 2, 1))) @ back
+    inverse = inverted(response, gain) @ back
     taps = np.roll(np.fft.irfft(inverse, count, axis=0), count // 2, axis=0)
     return trimmed(taps.transpose(1, 2, 0), count // 2, static)
+
+
+def inverted(response: NDArray[np.complex128], gain: float) -> NDArray[np.complex128]:
+    """The regularised inverse of matrices, (frequencies, axes, axes)."""
+    if response.shape[1] == 1:
+        s = np.abs(response)
+        return np.asarray((1 + gain**-4.0) * s**2 / (s**4 + gain**-4.0) * np.conj(response))
+    u, s, v = np.linalg.svd(response)
+    limited = (1 + gain**-4.0) * s**3 / (s**4 + gain**-4.0)
+    return np.asarray(np.conj(v.transpose(0, 2, 1)) @ (limited[:, :, None] * np.conj(u.transpose(0, 2, 1))))
 
 
 def trimmed(taps: Array, ahead: int, static: Array) -> Preview:

@@ -60,7 +60,9 @@ class Loop:
     @cached_property
     def response(self) -> Complex:
         """Of the open loop at the frequencies of the plant."""
-        return self.opened(np.exp(1j * self.plant.frequencies * self.plant.dt))
+        loop, z = self.opened, np.exp(1j * self.plant.frequencies * self.plant.dt)
+        states = np.linalg.solve(z[:, None, None] * np.eye(loop.nstates) - loop.A, loop.B.astype(complex))
+        return np.asarray(loop.C @ states + loop.D)[:, 0, 0]
 
     @property
     def margins(self) -> Margins:

@@ -22,7 +22,7 @@ def addition_sentences(fit: Fit) -> str:
     theta = problem.parameters(fit.point)
     added = {simulator.record.name: simulator.added(theta) for simulator in problem.every_simulator}
     text = ""
-    for effect, (i, axis) in product((block.name for block in model.additions), enumerate(model.measured)):
+    for effect, (i, axis) in product(next(iter(added.values())), enumerate(model.measured)):
         record = max(added, key=lambda name: added[name][effect][i])
         rms, unit = added[record][effect][i], str(problem.records[0].response_units[axis])
         of_axis = f" of {model.axes[axis]}" if len(model.measured) > 1 else ""

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from pzt_ident.diagnosis import misfit
 from pzt_ident.diagnosis.projection import Projection, Split
 from pzt_ident.diagnosis.refit import Case, Fit
-from pzt_ident.model.block import Addition, Coupling, Term
+from pzt_ident.model.block import Coupling, Term
 from pzt_ident.model.registry import blocks, word_of
 from pzt_ident.search.problem import Problem
 
@@ -97,8 +97,8 @@ class Scorer:
     def __init__(self, case: Case, fit: Fit) -> None:
         self.case, self.fit = case, fit
         self.projection = Projection(fit.problem.jacobian(fit.point), fit.point)
-        self.tangent = fit.problem.tangent(fit.point)
-        self.residual = fit.problem.residuals(fit.point)[0]
+        self.followed = fit.problem.tangent(fit.point, sampled=True), fit.problem.held(fit.point)
+        self.residual = fit.problem.along(*self.followed).residuals(fit.point)[0]
         self.split = self.projection.split(self.residual[None])
         self.left = float(self.projection.left(self.split)[0])
         self.misfit = squared_misfit(case, fit)
@@ -108,11 +108,11 @@ class Scorer:
         return (self.left**2 - left**2) / self.misfit
 
     def scores(self, effect: str) -> list[Score]:
-        """The scores of all forms of an effect, the first form first; of one with many trials the others only where
-        the first explains some."""
+        """The scores of all forms of an effect, the first form first; of one with many trials or amounts of each record
+        the others only where the first explains some."""
         usual, *others = fitting_forms(self.case, self.fit.effects, effect)
-        first = self.score(usual)
-        if first.explained <= LEAST_SCORE and prod(blocks[effect].trials.values()) > MANY_TRIALS:
+        first, block = self.score(usual), blocks[effect]
+        if first.explained <= LEAST_SCORE and (block.amounts() or prod(block.trials.values()) > MANY_TRIALS):
             others = []
         return [first, *map(self.score, others)]
 
@@ -122,13 +122,13 @@ class Scorer:
         case, fit, effects = self.case, self.fit, (*self.fit.effects, effect)
         first = case.unmeasured_nulls(effects) and not case.unmeasured_nulls(fit.effects)
         variants = (False, True) if first else (fit.measured_only,)
-        problems = [case.problem(effects, fit.steps, measured_only).along(self.tangent) for measured_only in variants]
+        problems = [case.problem(effects, fit.steps, measured_only).along(*self.followed) for measured_only in variants]
         scores = [self._score(effect, problem) for problem in problems]
         return max(scores, key=lambda score: score.explained)
 
     def _score(self, effect: str, problem: Problem) -> Score:
-        is_addition = issubclass(blocks[effect], Addition)
-        score = self._score_addition(effect, problem) if is_addition else self._score_block(effect, problem)
+        solved = blocks[effect].amounts()
+        score = self._score_disturbance(effect, problem) if solved else self._score_block(effect, problem)
         units = zip(problem.names, problem.units, strict=True)
         return replace(score, units={name: unit for name, unit in units if name in score.guess})
 
@@ -213,12 +213,12 @@ class Scorer:
             np.array([problem.unit_point(dict(zip(problem.names, row, strict=True))) for row in physical])
         )
 
-    def _score_addition(self, effect: str, problem: Problem) -> Score:
-        """The score of an effect that adds to the response in amounts of each record: it is solved for, not stepped."""
+    def _score_disturbance(self, effect: str, problem: Problem) -> Score:
+        """The score of an effect in amounts of each record, which are solved for and not stepped."""
         score = Score(effect)
         columns = [i for i, name in enumerate(problem.names) if name not in self.fit.problem.names]
         known = self.fit.values
-        for values in self._addition_trials(effect, problem, columns):
+        for values in self._disturbance_trials(effect, problem, columns):
             point = np.array([known.get(name, 0.0) for name in problem.names])
             point[columns] = values
             explained = self.explained(float(self._left(problem, point[None])[0]))
@@ -228,8 +228,8 @@ class Scorer:
         score.explained_in_bounds, score.visibility, score.power = score.explained, 1.0, float("inf")
         return score
 
-    def _addition_trials(self, effect: str, problem: Problem, columns: list[int]) -> Iterator[tuple[float, ...]]:
-        """Values of an addition's parameters, in the user's units: the block's guesses from the residuals of each
+    def _disturbance_trials(self, effect: str, problem: Problem, columns: list[int]) -> Iterator[tuple[float, ...]]:
+        """Values of a disturbance's parameters, in the user's units: the block's guesses from the residuals of each
         column's axis where it makes some, else a grid."""
         guess = getattr(blocks[effect], "guess", None)
         if not guess:

@@ -4,7 +4,7 @@ from math import pi
 
 import numpy as np
 
-from pzt_ident.model.block import Addition, Place, cos, sin
+from pzt_ident.model.block import Addition, Block, Place, cos, sin
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
@@ -13,26 +13,14 @@ MIN_PERIODS = 3  # in a record; with fewer the disturbance could be the response
 HARMONICS = 20  # of the drive, which hysteresis leaves in the residual
 
 
-@blocks.register
-class PeriodicDisturbance(Addition):
-    """Hum or vibration adds to the displacement: y = x + a sin(2 pi f t) + b cos(2 pi f t), t from the start.
+class Line:
+    """What all forms of a periodic disturbance declare."""
 
-    Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems. Each record has its own phase; in a
-    record of fewer than three periods it is zero.
-    """
-
-    place = Place.OUTPUT
-    form = Form("sine", ("sine", "harmonics"), "The course of the disturbance.")
-    sine = Parameter("response", (-1, 1), "Part in phase at the start of a record, a.", null=0, per_record=True)
-    cosine = Parameter("response", (-1, 1), "Part a quarter period ahead of it, b.", null=0, per_record=True)
+    form = Form("sine", ("sine", "harmonics", "ripple"), "The course of the disturbance, and where it enters.")
     frequency = Parameter("Hz", (1, 1000), "Frequency of the disturbance, f.", scale="log")
     look_alikes = ()
     separate_by = "Record at constant voltage, then with the driver off: a line that stays is not the drive's."
     remedy = "Ground and shield against hum, isolate the stage from the floor, or filter the line out."
-
-    def basis(t, frequency, duration):
-        phase, enough = 2 * pi * frequency * t, 1.0 if frequency * duration >= MIN_PERIODS else 0.0
-        return enough * sin(phase), enough * cos(phase)
 
     def guess(times, drives, residuals, low, high):
         """The three strongest spectral lines of the residuals of all records, Hz, without those of the drive."""
@@ -43,6 +31,23 @@ class PeriodicDisturbance(Addition):
             power += np.interp(grid, frequency, lines, right=0) * independent_of_drive(grid, t, drive)
         peaks = np.flatnonzero((power[1:-1] > power[:-2]) & (power[1:-1] >= power[2:])) + 1
         return grid[peaks[np.argsort(-power[peaks])[:3]]]
+
+
+@blocks.register
+class PeriodicDisturbance(Line, Addition):
+    """Hum or vibration adds to the displacement: y = x + a sin(2 pi f t) + b cos(2 pi f t), t from the start.
+
+    Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems. Each record has its own phase; in a
+    record of fewer than three periods it is zero.
+    """
+
+    place = Place.OUTPUT
+    sine = Parameter("response", (-1, 1), "Part in phase at the start of a record, a.", null=0, per_record=True)
+    cosine = Parameter("response", (-1, 1), "Part a quarter period ahead of it, b.", null=0, per_record=True)
+
+    def basis(t, frequency, duration):
+        phase, enough = 2 * pi * frequency * t, 1.0 if frequency * duration >= MIN_PERIODS else 0.0
+        return enough * sin(phase), enough * cos(phase)
 
 
 def spectrum(t, signal):
@@ -82,4 +87,35 @@ class Harmonics(PeriodicDisturbance):
         return enough * first[0], enough * first[1], enough * third[0], enough * third[1]
 
 
-PeriodicDisturbance.forms = {"harmonics": Harmonics}
+class Ripple(Line, Block):
+    """Ripple of the amplifier's supply adds to the drive, with its third harmonic, and the hysteresis bends it:
+    v = u + sum_n a_n sin(2 pi n f t) + b_n cos(2 pi n f t), n = 1 and 3.
+
+    Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems. From sample to sample the phase
+    advances by a rotation; in a record of less than a period there is none.
+    """
+
+    place = Place.SUPPLY
+    drive_sine = Parameter("drive", (-0.1, 0.1), "Part in phase at the start of a record, a.", null=0, per_record=True)
+    drive_cosine = Parameter("drive", (-0.1, 0.1), "Part a quarter period ahead of it, b.", null=0, per_record=True)
+    drive_third_sine = Parameter(
+        "drive", (-0.1, 0.1), "Third harmonic, in phase at the start.", null=0, per_record=True
+    )
+    drive_third_cosine = Parameter(
+        "drive", (-0.1, 0.1), "Third harmonic, a quarter period ahead.", null=0, per_record=True
+    )
+
+    def prepare(drive_sine, drive_cosine, drive_third_sine, drive_third_cosine, frequency, duration, dt):
+        turn, enough = 2 * pi * frequency * dt, 1.0 if frequency * duration >= 1 else 0.0
+        sizes = drive_sine, drive_cosine, drive_third_sine, drive_third_cosine
+        return enough * sizes[0], enough * sizes[1], enough * sizes[2], enough * sizes[3], sin(turn), cos(turn)
+
+    def start(u, a, b, third_a, third_b, sine, cosine):
+        return -sine, cosine
+
+    def step(s, c, u, a, b, third_a, third_b, sine, cosine):
+        s, c = s * cosine + c * sine, c * cosine - s * sine
+        return s, c, u + a * s + b * c + third_a * s * (3 - 4 * s * s) + third_b * c * (4 * c * c - 3)
+
+
+PeriodicDisturbance.forms = {"harmonics": Harmonics, "ripple": Ripple}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,10 +17,12 @@ SURE = 1e-8  # share of a sum of squares that is left, and still has half of its
 
 class Additions:
     """The offset and the additions of a model on one record: y = x + a_0 + sum_i a_i b_i(t), with the amounts a from
-    least squares over the scored samples."""
+    least squares over the scored samples. follow: by measured axis (n, samples), signals that are subtracted as well.
+    """
 
-    def __init__(self, program: Program) -> None:
+    def __init__(self, program: Program, follow: Mapping[int, Array] | None = None) -> None:
         self.program, self.model, self.record = program, program.model, program.record
+        self.follow = follow or {}
         self.signals = sum(block.amounts() for block in self.model.additions)
         pairs = (self.signals + 1) * (self.signals + 2) // 2
         self.tiles = 1 + self.signals if self.signals else 0
@@ -38,7 +42,7 @@ class Additions:
         """Subtract them from the errors (candidates, measured axes, samples), in place; NaN if they are not finite."""
         from pzt_ident.engine.kernel import WIDTH
 
-        if not self.model.additions:
+        if not self.model.additions and not self.follow:
             error -= error[:, :, self.record.settle :].mean(axis=2, keepdims=True)
             return
         for i, axis in enumerate(self.model.measured):
@@ -106,28 +110,30 @@ class Additions:
         return sizes
 
     def basis(self, axis: int, theta: Array) -> Array:
-        """Ones and the signals of all additions of an axis with one candidate: (samples, 1 + signals)."""
+        """Ones and the signals of an axis with one candidate: (samples, signals)."""
         return self.bases(axis, np.atleast_2d(theta))[0].T
 
-    def count(self, axis: int, theta: Array) -> int:
+    def count(self, axis: int) -> int:
         """Number of signals of an axis, the ones included."""
-        return 1 + self.signals
+        return 1 + self.signals + len(self.follow.get(axis, ()))
 
     def stretch(self, axis: int, theta: Array, at: slice) -> Array:
-        """Ones and the signals of all additions of an axis at some samples: (1 + signals, samples)."""
+        """Ones and the signals of an axis at some samples: (signals, samples)."""
         return self.bases(axis, np.atleast_2d(theta), at)[0]
 
     def bases(self, axis: int, theta: Array, at: slice | None = None) -> Array:
-        """Ones and the signals with many candidates, at some samples or all: (candidates, 1 + signals, samples)."""
+        """Ones and the signals with many candidates, at some samples or all: (candidates, signals, samples)."""
         from pzt_ident.engine.kernel import TILE, run
 
         at = at or slice(0, self.record.samples)
-        bases = np.ones((len(theta), 1 + self.signals, at.stop - at.start))
+        bases = np.ones((len(theta), self.count(axis), at.stop - at.start))
+        if self.follow:
+            bases[:, 1 + self.signals :] = self.follow[axis][:, at]
         if self.signals:
             program, lead = self.program, self.record.run_in * self.record.samples
             steps, tiles = np.array(self.steps(axis), dtype=np.int64), program.tiles + 1 + np.arange(self.signals)
             begin, since, count = (lead + at.start) // TILE * TILE, lead + at.start, program.tiles + self.tiles
-            scratch, output = program.scratch(theta, program.rows), np.empty_like(bases[:, 1:])
+            scratch, output = program.scratch(theta, program.rows), np.empty_like(bases[:, 1 : 1 + self.signals])
             run(steps, np.zeros((1, 1)), scratch, count, begin, lead + at.stop, since, 1, output, tiles)
-            bases[:, 1:] = output
+            bases[:, 1 : 1 + self.signals] = output
         return bases

@@ -63,6 +63,8 @@ class Program:
         self._fresh = set(range(len(model.axes)))  # axes whose tile does not hold a signal yet
         last = max((i for i, block in enumerate(model.blocks) if issubclass(block, Coupling | Modes)), default=-1)
         for number, block in enumerate(model.blocks):
+            if single and block.amounts():
+                continue  # of no record: the identity
             if issubclass(block, Coupling | Modes):
                 for axis in range(len(model.axes)):
                     self._keep(number, axis)
@@ -85,11 +87,11 @@ class Program:
 
     def address(self, item: Operation) -> int:
         """Of the compiled function of an operation."""
-        from pzt_ident.engine import kernel, realtime
+        from pzt_ident.engine.kernel import address
         from pzt_ident.engine.lanes import compile_block
 
         if item.block is None:
-            return kernel.address(getattr(realtime if self.single else kernel, item.action))
+            return address(f"{item.action}_of_sample" if self.single else item.action)
         return compile_block(self.model.form_of(item.block), item.variant).address  # type: ignore[arg-type]
 
     @property
@@ -196,11 +198,12 @@ class Program:
         drive = self.record.drive[axis]
         nulls = {p.name: p.null for p in block.parameters().values() if p.null is not None}
         span, peak = float(np.ptp(drive)), float(np.abs(drive).max())
-        known = nulls | block.numbers() | {"dt": self.record.dt / self.substeps, "span": span, "peak": peak}
+        duration = self.record.dt * (self.record.samples - 1)
+        known = {"dt": self.record.dt / self.substeps, "span": span, "peak": peak, "duration": duration}
         if issubclass(block, Addition):
-            first, duration = self.record.run_in * self.record.samples, self.record.dt * (self.record.samples - 1)
-            known |= {"_first": first, "_start": self.record.start, "_dt": self.record.dt, "duration": duration}
-        return known
+            first = self.record.run_in * self.record.samples
+            known |= {"_first": first, "_start": self.record.start, "_dt": self.record.dt}
+        return nulls | block.numbers() | known
 
     def _weigh(self, block: type[Modes], mode: int, row: int) -> int:
         """Add the weights of a mode for force and motion of each axis from a row of the scratch on: 1 for the force of
@@ -215,9 +218,12 @@ class Program:
         return row
 
     def scratch(self, theta: Array, rows: int) -> Array:
-        """The scratch with the arguments of every block's `prepare`, in lanes: (groups, rows * lanes)."""
+        """The scratch with the arguments of every block's `prepare`, in lanes: (groups, rows * lanes). theta: with or
+        without the amounts of the record, which are zero then."""
         from pzt_ident.engine.kernel import WIDTH, aligned_zeros
 
+        missing = len(self.model.entries) + len(self.model.amounts) - theta.shape[1]
+        theta = np.pad(theta, ((0, 0), (0, missing))) if missing else theta
         width = 1 if self.single else WIDTH
         groups = -(-theta.shape[0] // width)
         lanes = np.minimum(np.arange(groups * width), theta.shape[0] - 1).reshape(groups, 1, width)

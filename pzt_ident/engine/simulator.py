@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from copy import copy
 from functools import cached_property
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.record import Record, interpolated
 from pzt_ident.engine.additions import Additions
+from pzt_ident.engine.amounts import Amounts, Held
 from pzt_ident.engine.gather import squares
 from pzt_ident.engine.program import Program
 from pzt_ident.model.block import TILES
@@ -25,17 +27,33 @@ SIGNALS: WeakKeyDictionary[Record, dict[Any, Array]] = WeakKeyDictionary()
 class Simulator:
     """A chain of blocks on one record.
 
-    theta is (candidates, parameters) in SI units, in the order of the chain's entries.
+    theta is (candidates, parameters) in SI units, in the order of the chain's entries. Errors are those with the
+    `amounts` of the record that follow from them.
     """
 
     def __init__(self, model: Chain, record: Record) -> None:
         self.model, self.record = model, record
         self._program = Program(model, record)
         self.additions = Additions(self._program)
+        self.amounts: Amounts | Held = Amounts(self)
         self._measured = TILES * np.array(model.measured, dtype=np.int64)
         self._sums = self._program.rows  # row of the scratch after those of the blocks
         self._each = self.additions.sums or 2  # rows of sums of an axis
         self._rows = self._sums + self._each * len(model.measured)
+
+    def held(self, theta: Array) -> Held | None:
+        """The amounts of the record with one candidate; None if it has none."""
+        return (
+            self.amounts.held(np.atleast_2d(theta))
+            if isinstance(self.amounts, Amounts) and self.model.amounts
+            else None
+        )
+
+    def near(self, held: Held) -> Simulator:
+        """The simulator whose errors have the amounts follow to first order, for a fraction of the cost."""
+        near = copy(self)
+        near.amounts, near.additions = held, Additions(self._program, held.directions)
+        return near
 
     @property
     def substeps(self) -> int:
@@ -48,14 +66,19 @@ class Simulator:
         return self.record.samples - self.record.settle
 
     def simulate(self, theta: Array) -> Array:
-        """Responses without the free offset, SI units: (candidates, measured axes, samples)."""
+        """Responses without the free offset, SI units: (candidates, measured axes, samples). Without the amounts of the
+        record, unless theta has them."""
         return next(self._stretches(np.atleast_2d(theta), self.record.samples * (self.record.run_in + 1)))[1]
 
     def tiles(self, theta: Array) -> Iterator[tuple[slice, Array]]:
         """Model minus measurement over the scored samples, with the offset, a stretch after the other: its samples, and
         the errors (candidates, measured axes, samples of the stretch)."""
+        return self.deviations(self.amounts.complete(np.atleast_2d(theta)))
+
+    def deviations(self, theta: Array) -> Iterator[tuple[slice, Array]]:
+        """The same without the amounts of the record, unless theta has them."""
         measured, settle = list(self.model.measured), self.record.settle
-        for at, response in self._stretches(np.atleast_2d(theta), STRETCH):
+        for at, response in self._stretches(theta, STRETCH):
             if at.stop > settle:
                 at = slice(max(at.start, settle), at.stop)
                 error = response[:, :, at.start - at.stop :]
@@ -85,7 +108,7 @@ class Simulator:
         theta = np.atleast_2d(theta)
         if self.substeps > 1:
             return squares(self, theta)
-        scratch = self._program.scratch(theta, self._rows)
+        scratch = self._program.scratch(self.amounts.complete(theta), self._rows)
         sums = scratch.reshape(scratch.shape[0], self._rows, WIDTH)[:, self._sums :]
         self.additions.begin(sums)
         self._run(scratch, self._scoring, np.empty((0, 0, 0)), 0, self.record.samples * (self.record.run_in + 1))
@@ -110,21 +133,26 @@ class Simulator:
         """Model minus measurement over all samples: (candidates, measured axes, samples). The offset of the record and
         the amounts of its additions are subtracted; they follow from least squares over the scored samples."""
         theta = np.atleast_2d(theta)
-        error = self.simulate(theta) - self.record.response[list(self.model.measured)]
+        error = self.simulate(self.amounts.complete(theta)) - self.record.response[list(self.model.measured)]
         self.additions.remove(error, theta)
         return error
 
     def added(self, theta: Array) -> dict[str, Array]:
-        """Standard deviation of each addition with one candidate; see `Additions.sizes`."""
-        residual = self.record.response[list(self.model.measured)] - self.simulate(theta)[0]
-        return self.additions.sizes(residual, theta)
+        """Standard deviation over time of what each block with amounts of the record adds to the response with one
+        candidate, SI units: by name, (measured axes,)."""
+        complete = self.amounts.complete(np.atleast_2d(theta))
+        response = self.simulate(complete)[0]
+        sizes = self.additions.sizes(self.record.response[list(self.model.measured)] - response, theta)
+        ahead = {entry.block.name for entry in self.model.amounts}
+        moved = response - self.simulate(theta)[0] if ahead else response
+        return sizes | dict.fromkeys(ahead, np.std(moved[:, self.record.settle :], axis=1))
 
     def violations(self, theta: Array) -> tuple[str, ...]:
         """Sentences on the conditions of the blocks' equations that one candidate violates on this record."""
-        sentences = []
+        sentences, complete = [], self.amounts.complete(np.atleast_2d(theta))
         for block in self.model.blocks:
             if block.margin:
-                margin = Simulator(self.model.margin_chain(block), self.record).simulate(theta)
+                margin = Simulator(self.model.margin_chain(block), self.record).simulate(complete)
                 if share := float(np.mean(margin <= 0)):
                     sentences.append(f"at {share:.1%} of its samples {block.violation}")
         return tuple(sentences)
@@ -132,14 +160,14 @@ class Simulator:
     @cached_property
     def _scoring(self) -> NDArray[np.int64]:
         """The program, followed by the sums of errors."""
-        from pzt_ident.engine.kernel import address, errors, products
+        from pzt_ident.engine.kernel import address
 
         since = self.record.run_in * self.record.samples + self.record.settle
         responses = 2 * len(self.model.axes)  # first row of signals after those of the drives
-        sums, added = products if self.model.additions else errors, []
+        sums, added = address("products" if self.model.additions else "errors"), []
         for i, a in enumerate(self.model.measured):
             added += [(*step[:-1], since) for step in self.additions.steps(a)]
-            added.append((address(sums), self._sums + self._each * i, responses + i, TILES * a, since))
+            added.append((sums, self._sums + self._each * i, responses + i, TILES * a, since))
         return np.array(self._program.steps + added, dtype=np.int64)
 
     def _run(self, scratch: Array, program: NDArray[np.int64], output: Array, first: int, last: int) -> None:

@@ -33,24 +33,26 @@ class Place(IntEnum):
     DELAY = 0
     SLEW = 1
     AMPLIFIER = 2
-    READOUT = 3
-    OPERATOR = 4
-    STATIC = 5
-    CREEP = 6
-    COUPLING = 7
-    GUIDE = 8
-    FLEXURE = 9
-    MECHANICS = 10
-    MODE = 11
-    OUTPUT = 12
-    SENSOR = 13
+    SUPPLY = 3
+    READOUT = 4
+    OPERATOR = 5
+    STATIC = 6
+    CREEP = 7
+    COUPLING = 8
+    GUIDE = 9
+    FLEXURE = 10
+    MECHANICS = 11
+    MODE = 12
+    OUTPUT = 13
+    SENSOR = 14
 
 
 class Block:
     """One box of the signal chain, acting on each axis with that axis' own parameters.
 
-    prepare(*parameters[, dt][, span][, peak][, settings]) -> coefficients; dt: sample time in s; span, peak: the
-    peak-to-peak drive of the axis and its largest magnitude.
+    prepare(*parameters[, dt][, span][, peak][, duration][, settings]) -> coefficients; dt: sample time in s; span,
+    peak: the peak-to-peak drive of the axis and its largest magnitude; duration: of the record in s. Parameters that
+    are `per_record` follow from least squares on each record, and are at their null where nothing was measured.
     start(u, *coefficients) -> states.
     step(*states, u, *coefficients) -> (*states, y).
 
@@ -95,6 +97,11 @@ class Block:
                     names = [word] if count is None else [f"{word}_{k + 1}" for k in range(count)]
                     parameters.update(dict.fromkeys(names, declared))
         return parameters
+
+    @classmethod
+    def amounts(cls) -> int:
+        """Number of parameters of which each record has its own."""
+        return sum(declared.per_record for declared in cls.parameters().values())
 
     @classmethod
     def effects(cls) -> set[str]:
@@ -276,11 +283,6 @@ class Addition(Block):
     def arguments(cls) -> tuple[str, ...]:
         """The arguments of `basis` behind t."""
         return argument_names(cls.basis)[1:]  # type: ignore[attr-defined]
-
-    @classmethod
-    def amounts(cls) -> int:
-        """Number of signals."""
-        return sum(declared.per_record for declared in cls.parameters().values())
 
 
 class Modes(Block):

@@ -42,7 +42,8 @@ class Chain:
     axes, samples). An axis without a response is simulated as far as the last coupling, with the parameters of the
     first measured axis except those in `given`, such as `y.lumped.mass`. Parameter names contain the axis if more
     than one is measured. A parameter of an effect exists only if the effect is among the blocks. A parameter in
-    `shared`, such as `bouc_wen.alpha`, has one value for all axes.
+    `shared`, such as `bouc_wen.alpha`, has one value for all axes. `amounts` are the parameters of which each record
+    has its own: numbers of the columns behind those of the entries, of measured axes only.
     """
 
     def __init__(
@@ -59,9 +60,10 @@ class Chain:
         self.listed_terms = tuple(block for block in blocks if issubclass(block, Term))
         self._listed = {item for block in self.listed_terms for item in (block.name, block.item())}
         self.axes, self.measured, self.shared = tuple(axes), tuple(measured), frozenset(shared)
-        self.entries = tuple(
-            entry for block in (*self.blocks, *self.additions) for entry in self._entries(block, given)
-        )
+        entries = [entry for block in self.blocks for entry in self._entries(block, given)]
+        added = [entry for block in self.additions for entry in self._entries(block, given)]
+        self.entries = tuple(entry for entry in entries + added if not entry.parameter.per_record)
+        self.amounts = tuple(entry for entry in entries if entry.parameter.per_record and entry.axis in self.measured)
 
     def terms(self, block: type[Block]) -> set[str]:
         """The listed effects that act inside a block's equation."""
@@ -87,7 +89,7 @@ class Chain:
                 suffix = f"_from_{self.axes[other]}" if len(others) > 1 else ""
                 for word, parameter in block.parameters().items():
                     plain, per = f"{block.name}.{word}", self._per(block, word, parameter)
-                    if parameter.per_record or (parameter.effect and parameter.effect not in self._listed):
+                    if parameter.effect and parameter.effect not in self._listed:
                         continue
                     name = plain if per == "stage" else f"{prefix}{plain}{suffix}"
                     exists = measured or (name in given and self.allowed_without_response(block, parameter))
@@ -154,19 +156,27 @@ class Chain:
             return None
         columns: dict[str, int | list[int]] = {}
         by_word = self._columns_by_word(block, axis, other)
-        for word, parameter in {entry.word: entry.parameter for entry in self.entries if entry.block is block}.items():
+        for word, parameter in {
+            entry.word: entry.parameter for entry in self._columned if entry.block is block
+        }.items():
             if word in by_word and parameter.count is None:
                 columns[parameter.name] = by_word[word]
             elif word in by_word:
                 columns.setdefault(parameter.name, []).append(by_word[word])  # type: ignore[union-attr]
         return columns
 
+    @property
+    def _columned(self) -> tuple[Entry, ...]:
+        """What has a column in a theta that is complete."""
+        return (*self.entries, *self.amounts)
+
     def _columns_by_word(self, block: type[Block], axis: int, other: int) -> dict[str, int]:
         """Column of each parameter of a block. An axis that is not measured has the columns of the first measured axis,
         except for its `given` parameters."""
         measured = axis in self.measured
         columns = {} if measured else self._columns_by_word(block, self.measured[0], self.measured[0])
-        for column, entry in enumerate(self.entries):
+        columns = {word: column for word, column in columns.items() if column < len(self.entries)}
+        for column, entry in enumerate(self._columned):
             stage = self._per(entry.block, entry.word, entry.parameter) == "stage"
             if entry.block is block and (stage or (entry.axis, entry.other) == (axis, other)):
                 columns[entry.word] = column

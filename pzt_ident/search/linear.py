@@ -3,70 +3,129 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import block_diag
 
 from pzt_ident.model.chain import Chain
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
-Residuals = Callable[[Array], Array]
+Changes = Callable[[Array], Array]  # (candidates, ...) -> (rows, candidates)
 
 MAX_PASSES = 4  # of linearisation, where a block behind makes the response nonlinear
 LINEAR = 1e-9  # of the residual: the error of prediction below which no further pass is needed
 NEGLIGIBLE = 1e-6  # of the largest column: below it a column is rounding
-SOLUTIONS, VALUES = 4, 4096  # that are kept: whole ones, each as large as all columns, and their values
+SOLUTIONS, VALUES = 4, 4096  # that are kept: whole ones, and their values
 
 
 class LinearSolution(NamedTuple):
-    """values: (linear,), zero for a parameter that no record depends on. columns: (samples, linear), change of the
-    residual by one unit of each parameter, zero there too. prior: (n, linear), rows of the smoothness prior. residual:
-    (samples,). units: (linear,), see `Linear`."""
+    """values: (linear,), zero for a parameter that no record depends on. columns: (rows, linear), change of the
+    residual by one unit of each parameter, zero there too. prior: (n, linear), rows of the smoothness prior. units:
+    (linear,), see `Linear`."""
 
     values: Array
     columns: Array
     prior: Array
-    residual: Array
     units: Array
 
 
 @dataclass(frozen=True)
 class Tangent:
-    """How what is solved for follows to first order beside a point, where what is zero stays zero.
+    """How what is solved for follows to first order beside a point, where what is zero stays zero: as least squares
+    with its prior take a change of the residual away.
 
-    values: by name, in SI units. residual: (samples,), there. basis: (samples, active), upper rows of an orthonormal
-    basis of the columns and their prior: least squares take basis basis' of a change of the residual away.
+    values: by name, in SI units. theta: parameters of the model by name, at the point and beside it by a unit of each
+    value that is not zero: (1 + active,). prior: (n, active). residual: (samples,), there, and basis: (samples,
+    active), see `basis_of`, where `follow` is asked for.
     """
 
     values: Mapping[str, float]
-    residual: Array
-    basis: Array
+    theta: Mapping[str, Array]
+    prior: Array
+    residual: Array | None = None
+    basis: Array | None = None
 
     @classmethod
-    def of(cls, names: Sequence[str], solution: LinearSolution) -> Tangent:
-        stacked = np.vstack([solution.columns, solution.prior])[:, solution.values != 0]
-        basis = np.linalg.qr(stacked / np.linalg.norm(stacked, axis=0))[0][: len(solution.columns)]
-        return cls(dict(zip(names, solution.values.tolist(), strict=True)), solution.residual, basis)
+    def of(cls, model: Chain, linear: Linear, row: Array) -> Tangent:
+        """row: (parameters,), the point."""
+        solution = linear.solved(row)
+        active = np.flatnonzero(solution.values)
+        theta = np.tile(row, (1 + active.size, 1))
+        theta[1 + np.arange(active.size), linear.columns[active]] += solution.units[active]
+        values = dict(zip([model.names[i] for i in linear.columns], solution.values.tolist(), strict=True))
+        return cls(values, dict(zip(model.names, theta.T, strict=True)), solution.prior[:, active])
+
+    def of_samples(self, residuals: Array) -> Tangent:
+        """One that can `follow`. residuals: (1 + active, samples), of `theta`."""
+        basis = basis_of((residuals[1:] - residuals[0]).T, self.prior)
+        return replace(self, residual=residuals[0], basis=basis)
 
     def follow(self, residuals: Array) -> Array:
         """Residuals (candidates, samples) with these values, as they are once the values have followed."""
+        assert self.residual is not None and self.basis is not None
         return residuals - ((residuals - self.residual) @ self.basis) @ self.basis.T
+
+    def beside(self, model: Chain, theta: Array) -> Array:
+        """The candidates of the tangent ahead of others: (1 + active + candidates, parameters). The model may have more
+        blocks than that of the tangent, which are at their null in it."""
+        own = np.empty((1 + self.prior.shape[1], len(model.names)))
+        for i, entry in enumerate(model.entries):
+            null = entry.parameter.null
+            own[:, i] = self.theta[entry.name] if entry.name in self.theta else theta[0, i] if null is None else null
+        return np.vstack([own, theta])
+
+    def beside_weights(self, weights: Array) -> Array:
+        """Those of the residual and the columns ahead of others."""
+        return np.asarray(block_diag(differences(1 + self.prior.shape[1]), weights))
+
+    def followed(self, rows: Array, weights: Array) -> Array:
+        """Combinations as of `follow`, from rows (rows, 1 + active + combinations) of what is `beside`."""
+        residual, columns, others = self._parts(rows)
+        basis = basis_of(columns, self.prior)
+        return np.asarray(others - basis @ (basis.T @ (others - np.outer(residual, weights.sum(axis=1)))))
+
+    def amounts(self, rows: Array, weights: Array) -> Array:
+        """Of the columns in what `followed` takes away: (active, combinations)."""
+        residual, columns, others = self._parts(rows)
+        changes = others - np.outer(residual, weights.sum(axis=1))
+        held = np.vstack([changes, np.zeros((len(self.prior), len(weights)))])
+        return np.asarray(np.linalg.lstsq(np.vstack([columns, self.prior]), held, rcond=None)[0])
+
+    def _parts(self, rows: Array) -> tuple[Array, Array, Array]:
+        active = self.prior.shape[1]
+        return rows[:, 0], rows[:, 1 : 1 + active], rows[:, 1 + active :]
+
+
+def basis_of(columns: Array, prior: Array) -> Array:
+    """Upper rows of an orthonormal basis of columns (rows, active) and their prior: least squares take basis basis' of
+    a signal away."""
+    stacked = np.vstack([columns, prior])
+    return np.asarray(np.linalg.qr(stacked / np.linalg.norm(stacked, axis=0))[0][: len(columns)])
+
+
+def differences(candidates: int) -> Array:
+    """Weights of the first candidate, and of the difference of each other from it: (candidates, candidates)."""
+    weights = np.eye(candidates)
+    weights[1:, 0] = -1
+    return weights
 
 
 class Linear:
     """The columns of theta that are solved for, as a function of the other columns.
 
-    residuals: theta (candidates, parameters) -> (candidates, samples). units: (linear,), typical size of each parameter
-    with the sign that it may have.
+    changes: theta (candidates, parameters) -> (rows, candidates), the residual of the first and how that of each other
+    differs from it, rotated so that a few rows are left. units: (linear,), typical size of each parameter with the
+    sign that it may have.
     """
 
-    def __init__(self, model: Chain, columns: Sequence[int], units: Array, residuals: Residuals) -> None:
+    def __init__(self, model: Chain, columns: Sequence[int], units: Array, changes: Changes) -> None:
         self.columns = np.array(columns, dtype=int)
-        self.units, self._residuals = units, residuals
+        self.units, self._changes = units, changes
         self._solved = lru_cache(SOLUTIONS)(self._solve)
         self._values = lru_cache(VALUES)(lambda raw: self._solved(raw).values)
         entries = [model.entries[column] for column in columns]
@@ -95,47 +154,48 @@ class Linear:
     def _solve(self, raw: bytes) -> LinearSolution:
         row = np.frombuffer(raw)
 
-        def residuals(values: Array) -> Array:
+        def changes(values: Array) -> Array:
             theta = np.tile(row, (len(values), 1))
             theta[:, self.columns] = values
-            return self._residuals(theta)
+            return self._changes(theta)
 
-        return solve(residuals, self.units, self._curves, row[self._weights])
+        return solve(changes, self.units, self._curves, row[self._weights])
 
 
-def solve(residuals: Residuals, units: Array, curves: Sequence[Indices], weights: ArrayLike) -> LinearSolution:
+def solve(changes: Changes, units: Array, curves: Sequence[Indices], weights: ArrayLike) -> LinearSolution:
     """Non-negative least squares in multiples of `units`, with squared second differences as a smoothness prior.
 
-    residuals: (candidates, linear) -> (candidates, samples). units: (linear,), size and sign of each parameter. curves:
-    indices of the parameters of each smooth curve, in order. weights: of the squared second differences of each curve
-    relative to the squared errors. Lawson & Hanson (1974), Solving Least Squares Problems, ch. 23; linearised again
-    where the response is not linear. Values are NaN where the residuals are not finite.
+    changes: (candidates, linear) -> (rows, candidates), see `Linear`. units: (linear,), size and sign of each
+    parameter. curves: indices of the parameters of each smooth curve, in order. weights: of the squared second
+    differences of each curve relative to the squared errors. Lawson & Hanson (1974), Solving Least Squares Problems,
+    ch. 23; linearised again where the response is not linear, which half of a step tells, and how much is left after
+    it. Values are NaN where the residuals are not finite.
     """
     from scipy.optimize import nnls
 
     values = np.zeros(units.size)
     for _ in range(MAX_PASSES):
-        residual, *moved = residuals(values + np.vstack([np.zeros(units.size), np.diag(units)]))
-        columns = (np.array(moved) - residual).T
+        residual, columns = np.split(changes(values + np.vstack([np.zeros(units.size), np.diag(units)])), [1], axis=1)
         if not np.isfinite(columns).all():
             unknown = np.full(units.size, np.nan)
-            return LinearSolution(unknown, columns, np.zeros((0, units.size)), residual, units)
+            return LinearSolution(unknown, columns, np.zeros((0, units.size)), units)
         sizes = np.linalg.norm(columns, axis=0)
         visible = sizes > NEGLIGIBLE * sizes.max(initial=0)
         columns[:, ~visible] = 0
         prior = second_differences(np.where(visible, sizes, 0), curves, np.asarray(weights))
-        scaled = np.column_stack([columns[:, visible] / sizes[visible], columns @ (values / units) - residual])
+        scaled = np.column_stack([columns[:, visible] / sizes[visible], columns @ (values / units) - residual[:, 0]])
         triangle = np.asarray(np.linalg.qr(scaled, mode="r"))
         system = np.vstack([triangle[:, :-1], prior[:, visible] / sizes[visible]])
         multiples = np.zeros(units.size)
         solution = nnls(system, np.append(triangle[:, -1], np.zeros(len(prior))), maxiter=100 * units.size)[0]
         multiples[visible] = solution / sizes[visible]
-        expected = residual + columns @ (multiples - values / units)
-        values = multiples * units
-        residual = residuals(values[None])[0]
-        if np.linalg.norm(residual - expected) <= LINEAR * np.linalg.norm(expected):
+        expected = np.linalg.norm(residual[:, 0] + columns @ (multiples - values / units))
+        before, values = values, multiples * units
+        residual, half, whole = changes(np.array([values, (values + before) / 2, before])).T
+        bend = np.linalg.norm(2 * half - whole)
+        if 2 * bend <= LINEAR * expected and abs(np.linalg.norm(residual) - expected) <= LINEAR * expected:
             break
-    return LinearSolution(values, columns, prior, residual, units)
+    return LinearSolution(values, columns, prior, units)
 
 
 def second_differences(sizes: Array, curves: Sequence[Indices], weights: Array) -> Array:

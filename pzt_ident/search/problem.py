@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pzt_ident.data.record import Record, drive_correlation
+from pzt_ident.engine.amounts import Held
 from pzt_ident.engine.gather import Triangle, rotated, stretches
 from pzt_ident.engine.gather import squares as exact_squares
 from pzt_ident.engine.simulator import Simulator
@@ -16,11 +17,12 @@ from pzt_ident.errors import InputError
 from pzt_ident.model.chain import Chain
 from pzt_ident.search.cube import Cube, ParameterSpec
 from pzt_ident.search.feasibility import check_feasible
-from pzt_ident.search.linear import Linear, Tangent
+from pzt_ident.search.linear import Linear, Tangent, differences
 from pzt_ident.search.scales import size_of
 from pzt_ident.search.stencil import DIFFERENCE, forward, half_widths, stencil
 
 Array = NDArray[np.float64]
+FEW = 2  # points beside another one, for which amounts of the records are settled
 Squares = Callable[[Simulator, Array], Array]
 
 
@@ -62,7 +64,7 @@ class Problem(Cube):
         units = np.array(
             [sign * size_of(self.model, entry, identify) for sign, entry in zip(signs, entries, strict=True)]
         )
-        self.linear = Linear(self.model, linear, units, self._scaled)
+        self.linear = Linear(self.model, linear, units, self._changes)
         self._tangent: Tangent | None = None
 
     @property
@@ -102,14 +104,25 @@ class Problem(Cube):
 
     def best(self, points: Array, near: Array) -> tuple[Array, float]:
         """The point of least loss of those beside another one, and its loss, to the last digits; where parameters are
-        solved for, they follow to first order until a point is chosen."""
+        solved for, they follow to first order until few points are left."""
         tangent = self.tangent(near)
-        if tangent is None:
+        if tangent:
+            followed = self.along(tangent, self.held(near)).rotated_residuals(points)
+            points = points[[np.argmin(np.linalg.norm(followed, axis=1))]]
+            losses = self.loss(points)
+        else:
+            if self.model.amounts and len(points) > FEW:
+                points = points[np.argsort(self.rough_loss(points, near), kind="stable")[:FEW]]
             losses = self.loss(points, squares=exact_squares)
-            best = int(np.argmin(losses))
-            return points[best], float(losses[best])
-        point = points[np.argmin(np.linalg.norm(self.along(tangent).residuals(points), axis=1))]
-        return point, float(self.loss(point)[0])
+        best = int(np.argmin(losses))
+        return points[best], float(losses[best])
+
+    def rough_loss(self, points: Array, near: Array) -> Array:
+        """The loss by which points are told from each other where amounts of the records follow those of another point
+        to first order, which costs a simulation each: (candidates,)."""
+        if not self.model.amounts:
+            return self.loss(points)
+        return self.along(None, self.held(near)).loss(points, squares=exact_squares)
 
     def residuals(self, points: Array) -> Array:
         """(candidates, scored samples of all records and axes), scaled so that the norm is the loss; inf if failed."""
@@ -126,30 +139,53 @@ class Problem(Cube):
             scaled = np.hstack([part.reshape(len(theta), -1) for part in parts]) / np.sqrt(self.scored)
             return self._tangent.follow(scaled) if self._tangent else scaled
 
-    def tangent(self, point: Array) -> Tangent | None:
-        """How the parameters that are solved for follow beside a point; None where there are none."""
+    def _changes(self, theta: Array) -> Array:
+        """Residual of the first candidate, and how that of each other differs from it, rotated: (rows, candidates). NaN
+        if one failed."""
+        rows, failed = self._rotated(theta, differences(len(theta)))
+        return np.full_like(rows, np.nan) if failed.any() else rows
+
+    def tangent(self, point: Array, sampled: bool = False) -> Tangent | None:
+        """How the parameters that are solved for follow beside a point; None where there are none. sampled: whether
+        `residuals` are to follow as well, which holds a column of samples for each of them."""
         if not self.linear.columns.size:
             return None
-        names = [self.model.names[column] for column in self.linear.columns]
-        return Tangent.of(names, self.linear.solved(self.parameters(point)[0]))
+        row = self.parameters(point)[0]
+        tangent = Tangent.of(self.model, self.linear, row)
+        return tangent.of_samples(self._scaled(tangent.beside(self.model, row[None])[:-1])) if sampled else tangent
 
-    def along(self, tangent: Tangent | None) -> Problem:
+    def near(self, point: Array, sampled: bool = False) -> Problem:
+        """The problem whose residuals have what is solved for follow to first order beside a point. sampled: as of
+        `tangent`."""
+        return self.along(self.tangent(point, sampled), self.held(point))
+
+    def held(self, point: Array) -> tuple[Held, ...]:
+        """The amounts of each identification record beside a point, if the model has any."""
+        theta = self.parameters(point)[0]
+        return tuple(filter(None, (simulator.held(theta) for simulator in self.simulators["identify"])))
+
+    def along(self, tangent: Tangent | None, held: tuple[Held, ...] = ()) -> Problem:
         """The problem whose residuals have what is solved for follow to first order, for a fraction of the cost; the
-        model may have more blocks than that of the tangent, if they are at their null in it."""
-        if tangent is None:
+        model may have more blocks than that of the tangent and the amounts, if they are at their null in it."""
+        if tangent is None and not held:
             return self
         near, columns = copy(self), self.linear.columns
+        if held:
+            identify = zip(self.simulators["identify"], held, strict=True)
+            near.simulators = self.simulators | {"identify": [simulator.near(each) for simulator, each in identify]}
+        if tangent is None:
+            return near
         followed = np.array([self.model.names[column] in tangent.values for column in columns])
         near.theta = self.theta.copy()
         near.theta[columns[followed]] = [tangent.values[self.model.names[column]] for column in columns[followed]]
         near._tangent = tangent
-        near.linear = Linear(self.model, columns[~followed], self.linear.units[~followed], near._scaled)
+        near.linear = Linear(self.model, columns[~followed], self.linear.units[~followed], near._changes)
         return near
 
     def narrowed(self, point: Array) -> Problem:
         """The problem with differences that do not reach beyond a narrow minimum, see `half_widths`; itself where the
         usual ones do not."""
-        widths = half_widths(point, self.along(self.tangent(point)).rotated_residuals)
+        widths = half_widths(point, self.near(point).rotated_residuals)
         if np.all(widths == self.half_width):
             return self
         narrow = copy(self)
@@ -159,7 +195,7 @@ class Problem(Cube):
     def jacobian(self, point: Array) -> Array:
         """Jacobian of the residuals over the cube, (samples, free), see `stencil`. What is solved for follows to first
         order (Kaufman 1975, BIT 15, 49)."""
-        near = self.along(self.tangent(point))
+        near = self.near(point, sampled=True)
         points, weights = stencil(point, self.half_width)
         residuals = near.residuals(points)
         failed = np.isinf(residuals[:, 0])
@@ -172,7 +208,7 @@ class Problem(Cube):
         """Jacobian (rows, free) and residual (rows,) as of `jacobian` and `residuals`, rotated together so that a few
         rows are left: J' J, J' r and r' r are those of the samples. central: both sides of the point, for twice the
         simulations."""
-        near = self.along(self.tangent(point))
+        near = self.near(point)
         points, weights = stencil(point, self.half_width) if central else forward(point)
         rotated, failed = near.rotated(points, weights)
         if failed[1:].any():
@@ -184,26 +220,43 @@ class Problem(Cube):
     def samples(self, point: Array) -> Iterator[tuple[int, Array]]:
         """Residual and Jacobian as of `equations`, but sample by sample, stretch after stretch: the number of a series
         of samples, of a record and axis, and (1 + free, samples)."""
-        near = self.along(self.tangent(point))
+        near = self.near(point)
         points, weights = stencil(point, self.half_width)
         losses = near.loss(points)
         if np.isinf(losses).any():
             points, weights = stencil(point, self.half_width, np.isinf(losses))
-        if near._tangent:
-            yield 0, weights @ near.residuals(points)
-            return
-        theta, axes = near.parameters(points), len(self.model.measured)
-        for number, simulator in enumerate(near.simulators["identify"]):
+        theta, tangent = near.parameters(points), near._tangent
+        amounts = np.zeros((0, len(weights)))
+        if tangent:
+            theta, following = tangent.beside(self.model, theta), weights
+            weights = tangent.beside_weights(weights)
+            amounts = tangent.amounts(near._gathered(theta, weights)[0], following)
+        for number, rows in near._stretches(theta, weights):
+            own = len(rows) - amounts.shape[1]
+            yield number, rows[own:] - amounts.T @ rows[1:own]
+
+    def samples_of_linear(self, point: Array) -> Iterator[tuple[int, Array]]:
+        """As `samples`, residual and derivatives by multiples of the parameters that are solved for and are not zero:
+        (1 + active, samples); at the end what the prior asks for."""
+        tangent, number = self.tangent(point), 0
+        assert tangent
+        theta = tangent.beside(self.model, np.zeros((0, len(self.model.names))))
+        for number, rows in self._stretches(theta, differences(len(theta))):
+            yield number, rows
+        solution = self.linear.solved(self.parameters(point)[0])
+        yield number, np.vstack([solution.prior @ (solution.values / solution.units), tangent.prior.T])
+
+    def _stretches(self, theta: Array, weights: Array) -> Iterator[tuple[int, Array]]:
+        """Combinations of the residuals of candidates, stretch after stretch as of `samples`."""
+        for number, simulator in enumerate(self.simulators["identify"]):
             for i, error in stretches(simulator, theta):
-                yield number * axes + i, weights @ error / (self.sizes[i] * np.sqrt(self.scored))
+                yield number * len(self.sizes) + i, weights @ error / (self.sizes[i] * np.sqrt(self.scored))
 
     def rotated_residuals(self, points: Array) -> Array:
         """Residuals as of `residuals`, of all points rotated together so that a few are left: (candidates, rows). Norms
         and inner products are those of the samples."""
         points = np.atleast_2d(points)
-        changes = np.eye(len(points))
-        changes[1:, 0] = -1  # of the first, so that differences of near ones keep their digits
-        rows, failed = self.rotated(points, changes)
+        rows, failed = self.rotated(points, differences(len(points)))  # of near ones, which keep their digits
         if failed[0]:
             rows, failed = self.rotated(points, np.eye(len(points)))
         else:
@@ -214,20 +267,26 @@ class Problem(Cube):
     def rotated(self, points: Array, weights: Array) -> tuple[Array, NDArray[np.bool_]]:
         """Combinations `weights`, (combinations, candidates), of the residuals, rotated so that a few rows are left:
         (rows, combinations). And which candidates failed, whose residuals are taken as zero: (candidates,)."""
-        triangle = Triangle(len(weights))
-        if self._tangent:
-            residuals = self.residuals(points)
-            failed = np.isinf(residuals[:, 0])
-            residuals[failed] = 0
-            triangle.add(weights @ residuals)
-            return triangle.r, failed
-        theta, failed = self.parameters(points), np.zeros(len(points), dtype=bool)
+        rows, failed = self._rotated(self.parameters(points), weights)
+        self.failed += int(failed.sum())
+        return rows, failed
+
+    def _rotated(self, theta: Array, weights: Array) -> tuple[Array, NDArray[np.bool_]]:
+        """As `rotated`, of candidates (candidates, parameters)."""
+        tangent = self._tangent
+        if tangent is None:
+            return self._gathered(theta, weights)
+        rows, failed = self._gathered(tangent.beside(self.model, theta), tangent.beside_weights(weights))
+        return tangent.followed(rows, weights), failed[len(failed) - len(theta) :]
+
+    def _gathered(self, theta: Array, weights: Array) -> tuple[Array, NDArray[np.bool_]]:
+        """As `_rotated`, where nothing follows."""
+        triangle, failed = Triangle(len(weights)), np.zeros(len(theta), dtype=bool)
         for simulator in self.simulators["identify"]:
             parts, broken = rotated(simulator, theta, weights)
             failed |= broken
             for part, size in zip(parts, self.sizes, strict=True):
                 triangle.add(part.T / (size * np.sqrt(self.scored)))
-        self.failed += int(failed.sum())
         return triangle.r, failed
 
     @property

@@ -1,10 +1,12 @@
 """Scores without a refit: sign and size of what is missing, and what the fitted parameters can do as well."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import stage
-from pzt_ident.diagnosis.refit import Case
+from pzt_ident.diagnosis.refit import Case, refit
 from pzt_ident.diagnosis.score import Scorer, applicable, fitting_forms, squared_misfit
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.job.sections import Setting
@@ -189,3 +191,30 @@ def test_an_effect_is_seen_behind_a_parameter_that_ends_on_its_bound(effect):
     fit = first_fit(case, 0)
     assert {"lumped.damping", "lumped.stiffness"} & set(fit.on_bounds)
     assert Scorer(case, fit).score(effect).explained > 0.9
+
+
+def rippled_case(dt=2e-3, volts=0.5):
+    """A stage whose amplifier adds a ripple of 23 Hz to the drive that is recorded, in another phase each time."""
+    clean = stage.loops()
+    waves = [
+        volts * np.sin(2 * np.pi * 23 * dt * np.arange(u.size) + turn) for turn, u in zip((1, 4), clean, strict=True)
+    ]
+    made = stage.case(drives=[u + wave for u, wave in zip(clean, waves, strict=True)], dt=dt)
+    records = [replace(record, drive=u[None]) for record, u in zip(made.records, clean, strict=True)]
+    return Case(made.words, made.effects, records, made.specs)
+
+
+def test_a_ripple_that_the_hysteresis_bends_scores_more_than_a_line_on_the_reading():
+    case = rippled_case()
+    line, _, ripple = Scorer(case, first_fit(case, 0)).scores("periodic_disturbance")
+    assert ripple.guess["periodic_disturbance.frequency"] == pytest.approx(23, abs=0.05)
+    assert ripple.explained > 0.9 > line.explained + 0.1
+
+
+def test_beside_a_ripple_that_is_explained_nothing_is_left_to_score():
+    case = rippled_case()
+    known = {"periodic_disturbance.frequency": 23.0}
+    fit = refit(case, first_fit(case, 0), ("periodic_disturbance.ripple",), known)
+    assert fit.validate < 1.1 * case.floor
+    scorer = Scorer(case, fit)
+    assert all(scorer.score(word).explained * scorer.misfit < case.floor**2 for word in ("creep", "quadratic_gain"))

@@ -54,3 +54,29 @@ def test_less_than_some_periods_are_drift():
     t, drive, _ = waves(0.3, 1)
     slow = np.sin(2 * np.pi * 0.31 * t)
     assert all(PeriodicDisturbance.guess([t], [0 * drive], [slow], 0.1, 900) >= 0.8)
+
+
+def rippled(amounts, frequency=20.0, samples=500, dt=1e-3):
+    """The drive behind a ripple, on a drive of zero: (samples,)."""
+    chain = model("periodic_disturbance.ripple")
+    at_rest = Simulator(chain, record(np.zeros(samples), dt=dt))
+    return at_rest.simulate(np.array([[frequency, *amounts]]))[0, 0]
+
+
+def test_a_ripple_is_the_line_and_its_third_harmonic_ahead_of_the_hysteresis():
+    phase = 2 * np.pi * 20 * 1e-3 * np.arange(500)
+    waves = np.sin(phase), np.cos(phase), np.sin(3 * phase), np.cos(3 * phase)
+    for amounts in np.eye(4):
+        np.testing.assert_allclose(rippled(amounts), amounts @ waves, atol=1e-12)
+
+
+def test_the_phase_of_a_ripple_does_not_creep():
+    """A rotation a million times over."""
+    samples = 1_000_000
+    wave = rippled([1, 0, 0, 0], 37.7, samples, 1e-4)
+    np.testing.assert_allclose(wave[-500:], np.sin(2 * np.pi * 37.7e-4 * np.arange(samples)[-500:]), atol=1e-8)
+
+
+def test_a_record_of_less_than_a_period_has_no_ripple():
+    assert np.ptp(rippled([1, 0, 0, 0], 2.1)) > 1.9
+    assert not rippled([1, 0, 0, 0], 1.9).any()

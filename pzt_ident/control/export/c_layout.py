@@ -22,7 +22,8 @@ def headline(kernel: Kernel) -> str:
 
 def notes(identified: Identified) -> list[str]:
     """What is in the model and what is not."""
-    left_out = [block.name for block in identified.chain.additions]
+    chain = identified.chain
+    left_out = [block.name for block in (*chain.blocks, *chain.additions) if block.amounts()]
     text = [identified.origin] if identified.origin else []
     axes = zip(identified.chain.axes, identified.drive_units, identified.ends, strict=True)
     ranges = [f"{axis} {low:.6g} to {high:.6g} {unit}" for axis, unit, (low, high) in axes]

@@ -1,0 +1,128 @@
+"""Parameters of which each record has its own, ahead of blocks that are not linear: solved for inside a simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from pzt_ident.engine.simulator import Simulator
+
+Array = NDArray[np.float64]
+
+PASSES = 30  # of linearisation at most
+SETTLED = 1e-9  # of the sum of squares: a step that promises less is not taken
+WIDTH = 1e-5  # of the range of an amount: its difference
+SHORTER = 0.25  # the next step after one that led uphill
+DEPENDENT = 1e-10  # of the largest eigenvalue: directions of less are one
+
+
+class Amounts:
+    """The amounts of a record, from least squares over its scored samples together with the offset and the additions.
+
+    Gauss and Newton's steps from zero, as many for every candidate, so that what follows is a smooth function of its
+    other parameters.
+    """
+
+    def __init__(self, simulator: Simulator) -> None:
+        self.simulator = simulator
+        model, record = simulator.model, simulator.record
+        signals = [record.drive if entry.parameter.unit == "drive" else record.response for entry in model.amounts]
+        axes = [entry.axis for entry in model.amounts]
+        sizes = [max(np.ptp(signal[axis]), abs(signal[axis]).max()) for signal, axis in zip(signals, axes, strict=True)]
+        bounds = np.array([entry.parameter.bounds for entry in model.amounts]).reshape(-1, 2)
+        self._low, self._high = bounds.T * np.array(sizes)
+        self._widths = WIDTH * (self._high - self._low)
+        self._scales = 1 / np.maximum(np.ptp(record.response[list(model.measured)], axis=1), 1e-300)
+        self._known: tuple[bytes, Array] = (b"", np.empty((0, 0)))
+
+    def complete(self, theta: Array) -> Array:
+        """theta (candidates, parameters) with the amounts behind them."""
+        if not self._low.size:
+            return theta
+        key, known = theta.tobytes(), self._known  # which another thread may replace
+        if known[0] != key:
+            known = self._known = key, np.hstack([theta, self._solved(theta)])
+        return known[1]
+
+    def _solved(self, theta: Array) -> Array:
+        """Those of each candidate: (candidates, amounts)."""
+        amounts = np.zeros((len(theta), self._low.size))
+        best, steps, least = amounts.copy(), amounts.copy(), np.full(len(theta), np.inf)
+        moving = np.arange(len(theta))
+        for _ in range(PASSES):
+            table = self._products(theta[moving], amounts[moving])
+            squares = table[:, 0, 0]
+            better = squares < least[moving]
+            inverse = np.linalg.pinv(table[:, 1:, 1:], rcond=DEPENDENT, hermitian=True)
+            multiples = (inverse @ table[:, 1:, :1])[:, :, 0]
+            promised = (multiples * table[:, 0, 1:]).sum(axis=1)
+            steps[moving] = np.where(better[:, None], -multiples * self._widths, SHORTER * steps[moving])
+            best[moving[better]], least[moving[better]] = amounts[moving[better]], squares[better]
+            moving = moving[~(better & (promised <= SETTLED * squares))]
+            if not moving.size:
+                break
+            amounts = np.clip(best + steps, self._low, self._high)
+        return best
+
+    def _products(self, theta: Array, amounts: Array) -> Array:
+        """Of the error and its changes by a width of each amount, without offset and additions, summed over the
+        measured axes in multiples of their spans: (candidates, 1 + amounts, 1 + amounts). A failed one has an
+        infinite error, and no change."""
+        simulator, several = self.simulator, 1 + amounts.shape[1]
+        candidates = self._moved(np.hstack([theta, amounts]))
+        signals = 1 + simulator.additions.signals
+        tables = np.zeros((len(self._scales), len(theta), signals + several, signals + several))
+        for at, error in simulator.deviations(candidates):
+            errors = error.reshape(len(theta), several, *error.shape[1:])
+            errors[:, 1:] -= errors[:, :1]
+            for i, axis in enumerate(simulator.model.measured):
+                bases = simulator.additions.bases(axis, theta, at)
+                rows = np.concatenate([bases, errors[:, :, i] * self._scales[i]], axis=1)
+                tables[i] += rows @ rows.transpose(0, 2, 1)
+        failed = ~np.isfinite(tables).all(axis=(0, 2, 3))
+        tables[:, failed] = 0
+        products = np.asarray(sum(without(table, signals) for table in tables))
+        products[failed, 0, 0] = np.inf
+        return products
+
+    def _moved(self, complete: Array) -> Array:
+        """Each candidate, followed by it with one amount after the other moved by its width."""
+        moves = np.zeros((1 + self._widths.size, complete.shape[1]))
+        moves[1:, complete.shape[1] - self._widths.size :] = np.diag(self._widths)
+        return np.asarray((complete[:, None] + moves).reshape(-1, complete.shape[1]))
+
+    def held(self, theta: Array) -> Held:
+        """Those of one candidate."""
+        complete, model = self.complete(theta), self.simulator.model
+        response, *moved = self.simulator.simulate(self._moved(complete))
+        changes = np.array(moved) - response
+        rows = {axis: [k for k, entry in enumerate(model.amounts) if entry.axis == axis] for axis in model.measured}
+        directions = {axis: changes[rows[axis], i] for i, axis in enumerate(model.measured)}
+        return Held(complete[0, theta.shape[1] :], directions)
+
+
+class Held(NamedTuple):
+    """Amounts of a record that stay as they are, and follow a change of other parameters to first order.
+
+    values: (amounts,). directions: by measured axis the change of its response by its amounts, (amounts, samples).
+    """
+
+    values: Array
+    directions: Mapping[int, Array]
+
+    def complete(self, theta: Array) -> Array:
+        """theta (candidates, parameters) with the amounts behind them."""
+        return np.hstack([theta, np.tile(self.values, (len(theta), 1))])
+
+
+def without(table: Array, signals: int) -> Array:
+    """Products (candidates, n, n) of what is left of the later rows without their projection on the first ones."""
+    basis, across, rest = table[:, :signals, :signals], table[:, :signals, signals:], table[:, signals:, signals:]
+    size = np.sqrt(np.maximum(np.diagonal(basis, axis1=1, axis2=2), 1e-300))
+    basis = basis / (size[:, :, None] * size[:, None, :])
+    across = across / size[:, :, None]
+    return np.asarray(rest - across.transpose(0, 2, 1) @ np.linalg.pinv(basis, rcond=1e-12, hermitian=True) @ across)
