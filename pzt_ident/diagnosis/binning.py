@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from pzt_ident.data.noise import period_of
 
 Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
+Indices = NDArray[Any]  # integers of any size
 
 
 class Bin(NamedTuple):
@@ -26,12 +26,18 @@ class Bin(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Binning:
-    """Every scored sample of every record in one of the bins: `places` has its bin's index, (samples,) per record."""
+    """Every scored sample of every record in one of the bins: `places` has its bin's index, (samples,) per record, in
+    as few bytes as hold it."""
 
     name: str
     unit: str
     bins: tuple[Bin, ...]
     places: list[Indices]
+
+    @classmethod
+    def of(cls, name: str, unit: str, bins: tuple[Bin, ...], places: Iterable[Indices]) -> Binning:
+        kind = np.min_scalar_type(len(bins))
+        return cls(name, unit, bins, [part.astype(kind) for part in places])
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,9 +59,9 @@ def tally(binning: Binning, residuals: Sequence[Array]) -> Tally:
     return Tally(binning.name, binning.unit, binning.bins, counts, sums)
 
 
-def unordered_binning(name: str, labels: Sequence[str], places: list[Indices]) -> Binning:
+def unordered_binning(name: str, labels: Sequence[str], places: Iterable[Indices]) -> Binning:
     """Bins without limits."""
-    return Binning(name, "", tuple(map(Bin, labels)), places)
+    return Binning.of(name, "", tuple(map(Bin, labels)), places)
 
 
 def linear_binning(name: str, unit: str, values: list[Array], from_zero: bool = False, bins: int = 6) -> Binning:
@@ -67,20 +73,21 @@ def linear_binning(name: str, unit: str, values: list[Array], from_zero: bool = 
     count = int(np.round(high / step) - first) + 1
     edges = ((first - 0.5 + np.arange(count + 1)) * step).tolist()
     edges[0] = max(edges[0], 0.0) if low >= 0 else edges[0]
-    places = [np.clip(np.round(part / step) - first, 0, count - 1).astype(np.intp) for part in values]
-    return Binning(name, unit, bins_between(edges, unit), places)
+    places = (np.clip(np.round(part / step) - first, 0, count - 1) for part in values)
+    return Binning.of(name, unit, bins_between(edges, unit), places)
 
 
 def logarithmic_binning(name: str, unit: str, values: list[Array], low: float, zero_label: str = "") -> Binning:
     """Two bins per decade, with edges at 1 and 3, from `low`; smaller values are in the first. Where `zero_label` is
     given, zeros are in a bin of that name."""
     edges = half_decades(low, max(map(np.max, values)))
-    places = [np.searchsorted(edges[1:-1], part, side="right") for part in values]
+    places = (np.searchsorted(edges[1:-1], part, side="right") for part in values)
     bins = bins_between(edges, unit)
     if zero_label:
-        places = [np.where(part > 0, place, len(bins)) for place, part in zip(places, values, strict=True)]
+        zero = len(bins)
+        places = (np.where(part > 0, place, zero) for place, part in zip(places, values, strict=True))
         bins = (*bins, Bin(zero_label))
-    return Binning(name, unit, bins, places)
+    return Binning.of(name, unit, bins, places)
 
 
 def doubling_binning(name: str, values: list[Indices]) -> Binning:
@@ -91,7 +98,7 @@ def doubling_binning(name: str, values: list[Indices]) -> Binning:
         Bin(f"{first} to {last}" if first < last else f"{last}", float(first), float(last))
         for first, last in zip([1, *(lasts[:-1] + 1).tolist()], lasts.tolist(), strict=True)
     )
-    return Binning(name, "", bins, [np.searchsorted(lasts, part) for part in values])
+    return Binning.of(name, "", bins, (np.searchsorted(lasts, part) for part in values))
 
 
 def half_decades(low: float, high: float) -> list[float]:

@@ -165,7 +165,9 @@ def cross_table(
     first, second = sorted(-number for _, number in sorted(divergences, reverse=True)[:2])
     rows, columns = sortings[first], sortings[second]
     shape = (len(rows.bins), len(columns.bins))
-    places = np.concatenate([a * shape[1] + b for a, b in zip(rows.places, columns.places, strict=True)])
+    places = np.concatenate(
+        [a.astype(np.intp) * shape[1] + b for a, b in zip(rows.places, columns.places, strict=True)]
+    )
     squares = np.bincount(places, np.square(np.concatenate(residuals)), shape[0] * shape[1]).astype(np.float64)
     counts = np.bincount(places, minlength=squares.size).astype(np.float64)
     shares = misfit_shares(squares, counts, noise).reshape(shape)

@@ -33,7 +33,7 @@ def binnings(records: Sequence[Record], axis: int) -> list[Binning]:
     positions = [r.response[axis, r.settle :] / factor(position_unit) for r in records]
     highest_rate, longest_time = max(map(np.max, rates)), max(map(np.max, times))
     shortest_time = max(min(r.dt for r in records), 1e-4 * longest_time)
-    places = [np.full(history.direction.size, number) for number, history in enumerate(histories)]
+    places = [np.broadcast_to(number, history.direction.shape) for number, history in enumerate(histories)]
     others = [other for other in range(len(records[0].axes)) if other != axis]
     return [
         unordered_binning("record", [record.name for record in records], places),
@@ -58,7 +58,7 @@ def other_drive_binnings(records: Sequence[Record], axis: int) -> list[Binning]:
 
 
 def branch_binning(name: str, histories: list[DriveHistory]) -> Binning:
-    places = [np.where(history.direction == 0, 2, (1 - history.direction) // 2) for history in histories]
+    places = (np.where(history.direction == 0, 2, (1 - history.direction) // 2) for history in histories)
     return unordered_binning(name, BRANCHES, places)
 
 

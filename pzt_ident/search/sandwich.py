@@ -7,9 +7,8 @@ from collections.abc import Callable, Iterable
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dtbtrs
 
-from pzt_ident.engine.gather import Triangle
+from pzt_ident.engine.gather import Triangle, lapack
 
 Array = NDArray[np.float64]
 Samples = Callable[[], Iterable[tuple[int, Array]]]
@@ -79,7 +78,7 @@ def answer(weights: Array, before: Array, along: Array) -> tuple[Array, Array]:
         carried = np.convolve(known, weights)[order : order + samples]
         right[: carried.size, direction] -= carried
     diagonals = np.tile(weights[:, None], (1, samples))
-    after = dtbtrs(diagonals, right, uplo="L", diag="U", overwrite_b=1)[0].T
+    after = lapack.dtbtrs(diagonals, right, uplo="L", diag="U", overwrite_b=1)[0].T
     return after, np.hstack([before, after])[:, samples:]
 
 
@@ -93,11 +92,6 @@ def died_away(weights: Array, state: Array, energy: Array, most: int) -> Array:
         if (more <= DIED * (energy + total)).all():
             break
     return total
-
-
-def covariance_of(jacobian: Array, residual: Array) -> Array:
-    """Covariance from the derivatives of one series of samples, (samples, free), and its residual, (samples,)."""
-    return Sandwich(lambda: [(0, np.vstack([residual, jacobian.T]))]).covariance
 
 
 class Lags:
@@ -120,16 +114,17 @@ class Lags:
 
 
 def autoregression(lags: Lags) -> tuple[Array, float]:
-    """Weights a, from 1, and variance of e in sum_i a_i r[k - i] = e[k], from the equations of Yule and Walker. The
-    order is that of the least AIC (Akaike 1974), 10 log10 of the number of samples at most."""
-    from scipy.linalg import solve_toeplitz
-
+    """Weights a, from 1, and variance of e in sum_i a_i r[k - i] = e[k], from the equations of Yule and Walker,
+    solved order by order (Durbin 1960). The order is that of the least AIC (Akaike 1974), 10 log10 of the number of
+    samples at most."""
     size, lagged = lags.size, lags.sums / lags.size
     most = min(size - 1, int(10 * np.log10(size)), lagged.size - 1)
-    best, least = (np.ones(1), float(lagged[0])), 0.0
+    weights, variance = np.ones(1), float(lagged[0])
+    best, least = (weights, variance), 0.0
     for order in range(1, most + 1 if lagged[0] > 0 else 1):
-        weights = np.append(1.0, solve_toeplitz(lagged[:order], -lagged[1 : order + 1]))
-        variance = float(weights @ lagged[: order + 1])
+        reflected = -float(weights @ lagged[order:0:-1]) / variance
+        weights = np.append(weights, 0.0) + reflected * np.append(0.0, weights[::-1])
+        variance *= 1 - reflected**2
         if not variance > 1e-12 * lagged[0]:
             break
         criterion = size * np.log(variance / lagged[0]) + 2 * order

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from pzt_ident.data.units import factor
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.profile import TWO_SIDED, intervals
-from pzt_ident.search.sandwich import Sandwich, covariance_of
+from pzt_ident.search.sandwich import Sandwich
 
 Array = NDArray[np.float64]
 
@@ -104,11 +104,9 @@ def linear_estimates(problem: Problem, point: Array) -> list[Estimate]:
         return []
     solution = problem.linear.solved(theta)
     multiple, active = solution.values / solution.units, solution.values != 0
-    jacobian = np.vstack([solution.columns, solution.prior])[:, active]
     error = np.zeros(columns.size)
     if active.any():
-        residual = np.append(solution.residual, solution.prior @ multiple)
-        error[active] = np.sqrt(np.diag(covariance_of(jacobian, residual)))
+        error[active] = np.sqrt(np.diag(Sandwich(lambda: problem.samples_of_linear(point)).covariance))
     rows = []
     for i, column in enumerate(columns):
         entry, unit = problem.model.entries[column], problem.all_units[column]

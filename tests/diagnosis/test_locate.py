@@ -1,6 +1,7 @@
 """Residuals of known place: their shares of the misfit have a closed form."""
 
 import json
+import tracemalloc
 from dataclasses import asdict, replace
 from itertools import combinations
 
@@ -304,3 +305,16 @@ def test_what_is_due_to_a_record_is_not_said_of_its_branch():
     assert view(axis, "record").dominant.share == pytest.approx(9 / 14)
     assert share(axis, "branch", "rising") == pytest.approx(9 / 14, abs=2e-3)
     assert view(axis, "branch").dominant is None
+
+
+def test_samples_are_sorted_in_few_bytes():
+    """A dozen numbers a sample at most, though there are nine views."""
+    drive = np.tile(TRIANGLE, 25)
+    long, residual = record(drive=drive), np.random.default_rng(0).normal(0, 1e-8, (1, drive.size))
+    locate([record()], [residual[:, : TIME.size]], [SILENT])
+    tracemalloc.start()
+    (found,) = locate([long], [residual], [Floor(5e-9, "rests")])
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert len(found.views) == 9
+    assert peak < 12 * drive.nbytes

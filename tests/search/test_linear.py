@@ -2,6 +2,7 @@
 
 import dataclasses
 import json
+import tracemalloc
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,6 +12,7 @@ from scipy.special import erf
 
 import smith
 from pzt_ident.data.notation import ranges
+from pzt_ident.engine import simulator
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import Job
 from pzt_ident.model.chain import Chain
@@ -18,9 +20,11 @@ from pzt_ident.model.registry import blocks
 from pzt_ident.report.page import write_report
 from pzt_ident.run.identify import run
 from pzt_ident.run.place import Local
+from pzt_ident.search import sandwich
 from pzt_ident.search.descent import polish
-from pzt_ident.search.linear import Linear, solve
+from pzt_ident.search.linear import Linear, differences, solve
 from pzt_ident.search.problem import Problem
+from pzt_ident.search.stencil import stencil
 from pzt_ident.search.uncertainty import estimates
 from rig import path, record, response
 from twins.homogenized_energy_twin import quantiles
@@ -51,6 +55,11 @@ def at(made, interaction):
 
 def weights(made, point):
     return made.parameters(point)[0][[name.startswith("homogenized_energy.weight") for name in made.model.names]]
+
+
+def changes(residuals):
+    """Residuals of candidates as `solve` asks for them."""
+    return lambda values: (differences(len(values)) @ residuals(values)).T
 
 
 def test_it_is_one_non_negative_least_squares_problem(measured):
@@ -146,7 +155,7 @@ def test_what_is_bent_behind_is_relinearised():
     """y = q + 0.1 q^3 of two columns: found to rounding, though no pass is exact."""
     columns, truth = np.random.default_rng(0).normal(size=(2, 50)), np.array([0.4, 0.7])
     bent = lambda values: (q := values @ columns) + 0.1 * q**3  # noqa: E731
-    found = solve(lambda values: bent(values) - bent(truth), np.full(2, 1e-3), [], [])
+    found = solve(changes(lambda values: bent(values) - bent(truth)), np.full(2, 1e-3), [], [])
     np.testing.assert_allclose(found.values, truth, rtol=1e-3)
 
 
@@ -229,17 +238,19 @@ def test_neighbours_are_smoothed_by_their_second_differences():
     """Normal equations by hand: the weight counts in squares of the middle one of the columns' sizes, 2."""
     sizes, measured, weight = np.diag([1.0, 2.0, 4.0]), np.array([3.0, 1.0, 20.0]), 0.3
     bend = np.array([1.0, -2.0, 1.0])
-    found = solve(lambda values: values @ sizes - measured, np.ones(3), [np.arange(3)], [weight])
+    found = solve(changes(lambda values: values @ sizes - measured), np.ones(3), [np.arange(3)], [weight])
     expected = np.linalg.solve(sizes @ sizes + weight * 2**2 * np.outer(bend, bend), sizes @ measured)
     assert expected.min() > 0
     np.testing.assert_allclose(found.values, expected, rtol=1e-9)
-    np.testing.assert_allclose(solve(lambda values: values @ sizes - measured, np.ones(3), [], []).values, [3, 0.5, 5])
+    np.testing.assert_allclose(
+        solve(changes(lambda values: values @ sizes - measured), np.ones(3), [], []).values, [3, 0.5, 5]
+    )
 
 
 def test_each_curve_is_smoothed_by_its_own_weight():
     """Two curves of three values each, of which the second is not smoothed."""
     measured = np.array([3.0, 0.5, 5.0, 3.0, 0.5, 5.0])
-    solution = solve(lambda values: values - measured, np.ones(6), [np.arange(3), np.arange(3, 6)], [1e9, 0.0])
+    solution = solve(changes(lambda values: values - measured), np.ones(6), [np.arange(3), np.arange(3, 6)], [1e9, 0.0])
     np.testing.assert_allclose(np.diff(solution.values[:3], 2), 0, atol=1e-6)
     np.testing.assert_allclose(solution.values[3:], measured[3:])
 
@@ -257,7 +268,7 @@ def test_what_is_solved_for_follows_to_first_order(measured):
     """Half the way from a point, a quarter of the error."""
     exact = problem(measured)
     point = at(exact, 5000)
-    near = exact.along(exact.tangent(point))
+    near = exact.along(exact.tangent(point, sampled=True))
     assert near.residuals(point) == pytest.approx(exact.residuals(point), abs=1e-9 * exact.loss(point)[0])
 
     def error(step):
@@ -265,3 +276,35 @@ def test_what_is_solved_for_follows_to_first_order(measured):
         return np.linalg.norm(near.residuals(moved) - exact.residuals(moved))
 
     assert error(5e-3) / error(2.5e-3) == pytest.approx(4, rel=0.3)
+
+
+@pytest.mark.parametrize("behind", [(), ("drift",), ("quadratic_gain",)])
+def test_what_is_gathered_is_what_is_held(measured, behind):
+    """Rotated residuals have the inner products of the samples, and stretches are the samples."""
+    exact = problem(measured, *behind)
+    point = np.full(exact.dimensions, 0.4)
+    near = exact.along(exact.tangent(point, sampled=True))
+    points, weights = stencil(point)
+    held = near.residuals(points)
+    gathered = near.rotated_residuals(points)
+    np.testing.assert_allclose(gathered @ gathered.T, held @ held.T, rtol=1e-9)
+    stretches = np.hstack([rows for _, rows in exact.samples(point)])
+    np.testing.assert_allclose(stretches[0], held[0], atol=1e-12 * np.abs(measured.response).max())
+    slopes = weights[1:] @ held
+    np.testing.assert_allclose(stretches[1:], slopes, atol=1e-5 * np.abs(slopes).max())
+
+
+def test_no_column_of_a_long_record_is_held(monkeypatch):
+    for module in (simulator, sandwich):
+        monkeypatch.setattr(module, "STRETCH", 256)
+    field = np.tile(FIELD, 20)
+    made = problem(record(field, response=[response(["homogenized_energy"], smith.A, field)]))
+    made.loss(at(made, 6120))
+    point = at(made, 9000)
+    tracemalloc.start()
+    made.best(point[None], point)
+    made.equations(point)
+    estimates(made, point)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 8 * field.size * NODES / 2

@@ -11,7 +11,7 @@ from pzt_ident.model.registry import blocks
 from pzt_ident.search.cube import FixedValue
 from pzt_ident.search.descent import polish
 from pzt_ident.search.problem import Problem
-from pzt_ident.search.sandwich import Lags, autoregression, covariance_of
+from pzt_ident.search.sandwich import Lags, Sandwich, autoregression
 from pzt_ident.search.uncertainty import caution, estimates
 from rig import record
 
@@ -19,6 +19,11 @@ BLOCKS, LENGTH = 40, 10
 ALTERNATING = np.repeat(np.resize([1.0, -1.0], BLOCKS), LENGTH)
 CAMPAIGNS = 400
 SCATTER = 4 / np.sqrt(2 * CAMPAIGNS)  # four standard errors of a standard deviation from so many estimates
+
+
+def covariance_of(jacobian, residual):
+    """Covariance from the derivatives of one series of samples, (samples, free), and its residual, (samples,)."""
+    return Sandwich(lambda: [(0, np.vstack([residual, jacobian.T]))]).covariance
 
 
 def errors(covariance):
