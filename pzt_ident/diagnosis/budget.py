@@ -8,7 +8,9 @@ from pzt_ident.data.notation import listed
 
 LEAST = 60.0  # s, of CPU
 PER_SAMPLE = 1e-3  # s
+BESIDE = 0.35  # of the budget: other effects beside one that explains nearly all, but for a second one, get no more
 EXPLORING = 0.7  # of the budget: the rest is for proving what was found
+PROMISED = 1.0  # of the budget: until then an effect that promises to explain most of what is left is refitted
 LAST = 2.0  # of the budget: fits end there, settled or not
 
 
@@ -19,6 +21,17 @@ class Budget:
     def __init__(self, seconds: float | None = None) -> None:
         self.seconds = float("inf") if seconds is None else seconds
         self.untried: list[str] = []
+        self._begun = process_time()
+
+    def part(self, share: float) -> Budget:
+        """A share of the seconds, from now on; what they do not suffice for is named here."""
+        part = Budget(share * self.seconds)
+        part.untried = self.untried
+        return part
+
+    def begin_again(self) -> None:
+        """All seconds are there, and nothing is untried."""
+        self.untried.clear()
         self._begun = process_time()
 
     def allows(self, what: str, share: float = EXPLORING) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pzt_ident.diagnosis.budget import LAST
+from pzt_ident.diagnosis.budget import BESIDE, EXPLORING, LAST, PROMISED
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit, side_by_side
@@ -67,17 +67,33 @@ def score_all(case: Case, first: Fit, before: Fit, scorer: Scorer) -> list[Candi
 def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
     """Refit the model with each effect, in its first form and in the one that scores best; returns the refitted ones,
     which are all that the budget suffices for, but at least the best one beside the model as given."""
+    fits: list[Fit] = []
+
+    def share_allowed(candidate: Candidate) -> float:
+        if candidate is candidates[0] and candidate.score.explained >= DECISIVE:
+            return PROMISED
+        return BESIDE if second_missing(case, first, before, fits) else EXPLORING
 
     def refits(candidate: Candidate) -> dict[str, Fit]:
         needed = before is first and candidate is candidates[0]
-        if not needed and not case.budget.allows("the refits of all candidates"):
+        if not needed and not case.budget.allows("the refits of all candidates", share_allowed(candidate)):
             return {}
         forms = {score.effect: score for score in (candidate.forms[0], candidate.score)}
-        return {item: refit(case, before, (*before.effects, item), score.guess) for item, score in forms.items()}
+        made = {item: refit(case, before, (*before.effects, item), score.guess) for item, score in forms.items()}
+        fits.extend(made.values())
+        return made
 
-    for candidate, fits in zip(candidates, side_by_side(refits, candidates), strict=True):
-        candidate.refits = fits
+    for candidate, made in zip(candidates, side_by_side(refits, candidates), strict=True):
+        candidate.refits = made
     return [candidate for candidate in candidates if candidate.refits]
+
+
+def second_missing(case: Case, first: Fit, before: Fit, fits: Sequence[Fit]) -> bool:
+    """Whether one of the fits explains nearly all, and what it leaves is above the noise: time is for a second effect
+    rather than for others in the place of this one."""
+    best = min(fits, key=lambda fit: fit.total, default=before)
+    nearly_all = share_explained(before.identify, best.identify, case.floor) >= NEARLY_ALL
+    return nearly_all and not adequate(case, first, best)
 
 
 def choose_forms(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:
@@ -118,7 +134,9 @@ def restart_look_alikes(case: Case, first: Fit, before: Fit, candidates: list[Ca
             candidate.fit = candidate.refits[word] = restart(case, fit, word_of(word), LOOK_ALIKE_STARTS)
 
 
-def refit_other_forms(case: Case, before: Fit, candidates: Sequence[Candidate], shortlist: list[Candidate]) -> None:
+def refit_other_forms(
+    case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate], shortlist: list[Candidate]
+) -> None:
     """Refit the short list in every form where no effect explains most of the misfit: a form that scores low may leave
     little of it. Where an effect explains nearly all, refit its look-alikes in every form, and add them to the short
     list: one may explain more in another form."""
@@ -129,9 +147,10 @@ def refit_other_forms(case: Case, before: Fit, candidates: Sequence[Candidate], 
         wanted = [item for item in candidates if are_look_alikes(best.effects[-1], item.score.effect)]
     else:
         wanted = shortlist if share < DECISIVE else []
+    allowed = BESIDE if second_missing(case, first, before, fits) else EXPLORING
     for candidate in wanted:
         missing = [score for score in candidate.forms if score.effect not in candidate.refits]
-        if missing and not case.budget.allows("other forms"):
+        if missing and not case.budget.allows("other forms", allowed):
             break
         new = {score.effect: refit(case, before, (*before.effects, score.effect), score.guess) for score in missing}
         candidate.refits = {**candidate.refits, **new}

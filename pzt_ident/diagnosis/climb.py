@@ -16,6 +16,7 @@ from pzt_ident.diagnosis.starts import first_fit, restart
 from pzt_ident.diagnosis.step import Step, explained_share
 from pzt_ident.diagnosis.undetermined import Undetermined
 from pzt_ident.diagnosis.verdict import Diagnosis, best_pair, diagnose
+from pzt_ident.model.registry import blocks
 
 MOST_STEPS = 8
 PATIENCE = 3  # effects that take up less than half of the misfit, after which no other is tried
@@ -124,8 +125,8 @@ def next_steps(
 def is_astray(case: Case, first: Fit, now: Fit, best: Fit) -> bool:
     """Whether the model as given is far from the noise, and the best effect takes up less than half of its misfit: the
     fit may rest where no effect helps it."""
-    far = now.effects == first.effects and now.identify > HOPELESS * case.floor
-    return far and explained_share(case, now, best) < DECISIVE
+    far = max(now.identify, now.validate or 0.0) > HOPELESS * case.floor
+    return far and now.effects == first.effects and explained_share(case, now, best) < DECISIVE
 
 
 def add_pair(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Step]:
@@ -163,8 +164,10 @@ def restarted_by_block(case: Case, diagnosis: Diagnosis) -> Iterator[tuple[Score
 
 
 def started_anew(case: Case, diagnosis: Diagnosis) -> Iterator[tuple[Score, Fit]]:
-    """The short list in each form that was refitted, with all blocks from random points."""
+    """The short list in each form that was refitted, with all blocks from random points, but for the frequency that a
+    disturbance is guessed to have."""
     for candidate in diagnosis.candidates:
         for item, fit in candidate.refits.items():
             if case.budget.allows("other starts"):
-                yield replace(candidate.score, effect=item), first_fit(case, 0, effects=fit.effects)
+                guess = candidate.score.guess if blocks[item].amounts() else {}
+                yield replace(candidate.score, effect=item), first_fit(case, 0, effects=fit.effects, guess=guess)

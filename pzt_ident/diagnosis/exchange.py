@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 from pzt_ident.diagnosis.candidates import TIE, is_tied
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
-from pzt_ident.diagnosis.refit import Case, Fit, refit
+from pzt_ident.diagnosis.misfit import share_explained
+from pzt_ident.diagnosis.refit import Case, Fit, refit, refit_beside
 from pzt_ident.diagnosis.score import Scorer, applicable, fitting_forms
 from pzt_ident.diagnosis.step import Step, effects_without, explained_share
 from pzt_ident.diagnosis.verdict import diagnose
@@ -47,7 +48,7 @@ def exchange_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
 
 def clears_up(case: Case, now: Fit, other: Fit) -> bool:
     """Whether another form removes most of the misfit that is left: less may be its greater freedom."""
-    return explained_share(case, now, other) >= DECISIVE
+    return share_explained(now.total, other.total, case.floor) >= DECISIVE
 
 
 def other_forms(case: Case, now: Fit, effect: str) -> list[str]:
@@ -74,7 +75,8 @@ def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str]) -> li
         return []
     without = refit(case, now, effects_without(now, effect), {})
     scorer = Scorer(case, without)
-    return [refit(case, without, (*without.effects, item), scorer.score(item).guess) for item in items]
+    guesses = {item: scorer.score(item).guess for item in items}
+    return [refit_beside(case, (without, now), (*without.effects, item), guess) for item, guess in guesses.items()]
 
 
 def find_rivals(case: Case, first: Fit, steps: list[Step]) -> None:

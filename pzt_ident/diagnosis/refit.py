@@ -191,16 +191,28 @@ def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, fl
     """The model with other effects, started from the parameters of the fit `before` and from a guess (user's units) of
     the new ones. The new effects act on all axes or on the measured ones only, whichever fits better."""
     problem = case.problem(effects, before.steps)
-    known = before.values
-    middle = problem.physical(np.full(problem.dimensions, 0.5))[0]
-    start = {name: guess.get(name, known.get(name, middle[i])) for i, name in enumerate(problem.names)}
-    point = problem.unit_point(start)
+    point = start_of(problem, before, guess)
     key = (effects, before.steps, point.tobytes())
     if key not in case.refits:
         case.refits[key] = _best_of_axes(case, before, effects, problem, point)
     fit = case.refits[key]
     case.on_event({"event": "refitted", "effects": effects, "identify": fit.identify, "validate": fit.validate})
     return fit
+
+
+def refit_beside(case: Case, fits: Sequence[Fit], effects: tuple[str, ...], guess: dict[str, float]) -> Fit:
+    """The refit from the fit whose parameters leave least with the guess."""
+    problem = case.problem(effects, fits[0].steps)
+    losses = problem.loss(np.array([start_of(problem, fit, guess) for fit in fits]))
+    return refit(case, fits[int(np.argmin(losses))], effects, guess)
+
+
+def start_of(problem: Problem, before: Fit, guess: dict[str, float]) -> Array:
+    """The point of the guess, of the fit `before` for other parameters, and of the middle of the range of the rest."""
+    known, middle = before.values, problem.physical(np.full(problem.dimensions, 0.5))[0]
+    return problem.unit_point(
+        {name: guess.get(name, known.get(name, middle[i])) for i, name in enumerate(problem.names)}
+    )
 
 
 def _best_of_axes(case: Case, before: Fit, effects: tuple[str, ...], problem: Problem, start: Array) -> Fit:

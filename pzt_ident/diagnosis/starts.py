@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -22,16 +23,23 @@ RESTARTS = 2  # random points of one block that are refined
 MOST_RESTARTED = 4  # times that all blocks are restarted, where no two minima agree
 
 
-def first_fit(case: Case, seed: int, known: Array | None = None, effects: tuple[str, ...] | None = None) -> Fit:
+def first_fit(
+    case: Case,
+    seed: int,
+    known: Array | None = None,
+    effects: tuple[str, ...] | None = None,
+    guess: Mapping[str, float] | None = None,
+) -> Fit:
     """The job's own model, or the one with other effects, fitted from random points, the fewer the better it is; not
     converged where the two best minima differ, and restarts of single blocks still lead lower. known: the point of a
-    fit that was searched for, beside which one batch of random points is enough."""
+    fit that was searched for, beside which one batch of random points is enough. guess: values of some parameters at
+    all random points."""
     effects = case.effects if effects is None else effects
     problem = case.problem(effects)
     minima = (
         np.empty((0, problem.dimensions)) if known is None else descend(problem, known, going=case.budget.lasts)[None]
     )
-    order, agreed = ranked_points(problem, seed), False
+    order, agreed = ranked_points(problem, seed, guess or {}), False
     most = MOST_REFINED if known is None else REFINED
     for number in range(0, most, REFINED):
         starts = order[number : number + REFINED]
@@ -59,9 +67,12 @@ def settled(case: Case, fit: Fit) -> Fit:
     return fit
 
 
-def ranked_points(problem: Problem, seed: int) -> Array:
-    """(STARTS, dimensions) random points, the best first."""
+def ranked_points(problem: Problem, seed: int, guess: Mapping[str, float]) -> Array:
+    """(STARTS, dimensions) random points, with the guess of some parameters, the best first."""
     points = np.random.default_rng(seed).uniform(size=(STARTS, problem.dimensions))
+    middle = problem.physical(np.full(problem.dimensions, 0.5))[0]
+    guessed = [name in guess for name in problem.names]
+    points[:, guessed] = problem.unit_point({**dict(zip(problem.names, middle, strict=True)), **guess})[guessed]
     return points[np.argsort(problem.loss(points), kind="stable")]
 
 
@@ -87,7 +98,7 @@ def restart(case: Case, fit: Fit, block: str = "", starts_per_block: int = RESTA
     for owner in dict.fromkeys(owner for owner in owners if block in ("", owner[1])):
         restarted = np.array([column_owner == owner for column_owner in owners])
         starts = np.where(restarted, random_points(problem, rng), fit.point)
-        for start in starts[np.argsort(problem.loss(starts))[:starts_per_block]]:
+        for start in starts[np.argsort(problem.rough_loss(starts, fit.point))[:starts_per_block]]:
             point = descend(problem, start, going=case.budget.lasts)
             fits.append(fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
     return min(fits, key=lambda candidate: candidate.total)

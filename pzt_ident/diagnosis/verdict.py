@@ -76,7 +76,7 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
         return without_effect(case, first, before, candidates)
     promising = [item for item in candidates if item.score.explained > LEAST_SCORE][:SHORTLIST]
     shortlist = refit_all(case, first, before, promising)
-    refit_other_forms(case, before, candidates, shortlist)
+    refit_other_forms(case, first, before, candidates, shortlist)
     choose_forms(case, first, shortlist)
     restart_look_alikes(case, first, before, shortlist)
     candidates.sort(key=lambda item: (item.fit.total if item.fit else np.inf, -item.score.explained))

@@ -146,8 +146,11 @@ def test_an_effect_that_rests_in_a_side_minimum_is_a_stair_once_nothing_else_is_
 @pytest.mark.parametrize(("noise", "takes", "astray"), [(1.0, 0.2, True), (1.0, 0.9, False), (30.0, 0.2, False)])
 def test_a_model_is_astray_far_from_the_noise_where_no_effect_takes_up_half(noise, takes, astray):
     case = SimpleNamespace(floor=noise)
-    now, best = (SimpleNamespace(effects=(), identify=np.sqrt(1e4 * share)) for share in (1, 1 - takes))
-    assert climb.is_astray(case, SimpleNamespace(effects=()), now, best) == astray
+    first = SimpleNamespace(effects=())
+    now, best = (SimpleNamespace(effects=(), identify=np.sqrt(1e4 * share), validate=None) for share in (1, 1 - takes))
+    assert climb.is_astray(case, first, now, best) == astray
+    unseen = SimpleNamespace(effects=(), identify=2.0 * noise, validate=100.0 * noise)
+    assert climb.is_astray(case, first, unseen, unseen)
 
 
 def test_a_proxy_is_exchanged_for_what_is_missing():

@@ -8,7 +8,7 @@ import pytest
 
 import rig
 import stage
-from pzt_ident.diagnosis import refit, starts
+from pzt_ident.diagnosis import candidates, refit, starts
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.candidates import (
     Candidate,
@@ -65,7 +65,7 @@ def test_look_alikes_of_what_explains_nearly_all_are_compared_in_every_form():
     candidates = score_all(case, before, before, Scorer(case, before))
     named = next(item for item in candidates if item.score.effect == "sensor_lag")
     shortlist = refit_all(case, before, before, [named])
-    refit_other_forms(case, before, candidates, shortlist)
+    refit_other_forms(case, before, before, candidates, shortlist)
     alike = [item for item in candidates if are_look_alikes("sensor_lag", item.score.effect)]
     assert {"amplifier_lag", "delay"} <= {word_of(item.score.effect) for item in alike}
     assert shortlist == [named, *alike]
@@ -80,7 +80,7 @@ def test_where_no_effect_explains_most_the_short_list_is_tried_in_every_form():
     shortlist = [item for item in candidates if item.score.effect in ("drift", "saturation")]
     for candidate in shortlist:
         candidate.refits = {candidate.score.effect: before}
-    refit_other_forms(case, before, candidates, shortlist)
+    refit_other_forms(case, before, before, candidates, shortlist)
     for candidate in shortlist:
         assert set(candidate.refits) == {score.effect for score in candidate.forms}
 
@@ -268,3 +268,36 @@ def test_beside_other_effects_nothing_is_scored_once_the_budget_is_spent():
     assert "the scores of all effects" in case.budget.untried
     assert diagnose(case, before, first).verdict == "unexplained"
     assert score_all(case, first, first, Scorer(case, first))
+
+
+def partly_spent(share):
+    """A budget of which a share is spent, whatever the clock says."""
+    budget = Budget(1e6)
+    budget.spent = lambda limit: share >= limit
+    return budget
+
+
+def refitted_words(case, before, first, share):
+    """The words of a short list of two that are refitted once a share of the budget is spent."""
+    shortlist = [Candidate.of(Scorer(case, before).scores(word)) for word in ("quadratic_gain", "saturation")]
+    case.budget = partly_spent(share)
+    return {word_of(item.score.effect) for item in refit_all(case, first, before, shortlist)}
+
+
+@pytest.mark.parametrize(("share", "refitted"), [(0.3, True), (0.9, True), (1.1, False)])
+def test_what_promises_most_of_the_rest_is_refitted_until_the_budget_ends(share, refitted):
+    case = stage.case(stage.EFFECTS["quadratic_gain"] | stage.EFFECTS["creep"])
+    first = first_fit(case, 0)
+    before = refit.refit(case, first, ("creep",), {})
+    assert ("quadratic_gain" in refitted_words(case, before, first, share)) == refitted
+
+
+def test_beside_what_explains_nearly_all_but_not_the_noise_time_is_kept_for_a_second_effect(monkeypatch):
+    case = stage.case({"quadratic_gain.curvature": 3e-3, "amplifier_lag.tau": 2e-4}, noise=5e-10)
+    first = first_fit(case, 0)
+    monkeypatch.setattr(candidates, "side_by_side", map)
+    assert refitted_words(case, first, first, 0.2) == {"quadratic_gain", "saturation"}
+    assert refitted_words(case, first, first, 0.5) == {"quadratic_gain"}
+    alone = stage.case({"quadratic_gain.curvature": 3e-3})
+    given = first_fit(alone, 0)
+    assert refitted_words(alone, given, given, 0.5) == {"quadratic_gain", "saturation"}
