@@ -62,18 +62,28 @@ def write(folder: Path, samples: int, records: int, axes: int) -> None:
         np.save(folder / f"y{number}.npy", y)
 
 
-def problem(folder: Path, records: int, axes: int, free: int) -> Problem:
-    """The first `free` parameters are searched for, the others are known."""
-    chain, names = model(axes), tuple(AXES[:axes])
-    units = {"axes": names, "drive_units": ("V",) * axes, "response_units": ("um",) * axes}
-    made = [
+def read(folder: Path, records: int, axes: int) -> list[Record]:
+    units = {"axes": tuple(AXES[:axes]), "drive_units": ("V",) * axes, "response_units": ("um",) * axes}
+    return [
         Record(f"r{i}", "identify", 1 / RATE, np.load(folder / f"u{i}.npy"), np.load(folder / f"y{i}.npy"), **units)
         for i in range(records)
     ]
-    specs = {}
+
+
+def density(folder: Path, records: int) -> Problem:
+    """A free density of plays, 23 numbers that are solved for, and an interaction field, which is searched for."""
+    block = blocks["homogenized_energy"].make(density="free")
+    known = {"poled": 0.0, "bias": 0.0, "reach": 60.0}
+    specs = {f"homogenized_energy.{word}": SimpleNamespace(bounds=None, value=value) for word, value in known.items()}
+    return Problem(Chain([block], ["x"], [0]), read(folder, records, 1), specs)
+
+
+def problem(folder: Path, records: int, axes: int, free: int) -> Problem:
+    """The first `free` parameters are searched for, the others are known."""
+    chain, specs = model(axes), {}
     for i, entry in enumerate(chain.entries):
         word = f"{entry.block.name}.{entry.word}"
         size = 1e-6 if entry.word == "gain" else 1
         fixed = SimpleNamespace(bounds=None, value=TRUTH[word] / size)
         specs[entry.name] = SimpleNamespace(bounds=BOUNDS[word], value=None) if i < free else fixed
-    return Problem(chain, made, specs)
+    return Problem(chain, read(folder, records, axes), specs)

@@ -13,7 +13,7 @@ from pzt_ident.data.noise import noise_floor
 from pzt_ident.data.record import Record
 from pzt_ident.diagnosis import staircase as stairs
 from pzt_ident.diagnosis.criteria import adequate
-from pzt_ident.diagnosis.proof import unproven
+from pzt_ident.diagnosis.proof import Suspect, unproven
 from pzt_ident.diagnosis.refit import Case, Fit, fit_at, refine_steps
 from pzt_ident.diagnosis.staircase import Staircase, StepListener
 from pzt_ident.diagnosis.step import explained_share
@@ -23,7 +23,7 @@ from pzt_ident.search.descent import descend
 Array = NDArray[np.float64]
 First = Callable[[Case], Fit]
 
-LONG = 200_000  # samples of all records together: up to as many nothing is thinned
+LONG = 200_000  # samples of all identification records together: up to as many nothing is thinned
 BETWEEN = 0.1  # noise floors, root mean square, that a drive may lie beside the line between the samples that are kept
 TURNING = 1.0  # noise floors: the most that it may
 INTERPOLATED = 1.75  # noise variances: as much is between a noisy response and the line between the samples kept
@@ -31,6 +31,7 @@ PLACES = 10  # of a drive, and of its speed, that are told apart
 UNSEEN = 0.01  # of the samples left out that may be where the drive has not been before
 SAME = 0.2  # of the RMSE, or SAME_FLOORS noise floors, root mean square, by which a fit may differ on all samples
 SAME_FLOORS = 0.3
+ON_FEWER = 0.5  # of the budget: what is sought again on all samples has all of it, as if there were no fewer
 
 
 def improve(
@@ -43,6 +44,7 @@ def improve(
         staircase = on_all_samples(case, thin, stairs.improve(thin, first(thin), on_step(thin)))
         if staircase is not None:
             return staircase
+        case.budget.begin_again()
     return stairs.improve(case, first(case), on_step(case))
 
 
@@ -60,19 +62,21 @@ def diagnosed(case: Case, first: First) -> Diagnosis:
             for item, fit in zip(missing, fits, strict=True):
                 item.fit = item.refits[item.score.effect] = fit
             return kept.last
+        case.budget.begin_again()
     return diagnose(case, first(case))
 
 
 def thinned(case: Case) -> Case | None:
-    """The case with fewer samples; None where its records are short enough, or can lose none."""
-    counts = np.array([record.samples for record in case.records])
+    """The case with fewer samples to fit, judged on all validation records as they are; None where its identification
+    records are short enough, or can lose none."""
+    counts = np.array([record.samples for record in case.records if record.use == "identify"])
     if counts.sum() <= LONG:
         return None
-    floors = [noise_floor(list(case.records), axis).value for axis in case.records[0].measured]
-    records = [thin_record(record, most_of(counts), floors) for record in case.records]
+    floors, most = [noise_floor(list(case.records), axis).value for axis in case.records[0].measured], most_of(counts)
+    records = [thin_record(record, most, floors) if record.use == "identify" else record for record in case.records]
     thin = Case(case.words, case.effects, records, case.specs, case.ruled_out, case.shared, case.on_event)
-    thin.error_scales, thin.floor, thin.budget = case.error_scales, case.floor, case.budget
-    return thin if sum(record.samples for record in records) < counts.sum() else None
+    thin.error_scales, thin.floor, thin.budget = case.error_scales, case.floor, case.budget.part(ON_FEWER)
+    return thin if [record.samples for record in records] != [record.samples for record in case.records] else None
 
 
 def most_of(counts: NDArray[np.int64]) -> int:
@@ -146,7 +150,7 @@ def off_line(signal: Array, step: int) -> Array:
 
 def on_all_samples(case: Case, thin: Case, staircase: Staircase) -> Staircase | None:
     """A staircase of fewer samples with its fits on all of them; None where the last one leaves more or less there,
-    where it is not adequate on both alike, or where an effect is not proven there."""
+    where it is not adequate on both alike, or where other effects are proven there than on fewer."""
     if staircase.last.verdict == "refused":
         return None
     homes = {id(None): case}
@@ -164,7 +168,9 @@ def on_all_samples(case: Case, thin: Case, staircase: Staircase) -> Staircase | 
     few_first, few_last = staircase.steps[0].fit, staircase.steps[-1].fit
     if not holds(case, few_last, last) or adequate(case, first, last) != adequate(thin, few_first, few_last):
         return None
-    if last.effects != first.effects and unproven(home, first, last, rivals):
+    doubted = [suspect.effect for suspect in staircase.suspects if isinstance(suspect, Suspect)]
+    fullest = steps[-1 - len(doubted)].fit
+    if [suspect.effect for suspect in unproven(home, first, fullest, rivals)] != doubted:
         return None
     counts = [sum(record.samples for record in sampled.records) for sampled in (thin, case)]
     sought = f" Effects were sought on {counts[0]:,} of {counts[1]:,} samples; what was found holds on all."

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import stage
-from pzt_ident.diagnosis import thinning
+from pzt_ident.diagnosis import proof, thinning
+from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.refit import Case
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.thinning import enough, keeps_all, most_of, situations, thin_record, thinned
@@ -72,9 +73,10 @@ def test_a_verdict_on_fewer_samples_is_carried_to_all(monkeypatch):
     case = long_case(stage.EFFECTS["quadratic_gain"])
     records = [case.record_with_steps(i, 1) for i in range(2)]
     assert thinned(case) is None
-    monkeypatch.setattr(thinning, "LONG", sum(record.samples for record in records) // TIMES)
+    monkeypatch.setattr(thinning, "LONG", records[0].samples // TIMES)
     fewer = thinned(case)
-    assert min(record.dt for record in fewer.records) >= 5e-3 and fewer.floor == case.floor
+    assert fewer.records[0].dt >= 5e-3 and fewer.floor == case.floor
+    assert fewer.records[1] is case.records[1] and case.records[1].use == "validate"
     staircase = thinning.improve(case, lambda case: first_fit(case, 0))
     assert (staircase.last.verdict, staircase.steps[-1].added) == ("adequate", "quadratic_gain")
     assert "what was found holds on all" in staircase.last.reason
@@ -94,3 +96,28 @@ def test_what_does_not_hold_on_all_samples_is_sought_on_all(monkeypatch):
     staircase = thinning.improve(case, first)
     assert len(asked) == 2 and asked[1] is case
     assert "Effects were sought on" not in staircase.last.reason
+
+
+def test_what_is_doubted_on_fewer_samples_and_proven_on_all_is_sought_on_all(monkeypatch):
+    case = long_case(stage.EFFECTS["quadratic_gain"])
+    monkeypatch.setattr(thinning, "LONG", 700)
+    dt, beyond_form = case.records[0].dt, proof.beyond_form
+    monkeypatch.setattr(proof, "beyond_form", lambda at, *fits: at.records[0].dt == dt and beyond_form(at, *fits))
+    staircase = thinning.improve(case, lambda case: first_fit(case, 0))
+    assert (staircase.last.verdict, staircase.steps[-1].added) == ("adequate", "quadratic_gain")
+    assert "Effects were sought on" not in staircase.last.reason
+
+
+def test_what_is_sought_on_all_samples_has_all_of_the_budget(monkeypatch):
+    case, searches = long_case({}), []
+    case.budget = Budget(100.0)
+
+    def search(at, *more):
+        searches.append((at is case, at.budget.seconds, list(case.budget.untried)))
+        assert not at.budget.allows("pairs", share=0.0)
+
+    monkeypatch.setattr(thinning, "LONG", 700)
+    monkeypatch.setattr(thinning, "on_all_samples", lambda *given: None)
+    monkeypatch.setattr(thinning.stairs, "improve", search)
+    thinning.improve(case, lambda case: None)
+    assert searches == [(False, 50.0, []), (True, 100.0, [])]
