@@ -1,5 +1,6 @@
 """Run folders that several tests read."""
 
+import gc
 import os
 from pathlib import Path
 
@@ -8,6 +9,12 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy: on small mat
 import pytest
 
 from run_folders import WEIRD, make_run
+
+
+def pytest_collection_finish():
+    """What 6,000 tests are made of is no garbage, and need not be looked through again and again."""
+    gc.freeze()
+    gc.set_threshold(20_000)
 
 
 @pytest.fixture(scope="session")
