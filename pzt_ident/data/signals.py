@@ -56,7 +56,8 @@ def write_signals(path: Path, residuals: Iterable[tuple[Record, Array]]) -> None
     import h5netcdf
 
     content = BytesIO()  # HDF5 does not survive a full disk
-    with h5netcdf.File(content, "w") as file:
+    # with HDF5's cache of chunks their order in the file is that in which threads let go of the variables
+    with h5netcdf.File(content, "w", rdcc_nbytes=0) as file:
         for record, residual in residuals:
             _write_group(file.create_group(record.name), record, residual)
     with replaced(path) as beside:

@@ -99,3 +99,24 @@ def test_the_misfit_of_an_axis_is_that_of_its_own_residual_and_floor(path):
         assert (axes[axis]["samples"], axes[axis]["noise_floor"]) == (2 * (200 - SETTLE), pytest.approx(floor))
         assert axes[axis]["rmse"] == pytest.approx(np.sqrt(np.mean(scored**2)))
         assert axes[axis]["misfit"] == pytest.approx(np.sqrt(np.mean(scored**2) - floor**2))
+
+
+def test_samples_lie_in_the_file_in_their_order_whenever_threads_let_go_of_them(tmp_path, monkeypatch):
+    h5py = pytest.importorskip("h5py")
+    made, kept = h5py.Group.create_dataset, []
+
+    def kept_open(*given, **options):
+        kept.append(made(*given, **options))
+        return kept[-1]
+
+    def places(name):
+        with h5py.File(tmp_path / name) as file:
+            variables = [variable for group in file.values() for variable in group.values() if variable.chunks]
+            return [variable.id.get_chunk_info(0).byte_offset for variable in variables]
+
+    pairs = [(record, np.ones((2, record.samples))) for record in RECORDS]
+    write_signals(tmp_path / "usual.nc", pairs)
+    monkeypatch.setattr(h5py.Group, "create_dataset", kept_open)
+    write_signals(tmp_path / "late.nc", pairs)
+    assert kept
+    assert np.ptp(np.subtract(places("late.nc"), places("usual.nc"))) < 4096  # headers are longer
