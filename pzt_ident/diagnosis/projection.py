@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -24,7 +25,7 @@ class Split:
     inside: Array
     outside: Array
 
-    def __getitem__(self, rows: slice) -> Split:
+    def __getitem__(self, rows: slice | Sequence[int]) -> Split:
         return Split(self.inside[rows], self.outside[rows])
 
     @cached_property
@@ -34,6 +35,12 @@ class Split:
     @cached_property
     def norms(self) -> Array:
         return np.hypot(np.linalg.norm(self.inside, axis=1), self.norms_outside)
+
+
+def rotated(signal: Split, traces: Split) -> tuple[Split, Split]:
+    """Both, with what is outside rotated together into a few rows: norms and inner products stay."""
+    triangle = np.asarray(np.linalg.qr(np.vstack([traces.outside, signal.outside]).T, mode="r"))
+    return Split(signal.inside, triangle[:, -1:].T), Split(traces.inside, triangle[:, :-1].T)
 
 
 class Projection:
@@ -74,8 +81,8 @@ class Projection:
     ) -> tuple[Array, float]:
         """Multiples of the traces that, together with the parameters, leave least of the signal, and the norm of what
         is left. A multiple is not negative where `one_sided`. least: no less needs to be told exactly."""
-        triangle = np.asarray(np.linalg.qr(np.vstack([traces.outside, signal.outside]).T, mode="r"))
-        matrix, target = triangle[:, :-1], triangle[:, -1]
+        signal, traces = rotated(signal, traces)
+        matrix, target = traces.outside.T, signal.outside[0]
         inside, trace_inside = signal.inside[0], traces.inside.T
         amounts = _amounts(matrix, target, one_sided)
         left = float(np.linalg.norm(target + matrix @ amounts))

@@ -6,9 +6,9 @@ The change of the response as an effect leaves its null, less the part that the 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from itertools import product
+from itertools import chain, product
 from math import prod
 from operator import itemgetter
 
@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.diagnosis import misfit
-from pzt_ident.diagnosis.projection import Projection, Split
+from pzt_ident.diagnosis.projection import Projection, Split, rotated
 from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.model.block import Coupling, Term
 from pzt_ident.model.registry import blocks, word_of
@@ -70,6 +70,10 @@ class Trial:
         rows = np.tile(self.start, (len(self.amplitudes), 1))
         rows[np.arange(len(self.amplitudes)), self.amplitudes] += self.steps
         return rows
+
+    def one_sided(self, problem: Problem) -> NDArray[np.bool_]:
+        """Of each amplitude, whether it may only grow."""
+        return np.asarray(problem.lower[self.amplitudes] >= self.start[self.amplitudes])
 
 
 def applicable(case: Case, effects: tuple[str, ...]) -> list[str]:
@@ -137,15 +141,16 @@ class Scorer:
         score, least, strongest, order = Score(effect), self.left, 0.0, (np.inf, 0.0)
         clearest: Split | None = None
         guesses: list[dict[str, float]] = []
-        for trial, traces in self._trials(effect, problem):
+        planned, by_axis = self._planned_trials(effect, problem), ShapesByAxis(self.projection, problem, self.left)
+        for trial, signal, traces in chain(self._trials(problem, planned), self._trials(problem, by_axis)):
             norm = traces.norms.max()
             if norm > LEAST_TRACE * self.split.norms[0]:
                 place = (trial.size, -float(traces.norms_outside.max() / norm))
                 order, clearest = (place, traces) if place < order else (order, clearest)
             if trial.size == max(blocks[effect].sizes):
                 strongest = max(strongest, float(norm / trial.size / self.case.floor))
-            one_sided = problem.lower[trial.amplitudes] >= trial.start[trial.amplitudes]
-            amounts, left = self.projection.fit(self.split, traces, one_sided, least)
+            amounts, left = self.projection.fit(signal, traces, trial.one_sided(problem), least)
+            by_axis.take(trial, signal, traces)
             if self.explained(left) > score.explained:
                 score.explained, least = self.explained(left), left
                 guesses = [self._guess(problem, trial, scales) for scales in (amounts, np.ones(amounts.size))]
@@ -175,10 +180,10 @@ class Scorer:
         linearised: (candidates,)."""
         return self.projection.left(self.projection.split(self._residuals(problem, physical)))
 
-    def _trials(self, effect: str, problem: Problem) -> Iterator[tuple[Trial, Split]]:
-        """Each trial, and the changes of the response by its steps, one of each amplitude."""
-        trials = list(self._planned_trials(effect, problem))
-        batch_size = max(1, BATCH // max(1, len(trials[0].amplitudes)))
+    def _trials(self, problem: Problem, planned: Iterable[Trial]) -> Iterator[tuple[Trial, Split, Split]]:
+        """Each trial, the residual, and the changes of the response by its steps, one of each amplitude."""
+        trials = list(planned)
+        batch_size = max(1, BATCH // max(1, len(trials[0].amplitudes))) if trials else 1
         for first in range(0, len(trials), batch_size):
             batch = trials[first : first + batch_size]
             residuals = self._residuals(problem, np.concatenate([trial.stepped for trial in batch]))
@@ -188,7 +193,7 @@ class Scorer:
             for number, trial in enumerate(batch):
                 rows = slice(number * count, (number + 1) * count)
                 if held[rows].all():
-                    yield trial, traces[rows]
+                    yield trial, *rotated(self.split, traces[rows])
 
     def _planned_trials(self, effect: str, problem: Problem) -> Iterator[Trial]:
         """A trial for each value of the shape parameters and each size."""
@@ -247,6 +252,44 @@ class Scorer:
             axis_residuals = [residual[row] for residual in residuals]
             guesses.append(guess(times, axis_drives, axis_residuals, problem.lower[i], problem.upper[i]))
         yield from product(*guesses)
+
+
+class ShapesByAxis:
+    """Trials in which each axis has the shape parameters that explain most there: axes with one effect, such as two
+    gratings of one pitch and strokes of their own, need not have them at the same share of their ranges.
+
+    left: norm of what no trial explains.
+    """
+
+    def __init__(self, projection: Projection, problem: Problem, left: float) -> None:
+        self.projection, self.problem, self.least = projection, problem, left
+        self.axes = [problem.model.entries[column].axis for column in problem.free]
+        self.best: dict[str, tuple[float, Trial]] = {}
+
+    def take(self, trial: Trial, signal: Split, traces: Split) -> None:
+        """Take up a trial and its traces, see `Projection.fit`."""
+        owners = [self.axes[i] for i in trial.amplitudes]
+        both = {self.axes[i] for i in trial.shapes} & set(owners)
+        if len(both) < 2:
+            return
+        own = {axis: [row for row, owner in enumerate(owners) if owner == axis] for axis in sorted(both)}
+        one_sided = trial.one_sided(self.problem)
+        for axis, rows in own.items():
+            least, _ = self.best.get(axis, (self.least, None))
+            _, left = self.projection.fit(signal, traces[rows], one_sided[rows], least)
+            if left < least:
+                self.best[axis] = left, trial
+
+    def __iter__(self) -> Iterator[Trial]:
+        trials = [trial for _, trial in self.best.values()]
+        if len({trial.start.tobytes() for trial in trials}) < 2:
+            return
+        start = trials[0].start.copy()
+        for axis, (_, trial) in self.best.items():
+            columns = [i for i in trial.shapes if self.axes[i] == axis]
+            start[columns] = trial.start[columns]
+        for size in sorted({trial.size for trial in trials}):
+            yield replace(trials[0], size=size, start=start, steps=trials[0].steps * size / trials[0].size)
 
 
 def on_bound(problem: Problem, guess: Mapping[str, float]) -> bool:

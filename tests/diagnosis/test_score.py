@@ -155,7 +155,21 @@ def test_every_axis_has_its_own_amounts_and_its_own_line():
     case = stage.beside(stage.case(stage.EFFECTS["creep"]), stage.case(stage.EFFECTS["creep"]))
     scorer = Scorer(case, first_fit(case, 0))
     assert scorer.score("creep").explained > 0.9
-    assert len(list(scorer._trials("creep", case.problem(("creep",))))) <= 36
+    assert len(list(scorer._planned_trials("creep", case.problem(("creep",))))) <= 36
+
+
+@pytest.mark.parametrize("pitches", [(2.0, 5.0), (4.1, 1.7)])
+def test_every_axis_has_its_own_shape(pitches):
+    """Two gratings, which the same trial of both axes does not hold."""
+
+    def read(pitch):
+        return stage.with_response(stage.case(), lambda r: 50e-9 * np.sin(2e6 * np.pi * r.response / pitch))
+
+    case = stage.beside(*map(read, pitches))
+    score = scored(case, "encoder_cyclic_error")
+    assert score.explained > 0.9
+    found = [value for name, value in score.guess.items() if name.endswith("pitch")]
+    assert found == pytest.approx(pitches, rel=0.05)
 
 
 def test_what_lies_beyond_the_bounds_is_not_promised():
