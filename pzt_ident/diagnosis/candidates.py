@@ -10,7 +10,7 @@ import numpy as np
 from pzt_ident.diagnosis.budget import BESIDE, EXPLORING, LAST, PROMISED
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.refit import Case, Fit, refit, side_by_side
+from pzt_ident.diagnosis.refit import Case, Fit, refit_from, side_by_side
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, applicable, squared_misfit
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.model.registry import blocks, form_of, word_of
@@ -79,7 +79,7 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
         if not needed and not case.budget.allows("the refits of all candidates", share_allowed(candidate)):
             return {}
         forms = {score.effect: score for score in (candidate.forms[0], candidate.score)}
-        made = {item: refit(case, before, (*before.effects, item), score.guess) for item, score in forms.items()}
+        made = {item: refit_from(case, before, (*before.effects, item), score.guesses) for item, score in forms.items()}
         fits.extend(made.values())
         return made
 
@@ -152,7 +152,9 @@ def refit_other_forms(
         missing = [score for score in candidate.forms if score.effect not in candidate.refits]
         if missing and not case.budget.allows("other forms", allowed):
             break
-        new = {score.effect: refit(case, before, (*before.effects, score.effect), score.guess) for score in missing}
+        new = {
+            score.effect: refit_from(case, before, (*before.effects, score.effect), score.guesses) for score in missing
+        }
         candidate.refits = {**candidate.refits, **new}
     shortlist += [item for item in wanted if item.refits and item not in shortlist]
 

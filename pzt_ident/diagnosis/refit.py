@@ -200,6 +200,11 @@ def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, fl
     return fit
 
 
+def refit_from(case: Case, before: Fit, effects: tuple[str, ...], guesses: Sequence[dict[str, float]]) -> Fit:
+    """The best of the refits from each guess."""
+    return min((refit(case, before, effects, guess) for guess in guesses or [{}]), key=lambda fit: fit.total)
+
+
 def refit_beside(case: Case, fits: Sequence[Fit], effects: tuple[str, ...], guess: dict[str, float]) -> Fit:
     """The refit from the fit whose parameters leave least with the guess."""
     problem = case.problem(effects, fits[0].steps)

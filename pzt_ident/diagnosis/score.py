@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache
 from itertools import chain, product
 from math import prod
 from operator import itemgetter
@@ -28,6 +29,7 @@ BATCH = 48  # candidates that are simulated together
 LEAST_TRACE = 1e-9  # of the residual: less is rounding
 LEAST_SCORE = 0.02  # of the misfit: an effect that scores less is not refitted
 MANY_TRIALS = 50  # values of the shape parameters
+AS_GOOD, MOST_GUESSES = 0.9, 4  # of the share explained by the best guess of a disturbance; guesses that are kept
 TRIALS = 5  # values over the range of a parameter that means nothing at the null
 
 
@@ -36,18 +38,24 @@ class Score:
     """What the data say of an effect without a refit.
 
     explained: share of the misfit that the effect would remove if it were linear and without bounds;
-    explained_in_bounds: the share within the bounds. guess: expected parameters, in the user's `units`. visibility:
-    share of the effect's clearest trace, at the least size that leaves one, that the fitted parameters cannot
-    produce. power: that share of the largest plausible trace, root mean square in noise floors.
+    explained_in_bounds: the share within the bounds. guesses: expected parameters, in the user's `units`, the best
+    first, and others of a disturbance that explain nearly as much. visibility: share of the effect's clearest trace, at
+    the least size that leaves one, that the fitted parameters cannot produce. power: that share of the largest
+    plausible trace, root mean square in noise floors.
     """
 
     effect: str
     explained: float = 0.0
     explained_in_bounds: float = 0.0
-    guess: dict[str, float] = field(default_factory=dict)
+    guesses: list[dict[str, float]] = field(default_factory=list)
     units: dict[str, str] = field(default_factory=dict)
     visibility: float = 0.0
     power: float = 0.0
+
+    @property
+    def guess(self) -> dict[str, float]:
+        """The best guess; empty where there is none."""
+        return self.guesses[0] if self.guesses else {}
 
 
 @dataclass(frozen=True)
@@ -163,7 +171,8 @@ class Scorer:
         known = self.fit.values
         points = [[(known | guess)[name] for name in problem.names] for guess in guesses]
         norms = self._left(problem, np.array(points)) if guesses else np.empty(0)
-        least, score.guess = min(zip(norms, guesses, strict=True), key=itemgetter(0), default=(0.0, {}))
+        least, guess = min(zip(norms, guesses, strict=True), key=itemgetter(0), default=(0.0, {}))
+        score.guesses = [guess] if guess else []
         score.explained_in_bounds = score.explained
         if on_bound(problem, score.guess):
             score.explained_in_bounds = float(np.clip(self.explained(least), 0, score.explained))
@@ -219,27 +228,36 @@ class Scorer:
         )
 
     def _score_disturbance(self, effect: str, problem: Problem) -> Score:
-        """The score of an effect in amounts of each record, which are solved for and not stepped."""
-        score = Score(effect)
+        """The score of an effect in amounts of each record, which are solved for and not stepped: at the guesses that
+        its block makes from the residuals, one column after the other, else on a grid."""
         columns = [i for i, name in enumerate(problem.names) if name not in self.fit.problem.names]
-        known = self.fit.values
-        for values in self._disturbance_trials(effect, problem, columns):
-            point = np.array([known.get(name, 0.0) for name in problem.names])
-            point[columns] = values
-            explained = self.explained(float(self._left(problem, point[None])[0]))
-            if explained > score.explained:
-                score.explained = explained
-                score.guess = {problem.names[i]: float(value) for i, value in zip(columns, values, strict=True)}
-        score.explained_in_bounds, score.visibility, score.power = score.explained, 1.0, float("inf")
-        return score
+        start = np.array([self.fit.values.get(name, 0.0) for name in problem.names])
 
-    def _disturbance_trials(self, effect: str, problem: Problem, columns: list[int]) -> Iterator[tuple[float, ...]]:
-        """Values of a disturbance's parameters, in the user's units: the block's guesses from the residuals of each
-        column's axis where it makes some, else a grid."""
+        @cache
+        def explained(values: tuple[float, ...]) -> float:
+            point = start.copy()
+            point[columns] = values
+            return self.explained(float(self._left(problem, point[None])[0]))
+
+        if options_of := self._guesses(effect, problem, columns):
+            tried, best = list[tuple[float, ...]](), tuple(options[0] for options in options_of)
+            for place, options in enumerate(options_of):
+                tried += [(*best[:place], option, *best[place + 1 :]) for option in options]
+                best = max(tried, key=explained)
+        else:
+            tried = list(parameter_grid(problem, columns, blocks[effect].trials))
+        tried = sorted(dict.fromkeys(tried), key=explained, reverse=True)
+        share = max(explained(tried[0]), 0.0)
+        close = [values for values in tried if explained(values) >= AS_GOOD * share > 0][:MOST_GUESSES]
+        guesses = [{problem.names[i]: value for i, value in zip(columns, values, strict=True)} for values in close]
+        return Score(effect, share, share, guesses, visibility=1.0, power=float("inf"))
+
+    def _guesses(self, effect: str, problem: Problem, columns: list[int]) -> list[list[float]]:
+        """Values of each of a disturbance's parameters, in the user's units, from the residuals of its axis; none where
+        the block makes none."""
         guess = getattr(blocks[effect], "guess", None)
         if not guess:
-            yield from parameter_grid(problem, columns, blocks[effect].trials)
-            return
+            return []
         measured, simulators = problem.model.measured, self.fit.problem.simulators["identify"]
         ends = np.cumsum([simulator.scored * len(measured) for simulator in simulators])
         residuals = [part.reshape(len(measured), -1) for part in np.split(self.residual, ends[:-1])]
@@ -250,8 +268,8 @@ class Scorer:
             row = measured.index(problem.model.entries[problem.free[i]].axis)
             axis_drives = [drive[measured[row]] for drive in drives]
             axis_residuals = [residual[row] for residual in residuals]
-            guesses.append(guess(times, axis_drives, axis_residuals, problem.lower[i], problem.upper[i]))
-        yield from product(*guesses)
+            guesses.append(guess(times, axis_drives, axis_residuals, problem.lower[i], problem.upper[i]).tolist())
+        return guesses
 
 
 class ShapesByAxis:

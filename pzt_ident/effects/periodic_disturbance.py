@@ -9,6 +9,7 @@ from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
 GUESS_PERIODS = 8  # that a record must have for a guess of the frequency
+MAINS = (50, 60, 100, 120)  # Hz, and as rectifiers double it
 MIN_PERIODS = 3  # in a record; with fewer the disturbance could be the response itself
 HARMONICS = 20  # of the drive, which hysteresis leaves in the residual
 
@@ -23,14 +24,16 @@ class Line:
     remedy = "Ground and shield against hum, isolate the stage from the floor, or filter the line out."
 
     def guess(times, drives, residuals, low, high):
-        """The three strongest spectral lines of the residuals of all records, Hz, without those of the drive."""
+        """The strongest spectral lines of the residuals of all records, Hz, without those of the drive, and those of
+        mains, which a hysteresis that they shake leaves as little of as of the drive."""
         grid = np.arange(low, high, 0.1 / max(t[-1] - t[0] for t in times))
         power = np.zeros(grid.size)
         for t, drive, residual in zip(times, drives, residuals, strict=True):
             frequency, lines = spectrum(t, residual)
             power += np.interp(grid, frequency, lines, right=0) * independent_of_drive(grid, t, drive)
         peaks = np.flatnonzero((power[1:-1] > power[:-2]) & (power[1:-1] >= power[2:])) + 1
-        return grid[peaks[np.argsort(-power[peaks])[:3]]]
+        mains = [line for line in MAINS if low < line < high and power[np.abs(grid - line).argmin()]]
+        return np.append(grid[peaks[np.argsort(-power[peaks])[:3]]], mains)
 
 
 @blocks.register

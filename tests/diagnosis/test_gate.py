@@ -237,9 +237,9 @@ def test_a_look_alike_in_another_form_is_started_anew_by_the_name_of_its_block(m
         return replace(fit, identify=1.5)
 
     monkeypatch.setattr(candidates, "restart", started)
-    best = Candidate.of([Score("amplifier_lag", guess={"tau": 1.0})])
+    best = Candidate.of([Score("amplifier_lag", guesses=[{"tau": 1.0}])])
     best.refits, item = {"amplifier_lag": fit(1.5, 1.5)}, "sensor_lag.second_order"
-    rival = Candidate(Score(item, guess={"one": 1.0, "two": 2.0}), forms=[Score(item)])
+    rival = Candidate(Score(item, guesses=[{"one": 1.0, "two": 2.0}]), forms=[Score(item)])
     rival.refits = {item: fit(1.52, 9.0)}
     best.take("amplifier_lag")
     rival.fit = rival.refits[item]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stage
-from pzt_ident.diagnosis.refit import Case, refit
+from pzt_ident.diagnosis.refit import Case, refit, refit_from
 from pzt_ident.diagnosis.score import Scorer, applicable, fitting_forms, squared_misfit
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.job.sections import Setting
@@ -207,12 +207,10 @@ def test_an_effect_is_seen_behind_a_parameter_that_ends_on_its_bound(effect):
     assert Scorer(case, fit).score(effect).explained > 0.9
 
 
-def rippled_case(dt=2e-3, volts=0.5):
-    """A stage whose amplifier adds a ripple of 23 Hz to the drive that is recorded, in another phase each time."""
-    clean = stage.loops()
-    waves = [
-        volts * np.sin(2 * np.pi * 23 * dt * np.arange(u.size) + turn) for turn, u in zip((1, 4), clean, strict=True)
-    ]
+def rippled_case(dt=2e-3, volts=0.5, frequency=23.0):
+    """A stage whose amplifier adds a ripple to the drive that is recorded, in another phase each time."""
+    clean, wave = stage.loops(), 2 * np.pi * frequency * dt
+    waves = [volts * np.sin(wave * np.arange(u.size) + turn) for turn, u in zip((1, 4), clean, strict=True)]
     made = stage.case(drives=[u + wave for u, wave in zip(clean, waves, strict=True)], dt=dt)
     records = [replace(record, drive=u[None]) for record, u in zip(made.records, clean, strict=True)]
     return Case(made.words, made.effects, records, made.specs)
@@ -223,6 +221,16 @@ def test_a_ripple_that_the_hysteresis_bends_scores_more_than_a_line_on_the_readi
     line, _, ripple = Scorer(case, first_fit(case, 0)).scores("periodic_disturbance")
     assert ripple.guess["periodic_disturbance.frequency"] == pytest.approx(23, abs=0.05)
     assert ripple.explained > 0.9 > line.explained + 0.1
+
+
+def test_mains_that_explain_nearly_as_much_are_all_refitted():
+    """What a ripple does to the hysteresis tells little of its frequency."""
+    case = rippled_case(frequency=60.0)
+    first = first_fit(case, 0)
+    score = Scorer(case, first).score("periodic_disturbance.ripple")
+    assert 60 in [guess["periodic_disturbance.frequency"] for guess in score.guesses]
+    fit = refit_from(case, first, (score.effect,), score.guesses)
+    assert fit.values["periodic_disturbance.frequency"] == pytest.approx(60, abs=0.02)
 
 
 def test_beside_a_ripple_that_is_explained_nothing_is_left_to_score():

@@ -45,6 +45,14 @@ def test_harmonics_of_the_drive_are_no_disturbance():
     assert PeriodicDisturbance.guess([t], [drive], [residual], 1, 900)[0] == pytest.approx(50.3, abs=0.02)
 
 
+@pytest.mark.parametrize(("frequency", "possible"), [(1.3, {50, 60, 100, 120}), (5.0, {120}), (10.0, set())])
+def test_mains_are_tried_where_they_are_no_harmonics_of_the_drive(frequency, possible):
+    """Up to the twentieth, of which hysteresis leaves something."""
+    t, drive, residual = waves(frequency, 31.7)
+    guesses = PeriodicDisturbance.guess([t], [drive], [residual], 1, 900)
+    assert set(guesses) & {50, 60, 100, 120} == possible
+
+
 def test_a_record_at_rest_shows_a_line_wherever_it_is():
     t, _, residual = waves(1.3, 3.9, size=0.0)
     assert PeriodicDisturbance.guess([t], [np.zeros_like(t)], [residual], 1, 900)[0] == pytest.approx(3.9, abs=0.02)
