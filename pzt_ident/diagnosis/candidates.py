@@ -19,6 +19,7 @@ TIE = 0.2  # noise floors between two refits: less does not distinguish them; of
 LOOK_ALIKE_TIE = 0.01  # of the total RMSE: less does not distinguish refits of look-alikes far above the noise
 FORM_GAIN = 0.02  # of the misfit, by which another form of an effect explains more than the first one
 NEARLY_ALL = 0.9  # of the misfit: what explains as much may be a look-alike of what is missing, in another form
+LIMIT_TIE = 0.1  # of the total RMSE, by which a look-alike may be worse than an effect that rests on its own bounds
 LOOK_ALIKE_STARTS = 8  # starts of a look-alike's own parameters
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
 
@@ -173,6 +174,12 @@ def is_tied(case: Case, effect: str, fit: Fit, rival: Fit) -> bool:
     """Whether a fit with a look-alike in the place of an effect is hardly worse."""
     close = removed_rms(rival.total, fit.total) < 2 * TIE * case.floor
     return (close or rival.total < (1 + LOOK_ALIKE_TIE) * fit.total) and are_look_alikes(effect, rival.effects[-1])
+
+
+def rests_on_own_bounds(before: Fit, fit: Fit) -> bool:
+    """Whether a parameter that an effect brought along ended on a bound: the effect may be the limit in which it is
+    another one, as friction that is smoothed over all speeds is a lag."""
+    return bool(set(fit.on_bounds) - set(before.problem.names))
 
 
 def generalises(rival: Fit, fit: Fit) -> bool:

@@ -9,8 +9,10 @@ import numpy as np
 
 from pzt_ident.data.notation import listed
 from pzt_ident.diagnosis.candidates import (
+    LIMIT_TIE,
     TIE,
     Candidate,
+    are_look_alikes,
     choose_forms,
     decide_by_score,
     generalises,
@@ -19,6 +21,7 @@ from pzt_ident.diagnosis.candidates import (
     refit_all,
     refit_other_forms,
     restart_look_alikes,
+    rests_on_own_bounds,
     score_all,
 )
 from pzt_ident.diagnosis.criteria import (
@@ -95,6 +98,7 @@ def with_effects(
     total = min(fit.total for fit in fits.values())
     close = [item for item in passing if removed_rms(fits[item.score.effect].total, total) < TIE * case.floor]
     best = min(close, key=lambda item: (fits[item.score.effect].problem.dimensions, fits[item.score.effect].total))
+    best = within_bounds(before, best, passing)
     word = best.score.effect
     alike = [item for item in passing if item in close or is_tied(case, word, fits[word], fits[item.score.effect])]
     tied = [item for item in alike if item is best or not generalises(fits[item.score.effect], fits[word])]
@@ -106,6 +110,20 @@ def with_effects(
     others = sorted((item for item in passing if item not in tied), key=lambda item: fits[item.score.effect].total)
     reason = missing_sentence(case, first, before, fits[word], words)
     return Diagnosis(verdict, reason, before, candidates, words, [best, *others])
+
+
+def within_bounds(before: Fit, best: Candidate, passing: list[Candidate]) -> Candidate:
+    """The best, or its look-alike that is hardly worse where the best is such a look-alike in the limit."""
+    if not best.fit or not rests_on_own_bounds(before, best.fit):
+        return best
+    most = (1 + LIMIT_TIE) * best.fit.total
+    others = [
+        (item.fit.total, number)
+        for number, item in enumerate(passing)
+        if item.fit and item.fit.total < most and are_look_alikes(best.score.effect, item.score.effect)
+        if not rests_on_own_bounds(before, item.fit)
+    ]
+    return passing[min(others)[1]] if others else best
 
 
 def refusal(case: Case, first: Fit, fit: Fit) -> str:

@@ -17,8 +17,18 @@ CASE = SimpleNamespace(floor=1.0, on_event=lambda event: None)
 FAR = 10.0  # an error that nobody takes for noise
 
 
-def fit(identify, validate=None, effects=(), dimensions=4):
-    return Fit(tuple(effects), SimpleNamespace(dimensions=dimensions), np.zeros(0), identify, validate)
+def fit(identify, validate=None, effects=(), dimensions=4, own=()):
+    """own: places in their ranges of the parameters that its last effect brought along."""
+    columns = range(len(own))
+    entries = [SimpleNamespace(parameter=SimpleNamespace(null=None)) for _ in own]
+    problem = SimpleNamespace(
+        dimensions=dimensions,
+        names=[f"own_{i}" for i in columns],
+        free=columns,
+        model=SimpleNamespace(entries=entries),
+        physical=np.atleast_2d,
+    )
+    return Fit(tuple(effects), problem, np.array(own, float), identify, validate)
 
 
 def above(left, validate=None):
@@ -173,6 +183,16 @@ def test_look_alikes_are_a_tie_where_they_are_twice_as_far_apart(total, apart, c
 def test_far_above_the_noise_look_alikes_are_a_tie_to_one_percent(share, close):
     best, rival = fit(50.0, 50.0, ["amplifier_lag"]), fit(50.0 * share, 50.0 * share, ["sensor_lag"])
     assert is_tied(CASE, "amplifier_lag", best, rival) == close
+
+
+@pytest.mark.parametrize(
+    ("place", "worse", "taken"), [(1.0, 1.09, "delay"), (1.0, 1.11, "friction"), (0.5, 1.09, "friction")]
+)
+def test_an_effect_on_its_own_bound_gives_way_to_what_it_is_like_there(judged, place, worse, taken):
+    """Friction that is smoothed over all speeds is a lag, with more parameters."""
+    best, rival = fit(4.0, 4.0, ["friction"], own=[place]), fit(4.0 * worse, 4.0 * worse, ["delay"], own=[0.5])
+    diagnosis = judged({"friction": best, "delay": rival, "creep": fit(4.2, 4.2, ["creep"])})
+    assert diagnosis.tied[0] == taken
 
 
 def test_of_pairs_that_earn_the_best_on_both_uses_is_taken(monkeypatch):
