@@ -18,7 +18,7 @@ from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.proof import unproven
 from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.diagnosis.step import Step, explained_share
-from pzt_ident.diagnosis.undetermined import Undetermined, without_mechanics
+from pzt_ident.diagnosis.undetermined import Undetermined, undetermined_mechanics, without_mechanics
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
 
 FIRST_EFFECTS = 2  # effects that are tried as the first to be added
@@ -71,12 +71,13 @@ def end_of(staircase: Staircase) -> Fit:
 
 
 def improve_lean(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListener) -> Staircase | None:
-    """The staircase without mechanics that the data do not determine; None where these determine them, or where the
-    model needs one effect at most beside them. diagnosis: of the fit `first`."""
+    """The staircase without mechanics that the data do not determine; None where these determine them, alone or beside
+    the best effect, or where the model needs one effect at most beside them. diagnosis: of the fit `first`."""
     settled = diagnosis.verdict in ("adequate", "refused") or any(
         adequate(case, first, candidate.fit) for candidate in diagnosis.passing if candidate.fit
     )
-    alternative = None if settled else without_mechanics(case, first)
+    best = min((item.fit for item in diagnosis.passing if item.fit), key=lambda fit: fit.total, default=first)
+    alternative = None if settled or undetermined_mechanics(best) is None else without_mechanics(case, first)
     if alternative is None:
         return None
     word, lean, start = alternative

@@ -88,14 +88,17 @@ def best_of_each_axis(case: Case, problem: Problem, minima: Array) -> Array:
 
 def restart(case: Case, fit: Fit, block: str = "", starts_per_block: int = RESTARTS) -> Fit:
     """The best of the fit and of fits restarted from other values of one block on one axis, the rest kept: of each
-    block in turn, or of `block` only. A block may rest in a side minimum, such as a distant resonance, when it was
-    fitted beside a misfit that has since been explained, or from a poor guess."""
+    block in turn but of those that guess from a residual, as the frequency of a line, or of `block` only. A block may
+    rest in a side minimum, such as a distant resonance, when it was fitted beside a misfit that has since been
+    explained, or from a poor guess."""
     problem = fit.problem
     entries = [problem.model.entries[column] for column in problem.free]
     owners = [(entry.axis, entry.block.name) for entry in entries]
+    guessed = [entry.block.name for entry in entries if hasattr(entry.block, "guess")]
     rng = np.random.default_rng(0)
     fits = [fit]
-    for owner in dict.fromkeys(owner for owner in owners if block in ("", owner[1])):
+    chosen = [(axis, name) for axis, name in owners if name == block or (not block and name not in guessed)]
+    for owner in dict.fromkeys(chosen):
         restarted = np.array([column_owner == owner for column_owner in owners])
         starts = np.where(restarted, random_points(problem, rng), fit.point)
         for start in starts[np.argsort(problem.rough_loss(starts, fit.point))[:starts_per_block]]:

@@ -20,7 +20,7 @@ from pzt_ident.diagnosis.candidates import (
     score_all,
 )
 from pzt_ident.diagnosis.criteria import removed_rms, removes_enough
-from pzt_ident.diagnosis.score import Score, Scorer
+from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.verdict import diagnose, missing_sentence
 from pzt_ident.model.registry import blocks, word_of
@@ -73,14 +73,18 @@ def test_look_alikes_of_what_explains_nearly_all_are_compared_in_every_form():
         assert set(candidate.refits) == {score.effect for score in candidate.forms}
 
 
-def test_where_no_effect_explains_most_the_short_list_is_tried_in_every_form():
+def test_where_no_effect_explains_most_all_that_scores_is_tried_in_every_form_the_short_list_first():
     case = stage.case(stage.EFFECTS["creep"])
     before = first_fit(case, 0)
     candidates = score_all(case, before, before, Scorer(case, before))
     shortlist = [item for item in candidates if item.score.effect in ("drift", "saturation")]
     for candidate in shortlist:
         candidate.refits = {candidate.score.effect: before}
+    given = list(shortlist)
     refit_other_forms(case, before, before, candidates, shortlist)
+    others = [item for item in candidates if item not in given and item.score.explained > LEAST_SCORE]
+    assert others
+    assert shortlist == [*given, *others]
     for candidate in shortlist:
         assert set(candidate.refits) == {score.effect for score in candidate.forms}
 
