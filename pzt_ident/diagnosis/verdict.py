@@ -95,13 +95,19 @@ def with_effects(
 ) -> Diagnosis:
     """The diagnosis where candidates remove enough: the best of them, of tied ones the simplest, and its ties."""
     fits = {item.score.effect: item.fit for item in passing if item.fit}
+
+    def simplicity(item: Candidate) -> tuple[int, float]:
+        return fits[item.score.effect].problem.dimensions, fits[item.score.effect].total
+
     total = min(fit.total for fit in fits.values())
     close = [item for item in passing if removed_rms(fits[item.score.effect].total, total) < TIE * case.floor]
-    best = min(close, key=lambda item: (fits[item.score.effect].problem.dimensions, fits[item.score.effect].total))
-    best = within_bounds(before, best, passing)
-    word = best.score.effect
+    least = min(close, key=simplicity)
+    word = least.score.effect
     alike = [item for item in passing if item in close or is_tied(case, word, fits[word], fits[item.score.effect])]
-    tied = [item for item in alike if item is best or not generalises(fits[item.score.effect], fits[word])]
+    tied = [item for item in alike if item is least or not generalises(fits[item.score.effect], fits[word])]
+    best = within_bounds(before, min(tied, key=simplicity), passing)
+    tied += [best] if best not in tied else []
+    word = best.score.effect
     for item in tied:
         item.decision = "missing"
     candidates.sort(key=lambda item: (item is not best, item.fit.total if item.fit else np.inf))
