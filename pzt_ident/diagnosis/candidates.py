@@ -139,14 +139,16 @@ def refit_other_forms(
     case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate], shortlist: list[Candidate]
 ) -> None:
     """Refit the short list, and then what else scores, in every form where no effect explains most of the misfit: one
-    that scores low may leave little of it. Where an effect explains nearly all, refit its look-alikes in every form:
-    one may explain more in another. All that is refitted is added to the short list."""
+    that scores low may leave little of it. Where an effect explains nearly all, refit it and its look-alikes in every
+    form: one may explain more in another. All that is refitted is added to the short list."""
     fits = [fit for item in shortlist for fit in item.refits.values()]
     passing = [fit for fit in fits if removes_enough(case, first, before, fit)]
     best = min(passing, key=lambda fit: fit.total, default=before)
     share = share_explained(before.identify, best.identify, case.floor)
     if share >= NEARLY_ALL:
-        wanted = [item for item in candidates if are_look_alikes(best.effects[-1], item.score.effect)]
+        named = best.effects[-1]
+        kin = [item for item in candidates if are_look_alikes(named, item.score.effect)]
+        wanted = [*(item for item in candidates if word_of(item.score.effect) == word_of(named)), *kin]
     else:
         others = [item for item in candidates if item not in shortlist and item.score.explained > LEAST_SCORE]
         wanted = [*shortlist, *others] if share < DECISIVE else []

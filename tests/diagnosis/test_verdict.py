@@ -69,7 +69,7 @@ def test_look_alikes_of_what_explains_nearly_all_are_compared_in_every_form():
     alike = [item for item in candidates if are_look_alikes("sensor_lag", item.score.effect)]
     assert {"amplifier_lag", "delay"} <= {word_of(item.score.effect) for item in alike}
     assert shortlist == [named, *alike]
-    for candidate in alike:
+    for candidate in (named, *alike):
         assert set(candidate.refits) == {score.effect for score in candidate.forms}
 
 
