@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import stage
-from pzt_ident.diagnosis.staircase import improve
+from pzt_ident.diagnosis import staircase, verdict
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.undetermined import undetermined_mechanics, without_mechanics
 
@@ -40,13 +40,26 @@ def test_mechanics_that_take_up_nothing_are_no_suspect():
 
 def test_effects_are_named_in_the_place_of_mechanics_that_stand_in_for_them():
     case, reported = slow(SEVERAL), []
-    staircase = improve(case, first_fit(case, 0), reported.append)
-    assert [step.change for step in staircase.steps[:2]] == ["", "without lumped"]
-    assert staircase.last.verdict == "adequate"
-    assert staircase.case.words == ("bouc_wen",)
-    assert staircase.steps[1] in reported
-    assert staircase.suspects[-1].effect == "lumped"
-    assert "lumped takes up" in staircase.suspects[-1].why_not
+    found = staircase.improve(case, first_fit(case, 0), reported.append)
+    assert [step.change for step in found.steps[:2]] == ["", "without lumped"]
+    assert found.last.verdict == "adequate"
+    assert found.case.words == ("bouc_wen",)
+    assert found.steps[1] in reported
+    assert found.suspects[-1].effect == "lumped"
+    assert "lumped takes up" in found.suspects[-1].why_not
+
+
+@pytest.mark.parametrize("beside", [None, "lumped"])
+def test_mechanics_that_are_determined_beside_the_best_effect_are_kept(monkeypatch, beside):
+    """A misfit that an effect explains had hidden what the data say of them."""
+    case = slow(SEVERAL)
+    first = first_fit(case, 0)
+    diagnosis, tried = verdict.diagnose(case, first), []
+    best = min(diagnosis.passing, key=lambda item: item.fit.total).fit
+    monkeypatch.setattr(staircase, "undetermined_mechanics", lambda fit: beside if fit is best else "lumped")
+    monkeypatch.setattr(staircase, "without_mechanics", lambda case, first: tried.append(case))
+    assert staircase.improve_lean(case, first, diagnosis, lambda step: None) is None
+    assert bool(tried) == (beside is not None)
 
 
 @pytest.mark.parametrize("effects", [("cubic_stiffness",), ("load_mass",)])
