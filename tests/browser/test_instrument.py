@@ -24,8 +24,10 @@ channels:
 model: [bouc_wen]
 optimizers:
   - {name: pso, population: 20, generations: 30}
-rule_out: [asymmetry, friction, thermal_relaxation, amplifier_lag, amplitude_gain, delay, distributed_memory, drift]
+rule_out: [RULED_OUT]
 """
+CANDIDATES = ("creep", "quadratic_gain", "saturation", "sensor_lag")
+JOB = JOB.replace("RULED_OUT", ", ".join(word for word in blocks.effects() if word not in CANDIDATES))
 SHEETS = ("parameters", "misfit", "candidates", "steps", "optimizers", "control", "devices", "commands")
 INK = "place => document.querySelectorAll('.plot canvas.moving')[place].toDataURL()"
 
