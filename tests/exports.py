@@ -46,14 +46,19 @@ def is_tame(one):
     return np.all(np.abs(moved - response) < 1e-11 * np.abs(response).max())
 
 
-def compiled(models, folder, precision="double", inverse=True):
-    """One program that runs the tests of all models; returns how to run it."""
+def compiled(models, folder, precision="double", inverse=True, apart=True):
+    """One program that runs the tests of all models; returns how to run it. apart: each file is compiled for itself, as
+    a user would; else those of a model together, in fewer runs of the compiler."""
     sources, calls = [], []
     for one in models:
         for name, text in c.files(one, precision, inverse).items():
             text = text.replace("int main(void)", f"int {one.word}_main(void);\nint {one.word}_main(void)")
             (folder / name).write_text(text)
             sources += [name] if name.endswith(".c") else []
+        if not apart:
+            *sources, source, test = sources
+            sources.append(f"{one.word}_both.c")
+            (folder / sources[-1]).write_text(f'#include "{source}"\n#include "{test}"\n')
         calls.append(f'    printf("{one.word} "); failed += {one.word}_main();')
     declared = [f"int {one.word}_main(void);" for one in models]
     main = ["#include <stdio.h>", *declared, "int main(void)", "{", "    int failed = 0;", *calls]
