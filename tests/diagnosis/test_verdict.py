@@ -59,6 +59,15 @@ def test_what_is_missing_is_named_and_its_refit_is_at_the_noise_on_records_that_
     assert diagnosis.before.validate > 1.5 * best.fit.validate
 
 
+def test_what_is_found_is_the_same_from_one_thread_and_from_three(monkeypatch):
+    _, expected = missing("quadratic_gain")
+    monkeypatch.setattr(refit, "THREADS", 3)
+    found = judged(stage.case(stage.EFFECTS["quadratic_gain"]))
+    assert np.array_equal(found.before.point, expected.before.point)
+    assert [item.score for item in found.candidates] == [item.score for item in expected.candidates]
+    assert np.array_equal(found.best.fit.point, expected.best.fit.point)
+
+
 def test_look_alikes_of_what_explains_nearly_all_are_compared_in_every_form():
     case = stage.case({"sensor_lag.tau": 2e-3}, noise=1e-8)
     before = first_fit(case, 0)
