@@ -125,18 +125,28 @@ def test_sliding_takes_the_force_of_friction():
     assert response(linear, up)[-1] == pytest.approx(100 * X.gain - 0.1, abs=1e-3)
 
 
-def test_a_case_is_solved_on_a_cluster_to_the_same_bytes(tmp_path):
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory):
+    """One case, drawn and solved."""
+    folder = tmp_path_factory.mktemp("campaign") / "here"
+    assert call("draw", "--seed", 11, "--kind", "short", "--effect", "quadratic_gain", "--out", folder).exit_code == 0
+    assert call("solve", folder, "--workers", 1).output == ""
+    return folder
+
+
+def call(*line):
+    return CliRunner().invoke(main, list(map(str, line)), catch_exceptions=False)
+
+
+def test_a_case_is_solved_on_a_cluster_to_the_same_bytes(campaign, tmp_path):
     pytest.importorskip("distributed")
-    line = ["draw", "--seed", "5", "--kind", "short", "--effect", "quadratic_gain", "--out", str(tmp_path / "here")]
-    assert CliRunner().invoke(main, line, catch_exceptions=False).exit_code == 0
-    shutil.copytree(tmp_path / "here", tmp_path / "there")
+    shutil.copytree(campaign / "cases", tmp_path / "cases")
     cluster = TCP(workers=1)
     try:
-        for folder, on in (("here", ""), ("there", cluster.address)):
-            assert CliRunner().invoke(main, ["solve", str(tmp_path / folder), "--on", on]).exit_code == 0
+        assert call("solve", tmp_path, "--on", cluster.address).exit_code == 0
     finally:
         cluster.end()
-    here, there = (read_files(tmp_path / folder / "solved" / "short-5" / "improve") for folder in ("here", "there"))
+    here, there = (read_files(folder / "solved" / "short-11" / "improve") for folder in (campaign, tmp_path))
     assert cluster.address in there["environment.json"].decode()
     assert json.loads(there["improvement.json"])["effects"] == ["quadratic_gain"]
     for name in here.keys() - {"environment.json", "events.jsonl"}:
@@ -272,17 +282,12 @@ def test_as_many_pairs_as_there_can_be():
     assert set(score.match(("d", "c"), found)) == {("c", "a"), ("d", "b")}
 
 
-def test_one_case_from_the_draw_to_the_score(tmp_path):
-    def call(*line):
-        return CliRunner().invoke(main, list(map(str, line)), catch_exceptions=False)
-
-    call("draw", "--seed", 11, "--kind", "short", "--effect", "quadratic_gain", "--out", tmp_path)
-    assert call("solve", tmp_path, "--workers", 1).output == ""
-    found = json.loads(call("score", tmp_path).output)
+def test_one_case_from_the_draw_to_the_score(campaign):
+    found = json.loads(call("score", campaign).output)
     assert found["failed"] == []
     (row,) = found["kinds"]
     assert [row[key] for key in ("kind", "cases", "exact", "adequate")] == ["short", 1, 1, 1]
     assert row["validate_median"] < 1.5
-    steps = json.loads((tmp_path / "solved/short-11/improve/improvement.json").read_text(encoding="utf-8"))["steps"]
+    steps = json.loads((campaign / "solved/short-11/improve/improvement.json").read_text(encoding="utf-8"))["steps"]
     assert [step["added"] for step in steps] == [None, "quadratic_gain"]
     assert steps[0]["rmse"]["validate"] > 5 * steps[1]["rmse"]["validate"]
