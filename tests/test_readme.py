@@ -20,10 +20,13 @@ def run(code: str, folder: Path) -> str:
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, encoding="utf-8", check=True).stdout
 
 
-def test_the_library_example_finds_what_is_hidden(tmp_path):
+def test_the_library_example_finds_what_is_hidden(tmp_path, monkeypatch, capsys):
+    """In this process, which has the libraries loaded; the next one is in its own."""
     code = block("library")
     assert len(code.strip().splitlines()) <= 30
-    shown = run(code, tmp_path)
+    monkeypatch.chdir(tmp_path)
+    exec(code, {"__name__": "__main__"})
+    shown = capsys.readouterr().out
     assert shown.startswith("bouc_wen -> lumped")
     for part in ("\nMissing: quadratic_gain", "+ creep", "\nThe model is adequate"):
         assert part in shown
