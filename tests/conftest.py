@@ -8,15 +8,17 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy: on small mat
 
 import pytest
 
-from pzt_ident.diagnosis import refit
 from run_folders import WEIRD, make_run
 
-refit.THREADS = 1  # a worker of the tests has one core, too
 
 def pytest_collection_finish():
-    """What 6,000 tests are made of is no garbage, and need not be looked through again and again."""
+    """What 6,000 tests are made of is no garbage, and need not be looked through again and again; and who works on them
+    has one core, on which threads wait for each other."""
+    from pzt_ident.diagnosis import refit
+
     gc.freeze()
     gc.set_threshold(20_000)
+    refit.THREADS = 1
 
 
 @pytest.fixture(scope="session")
