@@ -4,8 +4,11 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 import pzt_ident as pzt
+from pzt_ident.cli.commands import main
+from pzt_ident.job.demo import write_demo
 
 DEMO = files("pzt_ident.job").joinpath("examples", "demo")
 SMALL = {"name": "pso", "population": 20, "generations": 15}
@@ -38,6 +41,16 @@ def fit(demo):
 @pytest.fixture(scope="session")
 def improvement(fit):
     return pzt.improve(fit)
+
+
+@pytest.fixture(scope="session")
+def commanded(tmp_path_factory):
+    """The folder that the command makes of the job of the demo, which lies elsewhere."""
+    home, out = tmp_path_factory.mktemp("demo") / "deep" / "in" / "a" / "folder", tmp_path_factory.mktemp("improved")
+    line = ["improve", str(write_demo(home)), "--out", str(out), "--no-report", "--quiet"]
+    answer = CliRunner().invoke(main, line)
+    assert answer.exit_code == 0, answer.output
+    return out
 
 
 @pytest.fixture(scope="session")

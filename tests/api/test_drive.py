@@ -1,7 +1,6 @@
 """The drive for a reference: what it is, what it says, and what it refuses."""
 
 import json
-import shutil
 
 import numpy as np
 import pytest
@@ -109,24 +108,13 @@ def test_the_command_refuses_in_one_sentence(fit, tmp_path, header, options, mes
     assert answer.exit_code == 2 and message in answer.output and "Traceback" not in answer.output
 
 
-def test_an_improvement_and_an_exported_model_are_put_to_work_too(fit, tmp_path):
-    from importlib.resources import files
-
-    from click.testing import CliRunner
-
-    from pzt_ident.cli.commands import main
-
+def test_an_improvement_and_an_exported_model_are_put_to_work_too(fit, commanded, tmp_path):
     (exported,) = fit.export(tmp_path / "json", to="json")
     again = pzt.load(exported)
     assert np.allclose(again.drive(T, REFERENCE).drive["x"], fit.drive(T, REFERENCE).drive["x"], rtol=1e-12)
     assert again.tune(200.0)["x"] == fit.tune(200.0)["x"]
 
-    demo = tmp_path / "deep" / "in" / "a" / "folder"
-    shutil.copytree(str(files("pzt_ident.job") / "examples" / "demo"), demo)
-    job, out = demo / "job.yaml", tmp_path / "improved"
-    answer = CliRunner().invoke(main, ["improve", str(job), "--out", str(out), "--no-report", "--quiet"])
-    assert answer.exit_code == 0, answer.output
-    improved = pzt.load(out)
-    assert [*read_identified(out, as_given=True).chain.names] == [*fit.identified.chain.names]
+    improved = pzt.load(commanded)
+    assert [*read_identified(commanded, as_given=True).chain.names] == [*fit.identified.chain.names]
     assert improved.drive(T, REFERENCE).peak["x"] < 1e-3
     assert set(improved.parameters) > set(fit.parameters)

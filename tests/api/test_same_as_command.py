@@ -91,9 +91,8 @@ def test_commands_go_on_from_a_saved_fit(stated, tmp_path):
     assert_same(stated.parameters, listed["parameters"] | listed["fixed"])
 
 
-def test_the_staircase_is_that_of_the_command(improvement, tmp_path):
-    command("improve", write_demo(tmp_path / "demo"), "--out", tmp_path / "improved", "--no-report")
-    content = json.loads((tmp_path / "improved" / "improvement.json").read_text(encoding="utf-8"))
+def test_the_staircase_is_that_of_the_command(improvement, commanded):
+    content = json.loads((commanded / "improvement.json").read_text(encoding="utf-8"))
     assert improvement.effects == content["effects"]
     assert improvement.verdict == content["verdict"]
     for step, listed in zip(improvement.steps, content["steps"], strict=True):

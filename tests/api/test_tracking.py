@@ -30,7 +30,7 @@ def two_axes():
 
 
 def test_each_way_is_better_than_the_one_before(two_axes):
-    fine = np.linspace(0, T[-1], 10_000)
+    fine = np.linspace(0, T[-1], 7_000)
     reference = 3 * np.sin(np.pi * fine / fine[-1]) ** 2 * (1 + 0.3 * np.sin(9 * fine / fine[-1]))
     tracking = control(two_axes, fine, {"x": reference, "y": reference[::-1]}, kp=0.1, ki=10.0)
     assert [*tracking.ways] == [OPEN, ALONE, INVERSE, LOOP]

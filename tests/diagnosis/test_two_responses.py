@@ -40,6 +40,11 @@ def case():
     return Case(blank_case.words, (), records, specs, ruled_out, SHARED)
 
 
+@pytest.fixture(scope="module")
+def first(case):
+    return first_fit(case, 1)
+
+
 def blank(hertz):
     drive = path(0, 1500, -1500, 0, points=40)
     one = record(drive, drive, dt=1 / (hertz * drive.size), run_in=1)
@@ -47,17 +52,15 @@ def blank(hertz):
     return replace(one, use=use, axes=("p", "d"), response_units=("uC/cm2", "nm"))
 
 
-def test_thermal_relaxation_is_named_and_the_rate_left_out_foreseen(case):
-    first = first_fit(case, 1)
+def test_thermal_relaxation_is_named_and_the_rate_left_out_foreseen(case, first):
     diagnosis = diagnose(case, first)
     assert (diagnosis.verdict, diagnosis.best.score.effect) == ("missing", "thermal_relaxation")
     assert diagnosis.best.fit.values["homogenized_energy.fluctuation"] == pytest.approx(45, rel=0.05)
     assert diagnosis.best.fit.validate < 0.05 * first.validate
 
 
-def test_what_moves_two_responses_is_proposed_as_one_drive(case):
+def test_what_moves_two_responses_is_proposed_as_one_drive(case, first):
     assert drives_of(case.records).tolist() == [0, 0]
-    first = first_fit(case, 1)
     rivals = {"as given": first, "thermal_relaxation": refit(case, first, ("thermal_relaxation",), {})}
     proposal = propose(case, rivals, [DriveLimits(-1500.0, 1500.0, 6000.0, 0.4)] * 2)
     assert np.array_equal(*proposal.drive)
