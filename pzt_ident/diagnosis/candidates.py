@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from pzt_ident.diagnosis.budget import BESIDE, EXPLORING, LAST, PROMISED
-from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
+from pzt_ident.diagnosis.criteria import DECISIVE, adequate, reaches_noise, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit_from, side_by_side
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, applicable, squared_misfit
@@ -119,6 +119,17 @@ def clearly_best(case: Case, refits: Mapping[str, Fit], usual: str) -> str:
     """The item that fits best, or the usual one where that is hardly worse."""
     best = min(refits, key=lambda item: refits[item].total)
     return best if removed_rms(refits[usual].total, refits[best].total) > TIE * case.floor else usual
+
+
+def restart_unconfirmed(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:
+    """Where none is adequate, restart the fits that reach the noise of the identification records and not that of the
+    others: what the former do not determine, as a mode that they do not make ring, may rest in a side minimum."""
+    refits = [(candidate, item, fit) for candidate in candidates for item, fit in candidate.refits.items()]
+    if any(adequate(case, first, fit) for _, _, fit in refits):
+        return
+    for candidate, item, fit in refits:
+        if reaches_noise(case, first, fit) and case.budget.allows("other starts"):
+            candidate.refits[item] = restart(case, fit)
 
 
 def restart_look_alikes(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> None:

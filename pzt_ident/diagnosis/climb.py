@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from pzt_ident.diagnosis.bounds import beyond_bounds, stands_in
@@ -13,7 +13,7 @@ from pzt_ident.diagnosis.proof import Suspect
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.starts import first_fit, restart
-from pzt_ident.diagnosis.step import Step, explained_share
+from pzt_ident.diagnosis.step import Step, StepListener, explained_share
 from pzt_ident.diagnosis.undetermined import Undetermined
 from pzt_ident.diagnosis.verdict import Diagnosis, best_pair, diagnose
 from pzt_ident.model.registry import blocks
@@ -22,9 +22,6 @@ MOST_STEPS = 8
 PATIENCE = 3  # effects that take up less than half of the misfit, after which no other is tried
 WIDER = "wider bounds"  # the step that widens those of the job
 HOPELESS = 5.0  # noise floors: where the first path ends above that, another order of the same effects does not help
-
-
-StepListener = Callable[[Step], None]
 
 
 @dataclass

@@ -9,7 +9,7 @@ from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, remove
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit, refit_beside
 from pzt_ident.diagnosis.score import Scorer, applicable, fitting_forms
-from pzt_ident.diagnosis.step import Step, effects_without, explained_share
+from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explained_share
 from pzt_ident.diagnosis.verdict import diagnose
 from pzt_ident.model.registry import blocks, word_of
 
@@ -79,15 +79,23 @@ def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str]) -> li
     return [refit_beside(case, (without, now), (*without.effects, item), guess) for item, guess in guesses.items()]
 
 
-def find_rivals(case: Case, first: Fit, steps: list[Step]) -> None:
-    """Set the rivals of the effects in the last model by refits beside all the other effects."""
+def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener) -> None:
+    """Set the rivals of the effects in the last model by refits beside all the other effects, with a step to a tied one
+    that has fewer parameters."""
     now = steps[-1].fit
     added = now.effects[len(first.effects) :]
     for effect in added if len(added) > 1 and case.budget.allows("ties", 1.0) else ():
-        step = next(step for step in reversed(steps) if step.added == effect)
         fits = fits_in_place(case, now, effect, look_alikes(case, now, effect))
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
-        step.rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
+        rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
+        taken = min(rivals, key=lambda item: rivals[item].problem.dimensions)
+        if taken == effect:
+            step = next(step for step in reversed(steps) if step.added == effect)
+        else:
+            on_step(step := exchange_step(case, now, rivals[taken], effect))
+            steps.append(step)
+        step.rivals = {taken: rivals[taken]} | rivals
+        now = rivals[taken]
 
 
 def exchange_any(case: Case, first: Fit, now: Fit) -> list[Step]:

@@ -11,13 +11,13 @@ import numpy as np
 from pzt_ident.diagnosis.bounds import beyond_bounds, brought_back, continued, stands_in
 from pzt_ident.diagnosis.budget import LAST
 from pzt_ident.diagnosis.candidates import TIE, Candidate
-from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, StepListener, climb
+from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, climb
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms, removes_enough
 from pzt_ident.diagnosis.exchange import find_rivals, remove_unneeded
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.proof import unproven
 from pzt_ident.diagnosis.refit import Case, Fit
-from pzt_ident.diagnosis.step import Step, explained_share
+from pzt_ident.diagnosis.step import Step, StepListener, explained_share
 from pzt_ident.diagnosis.undetermined import Undetermined, undetermined_mechanics, without_mechanics
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
 
@@ -141,7 +141,8 @@ def improve_within(
             break
     best = best_path(case, paths)
     take_back(best.case or case, first, best, on_step)
-    find_rivals(best.case or case, first, best.steps)
+    find_rivals(best.case or case, first, best.steps, on_step)
+    conclude(best.case or case, first, best)
     return best
 
 
@@ -170,7 +171,7 @@ def first_candidates(case: Case, first: Fit, diagnosis: Diagnosis) -> list[Candi
 
 def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListener) -> None:
     """Steps that take effects out again: those that the last model can do without, which may only have led the fit out
-    of a side minimum, and the unproven ones. What is left then is unexplained, but for other forms."""
+    of a side minimum, and the unproven ones."""
     now = staircase.steps[-1].fit
     steps = remove_unneeded(case, first, now, newest=0) if near_noise(case, first, now) else []
     now = steps[-1].fit if steps else now
@@ -184,7 +185,12 @@ def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListene
         on_step(step)
     staircase.suspects = [*suspects]
     staircase.steps += steps
-    if steps:
-        staircase.last = diagnose(case, staircase.steps[-1].fit, first)
+
+
+def conclude(case: Case, first: Fit, staircase: Staircase) -> None:
+    """Diagnose the last model where that is another one than the path led to; what no effect explains then is
+    unexplained."""
+    if staircase.last.before is not end_of(staircase):
+        staircase.last = diagnose(case, end_of(staircase), first)
     if staircase.last.verdict not in ("adequate", "refused"):
         staircase.last = unexplained(case, first, staircase.last)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from pzt_ident.diagnosis.misfit import share_explained
@@ -26,6 +27,9 @@ class Step:
     @property
     def tied(self) -> tuple[str, ...]:
         return tuple(self.rivals)
+
+
+StepListener = Callable[[Step], None]
 
 
 def explained_share(case: Case, before: Fit, after: Fit) -> float:

@@ -21,6 +21,7 @@ from pzt_ident.diagnosis.candidates import (
     refit_all,
     refit_other_forms,
     restart_look_alikes,
+    restart_unconfirmed,
     rests_on_own_bounds,
     score_all,
 )
@@ -80,6 +81,7 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     promising = [item for item in candidates if item.score.explained > LEAST_SCORE][:SHORTLIST]
     shortlist = refit_all(case, first, before, promising)
     refit_other_forms(case, first, before, candidates, shortlist)
+    restart_unconfirmed(case, first, shortlist)
     choose_forms(case, first, shortlist)
     restart_look_alikes(case, first, before, shortlist)
     candidates.sort(key=lambda item: (item.fit.total if item.fit else np.inf, -item.score.explained))

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from pzt_ident.diagnosis import candidates, verdict
+from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.candidates import Candidate, choose_forms, generalises, is_tied
 from pzt_ident.diagnosis.criteria import adequate, not_in_validation, reaches_noise, removes_enough, threshold
 from pzt_ident.diagnosis.refit import Fit
@@ -131,6 +132,7 @@ def judged(monkeypatch):
         monkeypatch.setattr(verdict, "score_all", lambda case, first, before, scorer: scores)
         monkeypatch.setattr(verdict, "refusal", lambda case, first, before: "")
         monkeypatch.setattr(verdict, "restart_look_alikes", lambda case, first, before, candidates: None)
+        monkeypatch.setattr(verdict, "restart_unconfirmed", lambda case, first, candidates: None)
         monkeypatch.setattr(
             verdict, "refit_all", lambda case, first, before, candidates: [given(candidate) for candidate in candidates]
         )

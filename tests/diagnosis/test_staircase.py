@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import stage
-from pzt_ident.diagnosis import climb
+from pzt_ident.diagnosis import climb, exchange
 from pzt_ident.diagnosis import staircase as improving
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.climb import Staircase, add_pair, add_restarted
@@ -192,8 +192,32 @@ def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, mon
     monkeypatch.setattr(improving, "climb", lambda case, first, diagnosis, number, on_step: paths[number])
     monkeypatch.setattr(improving, "take_back", lambda *arguments: None)
     monkeypatch.setattr(improving, "find_rivals", lambda *arguments: None)
+    monkeypatch.setattr(improving, "conclude", lambda *arguments: None)
     given = Step(SimpleNamespace())
     assert improve_within(SimpleNamespace(floor=1.0, budget=Budget()), [given], None) is paths[taken]
+
+
+@pytest.mark.parametrize(("parameters", "taken"), [(1, "sensor_lag"), (3, "friction.coulomb"), (4, "friction.coulomb")])
+def test_beside_other_effects_too_the_simpler_of_tied_look_alikes_is_taken(monkeypatch, parameters, taken):
+    def fitted(word, total, dimensions):
+        problem = SimpleNamespace(dimensions=dimensions)
+        return SimpleNamespace(effects=("creep", word), total=total, identify=total, problem=problem)
+
+    now, rival, worse = (
+        fitted("friction.coulomb", 1.1, 3),
+        fitted("sensor_lag", 1.15, parameters),
+        fitted("delay", 2, 1),
+    )
+    monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect: [])
+    others = {"creep": [], "friction.coulomb": [rival, worse]}
+    monkeypatch.setattr(exchange, "fits_in_place", lambda case, now, effect, items: others[effect])
+    steps, told = [Step(now, "creep"), Step(now, "friction.coulomb")], []
+    case = SimpleNamespace(floor=1.0, budget=Budget())
+    exchange.find_rivals(case, SimpleNamespace(effects=()), steps, told.append)
+    assert steps[-1].fit.effects == ("creep", taken)
+    assert (steps[-1].added, set(steps[-1].tied)) == (taken, {"friction.coulomb", "sensor_lag"})
+    assert steps[-1].tied[0] == taken
+    assert told == steps[2:]
 
 
 def ending(identify, total, parameters=3):
