@@ -197,6 +197,27 @@ def test_an_effect_on_its_own_bound_gives_way_to_what_it_is_like_there(judged, p
     assert diagnosis.tied[0] == taken
 
 
+@pytest.mark.parametrize(("dimensions", "taken"), [(5, "delay"), (4, "amplifier_lag"), (3, "amplifier_lag")])
+def test_of_look_alikes_that_are_tied_the_simpler_one_is_taken(judged, dimensions, taken):
+    rival = fit(np.hypot(2.0, 0.3), np.hypot(2.0, 0.3), ["delay"])
+    diagnosis = judged({"amplifier_lag": fit(2.0, 2.0, ["amplifier_lag"], dimensions), "delay": rival})
+    assert (diagnosis.verdict, diagnosis.tied[0]) == ("inconclusive", taken)
+
+
+@pytest.mark.parametrize("confirmed", [False, True])
+def test_what_other_records_do_not_confirm_is_started_anew_where_nothing_is_adequate(monkeypatch, confirmed):
+    """A mode that only the others make ring may rest anywhere."""
+    monkeypatch.setattr(candidates, "restart", lambda case, fit: replace(fit, validate=1.2))
+    case = SimpleNamespace(floor=1.0, budget=Budget())
+    fits = {"quadratic_gain": fit(1.04, 14.4), "saturation": fit(2.5, 14.2)}
+    if confirmed:
+        fits["creep"] = fit(1.0, 1.0)
+    shortlist = [Candidate(Score(word), refits={word: made}) for word, made in fits.items()]
+    candidates.restart_unconfirmed(case, fit(20.0, 20.0), shortlist)
+    validated = [item.refits[item.score.effect].validate for item in shortlist]
+    assert validated == ([14.4, 14.2, 1.0] if confirmed else [1.2, 14.2])
+
+
 def test_of_pairs_that_earn_the_best_on_both_uses_is_taken(monkeypatch):
     """Of creep and drift the fit is best where it was fitted, but the other records do not show it."""
     fits = {
