@@ -158,8 +158,8 @@ def refit_other_forms(
     share = share_explained(before.identify, best.identify, case.floor)
     if share >= NEARLY_ALL:
         named = best.effects[-1]
-        kin = [item for item in candidates if are_look_alikes(named, item.score.effect)]
-        wanted = [*(item for item in candidates if word_of(item.score.effect) == word_of(named)), *kin]
+        itself = [item for item in candidates if word_of(item.score.effect) == word_of(named)]
+        wanted = [*itself, *(item for item in candidates if are_look_alikes(named, item.score.effect))]
     else:
         others = [item for item in candidates if item not in shortlist and item.score.explained > LEAST_SCORE]
         wanted = [*shortlist, *others] if share < DECISIVE else []
