@@ -5,6 +5,7 @@ from __future__ import annotations
 from time import process_time
 
 from pzt_ident.data.notation import listed
+from pzt_ident.engine.native import compiling_time
 
 LEAST = 60.0  # s, of CPU
 PER_SAMPLE = 1e-3  # s
@@ -15,13 +16,13 @@ LAST = 2.0  # of the budget: fits end there, settled or not
 
 
 class Budget:
-    """CPU seconds from now on, of all threads; infinite where None are given. `untried` names what they did not
-    suffice for."""
+    """CPU seconds from now on, of all threads, but for compiling; infinite where None are given. `untried` names what
+    they did not suffice for."""
 
     def __init__(self, seconds: float | None = None) -> None:
         self.seconds = float("inf") if seconds is None else seconds
         self.untried: list[str] = []
-        self._begun = process_time()
+        self._begun = computing_time()
 
     def part(self, share: float) -> Budget:
         """A share of the seconds, from now on; what they do not suffice for is named here."""
@@ -32,7 +33,7 @@ class Budget:
     def begin_again(self) -> None:
         """All seconds are there, and nothing is untried."""
         self.untried.clear()
-        self._begun = process_time()
+        self._begun = computing_time()
 
     def allows(self, what: str, share: float = EXPLORING) -> bool:
         """Whether less than a share of the budget is spent; if not, `what` is untried."""
@@ -43,7 +44,7 @@ class Budget:
 
     def spent(self, share: float) -> bool:
         """Whether a share of the budget is spent."""
-        return process_time() - self._begun >= share * self.seconds
+        return computing_time() - self._begun >= share * self.seconds
 
     def lasts(self) -> bool:
         """Whether a fit may go on."""
@@ -55,6 +56,11 @@ class Budget:
         if not self.untried:
             return ""
         return f" The budget of {self.seconds:g} s did not suffice for {listed(self.untried)}: give more with --budget."
+
+
+def computing_time() -> float:
+    """CPU seconds of this process; kernels that a first use compiles leave it no less for its verdict."""
+    return process_time() - compiling_time()
 
 
 def sensible(samples: int) -> float:

@@ -12,6 +12,7 @@ from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from threading import RLock
+from time import thread_time
 from typing import Any
 
 from llvmlite import binding
@@ -28,6 +29,7 @@ ERROR_PATH = (
 """What is called, from the first on, where a function raised an error."""
 
 _lock = RLock()
+_spent = [0.0]  # s
 
 
 def name_of(word: str, *made_of: str) -> str:
@@ -36,19 +38,32 @@ def name_of(word: str, *made_of: str) -> str:
     return f"{word}_{hashlib.sha256(content.encode()).hexdigest()[:16]}"
 
 
+def compiling_time() -> float:
+    """CPU seconds that this process has spent on compiling."""
+    return _spent[0]
+
+
 def address_of(name: str, compiled: Callable[[], Any]) -> int:
     """The address of a C function in this process; numba's `compiled()` where there is no whole object file of it."""
+    with _lock:
+        begun = thread_time() - _spent[0]  # what one function compiles for another is counted once
+        try:
+            return _address_of(name, compiled)
+        finally:
+            _spent[0] = thread_time() - begun
+
+
+def _address_of(name: str, compiled: Callable[[], Any]) -> int:
     if not loads():
         return int(compiled().address)
     path = cache_folder() / f"{name}.o"
-    with _lock:
-        kept = read(path)
-        if not kept:
-            function = compiled()
-            if not stands_alone(function):
-                return int(function.address)
-            kept = write(path, *emitted(function))
-        return load(*kept)
+    kept = read(path)
+    if not kept:
+        function = compiled()
+        if not stands_alone(function):
+            return int(function.address)
+        kept = write(path, *emitted(function))
+    return load(*kept)
 
 
 @cache

@@ -1,0 +1,49 @@
+"""What a diagnosis may take is counted in its own work."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from pzt_ident.diagnosis import budget
+from pzt_ident.engine import native
+
+
+@pytest.fixture
+def clock(monkeypatch):
+    """CPU seconds of the process and of its one thread, which stand still but where a test moves them."""
+    clock = SimpleNamespace(now=1.0, read=lambda: clock.now)
+    monkeypatch.setattr(native, "thread_time", clock.read)
+    monkeypatch.setattr(budget, "process_time", clock.read)
+    monkeypatch.setattr(native, "loads", lambda: False)
+    return clock
+
+
+def compiled(clock, seconds, *others):
+    """A function that takes so many seconds to compile, and others on the way."""
+
+    def compile_it():
+        for other in others:
+            native.address_of("other", other)
+        clock.now += seconds
+        return SimpleNamespace(address=1)
+
+    return compile_it
+
+
+def test_work_spends_it(clock):
+    spent = budget.Budget(10)
+    clock.now += 9
+    assert spent.allows("this", 1.0)
+    clock.now += 2
+    assert not spent.allows("that", 1.0)
+    assert spent.untried == ["that"]
+
+
+def test_kernels_that_are_compiled_do_not(clock):
+    """A first use on a machine has as much for its verdict as any later one."""
+    spent = budget.Budget(10)
+    native.address_of("one", compiled(clock, 100, compiled(clock, 50), compiled(clock, 25)))
+    clock.now += 9
+    assert spent.allows("this", 1.0)
+    clock.now += 2
+    assert spent.spent(1.0)
