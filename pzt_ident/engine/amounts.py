@@ -76,9 +76,12 @@ class Amounts:
         candidates = self._moved(np.hstack([theta, amounts]))
         signals = 1 + simulator.additions.signals
         tables = np.zeros((len(self._scales), len(theta), signals + several, signals + several))
+        level: Array | None = None  # of which nothing is left beside an offset; its square would drown small errors
         for at, error in simulator.deviations(candidates):
             errors = error.reshape(len(theta), several, *error.shape[1:])
             errors[:, 1:] -= errors[:, :1]
+            level = errors[:, 0, :, :1].copy() if level is None else level
+            errors[:, 0] -= level
             for i, axis in enumerate(simulator.model.measured):
                 bases = simulator.additions.bases(axis, theta, at)
                 rows = np.concatenate([bases, errors[:, :, i] * self._scales[i]], axis=1)

@@ -38,7 +38,7 @@ def test_a_fit_to_the_last_digits_has_these():
     made = model(*BLOCKS)
     theta, t = candidates(made, 3), 1e-3 * np.arange(333)
     clean = Simulator(made, record(*waves())).simulate(theta[1])[0]
-    added = 7 + 3 * np.exp(-t / theta[1][made.names.index("drift.tau")]) + 1e-9 * rng.normal(size=333)
+    added = 7 + 3 * np.exp(-t / theta[1][made.names.index("drift.tau")]) + 1e-8 * rng.normal(size=333)
     simulator = Simulator(made, record(*waves(), response=clean + added))
     found = simulator.squares(theta)
     np.testing.assert_allclose(found, summed(simulator, theta), rtol=1e-7)
