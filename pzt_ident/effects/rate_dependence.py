@@ -7,14 +7,16 @@ from pzt_ident.model.registry import blocks
 
 @blocks.register
 class RateDependence(Term):
-    """Domain walls follow the field late: alpha <- alpha (1 + rate log10(|du/dt| / (100 V/s))).
+    """Domain walls follow the field late: alpha <- alpha (1 + rate log10(|du/dt| / (100 V/s))), alpha of Bouc-Wen; of
+    Prandtl-Ishlinskii likewise the half-widths of all plays.
 
     Down to 0.01 V/s, below which alpha is constant. Logarithmic in the rate, as in Ang, Khosla & Riviere (2007),
-    IEEE/ASME Trans. Mechatronics 12, 134. Unlike a lag, which is linear in rate and amplitude, it vanishes for small
-    amplitudes. In data of one rate alpha absorbs it.
+    IEEE/ASME Trans. Mechatronics 12, 134; half-widths: Al Janaideh & Krejci (2013), IEEE/ASME Trans. Mechatronics 18,
+    1498. Unlike a lag, which is linear in rate and amplitude, it vanishes for small amplitudes. In data of one rate
+    alpha absorbs it.
     """
 
-    form = Form("logarithm", ("logarithm", "onset", "power"), "How alpha grows with the rate.")
+    form = Form("logarithm", ("logarithm", "onset", "power"), "How the hysteresis grows with the rate.")
     look_alikes = ("amplifier_lag", "sensor_lag", "viscous_damping", "thermal_relaxation")
     separate_by = "Repeat one loop at rates two decades apart, and a small amplitude at the fastest."
     remedy = "Run at the rate that the model was identified at, or schedule the feedforward on the rate."
@@ -24,7 +26,8 @@ class Onset(RateDependence):
     """Below a rate v0 the hysteresis does not change: alpha <- alpha (1 + c log10(1 + |du/dt| / v0)).
 
     Ang, Khosla & Riviere (2007), with a rate from which on it counts. Written relative to 100 V/s, so that alpha keeps
-    its meaning: alpha <- alpha (1 + rate log10((|du/dt| + v0) / (100 V/s + v0))), v0 being `onset`.
+    its meaning: alpha <- alpha (1 + rate log10((|du/dt| + v0) / (100 V/s + v0))), v0 being `onset`. Half-widths of
+    plays are those at rest times 1 + rate log10(1 + |du/dt| / v0).
     """
 
     trials = {"onset": 5}
@@ -34,7 +37,8 @@ class Power(RateDependence):
     """A power of the rate: alpha <- alpha (1 + rate / (p log 10) ((|du/dt| / (100 V/s))^p - 1)), p being `exponent`.
 
     With rate = p log 10 the pure power that aging and activated switching give; the logarithm for p = 0. Ang, Khosla &
-    Riviere (2007).
+    Riviere (2007). Half-widths of plays are those at rest times 1 + rate (|du/dt| / (100 V/s))^p / (p log 10), which
+    for p = 1 is linear in the rate.
     """
 
     trials = {"exponent": 4}

@@ -1,13 +1,11 @@
 """Bouc-Wen hysteresis driven by the voltage."""
 
-from math import exp, inf, log
+from math import exp, inf
 
+from pzt_ident.hysteresis._rate import FASTEST, SLOW, growth, rate_terms
 from pzt_ident.model.block import Operator, Place, expm1, log1p
 from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks
-
-RATE = 100.0  # V/s, drive rate at which alpha is not changed by `rate`
-SLOW = 0.01  # V/s, below which alpha no longer changes with the logarithm of the rate
 
 
 @blocks.register
@@ -20,7 +18,7 @@ class BoucWen(Operator):
 
     Effects, each without influence at zero:
     dh/dt = alpha d (1 + rate L) du/dt + (asymmetry u + lean) alpha d |du/dt| - ... - relaxation h,
-    L = log10((|du/dt| + onset) / (RATE + onset)), or (10^(exponent L) - 1) / (exponent log 10).
+    L = log10((|du/dt| + onset) / (100 V/s + onset)), or (10^(exponent L) - 1) / (exponent log 10).
     Over a step the factors on du/dt keep their value in the middle, and h relaxes after it: second order in the step,
     first order in dt * relaxation.
     """
@@ -38,7 +36,7 @@ class BoucWen(Operator):
     lean = Parameter("1", (-0.9, 0.9), "Part of the drive term in one direction.", 0, effect="asymmetry.constant")
     rate = Parameter("1", (-0.3, 0.3), "Growth of alpha per decade of drive rate.", 0, effect="rate_dependence")
     onset = Parameter(
-        "V/s", (SLOW, 1e5), "Drive rate at which alpha begins to grow.", SLOW, "log", effect="rate_dependence.onset"
+        "V/s", (SLOW, FASTEST), "Drive rate at which alpha begins to grow.", SLOW, "log", effect="rate_dependence.onset"
     )
     exponent = Parameter("1", (-0.5, 0.5), "Power of the drive rate.", 0, effect="rate_dependence.power")
     beta_2 = Parameter("1/drive", (-10, 10), "Decay of h by sgn(x du).", 0, effect="asymmetry.branches")
@@ -69,15 +67,11 @@ class BoucWen(Operator):
         return gain * u - slope * h
 
     def terms(asymmetry, lean, rate, onset, exponent, relaxation, activation, dt):
-        fast = RATE + onset
-        root = 1 / exponent if exponent != 0 else 0.0
-        rates = rate / log(10), 1 / (dt * fast), onset / fast, exponent, root
-        return asymmetry, lean, *rates, exp(-dt * relaxation), activation
+        return asymmetry, lean, *rate_terms(rate, onset, exponent, dt), exp(-dt * relaxation), activation
 
     def lift(distance, u, sign, asymmetry, lean, rate, faster, slow, exponent, root, keep, activation):
-        decades = log1p(distance * faster + slow - 1)
-        grown = root * expm1(exponent * decades) if exponent != 0 else decades
-        return max(1 + sign * (asymmetry * u + lean) + rate * grown, 0.01)
+        grown = growth(distance, rate, faster, slow, exponent, root)
+        return max(1 + sign * (asymmetry * u + lean) + grown, 0.01)
 
     def fade(h, asymmetry, lean, rate, faster, slow, exponent, root, keep, activation):
         return keep

@@ -1,5 +1,6 @@
 """Prandtl-Ishlinskii hysteresis: weighted plays."""
 
+from pzt_ident.hysteresis._rate import FASTEST, SLOW, growth, rate_terms
 from pzt_ident.model.block import Bank, Place
 from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks
@@ -14,6 +15,9 @@ class PrandtlIshlinskii(Bank):
     Krasnosel'skii & Pokrovskii (1989), Systems with Hysteresis; Kuhnen (2003), Eur. J. Control 9, 407. The initial
     state is virgin: each play is at zero if the first input is within its half-width. Linear in the weights. Minor
     loops close.
+
+    Effects, each without influence at zero: r_i <- r_i (1 + rate L), L as in Bouc-Wen; counted from rest where it has
+    an onset or is a power.
     """
 
     place = Place.OPERATOR
@@ -21,6 +25,11 @@ class PrandtlIshlinskii(Bank):
     gain = Parameter("response/drive", (0, 3), "Weight of the drive itself, w0.")
     weight = Parameter("response/drive", (-0.5, 1.5), "Weight of the i-th play, w_i.", count=PLAYS)
     reach = Parameter("drive", (0.05, 1), "Half-width of the widest play.", value=0.5)
+    rate = Parameter("1", (-0.3, 0.3), "Growth of half-widths per decade of drive rate.", 0, effect="rate_dependence")
+    onset = Parameter(
+        "V/s", (SLOW, FASTEST), "Drive rate at which they begin to grow.", SLOW, "log", effect="rate_dependence.onset"
+    )
+    exponent = Parameter("1", (0, 1), "Power of the drive rate.", 0, effect="rate_dependence.power")
 
     def threshold(reach, branch):
         return reach * (branch + 1) / PLAYS
@@ -37,3 +46,40 @@ class PrandtlIshlinskii(Bank):
 
     def output(u, total, gain, weight, half):
         return gain * u + total
+
+
+class Widening(PrandtlIshlinskii):
+    """p <- max(u - r, min(u + r, p)), r = r_i (1 + rate L) of the rate in the step: half-widths that grow with the
+    rate of the drive.
+
+    Al Janaideh & Krejci (2013), IEEE/ASME Trans. Mechatronics 18, 1498, with the law of rate of Bouc-Wen here.
+    """
+
+    def prepare(gain, weight, reach, rate, onset, exponent, branch, dt):
+        return gain, weight, reach * (branch + 1) / PLAYS, 1.0, *rate_terms(rate, onset, exponent, dt)
+
+    def start(u, gain, weight, half, least, rate, faster, slow, exponent, root):
+        return max(u - half, min(u + half, 0.0)), u
+
+    def step(p, before, u, gain, weight, half, least, rate, faster, slow, exponent, root):
+        wide = half * max(least + growth(abs(u - before), rate, faster, slow, exponent, root), 0.01)
+        p = max(u - wide, min(u + wide, p))
+        return p, u, weight * p
+
+    def output(u, total, gain, weight, half, least, rate, faster, slow, exponent, root):
+        return gain * u + total
+
+
+class WideningFromRest(Widening):
+    """Half-widths that are r_i at rest: r = r_i (1 + rate (L - L(0)))."""
+
+    def prepare(gain, weight, reach, rate, onset, exponent, branch, dt):
+        terms = rate_terms(rate, onset, exponent, dt)
+        return gain, weight, reach * (branch + 1) / PLAYS, 1 - growth(0.0, *terms), *terms
+
+
+PrandtlIshlinskii.forms = {
+    "rate_dependence.onset": WideningFromRest,
+    "rate_dependence.power": WideningFromRest,
+    "rate_dependence": Widening,
+}

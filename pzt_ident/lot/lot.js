@@ -90,7 +90,7 @@ document.addEventListener("keydown", (event) => {
   else return;
   event.preventDefault();
 });
-for (const kind of ["pointerover", "focusin"]) document.addEventListener(kind, ({ target }) => point(target.closest(BAR)));
+for (const kind of ["pointermove", "focusin"]) document.addEventListener(kind, ({ target }) => point(target.closest(BAR)));
 document.addEventListener("scroll", () => point(null), true);
 document.addEventListener("click", ({ target }) => {
   const cell = target.closest("#table-devices thead th"), bar = target.closest(BAR);

@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 @cache
 def in_one(forms: tuple[type[Block], ...]) -> type[Block]:
     """A block in several forms at once; of a function that two of them define, that of the first is taken."""
+    forms = tuple(dict.fromkeys(forms))
     name = "".join(form.__name__ for form in forms)
     return type(name, forms, {"__module__": forms[0].__module__}) if len(forms) > 1 else forms[0]
 

@@ -1,5 +1,7 @@
 """Weighted plays: their twin, and the memory that tells them from Bouc-Wen."""
 
+from math import log
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -15,11 +17,12 @@ levels = st.lists(st.floats(-20, 150), min_size=2, max_size=12)
 quick = settings(deadline=None, max_examples=30, derandomize=True)
 
 
-def displacement(drive, weights=WEIGHTS, gain=0.05):
+def displacement(drive, weights=WEIGHTS, gain=0.05, dt=1e-3, **effects):
     names = [f"prandtl_ishlinskii.weight_{i + 1}" for i in range(PLAYS)]
     known = dict(zip(names, weights, strict=True))
     known |= {"prandtl_ishlinskii.gain": gain, "prandtl_ishlinskii.reach": HALF_WIDTHS[-1]}
-    return response(["prandtl_ishlinskii"], known, np.asarray(drive, float))
+    known |= {f"prandtl_ishlinskii.{word}": value for word, value in effects.items()}
+    return response(["prandtl_ishlinskii"], known, np.asarray(drive, float), dt=dt)
 
 
 @given(levels=levels, points=st.integers(1, 30))
@@ -93,3 +96,22 @@ def test_rate_does_not_matter_and_the_sign_changes_all():
 def test_starts_virgin_under_the_first_sample(start):
     first = start * 0.05 + np.sign(start) * (np.maximum(abs(start) - HALF_WIDTHS, 0) @ WEIGHTS)
     assert displacement([start, start]) == pytest.approx([first, first], abs=1e-14)
+
+
+@pytest.mark.parametrize("speed", [5.0, 100.0, 4000.0])
+@pytest.mark.parametrize(
+    ("effects", "wider"),
+    [
+        ({"rate": 0.1}, lambda v: 0.1 * np.log10((v + 0.01) / 100.01)),
+        ({"rate": 0.1, "onset": 30.0}, lambda v: 0.1 * np.log10(1 + v / 30)),
+        ({"rate": 0.1, "exponent": 1.0}, lambda v: 0.1 * v / (100.01 * log(10))),
+        ({"rate": -0.2, "onset": 30.0}, lambda v: max(-0.2 * np.log10(1 + v / 30), -0.99)),
+    ],
+)
+def test_half_widths_grow_with_the_rate(speed, effects, wider):
+    """At one rate of the drive the plays are those of other half-widths: Al Janaideh & Krejci (2013)."""
+    levels = [0, 130, 20, 90, -20, 5]
+    drive = np.interp(np.arange(0, 445.5, 0.5), np.cumsum(np.abs(np.diff(levels, prepend=0))), levels)
+    found = displacement(drive, dt=0.5 / speed, **effects)
+    expected = prandtl_ishlinskii_twin.prandtl_ishlinskii(drive, 0.05, WEIGHTS, HALF_WIDTHS * (1 + wider(speed)))
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10)
