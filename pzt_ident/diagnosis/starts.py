@@ -18,7 +18,8 @@ Array = NDArray[np.float64]
 STARTS = 240  # random points; the best are refined, a batch at a time, until two minima agree
 REFINED, MOST_REFINED = 4, 24  # points in a batch, and in all batches
 AGREEMENT = 0.01  # of the loss, between the two best minima
-ON_STARTS = 0.05  # of the budget: a model that is not adequate is fitted from more points, until so much is spent
+ENOUGH = 12  # minima that agree: a model that is not adequate is fitted from more points than lead to two, until then
+ON_STARTS = 0.1  # of the budget, which ends that where two agree
 RESTARTS = 2  # random points of one block that are refined
 MOST_RESTARTED = 4  # times that all blocks are restarted, where no two minima agree
 
@@ -47,10 +48,10 @@ def first_fit(
             minima = np.vstack([minima, minimum])
             case.on_event({"event": "fitted", "done": len(minima), "of": most + (known is not None)})
         losses = problem.loss(minima)
-        best, second = np.sort(losses)[:2]
-        agreed = bool(second <= (1 + AGREEMENT) * best + 0.1 * case.floor and np.isfinite(best))
+        alike = np.count_nonzero(losses <= (1 + AGREEMENT) * losses.min() + 0.1 * case.floor)
+        agreed = bool(alike > 1 and np.isfinite(losses.min()))
         lowest = fit_at(effects, problem, minima[np.argmin(losses)])
-        if agreed and (adequate(case, lowest, lowest) or case.budget.spent(ON_STARTS)):
+        if agreed and (alike >= ENOUGH or adequate(case, lowest, lowest) or case.budget.spent(ON_STARTS)):
             break
     point = min((minima[np.argmin(losses)], best_of_each_axis(case, problem, minima)), key=lambda p: problem.loss(p)[0])
     fit = fit_at(effects, problem, point, agreed or known is not None)

@@ -281,6 +281,15 @@ def test_threads_are_as_silent_about_floating_point_as_the_caller(recwarn):
     assert not recwarn.list
 
 
+def test_where_half_of_all_starts_agree_the_search_ends(plain, monkeypatch):
+    """By their number, whatever they took: the same fit on any machine."""
+    fitted, astray = [], np.full(plain.problem(()).dimensions, 0.6)
+    monkeypatch.setattr(starts, "descend", lambda problem, point, going: astray)
+    monkeypatch.setattr(plain, "on_event", lambda event: fitted.append(event["done"]) if "done" in event else None)
+    first_fit(plain, 0)
+    assert fitted == list(range(1, 13))
+
+
 def test_two_starts_that_agree_far_from_the_noise_do_not_end_the_search(plain, monkeypatch):
     """Of the first eight points all end in one side minimum."""
     points, descent = [], refit.descend
