@@ -11,7 +11,7 @@ LEAST = 60.0  # s, of CPU
 PER_SAMPLE = 1e-3  # s
 BESIDE = 0.35  # of the budget: other effects beside one that explains nearly all, but for a second one, get no more
 EXPLORING = 0.7  # of the budget: the rest is for proving what was found
-PROMISED = 1.0  # of the budget: until then an effect that promises to explain most of what is left is refitted
+WHOLE = 1.0  # of the budget: ties, intervals and what promises to explain most of what is left get no more
 LAST = 2.0  # of the budget: fits end there, settled or not
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pzt_ident.diagnosis.budget import BESIDE, EXPLORING, LAST, PROMISED
+from pzt_ident.diagnosis.budget import BESIDE, EXPLORING, LAST, WHOLE
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, reaches_noise, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit_from, side_by_side
@@ -72,7 +72,7 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
 
     def share_allowed(candidate: Candidate) -> float:
         if candidate is candidates[0] and candidate.score.explained >= DECISIVE:
-            return PROMISED
+            return WHOLE
         return BESIDE if second_missing(case, first, before, fits) else EXPLORING
 
     def refits(candidate: Candidate) -> dict[str, Fit]:

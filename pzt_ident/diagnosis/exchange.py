@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from pzt_ident.diagnosis.budget import WHOLE
 from pzt_ident.diagnosis.candidates import TIE, is_tied
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.misfit import share_explained
@@ -84,7 +85,7 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
     that has fewer parameters."""
     now = steps[-1].fit
     added = now.effects[len(first.effects) :]
-    for effect in added if len(added) > 1 and case.budget.allows("ties", 1.0) else ():
+    for effect in added if len(added) > 1 and case.budget.allows("ties", WHOLE) else ():
         fits = fits_in_place(case, now, effect, look_alikes(case, now, effect))
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
         rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
