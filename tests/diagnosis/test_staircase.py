@@ -111,7 +111,9 @@ def test_what_no_effect_explains_ends_unexplained():
         pattern = np.sign(np.sin(0.37 * record.drive[0]) + 0.3 * np.sin(np.pi * record.time**1.5))
         return 12 * stage.NOISE * pattern * (np.gradient(record.drive[0]) != 0)
 
-    steps, last = climbed(stage.with_response(stage.case(), strange))
+    case = stage.with_response(stage.case(), strange)
+    case.ruled_out = ("distributed_memory", "friction", "periodic_disturbance", "resonance")  # most of the work
+    steps, last = climbed(case)
     assert last.verdict == "unexplained"
     assert steps[-1].fit.identify > 5 * stage.NOISE
 

@@ -7,9 +7,11 @@ import stage
 from pzt_ident.diagnosis import staircase, verdict
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.undetermined import undetermined_mechanics, without_mechanics
+from pzt_ident.model.registry import blocks
 
 SEVERAL = stage.EFFECTS["creep"] | stage.EFFECTS["sensor_lag"] | stage.EFFECTS["quadratic_gain"]
 BLOCKS = ("bouc_wen", "lumped")
+POSSIBLE = ("creep", "sensor_lag", "quadratic_gain", "delay", "amplifier_lag", "saturation", "viscous_damping")
 
 
 def slow(parameters, fixed=None):
@@ -40,6 +42,7 @@ def test_mechanics_that_take_up_nothing_are_no_suspect():
 
 def test_effects_are_named_in_the_place_of_mechanics_that_stand_in_for_them():
     case, reported = slow(SEVERAL), []
+    case.ruled_out = tuple({*blocks.effects()} - {*POSSIBLE})
     found = staircase.improve(case, first_fit(case, 0), reported.append)
     assert [step.change for step in found.steps[:2]] == ["", "without lumped"]
     assert found.last.verdict == "adequate"
