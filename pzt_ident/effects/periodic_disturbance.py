@@ -75,19 +75,22 @@ def independent_of_drive(grid, t, drive):
 
 
 class Harmonics(PeriodicDisturbance):
-    """Mains with its third harmonic, as transformers and rectifiers make it: y = x + sum_n a_n sin(2 pi n f t) +
-    b_n cos(2 pi n f t), n = 1 and 3.
+    """Mains with its second and third harmonic, as rectifiers and transformers make them: y = x + sum_n a_n sin(2 pi n
+    f t) + b_n cos(2 pi n f t), n = 1, 2 and 3.
 
     Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems.
     """
 
+    second_sine = Parameter("response", (-1, 1), "Second harmonic, in phase at the start.", null=0, per_record=True)
+    second_cosine = Parameter("response", (-1, 1), "Second harmonic, a quarter period ahead.", null=0, per_record=True)
     third_sine = Parameter("response", (-1, 1), "Third harmonic, in phase at the start.", null=0, per_record=True)
     third_cosine = Parameter("response", (-1, 1), "Third harmonic, a quarter period ahead.", null=0, per_record=True)
 
     def basis(t, frequency, duration):
         phase, enough = 2 * pi * frequency * t, 1.0 if frequency * duration >= MIN_PERIODS else 0.0
-        first, third = (sin(phase), cos(phase)), (sin(3 * phase), cos(3 * phase))
-        return enough * first[0], enough * first[1], enough * third[0], enough * third[1]
+        s, c = sin(phase), cos(phase)
+        second, third = (2 * s * c, 1 - 2 * s * s), (s * (3 - 4 * s * s), c * (4 * c * c - 3))
+        return enough * s, enough * c, enough * second[0], enough * second[1], enough * third[0], enough * third[1]
 
 
 class Ripple(Line, Block):

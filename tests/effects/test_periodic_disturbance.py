@@ -5,6 +5,7 @@ import pytest
 
 from pzt_ident.effects.periodic_disturbance import PeriodicDisturbance
 from pzt_ident.engine.simulator import Simulator
+from pzt_ident.model.registry import blocks
 from rig import model, record
 
 
@@ -69,6 +70,13 @@ def rippled(amounts, frequency=20.0, samples=500, dt=1e-3):
     chain = model("periodic_disturbance.ripple")
     at_rest = Simulator(chain, record(np.zeros(samples), dt=dt))
     return at_rest.simulate(np.array([[frequency, *amounts]]))[0, 0]
+
+
+def test_mains_may_have_their_second_and_third_harmonic():
+    t = 1e-3 * np.arange(500)
+    found = np.transpose([blocks["periodic_disturbance.harmonics"].basis(each, 20.0, t[-1]) for each in t])
+    waves = [wave(2 * np.pi * n * 20 * t) for n in (1, 2, 3) for wave in (np.sin, np.cos)]
+    np.testing.assert_allclose(found, waves, atol=1e-12)
 
 
 def test_a_ripple_is_the_line_and_its_third_harmonic_ahead_of_the_hysteresis():
