@@ -27,6 +27,14 @@ if CHROMIUM is None and os.environ.get("CI"):
     raise RuntimeError("no chromium: `apt-get install chromium-headless-shell`")
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_teardown(item, nextitem):
+    """The tests of a file go on from each other on one page; a worker that takes over an earlier one begins anew."""
+    if nextitem is not None and nextitem.path == item.path and nextitem.location[1] < item.location[1]:
+        elsewhere = next((other for other in item.session.items if other.path != item.path), None)
+        item.session._setupstate.teardown_exact(elsewhere)
+
+
 @pytest.fixture(scope="session")
 def chromium():
     if CHROMIUM is None:
