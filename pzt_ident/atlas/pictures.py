@@ -82,8 +82,10 @@ def change(traces: Traced, name: str) -> float:
 
 
 def _clearest(traces: Traced, names: tuple[str, ...], others: tuple[str, ...] = ()) -> str:
-    """The first drive on which the item shows nearly as much as on any; one of the others where it shows on none."""
-    drawable = [name for name in names if name in traces.with_it and _swings(traces, name) < DENSE]
+    """The first drive on which the item shows nearly as much as on any, and not as a black band if there is a choice;
+    one of the others where it shows on none."""
+    possible = [name for name in names if name in traces.with_it]
+    drawable = [name for name in possible if _swings(traces, name) < DENSE] or possible
     largest = max((change(traces, name) for name in drawable), default=0.0)
     if largest < HIDDEN and others:
         return _clearest(traces, others)
