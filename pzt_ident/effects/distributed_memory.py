@@ -17,7 +17,7 @@ class DistributedMemory(Plays):
     """
 
     place = Place.READOUT
-    form = Form("plays", ("plays", "bent_plays"), "What a play adds.")
+    form = Form("plays", ("plays", "fine_plays", "bent_plays"), "How many plays, and what each adds.")
     branches = PLAYS
     weight = Parameter("1", (-0.5, 0.5), "Weight of the i-th play over the gain.", null=0, count=PLAYS)
     reach = Parameter("drive", (0.05, 1), "Half-width of the widest play.", value=0.4)
@@ -27,6 +27,19 @@ class DistributedMemory(Plays):
 
     def prepare(weight, reach, branch):
         return weight, reach * (branch + 1) / PLAYS
+
+
+class FinePlays(DistributedMemory):
+    """Twice as many plays, half as far apart: y = d (u + sum_i w_i F_i[u]) - h, r_i = reach i / 20.
+
+    Kuhnen (2003), Eur. J. Control 9, 407, with a finer grid of half-widths.
+    """
+
+    branches = 2 * PLAYS
+    weight = Parameter("1", (-0.5, 0.5), "Weight of the i-th play over the gain.", null=0, count=2 * PLAYS)
+
+    def prepare(weight, reach, branch):
+        return weight, reach * (branch + 1) / (2 * PLAYS)
 
 
 class BentPlays(DistributedMemory):
@@ -57,4 +70,4 @@ class BentPlays(DistributedMemory):
         return u + total
 
 
-DistributedMemory.forms = {"bent_plays": BentPlays}
+DistributedMemory.forms = {"fine_plays": FinePlays, "bent_plays": BentPlays}
