@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import gc
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
@@ -57,11 +59,24 @@ def write_signals(path: Path, residuals: Iterable[tuple[Record, Array]]) -> None
 
     content = BytesIO()  # HDF5 does not survive a full disk
     # with HDF5's cache of chunks their order in the file is that in which threads let go of the variables
-    with h5netcdf.File(content, "w", rdcc_nbytes=0) as file:
+    with uncollected(), h5netcdf.File(content, "w", rdcc_nbytes=0) as file:
         for record, residual in residuals:
             _write_group(file.create_group(record.name), record, residual)
     with replaced(path) as beside:
         beside.write_bytes(content.getbuffer())
+
+
+@contextmanager
+def uncollected() -> Iterator[None]:
+    """No garbage is collected: when variables that hold each other go, HDF5 writes their headers, to the next free
+    place."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
 
 
 def _write_group(group: Any, record: Record, residuals: Array) -> None:
