@@ -68,8 +68,7 @@ def write_signals(path: Path, residuals: Iterable[tuple[Record, Array]]) -> None
 
 @contextmanager
 def uncollected() -> Iterator[None]:
-    """No garbage is collected: when variables that hold each other go, HDF5 writes their headers, to the next free
-    place."""
+    """No garbage is collected: beside other threads a collection moves what HDF5 writes next."""
     enabled = gc.isenabled()
     gc.disable()
     try:

@@ -124,7 +124,7 @@ def test_samples_lie_in_the_file_in_their_order_whenever_threads_let_go_of_them(
 
 
 def test_no_garbage_is_collected_while_a_file_is_open(tmp_path):
-    """Beside other threads it moved what HDF5 wrote next, in a third of all files."""
+    """Beside other threads a collection moves what HDF5 writes next."""
     pytest.importorskip("h5py")
     collected, opened = [], []
 

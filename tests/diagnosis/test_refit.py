@@ -282,7 +282,7 @@ def test_threads_are_as_silent_about_floating_point_as_the_caller(recwarn):
 
 
 def test_where_half_of_all_starts_agree_the_search_ends(plain, monkeypatch):
-    """By their number, whatever they took: the same fit on any machine."""
+    """By their number, whatever they took."""
     fitted, astray = [], np.full(plain.problem(()).dimensions, 0.6)
     monkeypatch.setattr(starts, "descend", lambda problem, point, going: astray)
     monkeypatch.setattr(plain, "on_event", lambda event: fitted.append(event["done"]) if "done" in event else None)
