@@ -97,10 +97,12 @@ def state_with(page, change):
 
     page.route("**/api/state", changed)
     page.reload()
-    yield
-    page.unroute_all(behavior="ignoreErrors")  # a question may be on its way
-    page.reload()
-    expect(page.locator("#loop canvas.drawn")).to_be_visible()
+    try:
+        yield
+    finally:
+        page.unroute_all(behavior="ignoreErrors")  # a question may be on its way
+        page.reload()
+        expect(page.locator("#loop canvas.drawn")).to_be_visible()
 
 
 def test_a_command_that_is_being_started_can_be_stopped(shown):
@@ -316,7 +318,8 @@ def test_a_form_and_the_name_of_a_step_lead_to_their_sections(shown):
         expect(steps).to_have_count(2)
         hrefs = [link.get_attribute("href") for link in steps.all()]
         assert hrefs == ["/atlas#word-friction.coulomb", "/atlas#word-pso"]
-        assert all(min(link.bounding_box()[side] for side in ("width", "height")) >= 24 for link in steps.all())
+        boxes = steps.evaluate_all("links => links.map((link) => link.getBoundingClientRect().toJSON())")
+        assert all(min(box["width"], box["height"]) >= 24 for box in boxes)
         assert faults_of(shown) == []
 
 
