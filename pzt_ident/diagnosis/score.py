@@ -213,7 +213,10 @@ class Scorer:
             point[columns] = values
             return self.explained(float(self._left(problem, point[None])[0]))
 
-        if options_of := self._guesses(effect, problem, columns):
+        if (options_of := self._guesses(effect, problem, columns)) is not None:
+            if not any(options_of):
+                return Score(effect)
+            options_of = [options or [problem.lower[i]] for i, options in zip(columns, options_of, strict=True)]
             tried, best = list[tuple[float, ...]](), tuple(options[0] for options in options_of)
             for place, options in enumerate(options_of):
                 tried += [(*best[:place], option, *best[place + 1 :]) for option in options]
@@ -226,12 +229,12 @@ class Scorer:
         guesses = [{problem.names[i]: value for i, value in zip(columns, values, strict=True)} for values in close]
         return Score(effect, share, share, guesses, visibility=1.0, power=float("inf"))
 
-    def _guesses(self, effect: str, problem: Problem, columns: list[int]) -> list[list[float]]:
-        """Values of each of a disturbance's parameters, in the user's units, from the residuals of its axis; none where
-        the block makes none."""
+    def _guesses(self, effect: str, problem: Problem, columns: list[int]) -> list[list[float]] | None:
+        """Values of each of a disturbance's parameters, in the user's units, from the residuals of its axis, which may
+        be too short for any; None where the block makes no guesses."""
         guess = getattr(blocks[effect], "guess", None)
         if not guess:
-            return []
+            return None
         measured, simulators = problem.model.measured, self.fit.problem.simulators["identify"]
         ends = np.cumsum([simulator.scored * len(measured) for simulator in simulators])
         residuals = [part.reshape(len(measured), -1) for part in np.split(self.residual, ends[:-1])]

@@ -158,6 +158,16 @@ def test_every_axis_has_its_own_amounts_and_its_own_line():
     assert len(list(scorer._planned_trials("creep", case.problem(("creep",))))) <= 36
 
 
+@pytest.mark.parametrize("dt", [1e-6, 1e-3, 1.0])
+def test_records_of_any_length_are_scored_and_a_line_that_they_are_too_short_for_is_not_told(dt):
+    case = stage.case(stage.EFFECTS["quadratic_gain"], dt=dt)
+    scorer = Scorer(case, first_fit(case, 0))
+    for score in (score for effect in applicable(case, ()) for score in scorer.scores(effect)):
+        assert np.isfinite([score.explained, score.visibility]).all(), score.effect
+    if dt == 1e-6:
+        assert scorer.score("periodic_disturbance").power == 0
+
+
 @pytest.mark.parametrize("pitches", [(2.0, 5.0), (4.1, 1.7)])
 def test_every_axis_has_its_own_shape(pitches):
     """Two gratings, which the same trial of both axes does not hold."""
