@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -187,8 +187,18 @@ def differ(one: float, other: float, floor: float) -> bool:
 
 def is_tied(case: Case, effect: str, fit: Fit, rival: Fit) -> bool:
     """Whether a fit with a look-alike in the place of an effect is hardly worse."""
+    return is_equal(case, fit, rival) and are_look_alikes(effect, rival.effects[-1])
+
+
+def is_equal(case: Case, fit: Fit, rival: Fit) -> bool:
+    """Whether a rival is hardly worse than a fit."""
     close = removed_rms(rival.total, fit.total) < 2 * TIE * case.floor
-    return (close or rival.total < (1 + LOOK_ALIKE_TIE) * fit.total) and are_look_alikes(effect, rival.effects[-1])
+    return close or rival.total < (1 + LOOK_ALIKE_TIE) * fit.total
+
+
+def strangers(effect: str, rivals: Collection[str]) -> tuple[str, ...]:
+    """The rivals of an effect that are neither a form of it nor a look-alike."""
+    return tuple(item for item in rivals if word_of(item) != word_of(effect) and not are_look_alikes(effect, item))
 
 
 def rests_on_own_bounds(before: Fit, fit: Fit) -> bool:

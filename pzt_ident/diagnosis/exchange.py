@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from pzt_ident.diagnosis.budget import WHOLE
-from pzt_ident.diagnosis.candidates import TIE, is_tied
+from pzt_ident.diagnosis.candidates import TIE, is_equal, is_tied, strangers
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit, refit_beside
@@ -97,6 +97,20 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
             steps.append(step)
         step.rivals = {taken: rivals[taken]} | rivals
         now = rivals[taken]
+
+
+def drop_outdone_rivals(case: Case, now: Fit, steps: Sequence[Step]) -> None:
+    """Leave an effect of the last model only those rivals of another kind that fit as well in its place beside the
+    effects that were added after it."""
+    for step in steps:
+        if step.added not in now.effects:
+            continue
+        others = [item for item in strangers(step.added, step.tied) if word_of(item) not in map(word_of, now.effects)]
+        if not others or not case.budget.allows("ties", WHOLE):
+            continue
+        equal = [fit.effects[-1] for fit in fits_in_place(case, now, step.added, others) if is_equal(case, now, fit)]
+        outdone = {*others} - {*equal}
+        step.rivals = {item: fit for item, fit in step.rivals.items() if item not in outdone}
 
 
 def exchange_any(case: Case, first: Fit, now: Fit) -> list[Step]:

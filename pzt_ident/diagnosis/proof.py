@@ -6,16 +6,14 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 from pzt_ident.data.notation import listed
-from pzt_ident.diagnosis.candidates import are_look_alikes
+from pzt_ident.diagnosis.candidates import strangers
 from pzt_ident.diagnosis.criteria import DECISIVE, beyond_form, near_noise, reaches_noise
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.step import effects_without
-from pzt_ident.model.registry import phrase_of, word_of
+from pzt_ident.model.registry import phrase_of
 
-JOINT = (
-    2 / 3
-)  # of the misfit of the model as given: what one effect must remove; two as if one removed it after the other
+JOINT = 2 / 3  # of the misfit of the model as given: what one effect must remove
 ALONE = 1 / 3  # of the misfit without it: what each must remove beside the others
 
 
@@ -61,28 +59,24 @@ def unproven(case: Case, first: Fit, now: Fit, rivals: Mapping[str, Collection[s
     """The effects to be taken out again, the least first.
 
     Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may stand
-    in for what is not in the catalogue: together they must also remove as much of the misfit as given as if one after
-    the other removed the share JOINT, or DECISIVE where the identification records are at the noise, and each beside
-    the others the share ALONE, on the identification and on the validation records, and none may have had rivals that
-    fit as well and are not its look-alikes: what any effect takes up is not that of one.
+    in for what is not in the catalogue: together they must also remove as much of the misfit as given as if the first
+    removed the share JOINT, or DECISIVE where the identification records are at the noise, and each of the others
+    DECISIVE of the rest, and each beside the others the share ALONE, on the identification and on the validation
+    records, and none may have rivals that fit as well and are not its look-alikes: what any effect takes up is not that
+    of one.
     """
     suspects: list[Suspect] = []
     while added := now.effects[len(first.effects) :]:
         suspected = [suspect(case, first, now, effect, rivals.get(effect, ())) for effect in added]
         least = min(suspected, key=lambda item: item.rank)
-        each = DECISIVE if reaches_noise(case, first, now) else JOINT
-        together = removed_by_all(case, first, now) >= 1 - (1 - each) ** len(added)
+        one = DECISIVE if reaches_noise(case, first, now) else JOINT
+        together = removed_by_all(case, first, now) >= 1 - (1 - one) * (1 - DECISIVE) ** (len(added) - 1)
         decisive = not least.strangers and least.share >= ALONE and together
         if least.beyond_form and (decisive or near_noise(case, first, now)):
             break
         suspects.append(least)
         now = least.without
     return suspects
-
-
-def strangers(effect: str, rivals: Collection[str]) -> tuple[str, ...]:
-    """The rivals of an effect that are neither a form of it nor a look-alike."""
-    return tuple(item for item in rivals if word_of(item) != word_of(effect) and not are_look_alikes(effect, item))
 
 
 def removed_by_all(case: Case, first: Fit, now: Fit) -> float:

@@ -13,7 +13,7 @@ from pzt_ident.diagnosis.budget import LAST
 from pzt_ident.diagnosis.candidates import TIE, Candidate
 from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, climb
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms, removes_enough
-from pzt_ident.diagnosis.exchange import find_rivals, remove_unneeded
+from pzt_ident.diagnosis.exchange import drop_outdone_rivals, find_rivals, remove_unneeded
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.proof import unproven
 from pzt_ident.diagnosis.refit import Case, Fit
@@ -175,6 +175,8 @@ def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListene
     now = staircase.steps[-1].fit
     steps = remove_unneeded(case, first, now, newest=0) if near_noise(case, first, now) else []
     now = steps[-1].fit if steps else now
+    if not near_noise(case, first, now):
+        drop_outdone_rivals(case, now, staircase.steps)
     rivals = {step.added: step.tied for step in staircase.steps if step.added}
     suspects = unproven(case, first, now, rivals)
     for suspect in suspects:

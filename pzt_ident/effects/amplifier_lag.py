@@ -12,7 +12,7 @@ class Charging:
     place = Place.AMPLIFIER
     form = Form("one_pole", ("one_pole", "two_poles"), "Order of the low-pass.")
     tau = Parameter("s", (0, 0.05), "Time constant of output resistance and capacitance.", null=0)
-    look_alikes = ("sensor_lag", "delay", "viscous_damping")
+    look_alikes = ("sensor_lag", "delay", "viscous_damping", "creep")
     separate_by = (
         "Put a known capacitor in parallel with the stack, which lengthens this lag alone, or record the amplifier's "
         "monitor output instead of the command."

@@ -15,7 +15,7 @@ class Creeping:
     """What all forms of creep declare."""
 
     form = Form("spread", ("spread", "voltage", "elements", "voltage_elements"), "Which time constants, and of what.")
-    look_alikes = ("thermal_relaxation", "drift", "amplitude_gain")
+    look_alikes = ("thermal_relaxation", "drift", "amplitude_gain", "sensor_lag", "delay")
     separate_by = "Step up and hold, step down and hold, back by 5 % and hold, then a null record at constant voltage."
     remedy = "Wait after large steps, or add the identified creep to the feedforward."
 

@@ -15,7 +15,7 @@ class Delay(Shift):
     place = Place.DELAY
     sizes = tuple(2e-4 * 1.5**k for k in range(22))
     time = Parameter("s", (0, 0.1), "Dead time.", null=0)
-    look_alikes = ("amplifier_lag", "sensor_lag", "viscous_damping")
+    look_alikes = ("amplifier_lag", "sensor_lag", "viscous_damping", "creep")
     separate_by = "Chirp with a small amplitude beyond 500 Hz, sampled ten times faster than these records."
     remedy = "Record the voltage at the amplifier, or shift the reference ahead by the delay."
 

@@ -12,7 +12,7 @@ class Filtering:
     place = Place.SENSOR
     form = Form("one_pole", ("one_pole", "second_order"), "Order of the filter.")
     tau = Parameter("s", (0, 0.05), "Time constant of the sensor's filter.", null=0)
-    look_alikes = ("amplifier_lag", "delay", "viscous_damping", "load_mass", "resonance")
+    look_alikes = ("amplifier_lag", "delay", "viscous_damping", "load_mass", "resonance", "creep")
     separate_by = (
         "Change the filter of the sensor electronics, which changes this lag alone, or put a known capacitor in "
         "parallel with the stack, which does not."

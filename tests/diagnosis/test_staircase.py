@@ -222,6 +222,18 @@ def test_beside_other_effects_too_the_simpler_of_tied_look_alikes_is_taken(monke
     assert told == steps[2:]
 
 
+@pytest.mark.parametrize(("total", "left"), [(5.02, ("creep", "friction", "drift")), (9.0, ("creep", "drift"))])
+def test_a_rival_of_another_kind_is_one_as_long_as_it_fits_as_well_beside_what_was_added_later(
+    monkeypatch, total, left
+):
+    now = SimpleNamespace(effects=("creep", "quadratic_gain"), total=5.0)
+    rival = SimpleNamespace(effects=("quadratic_gain", "friction"), total=total)
+    monkeypatch.setattr(exchange, "fits_in_place", lambda case, now, effect, items: [rival] if items else [])
+    steps = [Step(now), Step(now, "creep", rivals=dict.fromkeys(("creep", "friction", "drift"), now))]
+    exchange.drop_outdone_rivals(SimpleNamespace(floor=1.0, budget=Budget()), now, steps)
+    assert steps[1].tied == left
+
+
 def ending(identify, total, parameters=3):
     return SimpleNamespace(identify=identify, total=total, problem=SimpleNamespace(dimensions=parameters))
 
