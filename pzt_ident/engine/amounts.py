@@ -52,6 +52,7 @@ class Amounts:
         """Those of each candidate: (candidates, amounts)."""
         amounts = np.zeros((len(theta), self._low.size))
         best, steps, least = amounts.copy(), amounts.copy(), np.full(len(theta), np.inf)
+        promised = np.full(len(theta), np.inf)  # by the next step, of the sum of squares
         moving = np.arange(len(theta))
         for _ in range(PASSES):
             table = self._products(theta[moving], amounts[moving])
@@ -59,10 +60,11 @@ class Amounts:
             better = squares < least[moving]
             inverse = np.linalg.pinv(table[:, 1:, 1:], rcond=DEPENDENT, hermitian=True)
             multiples = (inverse @ table[:, 1:, :1])[:, :, 0]
-            promised = (multiples * table[:, 0, 1:]).sum(axis=1)
+            full = (multiples * table[:, 0, 1:]).sum(axis=1)
+            promised[moving] = np.where(better, full, SHORTER * promised[moving])
             steps[moving] = np.where(better[:, None], -multiples * self._widths, SHORTER * steps[moving])
             best[moving[better]], least[moving[better]] = amounts[moving[better]], squares[better]
-            moving = moving[~(better & (promised <= SETTLED * squares))]
+            moving = moving[~(promised[moving] <= SETTLED * least[moving])]
             if not moving.size:
                 break
             amounts = np.clip(best + steps, self._low, self._high)
