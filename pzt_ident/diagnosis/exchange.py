@@ -82,10 +82,11 @@ def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str]) -> li
 
 def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener) -> None:
     """Set the rivals of the effects in the last model by refits beside all the other effects, with a step to a tied one
-    that has fewer parameters."""
-    now = steps[-1].fit
+    that has fewer parameters. Those of a single effect are known where it is the last that was added."""
+    now, last = steps[-1].fit, steps[-1]
     added = now.effects[len(first.effects) :]
-    for effect in added if len(added) > 1 and case.budget.allows("ties", WHOLE) else ():
+    known = added == (last.added,) and last.removed is None
+    for effect in added if not known and case.budget.allows("ties", WHOLE) else ():
         fits = fits_in_place(case, now, effect, look_alikes(case, now, effect))
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
         rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}

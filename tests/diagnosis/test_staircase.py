@@ -222,6 +222,23 @@ def test_beside_other_effects_too_the_simpler_of_tied_look_alikes_is_taken(monke
     assert told == steps[2:]
 
 
+def test_the_rivals_of_an_effect_that_is_alone_again_are_asked_for_anew(monkeypatch):
+    def fitted(*effects):
+        return SimpleNamespace(effects=effects, total=1.1, identify=1.1, problem=SimpleNamespace(dimensions=3))
+
+    alone, rival = fitted("sensor_lag"), fitted("delay")
+    monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect: ["delay"])
+    monkeypatch.setattr(exchange, "fits_in_place", lambda case, now, effect, items: [rival])
+    case = SimpleNamespace(floor=1.0, budget=Budget())
+    lone = [Step(alone, "sensor_lag", rivals={"sensor_lag": alone})]
+    exchange.find_rivals(case, SimpleNamespace(effects=()), lone, None)
+    assert lone[-1].tied == ("sensor_lag",)
+    exchanged = [Step(rival, "delay"), Step(alone, "sensor_lag", "delay", {"sensor_lag": alone})]
+    for steps in (exchanged, [*lone, Step(fitted("sensor_lag", "creep"), "creep"), Step(alone, None, "creep")]):
+        exchange.find_rivals(case, SimpleNamespace(effects=()), steps, None)
+        assert steps[-1].fit is alone and {"sensor_lag", "delay"} in [set(step.tied) for step in steps]
+
+
 @pytest.mark.parametrize(("total", "left"), [(5.02, ("creep", "friction", "drift")), (9.0, ("creep", "drift"))])
 def test_a_rival_of_another_kind_is_one_as_long_as_it_fits_as_well_beside_what_was_added_later(
     monkeypatch, total, left
