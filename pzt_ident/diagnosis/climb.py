@@ -16,7 +16,7 @@ from pzt_ident.diagnosis.starts import first_fit, restart
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
 from pzt_ident.diagnosis.undetermined import Undetermined
 from pzt_ident.diagnosis.verdict import Diagnosis, best_pair, diagnose
-from pzt_ident.model.registry import blocks
+from pzt_ident.model.registry import blocks, word_of
 
 MOST_STEPS = 8
 PATIENCE = 3  # effects that take up less than half of the misfit, after which no other is tried
@@ -144,8 +144,9 @@ def add_pair(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Ste
 
 def add_restarted(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Step]:
     """An effect of the short list that fits once its own or another block, such as the hysteresis, starts elsewhere."""
-    restarted = started_anew if now.identify > HOPELESS * case.floor else restarted_by_block
-    passing = [(score, fit) for score, fit in restarted(case, diagnosis) if removes_enough(case, first, now, fit)]
+    far, alone = now.identify > HOPELESS * case.floor, now.effects == first.effects
+    restarted = started_anew(case, diagnosis) if far else restarted_by_block(case, diagnosis, every_block=alone)
+    passing = [(score, fit) for score, fit in restarted if removes_enough(case, first, now, fit)]
     if not passing:
         return []
     score, fit = min(passing, key=lambda score_and_fit: score_and_fit[1].total)
@@ -153,11 +154,13 @@ def add_restarted(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> lis
     return [Step(fit, word, None, {word: fit}, explained_share(case, now, fit), score.explained)]
 
 
-def restarted_by_block(case: Case, diagnosis: Diagnosis) -> Iterator[tuple[Score, Fit]]:
-    """The short list, each with single blocks restarted."""
+def restarted_by_block(case: Case, diagnosis: Diagnosis, every_block: bool) -> Iterator[tuple[Score, Fit]]:
+    """The short list, each with single blocks restarted, or only its own where the others were when an effect was
+    added."""
     for candidate in diagnosis.candidates:
-        if candidate.fit:
-            yield candidate.score, restart(case, candidate.fit)
+        if candidate.fit and case.budget.allows("other starts"):
+            block = "" if every_block else word_of(candidate.score.effect)
+            yield candidate.score, restart(case, candidate.fit, block)
 
 
 def started_anew(case: Case, diagnosis: Diagnosis) -> Iterator[tuple[Score, Fit]]:
