@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 from pzt_ident.data.notation import listed
 from pzt_ident.diagnosis.candidates import strangers
-from pzt_ident.diagnosis.criteria import DECISIVE, beyond_form, near_noise, reaches_noise
+from pzt_ident.diagnosis.criteria import DECISIVE, beyond_form, form_of_others, near_noise, reaches_noise, removed_rms
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.step import effects_without
-from pzt_ident.model.registry import phrase_of
+from pzt_ident.model.registry import blocks, phrase_of
 
 JOINT = 2 / 3  # of the misfit of the model as given: what one effect must remove
 ALONE = 1 / 3  # of the misfit without it: what each must remove beside the others
@@ -20,8 +20,9 @@ ALONE = 1 / 3  # of the misfit without it: what each must remove beside the othe
 @dataclass(frozen=True)
 class Suspect:
     """What an effect takes up beside the others: the shares of the misfit on the identification and on the validation
-    records (None without any), the fit without it, whether that is more than the form of the others may leave, and the
-    effects of another kind that fitted as well when it was added."""
+    records (None without any), the fit without it, whether that is more than the form of the others may leave, the
+    effects of another kind that fitted as well when it was added, and the share of all records together where each
+    has its own amount of it: one that has little says nothing against it."""
 
     effect: str
     identify: float
@@ -29,6 +30,7 @@ class Suspect:
     without: Fit
     beyond_form: bool = True
     strangers: tuple[str, ...] = ()
+    of_all: float | None = None
 
     @property
     def rank(self) -> tuple[bool, bool, float]:
@@ -37,7 +39,9 @@ class Suspect:
 
     @property
     def share(self) -> float:
-        """The smaller of both shares."""
+        """The smaller of both shares, or that of all records."""
+        if self.of_all is not None:
+            return self.of_all
         return self.identify if self.validate is None else min(self.identify, self.validate)
 
     @property
@@ -92,5 +96,14 @@ def suspect(case: Case, first: Fit, now: Fit, effect: str, rivals: Collection[st
     if now.validate is not None and without.validate is not None:
         validate = share_explained(without.validate, now.validate, case.floor)
     identify = share_explained(without.identify, now.identify, case.floor)
-    clear = beyond_form(case, first, without, now)
-    return Suspect(effect, identify, validate, without, clear, strangers(effect, rivals))
+    others = strangers(effect, rivals)
+    if validate is not None and differs_by_record(effect):
+        of_all = share_explained(without.total, now.total, case.floor)
+        clear = removed_rms(without.total, now.total) > form_of_others(case, first.total)
+        return Suspect(effect, identify, validate, without, clear, others, of_all)
+    return Suspect(effect, identify, validate, without, beyond_form(case, first, without, now), others)
+
+
+def differs_by_record(effect: str) -> bool:
+    """Whether each record has its own amount of an effect."""
+    return any(parameter.per_record for parameter in blocks[effect].parameters().values())
