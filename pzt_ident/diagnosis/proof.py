@@ -13,8 +13,8 @@ from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.step import effects_without
 from pzt_ident.model.registry import blocks, phrase_of
 
-JOINT = 2 / 3  # of the misfit of the model as given: what one effect must remove
-ALONE = 1 / 3  # of the misfit without it: what each must remove beside the others
+ENOUGH = 2 / 3  # of the misfit: what an effect must remove
+ALONE = 1 / 3  # of the misfit: what each must remove of those that remove most of it together
 
 
 @dataclass(frozen=True)
@@ -63,19 +63,19 @@ def unproven(case: Case, first: Fit, now: Fit, rivals: Mapping[str, Collection[s
     """The effects to be taken out again, the least first.
 
     Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may stand
-    in for what is not in the catalogue: together they must also remove as much of the misfit as given as if the first
-    removed the share JOINT, or DECISIVE where the identification records are at the noise, and each of the others
-    DECISIVE of the rest, and each beside the others the share ALONE, on the identification and on the validation
-    records, and none may have rivals that fit as well and are not its look-alikes: what any effect takes up is not that
-    of one.
+    in for what is not in the catalogue: each must also remove beside the others, on the identification and on the
+    validation records, the share ENOUGH of the misfit, or the share ALONE where together they remove as much of the
+    misfit as given as if the first removed ENOUGH, or DECISIVE where the identification records are at the noise, and
+    each of the others DECISIVE of the rest. None may have rivals that fit as well and are not its look-alikes: what any
+    effect takes up is not that of one.
     """
     suspects: list[Suspect] = []
     while added := now.effects[len(first.effects) :]:
         suspected = [suspect(case, first, now, effect, rivals.get(effect, ())) for effect in added]
         least = min(suspected, key=lambda item: item.rank)
-        one = DECISIVE if reaches_noise(case, first, now) else JOINT
+        one = DECISIVE if reaches_noise(case, first, now) else ENOUGH
         together = removed_by_all(case, first, now) >= 1 - (1 - one) * (1 - DECISIVE) ** (len(added) - 1)
-        decisive = not least.strangers and least.share >= ALONE and together
+        decisive = not least.strangers and least.share >= (ALONE if together else ENOUGH)
         if least.beyond_form and (decisive or near_noise(case, first, now)):
             break
         suspects.append(least)

@@ -49,8 +49,13 @@ def test_what_takes_up_less_than_a_third_of_a_rest_is_a_suspect(taken_out):
 def test_one_removes_two_thirds_of_what_there_was_and_two_together_five_sixths(taken_out):
     assert taken_out(of(a=17.0, none=30.0)) == []
     assert taken_out(of(a=18.0, none=30.0)) == ["a"]
-    assert taken_out(of(ab=12.2, a=25.0, b=25.0, none=30.0)) == []
-    assert taken_out(of(ab=12.4, a=25.0, b=26.0, none=30.0)) == ["b", "a"]
+    assert taken_out(of(ab=12.2, a=20.0, b=20.5, none=30.0)) == []
+    assert taken_out(of(ab=12.4, a=20.0, b=20.5, none=30.0)) == ["b", "a"]
+
+
+def test_two_thirds_beside_the_others_are_enough_however_much_all_remove_together(taken_out):
+    assert taken_out(of(ab=20.0, a=34.6, b=35.0, none=40.0), first=40.0) == ["b", "a"]
+    assert taken_out(of(ab=20.0, a=34.7, b=35.0, none=40.0), first=40.0) == []
 
 
 def test_what_a_model_at_the_noise_has_is_needed_if_the_form_of_the_others_would_not_leave_as_much(taken_out):
