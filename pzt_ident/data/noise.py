@@ -7,6 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
+from scipy.signal import lfilter
 
 from pzt_ident.data.record import Record
 from pzt_ident.data.units import common_unit, factor, of_one_kind
@@ -19,6 +21,7 @@ ROUNDING = 1e-12  # of a signal: what is left below is no noise
 QUIETEST = 0.25  # of all that is measured: as much as no ringing and no transient need have reached
 LOUDER = 1.5  # times those: above that an estimate has more in it than noise
 DECAY = 2.0  # of the variance between the halves of a rest: more is a transient, and the later half is taken
+MOST_MEMORY = 0.95  # from sample to sample: noise of a longer memory is not told from what settles
 MISMATCH = 0.5  # of the noise: more may not come from periods that are no whole number of samples
 
 GOLDEN = (5**0.5 - 1) / 2
@@ -42,11 +45,10 @@ def noise_floor(records: list[Record], axis: int) -> Floor:
     """
     signals = [(r.drive, r.response[axis], r.settle, r.dt) for r in records]
     pairs = [(r, other) for i, r in enumerate(records) for other in records[:i] if is_repeat(r, other, axis)]
-    step = min((quantiser_step(y) for _, y, _, _ in signals), default=0.0)
-    least = step / np.sqrt(12)
+    least = common_step([y for _, y, _, _ in signals]) / np.sqrt(12)
     if pairs:
         changes = [(a.response[axis] - b.response[axis])[max(a.settle, b.settle) :] for a, b in pairs]
-        variances = [detrended_deviation(change, 1) ** 2 / 2 for change in changes]
+        variances = [deviation(*without_lines(change, 1)) ** 2 / 2 for change in changes]
         return at_least(np.sqrt(np.mean(variances)), "repeated records", least)
     for estimate, source in (
         (rest_noise, "rest segments"),
@@ -69,9 +71,9 @@ def quiet_deviation(deviations: Array, seconds: Array) -> float:
     return float(np.sqrt(np.average(deviations[kept] ** 2, weights=seconds[kept])))
 
 
-def at_least(deviation: float, source: str, least: float) -> Floor:
+def at_least(value: float, source: str, least: float) -> Floor:
     """The floor of a standard deviation, or that of the quantiser where it is more."""
-    return Floor(float(deviation), source) if deviation > least else Floor(least, "quantiser")
+    return Floor(float(value), source) if value > least else Floor(least, "quantiser")
 
 
 def is_repeat(record: Record, other: Record, axis: int, tolerance: float = 2e-3) -> bool:
@@ -123,8 +125,19 @@ def quantiser_step(response: Array) -> float:
         return 0.0
     gaps = np.diff(values)
     step = float(gaps[gaps > 1e-6 * gaps.max()].min())
-    steps = gaps / step
-    return step if np.allclose(steps, np.round(steps), atol=0.05) else 0.0
+    return step if is_on_grid(response, step) else 0.0
+
+
+def common_step(responses: list[Array]) -> float:
+    """Step of the quantiser of all responses: the finest that one of them shows, 0 where others have values between."""
+    steps = [step for step in map(quantiser_step, responses) if step]
+    return min(steps) if steps and all(is_on_grid(response, min(steps)) for response in responses) else 0.0
+
+
+def is_on_grid(response: Array, step: float) -> bool:
+    """Whether all values are whole numbers of steps apart."""
+    steps = np.diff(np.unique(response)) / step
+    return bool(np.allclose(steps, np.round(steps), atol=0.05))
 
 
 def rest_noise(drive: Array, response: Array, least: int = 100) -> list[tuple[float, int]]:
@@ -144,11 +157,11 @@ def rest_noise(drive: Array, response: Array, least: int = 100) -> list[tuple[fl
 def settled_deviation(signal: Array, least: int) -> tuple[float, int]:
     """Standard deviation about a quartic and lines, and the number of samples that it is from: those of the later half,
     and so on, while the earlier one has DECAY times its variance."""
-    noise = without_lines(signal, 4)
+    noise, basis = without_lines(signal, 4)
     half = noise.size // 2
     if half >= least and np.var(noise[:half]) > DECAY * np.var(noise[half:]):
         return settled_deviation(signal[half:], least)
-    return float(np.std(noise)), noise.size
+    return deviation(noise, basis), noise.size
 
 
 def period_noise(drive: Array, response: Array, least: int = 3) -> list[tuple[float, int]]:
@@ -163,30 +176,54 @@ def period_noise(drive: Array, response: Array, least: int = 3) -> list[tuple[fl
         firsts = range(0, response.size - 2 * period + 1, period)
         return [signal[i + period : i + 2 * period] - signal[i : i + period] for i in firsts]
 
-    deviations = np.array([np.std(without_lines(change, 1)) for change in changes(response)]) / np.sqrt(2)
-    deviation = quiet_deviation(deviations, np.ones(deviations.size))
+    deviations = np.array([deviation(*without_lines(change, 1)) for change in changes(response)]) / np.sqrt(2)
+    quiet = quiet_deviation(deviations, np.ones(deviations.size))
     scaled = drive / np.maximum(np.ptp(drive, axis=1, keepdims=True), 1e-300)
     mismatch, span = max(float(np.median(np.std(changes(row), axis=1))) for row in scaled), np.ptp(response)
-    return [(deviation, response.size)] if mismatch * span <= max(MISMATCH * deviation, ROUNDING * span) else []
+    return [(quiet, response.size)] if mismatch * span <= max(MISMATCH * quiet, ROUNDING * span) else []
 
 
 def difference_noise(drive: Array, response: Array) -> list[tuple[float, int]]:
     """Standard deviation and number of samples from third differences, whose variance is 20 times that of white
     noise."""
     third = np.diff(response, 3)
-    deviation = float(np.median(np.abs(third)) / 0.6745 / np.sqrt(20)) if third.size > 10 else 0.0
-    return [(deviation, third.size)] if third.size > 10 else []
+    return [(float(np.median(np.abs(third)) / 0.6745 / np.sqrt(20)), third.size)] if third.size > 10 else []
 
 
-def detrended_deviation(signal: Array, degree: int) -> float:
-    """Standard deviation about the best polynomial."""
-    x = np.linspace(-1, 1, signal.size)
-    return float(np.std(np.asarray(signal - np.polynomial.Polynomial.fit(x, signal, degree)(x))))
+def deviation(noise: Array, basis: Array) -> float:
+    """Standard deviation of noise that an orthonormal basis, (samples, columns), has been projected out of, which takes
+    the more of it the longer its memory is: of first order, such that the part that is left is as alike from sample to
+    sample as it should be."""
+    power, alike = float(noise @ noise), float(noise[1:] @ noise[:-1])
+    if power == 0:
+        return 0.0
+
+    def excess(memory: float) -> float:
+        expected = expected_products(basis, memory)
+        return expected[1] / expected[0] - alike / power
+
+    whiter, redder = excess(0.0) >= 0, excess(MOST_MEMORY) <= 0
+    memory = 0.0 if whiter else MOST_MEMORY if redder else brentq(excess, 0.0, MOST_MEMORY, xtol=1e-4)
+    return float(np.sqrt(power / expected_products(basis, memory)[0]))
 
 
-def without_lines(signal: Array, degree: int, most: int = 5, near: int = 25) -> Array:
+def expected_products(basis: Array, memory: float) -> tuple[float, float]:
+    """What the sum of squares of n, and that of n_t n_{t+1}, are expected to be, where n is noise of unit variance with
+    the correlations R_st = memory^|s - t| that the basis B has been projected out of: tr(MRM) and the sum next to the
+    diagonal of MRM, M = I - B B'."""
+    decay = [1.0], [1.0, -memory]
+    correlated = lfilter(*decay, basis, axis=0) + lfilter(*decay, basis[::-1], axis=0)[::-1] - basis
+    inner = basis.T @ correlated
+    across = (basis[:-1] * correlated[1:]).sum() + (correlated[:-1] * basis[1:]).sum()
+    samples = basis.shape[0]
+    beside = (samples - 1) * memory - across + ((basis[:-1] @ inner) * basis[1:]).sum()
+    return float(samples - np.trace(inner)), float(beside)
+
+
+def without_lines(signal: Array, degree: int, most: int = 5, near: int = 25) -> tuple[Array, Array]:
     """The signal less a polynomial and, fitted together with it, up to `most` sinusoids whose power is LINE_RATIO times
-    that of the `near` frequencies around them."""
+    that of the `near` frequencies around them, all made white; and the orthonormal basis of what was taken off,
+    (samples, columns)."""
     t = np.arange(signal.size)
     basis = np.linalg.qr(np.polynomial.legendre.legvander(np.linspace(-1, 1, signal.size), degree))[0]
 
@@ -202,14 +239,20 @@ def without_lines(signal: Array, degree: int, most: int = 5, near: int = 25) -> 
     for _ in range(most):
         if np.abs(noise).max() <= ROUNDING * np.abs(signal).max():
             break
-        power = np.abs(np.fft.rfft(noise * np.hanning(noise.size))) ** 2
+        power = np.abs(np.fft.rfft(whitened(noise) * np.hanning(noise.size))) ** 2
         peak = int(np.argmax(power[3:])) + 3 if power.size > 2 * near else 0
         around = np.concatenate([power[max(1, peak - near) : max(1, peak - 2)], power[peak + 3 : peak + near]])
         if not peak or power[peak] <= LINE_RATIO * around.mean():
             break
         basis = np.hstack([basis, waves(top(power_at, (peak - 1) / noise.size, (peak + 1) / noise.size, 1e-9))])
         noise = signal - basis @ (basis.T @ signal)
-    return np.asarray(noise)
+    return np.asarray(noise), basis
+
+
+def whitened(noise: Array) -> Array:
+    """Noise less what follows of it from the sample before: without its memory of first order."""
+    memory = noise[1:] @ noise[:-1] / (noise @ noise)
+    return np.asarray(np.append(noise[0], noise[1:] - memory * noise[:-1]))
 
 
 def top(function: Callable[[float], float], low: float, high: float, width: float) -> float:

@@ -4,15 +4,22 @@ import dataclasses
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.signal import lfilter
 
 from pzt_ident.data.noise import (
+    common_step,
     correlation_of,
+    deviation,
     error_scales,
+    expected_products,
     noise_floor,
     period_of,
     quantiser_step,
     rest_noise,
     units_and_floors,
+    without_lines,
 )
 from pzt_ident.data.record import Record
 
@@ -206,6 +213,46 @@ def test_the_start_of_a_rest_is_left_to_settle():
 def test_a_rest_has_a_hundred_steps_after_its_first_fifth(samples, rests):
     drive = np.concatenate([rising(300), np.full(samples - 1, 100.0), 100 - rising(300)[1:]])
     assert len(rest_noise(drive[None], white(drive.size))) == rests
+
+
+def coloured(samples, memory, seed=0):
+    """Noise of unit variance and of a memory of first order."""
+    white_part = np.random.default_rng(seed).normal(0, np.sqrt(1 - memory**2), samples + 1000)
+    return lfilter([1.0], [1.0, -memory], white_part)[1000:]
+
+
+@pytest.mark.parametrize("memory", [0.0, 0.5, 0.9])
+@pytest.mark.parametrize("samples", [108, 320, 1600])
+def test_what_a_quartic_takes_of_noise_with_a_memory_is_allowed_for(memory, samples):
+    """More than half of the variance of 108 samples of memory 0.9."""
+    parts = [without_lines(coloured(samples, memory, seed), 4) for seed in range(200)]
+    assert np.sqrt(np.mean([deviation(*part) ** 2 for part in parts])) == pytest.approx(1, rel=0.1)
+
+
+@given(memory=st.floats(0, 0.95), columns=st.integers(1, 8), samples=st.integers(20, 60))
+@settings(deadline=None)
+def test_the_products_of_projected_noise_are_those_of_its_covariance(memory, columns, samples):
+    basis = np.linalg.qr(np.random.default_rng(columns).normal(size=(samples, columns)))[0]
+    apart = np.abs(np.subtract.outer(np.arange(samples), np.arange(samples)))
+    left = np.eye(samples) - basis @ basis.T
+    covariance = left @ memory**apart @ left
+    expected = np.trace(covariance), np.trace(covariance, 1)
+    assert expected_products(basis, memory) == pytest.approx(expected, rel=1e-9, abs=1e-9)
+
+
+def test_records_measured_again_with_a_hum_give_the_noise():
+    drive, t = white(3000, seed=9), np.arange(3000)
+    again = [record(drive, drive + 15 * np.sin(t / 7 + phase) + white(3000, seed=phase)) for phase in (1, 3)]
+    floor = noise_floor(again, 0)
+    assert (floor.source, floor.value) == ("repeated records", pytest.approx(1, rel=0.1))
+
+
+def test_a_quantiser_counts_for_records_too_short_to_show_it():
+    drive = np.concatenate([rising(400), rising(400)[::-1]])
+    responses = np.round(10 * drive), np.round(0.5 * drive)
+    assert [quantiser_step(response) for response in responses] == [0, 1]
+    assert common_step([*responses]) == 1
+    assert common_step([*responses, 10 * drive + white(800)]) == 0
 
 
 def test_a_rest_is_one_of_all_drives():
