@@ -39,26 +39,26 @@ def noise_floor(records: list[Record], axis: int) -> Floor:
     high frequencies.
 
     The noise is the sensor's, the same in all records, and what a stage adds, such as ringing, only makes an estimate
-    larger: those well above the quietest quarter are left out. Never less than the quantiser's q / sqrt(12) where the
-    response takes few values. The high-frequency part is weak evidence: it takes slow noise for signal and fast signal
-    for noise.
+    larger: those well above the quietest quarter are left out. A quantiser adds its own. The high-frequency part is
+    weak evidence: it takes slow noise for signal and fast signal for noise.
     """
     signals = [(r.drive, r.response[axis], r.settle, r.dt) for r in records]
     pairs = [(r, other) for i, r in enumerate(records) for other in records[:i] if is_repeat(r, other, axis)]
-    least = common_step([y for _, y, _, _ in signals]) / np.sqrt(12)
+    step = common_step([y for _, y, _, _ in signals])
     if pairs:
         changes = [(a.response[axis] - b.response[axis])[max(a.settle, b.settle) :] for a, b in pairs]
         variances = [deviation(*without_lines(change, 1)) ** 2 / 2 for change in changes]
-        return at_least(np.sqrt(np.mean(variances)), "repeated records", least)
+        return floor_of(with_quantiser(np.sqrt(np.mean(variances)), step), "repeated records", step)
     for estimate, source in (
         (rest_noise, "rest segments"),
         (period_noise, "repeated periods"),
         (difference_noise, "high frequencies (weak)"),
     ):
-        estimates = [(v, n * dt) for u, y, settle, dt in signals for v, n in estimate(u[:, settle:], y[settle:])]
+        found = [(part, dt) for u, y, settle, dt in signals for part in estimate(u[:, settle:], y[settle:])]
+        estimates = [(with_quantiser(value, step), samples * dt) for (value, samples), dt in found]
         if estimates:
-            return at_least(quiet_deviation(*np.array(estimates).T), source, least)
-    return Floor(least, "quantiser")
+            return floor_of(quiet_deviation(*np.array(estimates).T), source, step)
+    return floor_of(with_quantiser(0.0, step), "quantiser", step)
 
 
 def quiet_deviation(deviations: Array, seconds: Array) -> float:
@@ -71,9 +71,20 @@ def quiet_deviation(deviations: Array, seconds: Array) -> float:
     return float(np.sqrt(np.average(deviations[kept] ** 2, weights=seconds[kept])))
 
 
-def at_least(value: float, source: str, least: float) -> Floor:
-    """The floor of a standard deviation, or that of the quantiser where it is more."""
-    return Floor(float(value), source) if value > least else Floor(least, "quantiser")
+def floor_of(value: float, source: str, step: float) -> Floor:
+    """The floor of a standard deviation, the quantiser's where it is less than what is left besides."""
+    return Floor(float(value), "quantiser" if value <= step / np.sqrt(6) else source)
+
+
+def with_quantiser(scatter: float, step: float) -> float:
+    """Standard deviation of the errors of a quantised reading of something whose readings scatter so much.
+
+    Noise of variance s^2 errs by s^2 + q^2/12 in the mean over all places between two steps q. What stays in place
+    scatters less: by q s / sqrt(pi) in the mean where s is small against q, by all of it from q^2/(2 pi) on.
+    """
+    if 2 * np.pi * scatter**2 >= step**2:
+        return scatter
+    return float(np.hypot(np.sqrt(np.pi) * scatter**2 / step, step / np.sqrt(12)))
 
 
 def is_repeat(record: Record, other: Record, axis: int, tolerance: float = 2e-3) -> bool:

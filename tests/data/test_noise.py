@@ -19,6 +19,7 @@ from pzt_ident.data.noise import (
     quantiser_step,
     rest_noise,
     units_and_floors,
+    with_quantiser,
     without_lines,
 )
 from pzt_ident.data.record import Record
@@ -282,7 +283,24 @@ def test_a_rest_that_is_quieter_than_the_quantiser_has_the_noise_of_the_quantise
     drive, step = rising(500, 3000), 1e-9
     flips = np.random.default_rng(2).random(3500) < 0.02
     floor = noise_floor([record(drive, step * flips)], 0)
-    assert (floor.source, floor.value) == ("quantiser", pytest.approx(step / np.sqrt(12)))
+    assert (floor.source, floor.value) == ("quantiser", pytest.approx(step / np.sqrt(12), rel=0.01))
+
+
+@pytest.mark.parametrize("size", [0.02, 0.1, 0.2, 0.3, 1])
+def test_coarse_readings_of_things_at_rest_tell_their_error(size):
+    rng = np.random.default_rng(1)
+    places = rng.uniform(0, 1, (3000, 1))
+    readings = np.round(places + rng.normal(0, size, (3000, 300)))
+    error = np.sqrt(np.mean((readings - places) ** 2))
+    assert with_quantiser(np.sqrt(readings.var(axis=1).mean()), 1.0) == pytest.approx(error, rel=0.02)
+
+
+@pytest.mark.parametrize("size", [0.15, 0.25, 0.5])
+def test_rests_of_coarse_readings_give_the_noise_and_the_quantisers(size):
+    heights = np.random.default_rng(3).uniform(50, 100, 30)
+    drives = [np.concatenate([np.linspace(0, height, 300), np.full(400, height)]) for height in heights]
+    records = [record(drive, np.round(drive + white(700, size, seed=n))) for n, drive in enumerate(drives)]
+    assert noise_floor(records, 0).value == pytest.approx(np.sqrt(size**2 + 1 / 12), rel=0.1)
 
 
 def test_the_finest_quantiser_of_several_records_counts():
