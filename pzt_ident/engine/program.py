@@ -76,9 +76,17 @@ class Program:
                     self._keep(number, axis)
                     self._append(block, axis)
         self._fill(self._fresh & set(model.measured), Place.SENSOR)
+        self.chain_rows = self.rows
         self.additions = {axis: self._additions(axis) for axis in model.measured} if not single else {}
         if not single:
             self.steps  # noqa: B018  what cannot be compiled is refused before anything is simulated
+
+    @cached_property
+    def ends(self) -> list[int]:
+        """Of each operation the first row of the scratch that is not of it or of one before."""
+        rows = [*[item.row for item in self.operations if item.block][1:], self.chain_rows]
+        number = np.cumsum([item.block is not None for item in self.operations])
+        return [rows[n - 1] if n else 0 for n in number]
 
     @cached_property
     def steps(self) -> list[tuple[int, ...]]:
