@@ -54,9 +54,10 @@ def score_all(case: Case, first: Fit, before: Fit, scorer: Scorer) -> list[Candi
     beside other effects those that the budget suffices for."""
 
     def scores_of(word: str) -> list[Score]:
-        scored = before is first or case.budget.allows("the scores of all effects", LAST)
+        scored = before is first or case.budget.allows("the scores of all effects", share)
         return scorer.scores(word) if scored else []
 
+    share = WHOLE if adequate(case, first, before) else LAST
     words, candidates = applicable(case, before.effects), list[Candidate]()
     for scores in filter(None, side_by_side(scores_of, words)):
         candidates.append(Candidate.of(scores))

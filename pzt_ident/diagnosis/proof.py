@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from pzt_ident.data.notation import listed
@@ -59,8 +59,10 @@ class Suspect:
         return f"{phrase_of(self.effect)} takes up {seen}{unseen}".replace("%", " %") + rest
 
 
-def unproven(case: Case, first: Fit, now: Fit, rivals: Mapping[str, Collection[str]]) -> list[Suspect]:
-    """The effects to be taken out again, the least first.
+def unproven(
+    case: Case, first: Fit, now: Fit, rivals: Mapping[str, Collection[str]], known: Sequence[Fit] = ()
+) -> list[Suspect]:
+    """The effects to be taken out again, the least first. known: other fits of the case.
 
     Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may stand
     in for what is not in the catalogue: each must also remove beside the others, on the identification and on the
@@ -71,7 +73,7 @@ def unproven(case: Case, first: Fit, now: Fit, rivals: Mapping[str, Collection[s
     """
     suspects: list[Suspect] = []
     while added := now.effects[len(first.effects) :]:
-        suspected = [suspect(case, first, now, effect, rivals.get(effect, ())) for effect in added]
+        suspected = [suspect(case, first, now, effect, rivals.get(effect, ()), known) for effect in added]
         least = min(suspected, key=lambda item: item.rank)
         one = DECISIVE if reaches_noise(case, first, now) else ENOUGH
         together = removed_by_all(case, first, now) >= 1 - (1 - one) * (1 - DECISIVE) ** (len(added) - 1)
@@ -89,9 +91,14 @@ def removed_by_all(case: Case, first: Fit, now: Fit) -> float:
     return min(share_explained(before, after, case.floor) for before, after in both if before and after)
 
 
-def suspect(case: Case, first: Fit, now: Fit, effect: str, rivals: Collection[str]) -> Suspect:
-    """What an effect of a fit takes up beside the others."""
-    without = refit(case, now, effects_without(now, effect), {})
+def suspect(
+    case: Case, first: Fit, now: Fit, effect: str, rivals: Collection[str], known: Sequence[Fit] = ()
+) -> Suspect:
+    """What an effect of a fit takes up beside the others, of which a known fit may leave less than the refit that the
+    budget suffices for."""
+    others_only = effects_without(now, effect)
+    fits = [refit(case, now, others_only, {}), *(fit for fit in known if {*fit.effects} == {*others_only})]
+    without = min(fits, key=lambda fit: fit.total)
     validate = None
     if now.validate is not None and without.validate is not None:
         validate = share_explained(without.validate, now.validate, case.floor)

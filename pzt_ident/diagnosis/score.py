@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cache
 from itertools import chain
 from math import prod
 from operator import itemgetter
@@ -206,26 +205,27 @@ class Scorer:
         its block makes from the residuals, one column after the other, else on a grid."""
         columns = [i for i, name in enumerate(problem.names) if name not in self.fit.problem.names]
         start = np.array([self.fit.values.get(name, 0.0) for name in problem.names])
+        rough, shares = problem.rough(), dict[tuple[float, ...], float]()
 
-        @cache
-        def explained(values: tuple[float, ...]) -> float:
-            point = start.copy()
-            point[columns] = values
-            return self.explained(float(self._left(problem, point[None])[0]))
+        def take(tried: list[tuple[float, ...]]) -> None:
+            if new := [values for values in dict.fromkeys(tried) if values not in shares]:
+                points = np.tile(start, (len(new), 1))
+                points[:, columns] = new
+                shares.update(zip(new, map(self.explained, self._left(rough, points).tolist()), strict=True))
 
         if (options_of := self._guesses(effect, problem, columns)) is not None:
             if not any(options_of):
                 return Score(effect)
             options_of = [options or [problem.lower[i]] for i, options in zip(columns, options_of, strict=True)]
-            tried, best = list[tuple[float, ...]](), tuple(options[0] for options in options_of)
+            best = tuple(options[0] for options in options_of)
             for place, options in enumerate(options_of):
-                tried += [(*best[:place], option, *best[place + 1 :]) for option in options]
-                best = max(tried, key=explained)
+                take([(*best[:place], option, *best[place + 1 :]) for option in options])
+                best = max(shares, key=shares.__getitem__)
         else:
-            tried = list(parameter_grid(problem, columns, blocks[effect].trials))
-        tried = sorted(dict.fromkeys(tried), key=explained, reverse=True)
-        share = max(explained(tried[0]), 0.0)
-        close = [values for values in tried if explained(values) >= AS_GOOD * share > 0][:MOST_GUESSES]
+            take(list(parameter_grid(problem, columns, blocks[effect].trials)))
+        tried = sorted(shares, key=shares.__getitem__, reverse=True)
+        share = max(shares[tried[0]], 0.0)
+        close = [values for values in tried if shares[values] >= AS_GOOD * share > 0][:MOST_GUESSES]
         guesses = [{problem.names[i]: value for i, value in zip(columns, values, strict=True)} for values in close]
         return Score(effect, share, share, guesses, visibility=1.0, power=float("inf"))
 

@@ -178,7 +178,7 @@ def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListene
     if not near_noise(case, first, now):
         drop_outdone_rivals(case, now, staircase.steps)
     rivals = {step.added: step.tied for step in staircase.steps if step.added}
-    suspects = unproven(case, first, now, rivals)
+    suspects = unproven(case, first, now, rivals, [first, *(step.fit for step in staircase.steps)])
     for suspect in suspects:
         share = explained_share(case, now, suspect.without)
         steps.append(Step(suspect.without, None, suspect.effect, {}, share))

@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 
 PASSES = 30  # of linearisation at most
 SETTLED = 1e-9  # of the sum of squares: a step that promises less is not taken
+ROUGH = 1e-3  # where points are only ranked
 WIDTH = 1e-5  # of the range of an amount: its difference
 SHORTER = 0.25  # the next step after one that led uphill
 DEPENDENT = 1e-10  # of the largest eigenvalue: directions of less are one
@@ -27,8 +28,8 @@ class Amounts:
     other parameters.
     """
 
-    def __init__(self, simulator: Simulator) -> None:
-        self.simulator = simulator
+    def __init__(self, simulator: Simulator, settled: float = SETTLED) -> None:
+        self.simulator, self.settled = simulator, settled
         model, record = simulator.model, simulator.record
         signals = [record.drive if entry.parameter.unit == "drive" else record.response for entry in model.amounts]
         axes = [entry.axis for entry in model.amounts]
@@ -64,7 +65,7 @@ class Amounts:
             promised[moving] = np.where(better, full, SHORTER * promised[moving])
             steps[moving] = np.where(better[:, None], -multiples * self._widths, SHORTER * steps[moving])
             best[moving[better]], least[moving[better]] = amounts[moving[better]], squares[better]
-            moving = moving[~(promised[moving] <= SETTLED * least[moving])]
+            moving = moving[~(promised[moving] <= self.settled * least[moving])]
             if not moving.size:
                 break
             amounts = np.clip(best + steps, self._low, self._high)

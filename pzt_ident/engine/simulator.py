@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.record import Record, interpolated
 from pzt_ident.engine.additions import Additions
-from pzt_ident.engine.amounts import Amounts, Held
+from pzt_ident.engine.amounts import ROUGH, Amounts, Held
 from pzt_ident.engine.gather import squares
 from pzt_ident.engine.program import Program
 from pzt_ident.model.block import TILES
@@ -55,6 +55,12 @@ class Simulator:
         near.amounts, near.additions = held, Additions(self._program, held.directions)
         return near
 
+    def rough(self) -> Simulator:
+        """The simulator whose amounts end as soon as they tell points from each other."""
+        rough = copy(self)
+        rough.amounts = Amounts(rough, ROUGH)
+        return rough
+
     @property
     def substeps(self) -> int:
         """Steps of the simulation in a sample."""
@@ -89,15 +95,15 @@ class Simulator:
         """The responses (candidates, measured axes, samples), stretch by stretch of so many samples at most."""
         from pzt_ident.engine.kernel import TILE
 
-        steps = np.array(self._program.steps, dtype=np.int64).reshape(-1, 5)
         scratch = self._program.scratch(theta, self._rows)
+        steps, signals = self._shared(scratch, np.array(self._program.steps, dtype=np.int64).reshape(-1, 5))
         length = -(-most // TILE) * TILE
         lead, samples = self.record.run_in * self.record.samples, self.record.samples
         for first in range(0, lead + samples, length):
             last = min(first + length, lead + samples)
             at = slice(max(first - lead, 0), last - lead)
             output = np.empty((len(theta), len(self.model.measured), max(at.stop - at.start, 0)))
-            self._run(scratch, steps, output, first, last)
+            self._run(scratch, steps, signals, output, first, last)
             if output.size:
                 yield at, output
 
@@ -111,7 +117,9 @@ class Simulator:
         scratch = self._program.scratch(self.amounts.complete(theta), self._rows)
         sums = scratch.reshape(scratch.shape[0], self._rows, WIDTH)[:, self._sums :]
         self.additions.begin(sums)
-        self._run(scratch, self._scoring, np.empty((0, 0, 0)), 0, self.record.samples * (self.record.run_in + 1))
+        steps, signals = self._shared(scratch, self._scoring)
+        last = self.record.samples * (self.record.run_in + 1)
+        self._run(scratch, steps, signals, np.empty((0, 0, 0)), 0, last)
         if self.model.additions:
             table = sums.reshape(-1, len(self.model.measured), self._each, WIDTH).transpose(0, 3, 1, 2)
             squared, sure = self.additions.squares(table.reshape(-1, *table.shape[2:])[: theta.shape[0]], self.scored)
@@ -170,14 +178,22 @@ class Simulator:
             added.append((sums, self._sums + self._each * i, responses + i, TILES * a, since))
         return np.array(self._program.steps + added, dtype=np.int64)
 
-    def _run(self, scratch: Array, program: NDArray[np.int64], output: Array, first: int, last: int) -> None:
+    def _shared(self, scratch: Array, steps: NDArray[np.int64]) -> tuple[NDArray[np.int64], Array]:
+        """The steps and the signals, without those that all candidates share where they are known."""
+        from pzt_ident.engine.prefix import shared_prefix
+
+        return shared_prefix(self._program, scratch, steps, self._signals)
+
+    def _run(
+        self, scratch: Array, steps: NDArray[np.int64], signals: Array, output: Array, first: int, last: int
+    ) -> None:
         """Step from sample `first` to sample `last`, counted from the start of the run-in."""
         from pzt_ident.engine.kernel import run
 
         fine = self.substeps
         since = self.record.run_in * self.record.samples * fine
         tiles = self._program.tiles + self.additions.tiles
-        run(program, self._signals, scratch, tiles, first * fine, last * fine, since, fine, output, self._measured)
+        run(steps, signals, scratch, tiles, first * fine, last * fine, since, fine, output, self._measured)
 
     @property
     def _signals(self) -> Array:

@@ -182,6 +182,13 @@ class Problem(Cube):
         near.linear = Linear(self.model, columns[~followed], self.linear.units[~followed], near._changes)
         return near
 
+    def rough(self) -> Problem:
+        """The problem whose amounts of the records end as soon as they tell points from each other."""
+        rough = copy(self)
+        identify = [simulator.rough() for simulator in self.simulators["identify"]]
+        rough.simulators = self.simulators | {"identify": identify}
+        return rough
+
     def narrowed(self, point: Array) -> Problem:
         """The problem with differences that do not reach beyond a narrow minimum, see `half_widths`; itself where the
         usual ones do not."""

@@ -20,7 +20,7 @@ def fit(identify, validate, effects=()):
 def taken_out(monkeypatch):
     """The suspects among some effects, given the error of a model without each set of them."""
 
-    def of(errors, validation=None, first=30.0, rivals=None):
+    def of(errors, validation=None, first=30.0, rivals=None, known=()):
         validation = validation or errors
 
         def refitted(case, before, effects, guess):
@@ -31,7 +31,7 @@ def taken_out(monkeypatch):
         monkeypatch.setattr(proof, "differs_by_record", lambda effect: len(effect) > 1 and by_record(effect))
         every = max(errors, key=len)
         now = fit(errors[every], validation[every], sorted(every))
-        return [item.effect for item in unproven(CASE, fit(first, first), now, rivals or {})]
+        return [item.effect for item in unproven(CASE, fit(first, first), now, rivals or {}, known)]
 
     return of
 
@@ -51,6 +51,11 @@ def test_one_removes_two_thirds_of_what_there_was_and_two_together_five_sixths(t
     assert taken_out(of(a=18.0, none=30.0)) == ["a"]
     assert taken_out(of(ab=12.2, a=20.0, b=20.5, none=30.0)) == []
     assert taken_out(of(ab=12.4, a=20.0, b=20.5, none=30.0)) == ["b", "a"]
+
+
+def test_a_refit_that_ended_with_the_budget_proves_nothing_beside_a_known_fit(taken_out):
+    assert taken_out(of(a=7.0, none=50.0)) == []
+    assert taken_out(of(a=7.0, none=50.0), known=[fit(8.0, 8.0), fit(2.0, 2.0, "b")]) == ["a"]
 
 
 def test_two_thirds_beside_the_others_are_enough_however_much_all_remove_together(taken_out):
