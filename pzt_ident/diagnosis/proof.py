@@ -13,8 +13,9 @@ from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.step import effects_without
 from pzt_ident.model.registry import blocks, phrase_of
 
-ENOUGH = 2 / 3  # of the misfit: what an effect must remove
-ALONE = 1 / 3  # of the misfit: what each must remove of those that remove most of it together
+ENOUGH = 0.8  # of the misfit as given: what one effect must remove
+BESIDE = 2 / 3  # of the misfit beside the others: what each must remove of those that do not remove most of it together
+ALONE = 1 / 3  # what each must remove of those that do
 
 
 @dataclass(frozen=True)
@@ -65,10 +66,10 @@ def unproven(
     """The effects to be taken out again, the least first. known: other fits of the case.
 
     Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may stand
-    in for what is not in the catalogue: each must also remove beside the others, on the identification and on the
-    validation records, the share ENOUGH of the misfit, or the share ALONE where together they remove as much of the
-    misfit as given as if the first removed ENOUGH, or DECISIVE where the identification records are at the noise, and
-    each of the others DECISIVE of the rest. None may have rivals that fit as well and are not its look-alikes: what any
+    in for what is not in the catalogue: on the identification and on the validation records they must also remove
+    together as much of the misfit as given as if the first removed ENOUGH, or DECISIVE where the identification records
+    are at the noise, and each of the others DECISIVE of the rest, and each the share ALONE beside the others; or each
+    of several the share BESIDE. None may have rivals that fit as well and are not its look-alikes: what any
     effect takes up is not that of one.
     """
     suspects: list[Suspect] = []
@@ -77,7 +78,8 @@ def unproven(
         least = min(suspected, key=lambda item: item.rank)
         one = DECISIVE if reaches_noise(case, first, now) else ENOUGH
         together = removed_by_all(case, first, now) >= 1 - (1 - one) * (1 - DECISIVE) ** (len(added) - 1)
-        decisive = not least.strangers and least.share >= (ALONE if together else ENOUGH)
+        least_share = ALONE if together else BESIDE if len(added) > 1 else one
+        decisive = not least.strangers and least.share >= least_share
         if least.beyond_form and (decisive or near_noise(case, first, now)):
             break
         suspects.append(least)
