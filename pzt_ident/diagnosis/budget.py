@@ -12,7 +12,7 @@ PER_SAMPLE = 1e-3  # s
 BESIDE = 0.35  # of the budget: other effects beside one that explains nearly all, but for a second one, get no more
 EXPLORING = 0.7  # of the budget: the rest is for proving what was found
 WHOLE = 1.0  # of the budget: ties, intervals and what promises to explain most of what is left get no more
-LAST = 2.0  # of the budget: fits end there, settled or not
+LAST = 1.25  # of the budget: fits end there, settled or not
 
 
 class Budget:

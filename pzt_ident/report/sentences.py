@@ -65,7 +65,7 @@ def remaining_error(results: Results) -> str:
         "identify": "on the identification records, and there is no validation record",
     }[use]
     size = f"{quantity(rmse[use], results.unit, 3)}{together(results.units)}"
-    return f"The RMSE is {size} {records}{_over_noise(results, use)}."
+    return f"The RMSE is {size} {records}{over_noise(results, use)}."
 
 
 def findings(results: Results) -> list[str]:
@@ -105,7 +105,8 @@ def _advice(results: Results) -> Iterator[str]:
         yield f"No drive within the limits distinguishes the candidates. On the test rig: {best['separate_by']}"
 
 
-def _over_noise(results: Results, use: str) -> str:
+def over_noise(results: Results, use: str) -> str:
+    """How far the error is above the noise, as the rest of a sentence."""
     floors = results.floors
     if results.share_of_noise < NOISELESS:
         return "; the response contains almost no noise, as if it were simulated"
@@ -120,7 +121,10 @@ def _over_noise(results: Results, use: str) -> str:
     ratios = sorted(rmse[axis] / known[axis] for rmse in errors for axis in known if rmse.get(axis) is not None)
     if not ratios:
         return ""
-    return f"; depending on axis and record, {number(ratios[0], 2)} to {number(ratios[-1], 2)} times the noise floor"
+    least, most = number(ratios[0], 2), number(ratios[-1], 2)
+    if least == most:
+        return f", {least}\u00a0times the noise floor on every axis in every record"
+    return f"; depending on axis and record, {least} to {most} times the noise floor"
 
 
 def _parameters(results: Results) -> list[str]:

@@ -12,7 +12,7 @@ import pytest
 from pzt_ident.data.notation import listed
 from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.report.page import write_report
-from pzt_ident.report.sentences import findings, headline, next_step, printed_reason, verdict
+from pzt_ident.report.sentences import findings, headline, next_step, over_noise, printed_reason, verdict
 from pzt_ident.run.misfit import compare
 from pzt_ident.run.results import read_results
 from run_folders import WEIRD, make_run
@@ -142,6 +142,14 @@ def test_verdict_without_validation_and_noise(weird):
 def test_verdict_of_two_axes_gives_the_range(tmp_path):
     results = read_results(make_run(tmp_path, axes=("x", "y"), samples=60))
     assert "7.7 to 7.9 times the noise floor" in verdict(results)
+
+
+def test_verdict_of_two_axes_that_are_alike_gives_no_range():
+    errors = [{"use": "validate", "rmse": {"x": 1.01, "y": 0.99}}, {"use": "identify", "rmse": {"x": 9.0, "y": 9.0}}]
+    alike = SimpleNamespace(floors={"x": 1.0, "y": 1.0}, share_of_noise=0.1, records=errors)
+    assert "depending on axis and record, 0.99 to 1.0 times" in over_noise(alike, "validate")
+    errors[0]["rmse"]["y"] = 1.012
+    assert over_noise(alike, "validate") == ", 1.0\u00a0times the noise floor on every axis in every record"
 
 
 def test_failed_simulations_are_counted(plain):
