@@ -13,7 +13,7 @@ from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.step import effects_without
 from pzt_ident.model.registry import blocks, phrase_of
 
-ENOUGH = 0.8  # of the misfit as given: what one effect must remove
+ENOUGH = 3 / 4  # of the misfit as given: what one effect must remove
 BESIDE = 2 / 3  # of the misfit beside the others: what each must remove of those that do not remove most of it together
 ALONE = 1 / 3  # what each must remove of those that do
 
