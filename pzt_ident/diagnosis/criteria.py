@@ -39,9 +39,11 @@ def tolerance(case: Case, first: Fit) -> float:
 
 def beyond_form(case: Case, first: Fit, without: Fit, now: Fit) -> bool:
     """Whether an effect beside others takes up more than the form of these may leave, on the identification and on the
-    validation records; the latter need not show it where they are at the noise with it and without."""
+    validation records; the latter need not show it where they are at the noise with it and without, or would be if the
+    noise floor were half as much again."""
     shown = removed_rms(without.identify, now.identify) > form_of_others(case, first.identify)
-    if first.validate is None or not_in_validation(case, first, without, now):
+    near = max(without.validate or 0.0, now.validate or 0.0, now.identify) <= NEAR * case.floor
+    if first.validate is None or near or not_in_validation(case, first, without, now):
         return shown
     return shown and removed_rms(without.validate, now.validate) > form_of_others(case, first.validate)
 

@@ -75,6 +75,8 @@ def test_the_form_of_the_others_is_held_against_each_kind_of_record(taken_out):
     assert taken_out(seen, of(ab=1.0, a=1.9, b=6.0, none=30.0)) == []
     assert taken_out(seen, of(ab=1.5, a=1.9, b=6.0, none=30.0)) == ["b"]
     assert taken_out(seen, of(ab=1.0, a=1.0, b=6.0, none=30.0)) == []  # nor can it be seen there
+    assert taken_out(of(ab=1.2, a=6.0, b=6.0, none=30.0), of(ab=1.4, a=1.4, b=6.0, none=30.0)) == []
+    assert taken_out(of(ab=1.2, a=6.0, b=6.0, none=30.0), of(ab=1.6, a=1.6, b=6.0, none=30.0)) == ["b"]
 
 
 def test_what_an_effect_of_another_kind_would_take_up_as_well_is_a_suspect_above_the_noise(taken_out):
