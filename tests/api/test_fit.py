@@ -139,8 +139,8 @@ def test_a_fit_shows_value_error_unit_and_verdict(show, improvement):
         "µm/V",
         "determined",
         "0.005033",
-        "noise floor: 0.004884",
-        "1.03 noise floors",
+        "noise floor: 0.004952",
+        "1.02 noise floors",
     ):
         assert part in text.replace("\N{NO-BREAK SPACE}", " ")
 
