@@ -90,7 +90,10 @@ document.addEventListener("keydown", (event) => {
   else return;
   event.preventDefault();
 });
-for (const kind of ["pointermove", "focusin"]) document.addEventListener(kind, ({ target }) => point(target.closest(BAR)));
+document.addEventListener("focusin", ({ target }) => point(target.closest(BAR)));
+document.addEventListener("pointermove", ({ target, movementX, movementY }) => {
+  if (movementX || movementY) point(target.closest(BAR)); // a page that moves below a mouse at rest tells of no bar
+});
 document.addEventListener("scroll", () => point(null), true);
 document.addEventListener("click", ({ target }) => {
   const cell = target.closest("#table-devices thead th"), bar = target.closest(BAR);
