@@ -50,7 +50,7 @@ export function keepingFocus(redraw, fallback = null) {
   const focusedName = name(focused), { selectionStart, selectionEnd } = focused;
   redraw();
   if (focused === document.body || visible(focused)) return;
-  const successor = [...document.querySelectorAll("a, button, select, input, summary")].find((item) => name(item) === focusedName && visible(item));
+  const successor = [...document.querySelectorAll("a, button, select, input, summary, [role=button]")].find((item) => name(item) === focusedName && visible(item));
   (successor ?? fallback?.())?.focus({ preventScroll: true });
   if (typeof selectionStart === "number") successor?.setSelectionRange(selectionStart, selectionEnd);
   else if (successor?.matches("input[type=number]")) successor.select();
