@@ -7,11 +7,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
-from scipy.signal import lfilter
 
 from pzt_ident.data.record import Record
 from pzt_ident.data.units import common_unit, factor, of_one_kind
+from pzt_ident.libraries import extension
 
 Array = NDArray[np.float64]
 
@@ -213,8 +212,15 @@ def deviation(noise: Array, basis: Array) -> float:
         expected = expected_products(basis, memory)
         return expected[1] / expected[0] - alike / power
 
+    zeros = extension("scipy.optimize", "_zeros")
     whiter, redder = excess(0.0) >= 0, excess(MOST_MEMORY) <= 0
-    memory = 0.0 if whiter else MOST_MEMORY if redder else brentq(excess, 0.0, MOST_MEMORY, xtol=1e-4)
+    memory = (
+        0.0
+        if whiter
+        else MOST_MEMORY
+        if redder
+        else zeros._brentq(excess, 0.0, MOST_MEMORY, 1e-4, 1e-9, 100, (), False, True)
+    )
     return float(np.sqrt(power / expected_products(basis, memory)[0]))
 
 
@@ -222,8 +228,9 @@ def expected_products(basis: Array, memory: float) -> tuple[float, float]:
     """What the sum of squares of n, and that of n_t n_{t+1}, are expected to be, where n is noise of unit variance with
     the correlations R_st = memory^|s - t| that the basis B has been projected out of: tr(MRM) and the sum next to the
     diagonal of MRM, M = I - B B'."""
-    decay = [1.0], [1.0, -memory]
-    correlated = lfilter(*decay, basis, axis=0) + lfilter(*decay, basis[::-1], axis=0)[::-1] - basis
+    filtered = extension("scipy.signal", "_sigtools")._linear_filter  # scipy.signal takes half a second to import
+    onward, back = (filtered(np.ones(1), np.array([1.0, -memory]), rows, 0) for rows in (basis, basis[::-1]))
+    correlated = onward + back[::-1] - basis
     inner = basis.T @ correlated
     across = (basis[:-1] * correlated[1:]).sum() + (correlated[:-1] * basis[1:]).sum()
     samples = basis.shape[0]
