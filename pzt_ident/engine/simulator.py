@@ -56,7 +56,9 @@ class Simulator:
         return near
 
     def rough(self) -> Simulator:
-        """The simulator whose amounts end as soon as they tell points from each other."""
+        """The simulator whose amounts end as soon as they tell points from each other; those that are held do."""
+        if isinstance(self.amounts, Held):
+            return self
         rough = copy(self)
         rough.amounts = Amounts(rough, ROUGH)
         return rough
