@@ -140,9 +140,10 @@ class Problem(Cube):
             return self._tangent.follow(scaled) if self._tangent else scaled
 
     def _changes(self, theta: Array) -> Array:
-        """Residual of the first candidate, and how that of each other differs from it, rotated: (rows, candidates). NaN
-        if one failed."""
-        rows, failed = self._rotated(theta, differences(len(theta)))
+        """Residual of the first candidate, and how that of each other differs from it, rotated: (rows, candidates).
+        Amounts of the records follow those of the first to first order. NaN if one failed."""
+        near = self._holding(self._amounts(theta[0]))
+        rows, failed = near._rotated(theta, differences(len(theta)))
         return np.full_like(rows, np.nan) if failed.any() else rows
 
     def tangent(self, point: Array, sampled: bool = False) -> Tangent | None:
@@ -161,20 +162,29 @@ class Problem(Cube):
 
     def held(self, point: Array) -> tuple[Held, ...]:
         """The amounts of each identification record beside a point, if the model has any."""
-        theta = self.parameters(point)[0]
+        return self._amounts(self.parameters(point)[0])
+
+    def _amounts(self, theta: Array) -> tuple[Held, ...]:
         return tuple(filter(None, (simulator.held(theta) for simulator in self.simulators["identify"])))
+
+    def _holding(self, held: tuple[Held, ...]) -> Problem:
+        """The problem whose amounts of the records follow to first order; itself without any."""
+        if not held:
+            return self
+        near = copy(self)
+        identify = zip(self.simulators["identify"], held, strict=True)
+        near.simulators = self.simulators | {"identify": [simulator.near(each) for simulator, each in identify]}
+        return near
 
     def along(self, tangent: Tangent | None, held: tuple[Held, ...] = ()) -> Problem:
         """The problem whose residuals have what is solved for follow to first order, for a fraction of the cost; the
         model may have more blocks than that of the tangent and the amounts, if they are at their null in it."""
         if tangent is None and not held:
             return self
-        near, columns = copy(self), self.linear.columns
-        if held:
-            identify = zip(self.simulators["identify"], held, strict=True)
-            near.simulators = self.simulators | {"identify": [simulator.near(each) for simulator, each in identify]}
+        near, columns = self._holding(held), self.linear.columns
         if tangent is None:
             return near
+        near = copy(near)
         followed = np.array([self.model.names[column] in tangent.values for column in columns])
         near.theta = self.theta.copy()
         near.theta[columns[followed]] = [tangent.values[self.model.names[column]] for column in columns[followed]]

@@ -194,11 +194,13 @@ def verdict_of(place: float, error: float, flat: float) -> tuple[str, str]:
 
 def flat_share(problem: Problem, point: Array, steps: int = 24) -> Array:
     """Share of each parameter's range over which the loss stays within FLAT of the best, the others fixed: (free,).
-    Amounts of the records follow to first order, which is exact where the response hardly changes."""
+    What is solved for follows to first order, which is exact where the response hardly changes."""
     grid = (np.arange(steps) + 0.5) / steps
-    count = problem.dimensions
-    points = np.tile(point, (count * steps, 1))
-    for i in range(count):
-        points[i * steps : (i + 1) * steps, i] = grid
-    losses = problem.rough_loss(points, point).reshape(count, steps)
-    return (losses <= (1 + FLAT) * problem.loss(point)[0]).mean(axis=1)
+    near, most = problem.near(point), (1 + FLAT) * problem.loss(point)[0]
+    losses = problem.loss if near is problem else lambda points: np.linalg.norm(near.rotated_residuals(points), axis=1)
+    shares = np.empty(problem.dimensions)
+    for i in range(problem.dimensions):
+        points = np.tile(point, (steps, 1))
+        points[:, i] = grid
+        shares[i] = np.mean(losses(points) <= most)
+    return shares

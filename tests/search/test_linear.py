@@ -13,6 +13,7 @@ from scipy.special import erf
 import smith
 from pzt_ident.data.notation import ranges
 from pzt_ident.engine import simulator
+from pzt_ident.engine.amounts import Amounts
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import Job
 from pzt_ident.model.chain import Chain
@@ -292,6 +293,23 @@ def test_what_is_gathered_is_what_is_held(measured, behind):
     np.testing.assert_allclose(stretches[0], held[0], atol=1e-12 * np.abs(measured.response).max())
     slopes = weights[1:] @ held
     np.testing.assert_allclose(stretches[1:], slopes, atol=1e-5 * np.abs(slopes).max())
+
+
+def test_amounts_of_a_record_are_solved_for_beside_a_density(measured, monkeypatch):
+    """A ripple on the field, which the density bends: both together end at the noise, and are never solved for anew in
+    each of the density's columns."""
+    wave = 200 * np.sin(2 * np.pi * 0.03 * np.arange(FIELD.size) + 1)
+    moved = response(["homogenized_energy"], smith.A, FIELD + wave)
+    made = record(FIELD, response=[moved + np.random.default_rng(5).normal(0, NOISE, moved.size)])
+    values = {"poled": 1e6, "reach": REACH, "smoothness": 1e-3}
+    specs = {f"homogenized_energy.{word}": SimpleNamespace(bounds=None, value=value) for word, value in values.items()}
+    specs["periodic_disturbance.frequency"] = SimpleNamespace(bounds=None, value=0.03 / made.dt)
+    rippled = Problem(Chain([blocks["periodic_disturbance.ripple"], FREE], ["x"], [0]), [made], specs)
+    together, products = [], Amounts._products
+    monkeypatch.setattr(Amounts, "_products", lambda *args: together.append(len(args[1])) or products(*args))
+    loss = rippled.loss(at(rippled, 6120))[0]
+    assert loss == pytest.approx(problem(measured).loss(at(problem(measured), 6120))[0], rel=0.1)
+    assert max(together) == 1
 
 
 def test_no_column_of_a_long_record_is_held(monkeypatch):
