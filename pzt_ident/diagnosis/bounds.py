@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pzt_ident.diagnosis.criteria import removes_enough
 from pzt_ident.diagnosis.refit import Case, Fit, fit_at, refine_steps
 from pzt_ident.diagnosis.undetermined import undetermined_mechanics
-from pzt_ident.search.descent import descend
 
 SLIP = 0.15  # of a bound, by which a data sheet may be beside the truth
 
@@ -34,7 +33,7 @@ def beyond_bounds(case: Case, first: Fit, fit: Fit) -> tuple[Case, Fit] | None:
 def continued(wide: Case, fit: Fit) -> Fit:
     """A fit gone on with in a case with wider bounds."""
     problem = wide.problem(fit.effects, fit.steps, fit.measured_only)
-    point = descend(problem, problem.unit_point(fit.values), going=wide.budget.lasts)
+    point = wide.descend(problem, problem.unit_point(fit.values))
     return refine_steps(wide, fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
 
 

@@ -68,8 +68,10 @@ def score_all(case: Case, first: Fit, before: Fit, scorer: Scorer) -> list[Candi
 
 def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
     """Refit the model with each effect, in its first form and in the one that scores best; returns the refitted ones,
-    which are all that the budget suffices for, but at least the best one beside the model as given."""
+    which are all that the budget suffices for, but at least the best one beside the model as given. Those that stay far
+    above what the best score leads to are given up."""
     fits: list[Fit] = []
+    rival = np.inf
 
     def share_allowed(candidate: Candidate) -> float:
         if candidate is candidates[0] and candidate.score.explained >= DECISIVE:
@@ -81,11 +83,18 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
         if not needed and not case.budget.allows("the refits of all candidates", share_allowed(candidate)):
             return {}
         forms = {score.effect: score for score in (candidate.forms[0], candidate.score)}
-        made = {item: refit_from(case, before, (*before.effects, item), score.guesses) for item, score in forms.items()}
+        made = {
+            item: refit_from(case, before, (*before.effects, item), score.guesses, rival)
+            for item, score in forms.items()
+        }
         fits.extend(made.values())
         return made
 
-    for candidate, made in zip(candidates, side_by_side(refits, candidates), strict=True):
+    for candidate in candidates[:1]:
+        candidate.refits = refits(candidate)
+        rival = min((fit.identify for fit in candidate.refits.values()), default=np.inf)
+    others = candidates[1:]
+    for candidate, made in zip(others, side_by_side(refits, others), strict=True):
         candidate.refits = made
     return [candidate for candidate in candidates if candidate.refits]
 
@@ -170,7 +179,8 @@ def refit_other_forms(
         if missing and not case.budget.allows("other forms", allowed):
             break
         new = {
-            score.effect: refit_from(case, before, (*before.effects, score.effect), score.guesses) for score in missing
+            score.effect: refit_from(case, before, (*before.effects, score.effect), score.guesses, best.identify)
+            for score in missing
         }
         candidate.refits = {**candidate.refits, **new}
     shortlist += [item for item in wanted if item.refits and item not in shortlist]

@@ -77,7 +77,10 @@ def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str]) -> li
     without = refit(case, now, effects_without(now, effect), {})
     scorer = Scorer(case, without)
     guesses = {item: scorer.score(item).guess for item in items}
-    return [refit_beside(case, (without, now), (*without.effects, item), guess) for item, guess in guesses.items()]
+    return [
+        refit_beside(case, (without, now), (*without.effects, item), guess, now.identify)
+        for item, guess in guesses.items()
+    ]
 
 
 def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener) -> None:

@@ -118,6 +118,10 @@ class Case:
         once."""
         return self._resampled.setdefault((number, steps), replace(self.records[number], steps=steps))
 
+    def descend(self, problem: Problem, point: Array, rival: float = np.inf) -> Array:
+        """The point that few steps reach while the budget lasts, see `search.descent`."""
+        return descend(problem, point, going=self.budget.lasts, rival=rival)
+
     @cached_property
     def floor(self) -> float:
         """Noise floor of all measured axes together, in units of the loss."""
@@ -187,29 +191,34 @@ def fit_at(
     return Fit(effects, problem, point, float(problem.loss(point)[0]), validate, converged, measured_only)
 
 
-def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, float]) -> Fit:
+def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, float], rival: float = np.inf) -> Fit:
     """The model with other effects, started from the parameters of the fit `before` and from a guess (user's units) of
-    the new ones. The new effects act on all axes or on the measured ones only, whichever fits better."""
+    the new ones. The new effects act on all axes or on the measured ones only, whichever fits better. rival: an RMSE
+    that a refit which stays far above it is given up for."""
     problem = case.problem(effects, before.steps)
     point = start_of(problem, before, guess)
-    key = (effects, before.steps, point.tobytes())
+    key = (effects, before.steps, point.tobytes(), rival)
     if key not in case.refits:
-        case.refits[key] = _best_of_axes(case, before, effects, problem, point)
+        case.refits[key] = _best_of_axes(case, before, effects, problem, point, rival)
     fit = case.refits[key]
     case.on_event({"event": "refitted", "effects": effects, "identify": fit.identify, "validate": fit.validate})
     return fit
 
 
-def refit_from(case: Case, before: Fit, effects: tuple[str, ...], guesses: Sequence[dict[str, float]]) -> Fit:
+def refit_from(
+    case: Case, before: Fit, effects: tuple[str, ...], guesses: Sequence[dict[str, float]], rival: float = np.inf
+) -> Fit:
     """The best of the refits from each guess."""
-    return min((refit(case, before, effects, guess) for guess in guesses or [{}]), key=lambda fit: fit.total)
+    return min((refit(case, before, effects, guess, rival) for guess in guesses or [{}]), key=lambda fit: fit.total)
 
 
-def refit_beside(case: Case, fits: Sequence[Fit], effects: tuple[str, ...], guess: dict[str, float]) -> Fit:
+def refit_beside(
+    case: Case, fits: Sequence[Fit], effects: tuple[str, ...], guess: dict[str, float], rival: float = np.inf
+) -> Fit:
     """The refit from the fit whose parameters leave least with the guess."""
     problem = case.problem(effects, fits[0].steps)
     losses = problem.loss(np.array([start_of(problem, fit, guess) for fit in fits]))
-    return refit(case, fits[int(np.argmin(losses))], effects, guess)
+    return refit(case, fits[int(np.argmin(losses))], effects, guess, rival)
 
 
 def start_of(problem: Problem, before: Fit, guess: dict[str, float]) -> Array:
@@ -220,7 +229,9 @@ def start_of(problem: Problem, before: Fit, guess: dict[str, float]) -> Array:
     )
 
 
-def _best_of_axes(case: Case, before: Fit, effects: tuple[str, ...], problem: Problem, start: Array) -> Fit:
+def _best_of_axes(
+    case: Case, before: Fit, effects: tuple[str, ...], problem: Problem, start: Array, rival: float
+) -> Fit:
     """The better of the fits with the effects on all axes and on the measured ones only, where the two differ."""
     variants = [(problem, False)]
     if case.unmeasured_nulls(effects):
@@ -229,8 +240,7 @@ def _best_of_axes(case: Case, before: Fit, effects: tuple[str, ...], problem: Pr
             variants.append((restricted, True))
     fits = [
         refine_steps(
-            case,
-            fit_at(effects, variant, descend(variant, start, going=case.budget.lasts), measured_only=measured_only),
+            case, fit_at(effects, variant, case.descend(variant, start, rival), measured_only=measured_only), rival
         )
         for variant, measured_only in variants
     ]
@@ -242,7 +252,7 @@ def residuals_differ(case: Case, one: Array, other: Array) -> bool:
     return bool(np.linalg.norm(one - other) > STEP_TOLERANCE * case.floor)
 
 
-def refine_steps(case: Case, fit: Fit) -> Fit:
+def refine_steps(case: Case, fit: Fit, rival: float = np.inf) -> Fit:
     """The fit, continued with finer simulation steps for the records where halving the step changes the response.
 
     Where the drive is linear between samples, the signals between blocks are taken as linear too.
@@ -252,8 +262,8 @@ def refine_steps(case: Case, fit: Fit) -> Fit:
         return fit
     steps = [count * (2 if halve else 1) for count, halve in zip(fit.steps, coarse, strict=True)]
     problem = case.problem(fit.effects, steps, fit.measured_only)
-    point = descend(problem, fit.point, going=case.budget.lasts)
-    return refine_steps(case, fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
+    point = case.descend(problem, fit.point, rival)
+    return refine_steps(case, fit_at(fit.effects, problem, point, fit.converged, fit.measured_only), rival)
 
 
 def step_errors(case: Case, fit: Fit) -> Array:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.refit import Case, Fit, fit_at, refine_steps, side_by_side
-from pzt_ident.search.descent import descend
 from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
@@ -37,17 +37,16 @@ def first_fit(
     all random points."""
     effects = case.effects if effects is None else effects
     problem = case.problem(effects)
-    minima = (
-        np.empty((0, problem.dimensions)) if known is None else descend(problem, known, going=case.budget.lasts)[None]
-    )
-    order, agreed = ranked_points(problem, seed, guess or {}), False
+    minima = np.empty((0, problem.dimensions)) if known is None else case.descend(problem, known)[None]
+    order, agreed, least = ranked_points(problem, seed, guess or {}), False, np.inf
     most = MOST_REFINED if known is None else REFINED
     for number in range(0, most, REFINED):
         starts = order[number : number + REFINED]
-        for minimum in side_by_side(lambda start: descend(problem, start, going=case.budget.lasts), starts):
+        for minimum in side_by_side(partial(case.descend, problem, rival=least), starts):
             minima = np.vstack([minima, minimum])
             case.on_event({"event": "fitted", "done": len(minima), "of": most + (known is not None)})
         losses = problem.loss(minima)
+        least = float(losses.min())
         alike = np.count_nonzero(losses <= (1 + AGREEMENT) * losses.min() + 0.1 * case.floor)
         agreed = bool(alike > 1 and np.isfinite(losses.min()))
         lowest = fit_at(effects, problem, minima[np.argmin(losses)])
@@ -84,7 +83,7 @@ def best_of_each_axis(case: Case, problem: Problem, minima: Array) -> Array:
     best = dict(zip(problem.model.measured, np.argmin(errors, axis=0), strict=True))
     axes = [problem.model.entries[column].axis for column in problem.free]
     point = np.array([minima[best.get(axis, np.argmin(errors.sum(axis=1)))][i] for i, axis in enumerate(axes)])
-    return descend(problem, point, going=case.budget.lasts) if len(set(best.values())) > 1 else point
+    return case.descend(problem, point) if len(set(best.values())) > 1 else point
 
 
 def restart(case: Case, fit: Fit, block: str = "", starts_per_block: int = RESTARTS) -> Fit:
@@ -103,7 +102,7 @@ def restart(case: Case, fit: Fit, block: str = "", starts_per_block: int = RESTA
         restarted = np.array([column_owner == owner for column_owner in owners])
         starts = np.where(restarted, random_points(problem, rng), fit.point)
         for start in starts[np.argsort(problem.rough_loss(starts, fit.point))[:starts_per_block]]:
-            point = descend(problem, start, going=case.budget.lasts)
+            point = case.descend(problem, start, fit.identify)
             fits.append(fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
     return min(fits, key=lambda candidate: candidate.total)
 

@@ -18,7 +18,6 @@ from pzt_ident.diagnosis.refit import Case, Fit, fit_at, refine_steps
 from pzt_ident.diagnosis.staircase import Staircase, StepListener
 from pzt_ident.diagnosis.step import explained_share
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
-from pzt_ident.search.descent import descend
 
 Array = NDArray[np.float64]
 First = Callable[[Case], Fit]
@@ -187,7 +186,7 @@ def on_all(case: Case, fit: Fit) -> Fit:
     """A fit, gone on with on all samples."""
     problem = case.problem(fit.effects, (), fit.measured_only)
     start = dict(zip(problem.names, problem.physical(np.full(problem.dimensions, 0.5))[0].tolist(), strict=True))
-    point = descend(problem, problem.unit_point(start | fit.values), going=case.budget.lasts)
+    point = case.descend(problem, problem.unit_point(start | fit.values))
     return refine_steps(case, fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
 
 

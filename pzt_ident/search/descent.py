@@ -16,7 +16,9 @@ Array = NDArray[np.float64]
 DAMPINGS = 10.0 ** np.arange(-12, 4)  # of the curvature, tried side by side, which costs lanes as much as one
 FARTHEST = 0.3  # of a parameter's range in a step
 REFINED, PATIENCE = 1e-4, 3  # of the loss: so many steps in a row that take less off end a descent
-SETTLED = 1e-11  # of the loss: a step that takes less off ends a polish
+PROMISED = 1e-8  # of the loss: a step that would take less off ends it, too
+FAR, CRAWLING = 2.0, 1e-3  # times the loss of a rival, above which steps in a row that take less off end it, too
+SETTLED = 1e-11  # of the loss: a step that takes less off, or would, ends a polish
 NEXT = 1e-3  # of a parameter's range: twice the longest step that still leads to the minimum next to it
 ROUNDING = 1e-10  # of the loss: it rises by less where only its digits end
 
@@ -27,14 +29,15 @@ def descend(
     most: int = 30,
     held: int | None = None,
     going: Callable[[], bool] = lambda: True,
+    rival: float = np.inf,
 ) -> Array:
     """The point that few steps reach. held: a parameter that stays where it is. going: whether there is time for
-    another step."""
+    another step. rival: a loss, FAR above which a descent that is CRAWLING is given up."""
     best, falls = np.clip(point, 0, 1), [1.0]
-    for step, fall in islice(steps(problem, best, held, going), most):
+    for step, loss, fall in islice(steps(problem, best, PROMISED, held, going), most):
         best = step
         falls.append(fall)
-        if max(falls[-PATIENCE:]) < REFINED:
+        if max(falls[-PATIENCE:]) < (CRAWLING if loss > FAR * rival else REFINED):
             break
     return best
 
@@ -54,7 +57,7 @@ def polish(problem: Problem, point: Array, evaluations: int = 2000) -> tuple[Arr
 def settling(problem: Problem, point: Array, most: int) -> tuple[Array, int]:
     """Where so many steps end, or fewer where the loss falls no more, and how many they are."""
     number = 0
-    for step, fall in islice(steps(problem, point), most):
+    for step, _, fall in islice(steps(problem, point, SETTLED), most):
         point, number = step, number + 1
         if fall < SETTLED:
             break
@@ -76,18 +79,21 @@ def settled(problem: Problem, point: Array) -> Array:
 
 
 def steps(
-    problem: Problem, point: Array, held: int | None = None, going: Callable[[], bool] = lambda: True
-) -> Iterator[tuple[Array, float]]:
-    """Steps of Levenberg and Marquardt: points of lower and lower loss in the unit cube, and by which share of the loss
-    each fell, until none is lower."""
+    problem: Problem, point: Array, least: float, held: int | None = None, going: Callable[[], bool] = lambda: True
+) -> Iterator[tuple[Array, float, float]]:
+    """Steps of Levenberg and Marquardt: points of lower and lower loss in the unit cube, their losses, and by which
+    share each fell, until none is lower or the residuals, if they were linear, would promise none that falls by the
+    least."""
     loss = problem.best(point[None], point)[1]
     movable = np.arange(point.size) != held
     while 0 < loss < np.inf and going():
         jacobian, residual = (part / loss for part in problem.equations(point, central=False))
         gradient, curvature = jacobian.T @ residual, jacobian.T @ jacobian
-        moves = bounded_steps(point, gradient, curvature, DAMPINGS, movable)
-        best, least = problem.best(np.clip(point + np.clip(moves, -FARTHEST, FARTHEST), 0, 1), point)
-        if not least < loss:
+        moves = np.clip(bounded_steps(point, gradient, curvature, DAMPINGS, movable), -FARTHEST, FARTHEST)
+        if 1 - np.linalg.norm(residual[:, None] + jacobian @ moves.T, axis=0).min() < least:
             break
-        yield best, 1 - least / loss
-        point, loss = best, least
+        best, reached = problem.best(np.clip(point + moves, 0, 1), point)
+        if not reached < loss:
+            break
+        yield best, reached, 1 - reached / loss
+        point, loss = best, reached

@@ -12,7 +12,7 @@ import stage
 from pzt_ident.diagnosis import refit, starts
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.caveats import bounds_sentence, measured_only_sentence
-from pzt_ident.diagnosis.refit import fit_at, side_by_side
+from pzt_ident.diagnosis.refit import Case, fit_at, side_by_side
 from pzt_ident.diagnosis.starts import first_fit, restart
 from pzt_ident.engine.simulator import simulate
 from pzt_ident.model.block import Addition, Block, Coupling, Place
@@ -50,7 +50,7 @@ def test_the_first_fit_is_a_function_of_its_seed(creeping):
 
 
 def test_a_fit_whose_starts_end_apart_has_not_converged(plain, monkeypatch):
-    monkeypatch.setattr(starts, "descend", lambda problem, point, going: point)
+    monkeypatch.setattr(Case, "descend", lambda case, problem, point, rival=np.inf: point)
     assert first_fit(plain, 0).converged  # no restart leads lower
     monkeypatch.setattr(starts, "restart", lambda case, fit: replace(fit, identify=0.9 * fit.identify))
     assert not first_fit(plain, 0).converged
@@ -58,13 +58,13 @@ def test_a_fit_whose_starts_end_apart_has_not_converged(plain, monkeypatch):
 
 def test_more_starts_are_refined_until_two_agree(plain, monkeypatch):
     """Of each four of the first twenty all but the first get nowhere."""
-    points, descent = [], refit.descend
+    points = []
 
-    def lame(problem, point, going):
+    def lame(case, problem, point, rival=np.inf):
         points.append(point)
-        return descent(problem, point, going=going) if len(points) in (1, 21) else point
+        return descend(problem, point, rival=rival) if len(points) in (1, 21) else point
 
-    monkeypatch.setattr(starts, "descend", lame)
+    monkeypatch.setattr(Case, "descend", lame)
     assert first_fit(plain, 0).converged
     assert len(points) == 24
 
@@ -284,7 +284,7 @@ def test_threads_are_as_silent_about_floating_point_as_the_caller(recwarn):
 def test_where_half_of_all_starts_agree_the_search_ends(plain, monkeypatch):
     """By their number, whatever they took."""
     fitted, astray = [], np.full(plain.problem(()).dimensions, 0.6)
-    monkeypatch.setattr(starts, "descend", lambda problem, point, going: astray)
+    monkeypatch.setattr(Case, "descend", lambda case, problem, point, rival=np.inf: astray)
     monkeypatch.setattr(plain, "on_event", lambda event: fitted.append(event["done"]) if "done" in event else None)
     first_fit(plain, 0)
     assert fitted == list(range(1, 13))
@@ -292,14 +292,14 @@ def test_where_half_of_all_starts_agree_the_search_ends(plain, monkeypatch):
 
 def test_two_starts_that_agree_far_from_the_noise_do_not_end_the_search(plain, monkeypatch):
     """Of the first eight points all end in one side minimum."""
-    points, descent = [], refit.descend
-    astray = descent(plain.problem(()), np.full(plain.problem(()).dimensions, 0.9), most=1)
+    points = []
+    astray = descend(plain.problem(()), np.full(plain.problem(()).dimensions, 0.9), most=1)
 
-    def lame(problem, point, going):
+    def lame(case, problem, point, rival=np.inf):
         points.append(point)
-        return descent(problem, point, going=going) if len(points) > 8 else astray
+        return descend(problem, point, rival=rival) if len(points) > 8 else astray
 
-    monkeypatch.setattr(starts, "descend", lame)
+    monkeypatch.setattr(Case, "descend", lame)
     fit = first_fit(plain, 0)
     assert fit.converged and fit.identify < 1.1 * plain.floor
     assert len(points) == 12

@@ -20,6 +20,7 @@ from pzt_ident.diagnosis.candidates import (
     score_all,
 )
 from pzt_ident.diagnosis.criteria import removed_rms, removes_enough
+from pzt_ident.diagnosis.refit import Case
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.verdict import diagnose, missing_sentence
@@ -174,7 +175,7 @@ def test_what_a_shorter_step_would_change_is_blamed_on_no_effect(monkeypatch, fi
 
 def test_a_fit_that_has_not_converged_is_blamed_on_no_effect(monkeypatch):
     case = stage.case(stage.EFFECTS["creep"])
-    monkeypatch.setattr(starts, "descend", lambda problem, point, going: point)
+    monkeypatch.setattr(Case, "descend", lambda case, problem, point, rival=np.inf: point)
     monkeypatch.setattr(starts, "restart", lambda case, fit: replace(fit, identify=0.9 * fit.identify))
     diagnosis = judged(case)
     assert diagnosis.verdict == "refused"

@@ -9,7 +9,8 @@ from scipy.optimize import least_squares, lsq_linear
 from pzt_ident.engine import simulator
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks
-from pzt_ident.search.descent import polish
+from pzt_ident.search import descent
+from pzt_ident.search.descent import CRAWLING, FAR, PATIENCE, REFINED, descend, polish
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.stencil import DIFFERENCE, NARROW, forward, half_widths, stencil
 from pzt_ident.search.uncertainty import covariance
@@ -51,6 +52,22 @@ def test_a_linear_problem_within_bounds_has_its_closed_form(count, decades, seed
     loss = np.linalg.norm(matrix @ expected - target)
     assert np.linalg.norm(matrix @ point - target) <= (1 + 1e-9) * loss
     np.testing.assert_allclose(matrix @ point, matrix @ expected, atol=1e-5 * np.linalg.norm(target))
+
+
+@pytest.mark.parametrize(
+    ("fall", "above", "taken"),
+    [
+        (2 * CRAWLING, 10 * FAR, 30),
+        (CRAWLING / 2, 10 * FAR, PATIENCE),
+        (CRAWLING / 2, FAR / 2, 30),
+        (REFINED / 2, 0, PATIENCE),
+    ],
+)
+def test_a_descent_that_crawls_far_above_a_rival_is_given_up(monkeypatch, fall, above, taken):
+    """After steps that each take the same share off, the first of which counts as long."""
+    losses = above * (1 - fall) ** np.arange(1, 40)
+    monkeypatch.setattr(descent, "steps", lambda *args: ((np.array([i]), loss, fall) for i, loss in enumerate(losses)))
+    assert descend(None, np.zeros(1), most=30, rival=1.0)[0] + 1 == taken
 
 
 @pytest.fixture(scope="module")
