@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.noise import period_of
+from pzt_ident.data.periods import period_of
 
 Array = NDArray[np.float64]
 Indices = NDArray[Any]  # integers of any size

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.noise import difference_noise
+from pzt_ident.data.evidence import difference_noise
 
 Array = NDArray[np.float64]
 

@@ -4,31 +4,12 @@ import dataclasses
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from scipy.signal import lfilter
 
-from pzt_ident.data.noise import (
-    common_step,
-    correlation_of,
-    deviation,
-    error_scales,
-    expected_products,
-    noise_floor,
-    period_of,
-    quantiser_step,
-    rest_noise,
-    units_and_floors,
-    with_quantiser,
-    without_lines,
-)
-from pzt_ident.data.record import Record
+from noises import record, rising, white
+from pzt_ident.data.evidence import rest_noise
+from pzt_ident.data.noise import error_scales, noise_floor, units_and_floors
 
 SIGMA = 30e-9
-
-
-def record(drive, response, **more):
-    return Record("r", "identify", 1e-3, np.atleast_2d(drive), np.atleast_2d(response), **more)
 
 
 @pytest.fixture
@@ -81,35 +62,12 @@ def test_never_below_the_quantiser():
     assert floor.value == pytest.approx(1e-7 / np.sqrt(12), rel=1e-6)
 
 
-def test_quantiser_needs_a_grid(noise):
-    assert quantiser_step(noise) == 0
-    assert quantiser_step(np.round(noise / 1e-8) * 1e-8) == pytest.approx(1e-8)
-
-
 @pytest.mark.parametrize("cycles", [6.3, 10.6, 50.2])
 def test_rest_segments_give_the_noise_despite_hum_far_above_it(cycles):
     t = np.arange(2000.0) / 2000
     hum = 20 * np.sin(2 * np.pi * cycles * t + 1)
     estimates = rest_noise(np.zeros((1, 2000)), hum + np.random.default_rng(3).normal(size=2000))
     assert estimates[0][0] == pytest.approx(1, rel=0.1)
-
-
-@pytest.mark.parametrize("period", [64, 333, 1000])
-def test_period_of_any_shape(period):
-    shape = np.random.default_rng(period).normal(size=period).cumsum()
-    assert period_of(np.tile(shape - shape.mean(), 5)[None]) == period
-
-
-@pytest.mark.parametrize("samples", [8, 9, 23, 24, 100, 1001])
-def test_a_correlation_is_the_sum_of_products(samples):
-    signal, lags = np.random.default_rng(samples).normal(size=samples), samples // 2 + 1
-    expected = np.correlate(signal, signal, "full")[samples - 1 :][:lags]
-    np.testing.assert_allclose(correlation_of(signal, lags), expected, atol=1e-12 * samples)
-
-
-def test_a_chirp_has_no_period():
-    t = np.linspace(0, 1, 4000)
-    assert period_of(np.sin(2 * np.pi * (5 * t + 40 * t**2))[None]) == 0
 
 
 def test_responses_of_different_kinds_are_weighed_by_their_noise(noise):
@@ -135,14 +93,6 @@ def test_floors_are_in_the_unit_of_their_axis_and_over_all_axes_in_that_of_the_f
     assert found["noise_floor"] == pytest.approx({"x": x / 1e-6, "y": y / 1e-9})
     assert found["noise_floor_source"] == dict.fromkeys("xy", "repeated periods")
     assert found["floor"] == pytest.approx(np.hypot(x, y) / np.sqrt(2) / 1e-6)
-
-
-def rising(samples, rest=0):
-    return np.concatenate([np.linspace(0, 100, samples), np.full(rest, 100.0)])
-
-
-def white(samples, size=1.0, seed=0):
-    return np.random.default_rng(seed).normal(0, size, samples)
 
 
 def test_rest_is_better_evidence_than_repeated_periods():
@@ -216,44 +166,11 @@ def test_a_rest_has_a_hundred_steps_after_its_first_fifth(samples, rests):
     assert len(rest_noise(drive[None], white(drive.size))) == rests
 
 
-def coloured(samples, memory, seed=0):
-    """Noise of unit variance and of a memory of first order."""
-    white_part = np.random.default_rng(seed).normal(0, np.sqrt(1 - memory**2), samples + 1000)
-    return lfilter([1.0], [1.0, -memory], white_part)[1000:]
-
-
-@pytest.mark.parametrize("memory", [0.0, 0.5, 0.9])
-@pytest.mark.parametrize("samples", [108, 320, 1600])
-def test_what_a_quartic_takes_of_noise_with_a_memory_is_allowed_for(memory, samples):
-    """More than half of the variance of 108 samples of memory 0.9."""
-    parts = [without_lines(coloured(samples, memory, seed), 4) for seed in range(200)]
-    assert np.sqrt(np.mean([deviation(*part) ** 2 for part in parts])) == pytest.approx(1, rel=0.1)
-
-
-@given(memory=st.floats(0, 0.95), columns=st.integers(1, 8), samples=st.integers(20, 60))
-@settings(deadline=None)
-def test_the_products_of_projected_noise_are_those_of_its_covariance(memory, columns, samples):
-    basis = np.linalg.qr(np.random.default_rng(columns).normal(size=(samples, columns)))[0]
-    apart = np.abs(np.subtract.outer(np.arange(samples), np.arange(samples)))
-    left = np.eye(samples) - basis @ basis.T
-    covariance = left @ memory**apart @ left
-    expected = np.trace(covariance), np.trace(covariance, 1)
-    assert expected_products(basis, memory) == pytest.approx(expected, rel=1e-9, abs=1e-9)
-
-
 def test_records_measured_again_with_a_hum_give_the_noise():
     drive, t = white(3000, seed=9), np.arange(3000)
     again = [record(drive, drive + 15 * np.sin(t / 7 + phase) + white(3000, seed=phase)) for phase in (1, 3)]
     floor = noise_floor(again, 0)
     assert (floor.source, floor.value) == ("repeated records", pytest.approx(1, rel=0.1))
-
-
-def test_a_quantiser_counts_for_records_too_short_to_show_it():
-    drive = np.concatenate([rising(400), rising(400)[::-1]])
-    responses = np.round(10 * drive), np.round(0.5 * drive)
-    assert [quantiser_step(response) for response in responses] == [0, 1]
-    assert common_step([*responses]) == 1
-    assert common_step([*responses, 10 * drive + white(800)]) == 0
 
 
 def test_a_rest_is_one_of_all_drives():
@@ -286,15 +203,6 @@ def test_a_rest_that_is_quieter_than_the_quantiser_has_the_noise_of_the_quantise
     assert (floor.source, floor.value) == ("quantiser", pytest.approx(step / np.sqrt(12), rel=0.01))
 
 
-@pytest.mark.parametrize("size", [0.02, 0.1, 0.2, 0.3, 1])
-def test_coarse_readings_of_things_at_rest_tell_their_error(size):
-    rng = np.random.default_rng(1)
-    places = rng.uniform(0, 1, (3000, 1))
-    readings = np.round(places + rng.normal(0, size, (3000, 300)))
-    error = np.sqrt(np.mean((readings - places) ** 2))
-    assert with_quantiser(np.sqrt(readings.var(axis=1).mean()), 1.0) == pytest.approx(error, rel=0.02)
-
-
 @pytest.mark.parametrize("size", [0.15, 0.25, 0.5])
 def test_rests_of_coarse_readings_give_the_noise_and_the_quantisers(size):
     heights = np.random.default_rng(3).uniform(50, 100, 30)
@@ -309,12 +217,6 @@ def test_the_finest_quantiser_of_several_records_counts():
     records = [record(scale * drive, np.round(scale * drive / step) * step) for step, scale in steps]
     for ordered in (records, records[::-1]):
         assert noise_floor(ordered, 0).value == pytest.approx(0.5 / np.sqrt(12))
-
-
-def test_few_values_off_a_grid_and_a_ramp_are_not_quantised():
-    assert quantiser_step(np.resize([0.0, 1.0, 2.5], 300)) == 0
-    assert quantiser_step(np.resize([0.0, 1.0, 3.0], 300)) == 1
-    assert quantiser_step(np.arange(300.0)) == 0
 
 
 def test_the_widest_record_sets_the_least_size():

@@ -1,0 +1,76 @@
+"""Estimates of the noise of a record from what should be still or the same again: rests and repeated periods."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pzt_ident.data.periods import period_of
+from pzt_ident.data.projections import ROUNDING, deviation, without_lines
+
+Array = NDArray[np.float64]
+
+QUIETEST = 0.25  # of all that is measured: as much as no ringing and no transient need have reached
+LOUDER = 1.5  # times those: above that an estimate has more in it than noise
+DECAY = 2.0  # of the variance between the halves of a rest: more is a transient, and the later half is taken
+MISMATCH = 0.5  # of the noise: more may not come from periods that are no whole number of samples
+
+
+def quiet_deviation(deviations: Array, seconds: Array) -> float:
+    """Root mean square of the estimates up to LOUDER times the one that the QUIETEST share of the seconds stays below,
+    weighed by their seconds."""
+    order = np.argsort(deviations)
+    measured = np.cumsum(seconds[order])
+    quiet = deviations[order][np.searchsorted(measured, QUIETEST * measured[-1])]
+    kept = deviations <= LOUDER * quiet
+    return float(np.sqrt(np.average(deviations[kept] ** 2, weights=seconds[kept])))
+
+
+def rest_noise(drive: Array, response: Array, least: int = 100) -> list[tuple[float, int]]:
+    """Standard deviation and number of samples of each rest: the last four fifths of an interval of constant drive, or
+    less where these still settle, less a quartic, which follows creep, and the lines of the mains and the floor."""
+    span = np.ptp(drive, axis=1, keepdims=True)
+    still = (np.abs(np.diff(drive, axis=1)) <= 1e-6 * np.maximum(span, 1e-300)).all(axis=0)
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(int), [0]])))
+    estimates = []
+    for first, last in zip(edges[::2], edges[1::2], strict=True):
+        first += (last - first) // 5
+        if last - first >= least:
+            estimates.append(settled_deviation(response[first:last], least))
+    return estimates
+
+
+def settled_deviation(signal: Array, least: int) -> tuple[float, int]:
+    """Standard deviation about a quartic and lines, and the number of samples that it is from: those of the later half,
+    and so on, while the earlier one has DECAY times its variance."""
+    noise, basis = without_lines(signal, 4)
+    half = noise.size // 2
+    if half >= least and np.var(noise[:half]) > DECAY * np.var(noise[half:]):
+        return settled_deviation(signal[half:], least)
+    return deviation(noise, basis), noise.size
+
+
+def period_noise(drive: Array, response: Array, least: int = 3) -> list[tuple[float, int]]:
+    """Standard deviation and number of samples of a periodic record: half the variance of the difference of successive
+    periods, less its straight line and lines of the mains, of the quiet ones. None where the drive repeats so roughly,
+    as with periods of no whole number of samples, that the response must too."""
+    period = period_of(drive)
+    if not period or response.size < least * period:
+        return []
+
+    def changes(signal: Array) -> list[Array]:
+        firsts = range(0, response.size - 2 * period + 1, period)
+        return [signal[i + period : i + 2 * period] - signal[i : i + period] for i in firsts]
+
+    deviations = np.array([deviation(*without_lines(change, 1)) for change in changes(response)]) / np.sqrt(2)
+    quiet = quiet_deviation(deviations, np.ones(deviations.size))
+    scaled = drive / np.maximum(np.ptp(drive, axis=1, keepdims=True), 1e-300)
+    mismatch, span = max(float(np.median(np.std(changes(row), axis=1))) for row in scaled), np.ptp(response)
+    return [(quiet, response.size)] if mismatch * span <= max(MISMATCH * quiet, ROUNDING * span) else []
+
+
+def difference_noise(drive: Array, response: Array) -> list[tuple[float, int]]:
+    """Standard deviation and number of samples from third differences, whose variance is 20 times that of white
+    noise."""
+    third = np.diff(response, 3)
+    return [(float(np.median(np.abs(third)) / 0.6745 / np.sqrt(20)), third.size)] if third.size > 10 else []

@@ -1,0 +1,41 @@
+"""The quantiser of a sensor: its step, and the error of its readings."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def quantiser_step(response: Array) -> float:
+    """Step of the quantiser, 0 where none shows: the values lie on a grid of at most a third as many points."""
+    values = np.unique(response)
+    if values.size < 2 or values.size > response.size / 3:
+        return 0.0
+    gaps = np.diff(values)
+    step = float(gaps[gaps > 1e-6 * gaps.max()].min())
+    return step if is_on_grid(response, step) else 0.0
+
+
+def common_step(responses: list[Array]) -> float:
+    """Step of the quantiser of all responses: the finest that one of them shows, 0 where others have values between."""
+    steps = [step for step in map(quantiser_step, responses) if step]
+    return min(steps) if steps and all(is_on_grid(response, min(steps)) for response in responses) else 0.0
+
+
+def is_on_grid(response: Array, step: float) -> bool:
+    """Whether all values are whole numbers of steps apart."""
+    steps = np.diff(np.unique(response)) / step
+    return bool(np.allclose(steps, np.round(steps), atol=0.05))
+
+
+def with_quantiser(scatter: float, step: float) -> float:
+    """Standard deviation of the errors of a quantised reading of something whose readings scatter so much.
+
+    Noise of variance s^2 errs by s^2 + q^2/12 in the mean over all places between two steps q. What stays in place
+    scatters less: by q s / sqrt(pi) in the mean where s is small against q, by all of it from q^2/(2 pi) on.
+    """
+    if 2 * np.pi * scatter**2 >= step**2:
+        return scatter
+    return float(np.hypot(np.sqrt(np.pi) * scatter**2 / step, step / np.sqrt(12)))

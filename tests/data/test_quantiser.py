@@ -1,0 +1,36 @@
+"""Steps of quantisers that were put in."""
+
+import numpy as np
+import pytest
+
+from noises import rising, white
+from pzt_ident.data.quantiser import common_step, quantiser_step, with_quantiser
+
+
+def test_quantiser_needs_a_grid():
+    noise = white(6000, 3e-8)
+    assert quantiser_step(noise) == 0
+    assert quantiser_step(np.round(noise / 1e-8) * 1e-8) == pytest.approx(1e-8)
+
+
+def test_few_values_off_a_grid_and_a_ramp_are_not_quantised():
+    assert quantiser_step(np.resize([0.0, 1.0, 2.5], 300)) == 0
+    assert quantiser_step(np.resize([0.0, 1.0, 3.0], 300)) == 1
+    assert quantiser_step(np.arange(300.0)) == 0
+
+
+def test_a_quantiser_counts_for_records_too_short_to_show_it():
+    drive = np.concatenate([rising(400), rising(400)[::-1]])
+    responses = np.round(10 * drive), np.round(0.5 * drive)
+    assert [quantiser_step(response) for response in responses] == [0, 1]
+    assert common_step([*responses]) == 1
+    assert common_step([*responses, 10 * drive + white(800)]) == 0
+
+
+@pytest.mark.parametrize("size", [0.02, 0.1, 0.2, 0.3, 1])
+def test_coarse_readings_of_things_at_rest_tell_their_error(size):
+    rng = np.random.default_rng(1)
+    places = rng.uniform(0, 1, (3000, 1))
+    readings = np.round(places + rng.normal(0, size, (3000, 300)))
+    error = np.sqrt(np.mean((readings - places) ** 2))
+    assert with_quantiser(np.sqrt(readings.var(axis=1).mean()), 1.0) == pytest.approx(error, rel=0.02)
