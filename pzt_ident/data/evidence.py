@@ -16,13 +16,16 @@ DECAY = 2.0  # of the variance between the halves of a rest: more is a transient
 MISMATCH = 0.5  # of the noise: more may not come from periods that are no whole number of samples
 
 
-def quiet_deviation(deviations: Array, seconds: Array) -> float:
-    """Root mean square of the estimates up to LOUDER times the one that the QUIETEST share of the seconds stays below,
-    weighed by their seconds."""
+def quiet(deviations: Array, seconds: Array) -> NDArray[np.bool_]:
+    """Which estimates are up to LOUDER times the one that the QUIETEST share of the seconds stays below."""
     order = np.argsort(deviations)
     measured = np.cumsum(seconds[order])
-    quiet = deviations[order][np.searchsorted(measured, QUIETEST * measured[-1])]
-    kept = deviations <= LOUDER * quiet
+    return deviations <= LOUDER * deviations[order][np.searchsorted(measured, QUIETEST * measured[-1])]
+
+
+def quiet_deviation(deviations: Array, seconds: Array) -> float:
+    """Root mean square of the quiet estimates, weighed by their seconds."""
+    kept = quiet(deviations, seconds)
     return float(np.sqrt(np.average(deviations[kept] ** 2, weights=seconds[kept])))
 
 
@@ -67,10 +70,3 @@ def period_noise(drive: Array, response: Array, least: int = 3) -> list[tuple[fl
     scaled = drive / np.maximum(np.ptp(drive, axis=1, keepdims=True), 1e-300)
     mismatch, span = max(float(np.median(np.std(changes(row), axis=1))) for row in scaled), np.ptp(response)
     return [(quiet, response.size)] if mismatch * span <= max(MISMATCH * quiet, ROUNDING * span) else []
-
-
-def difference_noise(drive: Array, response: Array) -> list[tuple[float, int]]:
-    """Standard deviation and number of samples from third differences, whose variance is 20 times that of white
-    noise."""
-    third = np.diff(response, 3)
-    return [(float(np.median(np.abs(third)) / 0.6745 / np.sqrt(20)), third.size)] if third.size > 10 else []

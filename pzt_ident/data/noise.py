@@ -7,11 +7,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.evidence import difference_noise, period_noise, quiet_deviation, rest_noise
+from pzt_ident.data.evidence import period_noise, quiet_deviation, rest_noise
 from pzt_ident.data.projections import deviation, without_lines
 from pzt_ident.data.quantiser import common_step, with_quantiser
 from pzt_ident.data.record import Record
 from pzt_ident.data.units import common_unit, factor, of_one_kind
+from pzt_ident.data.windows import Signal, window_noise
 
 Array = NDArray[np.float64]
 
@@ -26,30 +27,26 @@ class Floor(NamedTuple):
 
 
 def noise_floor(records: list[Record], axis: int) -> Floor:
-    """Noise of an axis, from the best evidence there is: repeated records, rest segments, repeated periods, else the
-    high frequencies.
+    """Noise of an axis, from the best evidence there is: repeated records, rest segments, repeated periods, else short
+    windows.
 
     The noise is the sensor's, the same in all records, and what a stage adds, such as ringing, only makes an estimate
-    larger: those well above the quietest quarter are left out. A quantiser adds its own. The high-frequency part is
-    weak evidence: it takes slow noise for signal and fast signal for noise.
+    larger: those well above the quietest quarter are left out. A quantiser adds its own. Windows are weak evidence:
+    they take slow noise for signal, and fast signal that does not follow the drive for noise.
     """
-    signals = [(r.drive, r.response[axis], r.settle, r.dt) for r in records]
+    signals = [Signal(r.drive[:, r.settle :], r.response[axis, r.settle :], r.dt) for r in records]
     pairs = [(r, other) for i, r in enumerate(records) for other in records[:i] if is_repeat(r, other, axis)]
-    step = common_step([y for _, y, _, _ in signals])
+    step = common_step([r.response[axis] for r in records])
     if pairs:
         changes = [(a.response[axis] - b.response[axis])[max(a.settle, b.settle) :] for a, b in pairs]
         variances = [deviation(*without_lines(change, 1)) ** 2 / 2 for change in changes]
         return floor_of(with_quantiser(np.sqrt(np.mean(variances)), step), "repeated records", step)
-    for estimate, source in (
-        (rest_noise, "rest segments"),
-        (period_noise, "repeated periods"),
-        (difference_noise, "high frequencies (weak)"),
-    ):
-        found = [(part, dt) for u, y, settle, dt in signals for part in estimate(u[:, settle:], y[settle:])]
+    for estimate, source in ((rest_noise, "rest segments"), (period_noise, "repeated periods")):
+        found = [(part, dt) for drives, response, dt in signals for part in estimate(drives, response)]
         estimates = [(with_quantiser(value, step), samples * dt) for (value, samples), dt in found]
         if estimates:
             return floor_of(quiet_deviation(*np.array(estimates).T), source, step)
-    return floor_of(with_quantiser(0.0, step), "quantiser", step)
+    return floor_of(window_noise(signals, with_quantiser(0.0, step)), "short windows (weak)", step)
 
 
 def floor_of(value: float, source: str, step: float) -> Floor:

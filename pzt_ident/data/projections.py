@@ -19,40 +19,42 @@ GOLDEN = (5**0.5 - 1) / 2
 
 def deviation(noise: Array, basis: Array) -> float:
     """Standard deviation of noise that an orthonormal basis, (samples, columns), has been projected out of, which takes
-    the more of it the longer its memory is: of first order, such that the part that is left is as alike from sample to
-    sample as it should be."""
+    the more of it the longer its memory is."""
     power, alike = float(noise @ noise), float(noise[1:] @ noise[:-1])
     if power == 0:
         return 0.0
+    return float(np.sqrt(power / expected_products(basis, memory_of(alike / power, basis))[0]))
+
+
+def memory_of(alike: float, basis: Array) -> float:
+    """Memory of first order of noise that is so alike from sample to sample after a basis has been projected out of it,
+    or bases out of windows of it."""
 
     def excess(memory: float) -> float:
-        expected = expected_products(basis, memory)
-        return expected[1] / expected[0] - alike / power
+        power, beside = expected_products(basis, memory)
+        return beside / power - alike
 
+    if excess(0.0) >= 0:
+        return 0.0
+    if excess(MOST_MEMORY) <= 0:
+        return MOST_MEMORY
     zeros = extension("scipy.optimize", "_zeros")
-    whiter, redder = excess(0.0) >= 0, excess(MOST_MEMORY) <= 0
-    memory = (
-        0.0
-        if whiter
-        else MOST_MEMORY
-        if redder
-        else zeros._brentq(excess, 0.0, MOST_MEMORY, 1e-4, 1e-9, 100, (), False, True)
-    )
-    return float(np.sqrt(power / expected_products(basis, memory)[0]))
+    return float(zeros._brentq(excess, 0.0, MOST_MEMORY, 1e-4, 1e-9, 100, (), False, True))
 
 
 def expected_products(basis: Array, memory: float) -> tuple[float, float]:
     """What the sum of squares of n, and that of n_t n_{t+1}, are expected to be, where n is noise of unit variance with
-    the correlations R_st = memory^|s - t| that the basis B has been projected out of: tr(MRM) and the sum next to the
-    diagonal of MRM, M = I - B B'."""
+    the correlations R_st = memory^|s - t| that the basis B, (..., samples, columns), has been projected out of:
+    tr(MRM) and the sum next to the diagonal of MRM, M = I - B B', over all windows."""
     filtered = extension("scipy.signal", "_sigtools")._linear_filter  # scipy.signal takes half a second to import
-    onward, back = (filtered(np.ones(1), np.array([1.0, -memory]), rows, 0) for rows in (basis, basis[::-1]))
-    correlated = onward + back[::-1] - basis
-    inner = basis.T @ correlated
-    across = (basis[:-1] * correlated[1:]).sum() + (correlated[:-1] * basis[1:]).sum()
-    samples = basis.shape[0]
-    beside = (samples - 1) * memory - across + ((basis[:-1] @ inner) * basis[1:]).sum()
-    return float(samples - np.trace(inner)), float(beside)
+    basis = basis.reshape(-1, *basis.shape[-2:])
+    onward, back = (filtered(np.ones(1), np.array([1.0, -memory]), rows, 1) for rows in (basis, basis[:, ::-1]))
+    correlated = onward + back[:, ::-1] - basis
+    inner = basis.swapaxes(1, 2) @ correlated
+    across = (basis[:, :-1] * correlated[:, 1:]).sum() + (correlated[:, :-1] * basis[:, 1:]).sum()
+    windows, samples, _ = basis.shape
+    beside = windows * (samples - 1) * memory - across + ((basis[:, :-1] @ inner) * basis[:, 1:]).sum()
+    return float(windows * samples - np.trace(inner, axis1=1, axis2=2).sum()), float(beside)
 
 
 def without_lines(signal: Array, degree: int, most: int = 5, near: int = 25) -> tuple[Array, Array]:
