@@ -13,6 +13,7 @@ Array = NDArray[np.float64]
 QUIETEST = 0.25  # of all that is measured: as much as no ringing and no transient need have reached
 LOUDER = 1.5  # times those: above that an estimate has more in it than noise
 DECAY = 2.0  # of the variance between the halves of a rest: more is a transient, and the later half is taken
+SHAPED = 64  # samples: of shorter periods the changes of their shape would take too much
 MISMATCH = 0.5  # of the noise: more may not come from periods that are no whole number of samples
 
 
@@ -55,8 +56,8 @@ def settled_deviation(signal: Array, least: int) -> tuple[float, int]:
 
 def period_noise(drive: Array, response: Array, least: int = 3) -> list[tuple[float, int]]:
     """Standard deviation and number of samples of a periodic record: half the variance of the difference of successive
-    periods, less its straight line and lines of the mains, of the quiet ones. None where the drive repeats so roughly,
-    as with periods of no whole number of samples, that the response must too."""
+    periods, less its straight line, what a change of gain makes of it and lines of the mains, of the quiet ones. None
+    where the drive repeats so roughly, as with periods of no whole number of samples, that the response must too."""
     period = period_of(drive)
     if not period or response.size < least * period:
         return []
@@ -65,8 +66,19 @@ def period_noise(drive: Array, response: Array, least: int = 3) -> list[tuple[fl
         firsts = range(0, response.size - 2 * period + 1, period)
         return [signal[i + period : i + 2 * period] - signal[i : i + period] for i in firsts]
 
-    deviations = np.array([deviation(*without_lines(change, 1)) for change in changes(response)]) / np.sqrt(2)
-    quiet = quiet_deviation(deviations, np.ones(deviations.size))
+    whole = response[: response.size // period * period].reshape(-1, period)
+    shapes = shape_changes(whole.mean(axis=0)) if period >= SHAPED else []
+    parts = [deviation(*without_lines(change, 1, shapes)) for change in changes(response)]
+    deviations = np.array(parts) / np.sqrt(2)
+    quiet_part = quiet_deviation(deviations, np.ones(deviations.size))
     scaled = drive / np.maximum(np.ptp(drive, axis=1, keepdims=True), 1e-300)
     mismatch, span = max(float(np.median(np.std(changes(row), axis=1))) for row in scaled), np.ptp(response)
-    return [(quiet, response.size)] if mismatch * span <= max(MISMATCH * quiet, ROUNDING * span) else []
+    known = mismatch * span <= max(MISMATCH * quiet_part, ROUNDING * span)
+    return [(quiet_part, response.size)] if known else []
+
+
+def shape_changes(shape: Array) -> list[Array]:
+    """What is added to a period y(t) to first order where its gain, its gain with time, its curvature or its delay
+    changes: y, y t, y^2 and dy/dt."""
+    scaled = (shape - shape.mean()) / max(float(np.ptp(shape)), 1e-300)
+    return [scaled, scaled * np.linspace(-1, 1, shape.size), scaled**2, np.gradient(scaled)]

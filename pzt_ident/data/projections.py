@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,12 +57,15 @@ def expected_products(basis: Array, memory: float) -> tuple[float, float]:
     return float(windows * samples - np.trace(inner, axis1=1, axis2=2).sum()), float(beside)
 
 
-def without_lines(signal: Array, degree: int, most: int = 5, near: int = 25) -> tuple[Array, Array]:
-    """The signal less a polynomial and, fitted together with it, up to `most` sinusoids whose power is LINE_RATIO times
-    that of the `near` frequencies around them, all made white; and the orthonormal basis of what was taken off,
-    (samples, columns)."""
+def without_lines(
+    signal: Array, degree: int, shapes: Sequence[Array] = (), most: int = 5, near: int = 25
+) -> tuple[Array, Array]:
+    """The signal less a polynomial, shapes and, fitted together with them, up to `most` sinusoids whose power is
+    LINE_RATIO times that of the `near` frequencies around them, all made white; and the orthonormal basis of what was
+    taken off, (samples, columns)."""
     t = np.arange(signal.size)
-    basis = np.linalg.qr(np.polynomial.legendre.legvander(np.linspace(-1, 1, signal.size), degree))[0]
+    trend = np.polynomial.legendre.legvander(np.linspace(-1, 1, signal.size), degree)
+    basis = np.linalg.qr(np.column_stack([trend, *shapes]))[0]
 
     def waves(frequency: float) -> Array:
         """Cosine and sine, orthonormal to each other and to the basis: (samples, 2)."""

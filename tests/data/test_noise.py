@@ -4,6 +4,8 @@ import dataclasses
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from noises import record, rising, white
 from pzt_ident.data.evidence import rest_noise
@@ -137,6 +139,26 @@ def test_a_rest_counts_from_where_it_has_settled(decay):
     response = white(4500)
     response[500:] += 50 * np.exp(-np.arange(4000) / decay) * np.sin(np.arange(4000) / 3)
     assert noise_floor([record(rising(500, 4000), response)], 0).value == pytest.approx(1, rel=0.1)
+
+
+@given(
+    change=st.floats(-0.3, 0.3),
+    delay=st.floats(-2, 2),
+    shape=st.sampled_from(["sine", "triangle"]),
+    seed=st.integers(0, 99),
+)
+@settings(deadline=None, max_examples=20)
+def test_a_gain_and_a_delay_that_change_over_repeated_periods_are_no_noise(change, delay, shape, seed):
+    """By so much, and by so many samples, from the first period to the last."""
+    t = np.arange(4800)
+    later = t - delay * t / t.size
+    phase, bent = t / 800 % 1, later / 800 % 1
+    drive, moved = (
+        50 - 50 * (np.cos(2 * np.pi * p) if shape == "sine" else 1 - 4 * np.minimum(p, 1 - p)) for p in (phase, bent)
+    )
+    response = (1 + change * t / t.size) * (moved + 2e-3 * moved**2) + white(4800, 0.5, seed)
+    floor = noise_floor([record(drive, response)], 0)
+    assert (floor.source, floor.value) == ("repeated periods", pytest.approx(0.5, rel=0.2))
 
 
 @pytest.mark.parametrize(("period", "source"), [(600, "repeated"), (600.4, "weak"), (600.005, "repeated")])
