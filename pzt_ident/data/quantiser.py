@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+PART = 128  # samples
+
 
 def quantiser_step(response: Array) -> float:
     """Step of the quantiser, 0 where none shows: the values lie on a grid of at most a third as many points."""
@@ -19,8 +21,12 @@ def quantiser_step(response: Array) -> float:
 
 
 def common_step(responses: list[Array]) -> float:
-    """Step of the quantiser of all responses: the finest that one of them shows, 0 where others have values between."""
-    steps = [step for step in map(quantiser_step, responses) if step]
+    """Step of the quantiser of all responses: the finest that one of them shows, or a part of it that hardly moves, 0
+    where others have values between."""
+    parts = [
+        part for response in responses for part in (response, *np.split(response, range(PART, response.size, PART)))
+    ]
+    steps = [step for step in map(quantiser_step, parts) if step]
     return min(steps) if steps and all(is_on_grid(response, min(steps)) for response in responses) else 0.0
 
 

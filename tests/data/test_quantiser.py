@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from noises import rising, white
 from pzt_ident.data.quantiser import common_step, quantiser_step, with_quantiser
@@ -11,6 +13,16 @@ def test_quantiser_needs_a_grid():
     noise = white(6000, 3e-8)
     assert quantiser_step(noise) == 0
     assert quantiser_step(np.round(noise / 1e-8) * 1e-8) == pytest.approx(1e-8)
+
+
+@given(step=st.floats(1e-9, 1e-2), noise=st.floats(0.2, 3), seed=st.integers(0, 99))
+@settings(deadline=None, max_examples=30)
+def test_a_quantiser_shows_where_a_record_of_more_steps_than_samples_rests(step, noise, seed):
+    """30 steps from sample to sample, and noise of up to three."""
+    readings = np.round(np.append(30.3 * np.arange(1000), np.full(400, 3e4)) + white(1400, noise, seed)) * step
+    assert common_step([readings[:1000]]) == 0
+    assert common_step([readings]) == pytest.approx(step, rel=1e-6)
+    assert common_step([readings, readings + 0.3 * step * np.arange(1400)]) == 0
 
 
 def test_few_values_off_a_grid_and_a_ramp_are_not_quantised():
