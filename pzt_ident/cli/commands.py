@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import atexit
+import gc
 import io
 import json
 import os
@@ -49,6 +51,8 @@ def main(debug: bool) -> None:
     if sys.flags.optimize > 1:
         problem = "Python was started without docstrings, where the equations are"
         raise InputError(problem, where="PYTHONOPTIMIZE", remedy="unset it, or set it to 1")
+    gc.set_threshold(20_000)  # what is imported is no garbage, and need not be looked through again and again
+    atexit.register(gc.freeze)  # nor once more at the end
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads wait for each other: 63 s of CPU instead of 19
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # a terminal may lack a letter of a name
