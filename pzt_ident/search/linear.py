@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import block_diag
 
 from pzt_ident.model.chain import Chain
 
@@ -81,7 +80,10 @@ class Tangent:
 
     def beside_weights(self, weights: Array) -> Array:
         """Those of the residual and the columns ahead of others."""
-        return np.asarray(block_diag(differences(1 + self.prior.shape[1]), weights))
+        own = 1 + self.prior.shape[1]
+        both = np.zeros(np.add(weights.shape, own))
+        both[:own, :own], both[own:, own:] = differences(own), weights
+        return both
 
     def followed(self, rows: Array, weights: Array) -> Array:
         """Combinations as of `follow`, from rows (rows, 1 + active + combinations) of what is `beside`."""

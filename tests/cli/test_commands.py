@@ -444,6 +444,13 @@ class TestProcess:
         assert "click" in imported(done)
         assert not imported(done) & heavy
 
+    def test_run_imports_no_package_for_a_part_of_it(self, folder):
+        done = start("run", "job.yaml", "--no-report", env=os.environ | {"PYTHONPROFILEIMPORTTIME": "1"})
+        heavy = {"scipy.linalg", "scipy.optimize", "scipy.signal", "scipy.interpolate", "pandas", "matplotlib"}
+        assert done.returncode == 0
+        assert "numpy" in imported(done)
+        assert not imported(done) & heavy
+
     def test_a_command_that_ends_looks_for_no_garbage(self):
         code = """if True:
             import gc
