@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from pzt_ident.data.record import Record
 from pzt_ident.engine.kernel import PADDING, WIDTH, address, run
 from pzt_ident.engine.program import Program
-from pzt_ident.model.block import Place
 
 Array = NDArray[np.float64]
 Steps = NDArray[np.int64]
@@ -49,12 +48,13 @@ def shared_prefix(program: Program, scratch: Array, steps: Steps, signals: Array
 def shared_operations(program: Program, scratch: Array) -> int:
     """How many operations, from the first on, have the same numbers for all candidates; 0 if no operator is among
     them, or nothing is behind."""
-    lanes = scratch.reshape(len(scratch), -1, WIDTH)[:, : program.chain_rows]
+    lanes, needed = scratch.reshape(len(scratch), -1, WIDTH)[:, : program.chain_rows], program.operator_end
+    if needed is None or (lanes[0, :needed, 0] != lanes[0, :needed, 1]).any():
+        return 0
     differing = np.flatnonzero((lanes != lanes[:1, :, :1]).any(axis=(0, 2)))
     alike = int(differing[0]) if differing.size else program.chain_rows
     count = int(np.searchsorted(program.ends, alike, side="right"))
-    shared = any(item.block and item.place == Place.OPERATOR for item in program.operations[:count])
-    return count if shared and count < len(program.operations) else 0
+    return count if alike >= needed and count < len(program.operations) else 0
 
 
 def tiles_after(program: Program, scratch: Array, steps: Steps, signals: Array) -> Array:

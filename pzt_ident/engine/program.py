@@ -89,6 +89,12 @@ class Program:
         return [rows[n - 1] if n else 0 for n in number]
 
     @cached_property
+    def operator_end(self) -> int | None:
+        """That row of the first operator; None where there is none."""
+        operators = (item.block is not None and item.place == Place.OPERATOR for item in self.operations)
+        return next((end for end, operator in zip(self.ends, operators, strict=True) if operator), None)
+
+    @cached_property
     def steps(self) -> list[tuple[int, ...]]:
         """Rows of (address, row of the scratch, row of signals, tile, first sample), for the kernel."""
         return [(self.address(item), item.row, 2 * item.axis, item.tile, 0) for item in self.operations]
@@ -102,7 +108,7 @@ class Program:
             return address(f"{item.action}_of_sample" if self.single else item.action)
         return compile_block(self.model.form_of(item.block), item.variant).address  # type: ignore[arg-type]
 
-    @property
+    @cached_property
     def substeps(self) -> int:
         """Steps of the simulation in a sample."""
         return self.model.oversample * self.record.steps

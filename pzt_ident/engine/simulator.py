@@ -197,7 +197,7 @@ class Simulator:
         tiles = self._program.tiles + self.additions.tiles
         run(steps, signals, scratch, tiles, first * fine, last * fine, since, fine, output, self._measured)
 
-    @property
+    @cached_property
     def _signals(self) -> Array:
         """The signals that the kernel reads, one array for all models with the same substeps and measured axes."""
         cached = SIGNALS.setdefault(self.record, {})

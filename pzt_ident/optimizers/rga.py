@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from dataclasses import dataclass
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -84,11 +85,16 @@ class RGA(Generational):
 def select(losses: Array, count: int, rng: np.random.Generator) -> NDArray[np.int64]:
     """Rows by stochastic universal sampling with fitness 1 / sqrt(rank), shuffled: DEAP's, with its draw, which takes
     ten times as long."""
-    ends = np.cumsum(1 / np.sqrt(np.arange(1, len(losses) + 1)))
+    ends = _ends(len(losses))
     distance = ends[-1] / count
     start = random.Random(int(rng.integers(2**63))).uniform(0, distance)
-    places = np.searchsorted(ends, start + distance * np.arange(count)).clip(max=len(losses) - 1)
-    return rng.permutation(np.argsort(losses, kind="stable")[places])
+    places = np.minimum(ends.searchsorted(start + distance * np.arange(count)), len(losses) - 1)
+    return rng.permutation(losses.argsort(kind="stable")[places])
+
+
+@cache
+def _ends(count: int) -> Array:
+    return np.cumsum(1 / np.sqrt(np.arange(1, count + 1)))
 
 
 def migrate(losses: Array, demes: list[NDArray[np.int64]], fraction: float) -> NDArray[np.int64]:
