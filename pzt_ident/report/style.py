@@ -80,6 +80,8 @@ _STYLE: Any = {
     "svg.hashsalt": "pzt-ident",
 }
 
+_HELP = "_update_set_signature_and_docstring"
+
 
 @contextmanager
 def style() -> Iterator[None]:
@@ -93,18 +95,27 @@ def style() -> Iterator[None]:
 
 
 def without_help() -> Any:
-    """matplotlib, whose classes write their help while they are imported, a third of the time: not where no prompt is
-    that could ask for it."""
+    """matplotlib, whose classes write their help and list their properties while they are imported, nearly half of the
+    time: not where no prompt is that could ask for it."""
     import matplotlib
     from matplotlib import artist
 
     if "matplotlib.figure" not in sys.modules and not hasattr(sys, "ps1") and "IPython" not in sys.modules:
-        usual, artist.kwdoc = artist.kwdoc, lambda artist: ""
-        try:
+        nothing = classmethod(lambda cls: None)
+        with _instead(artist, "kwdoc", lambda artist: ""), _instead(artist.Artist, _HELP, nothing):
             import matplotlib.figure
-        finally:
-            artist.kwdoc = usual
     return matplotlib
+
+
+@contextmanager
+def _instead(owner: Any, name: str, other: Any) -> Iterator[None]:
+    """The attribute of a module or class is another one inside."""
+    usual = vars(owner).get(name, other)
+    setattr(owner, name, other)
+    try:
+        yield
+    finally:
+        setattr(owner, name, usual)
 
 
 @dataclass(frozen=True)

@@ -1,3 +1,5 @@
+import subprocess
+import sys
 from xml.etree import ElementTree
 
 import numpy as np
@@ -168,3 +170,22 @@ def test_all_figures_of_several_results_are_drawn_side_by_side_and_told(plain, w
         files = {path.name for path in (folder / "figures").iterdir()}
         assert files >= {f"{name}-{w}mm.{form}" for name in names for w in (88, 180) for form in ("svg", "pdf")}
     assert [event["done"] for event in events] == list(range(1, events[0]["of"] + 1))
+
+
+def test_matplotlib_writes_no_help_while_it_is_imported_for_figures_but_later():
+    code = """if True:
+        from pzt_ident.report.style import style
+        with style():
+            from matplotlib.artist import Artist
+            from matplotlib.lines import Line2D
+
+        class Own(Artist):
+            def set_own(self, own):
+                "Set it."
+
+        line = Line2D([], [])
+        line.set(color="red", linewidth=2)
+        print(Line2D.set.__doc__, "own" in Own.set.__doc__, line.get_color(), line.get_linewidth())
+    """
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == ("None True red 2.0\n", "")
