@@ -42,6 +42,7 @@ _STYLE: Any = {
     "text.hinting": "none",  # widths as in the SVG
     "axes.titlesize": 6.5,
     "axes.titlelocation": "left",
+    "axes.titley": 1.0,  # no ticks are above a panel: nothing is measured to find its place
     "axes.titlepad": 3,
     "axes.labelsize": 6.5,
     "axes.labelpad": 2,
