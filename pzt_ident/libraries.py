@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 from functools import cache
 from importlib import import_module
 from importlib.machinery import PathFinder
@@ -27,25 +28,34 @@ def extension(package: str, name: str) -> ModuleType:
 
 
 @cache
-def modules(*names: str) -> tuple[ModuleType, ...]:
+def modules(*names: str, beside: ModuleType | None = None) -> tuple[ModuleType, ...]:
     """Modules of a package that is installed, each there once for every caller of the same names.
 
-    The packages around them stand empty while they are imported. Who imports the packages later gets them as they are.
+    The packages around them stand empty while they are imported, with `beside` in the place of the module of its name.
+    Who imports the packages, before or later, gets them as they are.
     """
     with _lock:
-        packages = dict.fromkeys(package for name in names for package in list(accumulate(name.split("."), _join))[:-1])
-        empty = [package for package in packages if package not in sys.modules]
-        for package in empty:
+        parts = [*names, beside.__name__] if beside else names
+        packages = dict.fromkeys(package for name in parts for package in list(accumulate(name.split("."), _join))[:-1])
+        before = _taken(packages)
+        for package in packages:
             spec = find_spec(package)
             assert spec
             sys.modules[package] = module_from_spec(spec)
+        if beside:
+            sys.modules[beside.__name__] = beside
         try:
             return tuple(import_module(name) for name in names)
         finally:
-            for name in [
-                name for name in sys.modules if any(f"{name}.".startswith(f"{package}.") for package in empty)
-            ]:
-                del sys.modules[name]
+            _taken(packages)
+            sys.modules.update(before)
+
+
+def _taken(packages: Iterable[str]) -> dict[str, ModuleType]:
+    """What is imported of packages, which is imported no more."""
+    heads = tuple(f"{package}." for package in packages)
+    names = [name for name in sys.modules if f"{name}.".startswith(heads)]
+    return {name: sys.modules.pop(name) for name in names}
 
 
 def _join(package: str, name: str) -> str:

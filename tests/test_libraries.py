@@ -1,6 +1,7 @@
 """Modules of other libraries without their packages, which are there as ever for whom needs them."""
 
 import sys
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -28,6 +29,17 @@ def test_a_module_is_there_and_its_package_is_as_it_was(package):
 
     assert heavy.loaded
     assert heavy.part.answer == 42
+
+
+def test_a_package_that_was_imported_stays_and_a_module_stands_in_for_another(package):
+    import heavy
+
+    other = ModuleType("heavy.other")
+    other.answer = 43
+    (part,) = modules("heavy.part", beside=other)
+    assert part.answer == 43
+    assert sys.modules["heavy"] is heavy
+    assert sys.modules["heavy.part"].answer == heavy.part.answer == 42
 
 
 def test_an_extension_is_there_without_its_package():

@@ -5,9 +5,12 @@ A run ends by the exception that `function` raises when its budget is spent or i
 
 from __future__ import annotations
 
+import os
 import random
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
 
 import numpy as np
 
@@ -15,10 +18,22 @@ LOW, HIGH, DIMENSIONS = -5.0, 5.0, 5
 Function = Callable[[np.ndarray], float]
 
 
+@contextmanager
+def without_logging() -> Iterator[None]:
+    """Keep pyswarms from configuring logging and writing report.log when it is imported or a handler is created."""
+    configured = os.environ.get("LOG_CFG")
+    os.environ["LOG_CFG"] = str(Path(__file__).with_name("pyswarms_logging.yaml"))
+    try:
+        yield
+    finally:
+        if configured is None:
+            del os.environ["LOG_CFG"]
+        else:
+            os.environ["LOG_CFG"] = configured
+
+
 def pyswarms(function: Function, seed: int, bounds_by: str = "periodic") -> None:
     """GlobalBestPSO with the inertia and pulls of its constriction equivalent, 20 particles, default bound handling."""
-    from pzt_ident.optimizers._swarm import without_logging
-
     np.random.seed(seed)  # noqa: NPY002
     with without_logging():
         from pyswarms.single import GlobalBestPSO

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator
-from contextlib import contextmanager
-from pathlib import Path
+from logging import Logger
+from types import ModuleType
 
 import numpy as np
 
@@ -16,18 +14,18 @@ from pzt_ident.optimizers._foreign import numpy_seeded
 PARTS = ("generators", "handlers", "operators", "topology.star")
 
 
-@contextmanager
-def without_logging() -> Iterator[None]:
-    """Keep pyswarms from configuring logging and writing report.log when it is imported or a handler is created."""
-    configured = os.environ.get("LOG_CFG")
-    os.environ["LOG_CFG"] = str(Path(__file__).with_name("_pyswarms_logging.yaml"))
-    try:
-        yield
-    finally:
-        if configured is None:
-            del os.environ["LOG_CFG"]
-        else:
-            os.environ["LOG_CFG"] = configured
+class Reporter:
+    """In the place of pyswarms' own, which configures logging and writes report.log."""
+
+    def __init__(self, logger: Logger) -> None:
+        self.logger = logger
+
+    def log(self, *message: object, **options: object) -> None:
+        pass
+
+
+SILENT = ModuleType("pyswarms.utils.reporter")
+vars(SILENT).update(Reporter=Reporter)
 
 
 def fly(
@@ -37,13 +35,9 @@ def fly(
 
     Particles are reflected at the bounds; their velocity is then the actual move.
     """
-    with without_logging():
-        make, handlers, operators, star = modules(*(f"pyswarms.backend.{name}" for name in PARTS))
-        topology, walls, speed = (
-            star.Star(),
-            handlers.BoundaryHandler("reflective"),
-            handlers.VelocityHandler("unmodified"),
-        )
+    make, handlers, operators, star = modules(*(f"pyswarms.backend.{name}" for name in PARTS), beside=SILENT)
+    walls, speed = handlers.BoundaryHandler("reflective"), handlers.VelocityHandler("unmodified")
+    topology = star.Star()
     cube, clamp = (np.zeros(dimensions), np.ones(dimensions)), (-vmax, vmax)
     launch = min(vmax, 0.5)
     with numpy_seeded(rng):

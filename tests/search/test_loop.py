@@ -1,6 +1,5 @@
 """The loop that drives a search: when it ends, what it tells, what it refuses."""
 
-import os
 from dataclasses import dataclass
 
 import numpy as np
@@ -236,12 +235,3 @@ def test_a_bad_stop_is_refused(wrong):
 def test_all_defaults_stand_for_the_same_budget():
     assert {item.make().evaluations for item in optimizers} == {70 * 250}
     assert all(item.make().with_budget(1001).evaluations >= 1001 for item in optimizers)
-
-
-def test_importing_a_swarm_leaves_the_environment_as_it_was(monkeypatch):
-    for before in (None, "mine.yaml"):
-        monkeypatch.delenv("LOG_CFG", raising=False)
-        if before:
-            monkeypatch.setenv("LOG_CFG", before)
-        minimize(lambda x: float(x @ x), [(-1, 1)], "pso", evaluations=60)
-        assert os.environ.get("LOG_CFG") == before
