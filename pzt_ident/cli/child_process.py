@@ -9,7 +9,11 @@ import sys
 from importlib import import_module
 from threading import Thread
 
-WARM = ("pzt_ident.run.identify", "pzt_ident.run.improve", "pzt_ident.engine.kernel", "ruamel.yaml")
+WARM = (
+    *("pzt_ident.run.identify", "pzt_ident.run.improve", "pzt_ident.engine.kernel", "pzt_ident.engine.lanes"),
+    *("pzt_ident.cli.progress", "pzt_ident.cli.result_tables", "pzt_ident.cli.verdict_tables"),
+    *("ruamel.yaml", "h5netcdf"),
+)
 
 
 def end_with_parent() -> None:
@@ -33,11 +37,12 @@ def arguments() -> list[str]:
 def main() -> None:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before NumPy comes
     from pzt_ident.cli.commands import main
-    from pzt_ident.model.registry import blocks
+    from pzt_ident.model.registry import blocks, optimizers
 
     for name in WARM:
         import_module(name)
-    blocks.usable()
+    for words in (blocks, optimizers):
+        words.usable()
     sys.argv[1:] = arguments()
     Thread(target=end_with_parent, daemon=True).start()
     main(prog_name="pzt-ident")

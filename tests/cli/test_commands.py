@@ -452,6 +452,31 @@ class TestProcess:
         assert "numpy" in imported(done)
         assert not imported(done) & heavy
 
+    def test_a_command_that_waited_has_imported_what_searches_and_writes(self, folder):
+        code = """if True:
+            import sys
+            from pzt_ident.cli import child_process
+
+            def arguments():
+                global before
+                before = set(sys.modules)
+                return ["run", "job.yaml", "--no-report", "--quiet"]
+
+            child_process.arguments = arguments
+            try:
+                child_process.main()
+            finally:
+                print(*sys.modules.keys() - before)
+        """
+        with subprocess.Popen(
+            [sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        ) as waiting:
+            later = waiting.stdout.read().split()
+        assert waiting.returncode == 0
+        needed = {"numpy.linalg", "pydantic", "llvmlite", "h5netcdf", "h5py", "ruamel.yaml", "pzt_ident.run.identify"}
+        assert "pzt_ident.data.formats.text" in later
+        assert not needed & set(later)
+
     def test_a_command_that_ends_looks_for_no_garbage(self):
         code = """if True:
             import gc
