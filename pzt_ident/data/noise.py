@@ -77,7 +77,10 @@ def error_scales(records: list[Record]) -> Array:
 
 def pooled_floor(records: list[Record]) -> float:
     """Noise floor of all measured axes together, in units of the loss."""
-    floors = np.array([noise_floor(records, axis).value for axis in records[0].measured])
+    return _pooled([noise_floor(records, axis).value for axis in records[0].measured], records)
+
+
+def _pooled(floors: list[float], records: list[Record]) -> float:
     return float(np.sqrt(np.mean(np.square(floors / error_scales(records)))))
 
 
@@ -92,5 +95,5 @@ def units_and_floors(records: list[Record]) -> dict[str, Any]:
         "units": units,
         "noise_floor": {axis: floor.value / factor(units[axis]) for axis, floor in floors.items()},
         "noise_floor_source": {axis: floor.source for axis, floor in floors.items()},
-        "floor": pooled_floor(records) / factor(unit),
+        "floor": _pooled([floor.value for floor in floors.values()], records) / factor(unit),
     }

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from noises import record, rising, white
 from pzt_ident.data.evidence import rest_noise
-from pzt_ident.data.noise import error_scales, noise_floor, units_and_floors
+from pzt_ident.data.noise import error_scales, noise_floor, pooled_floor, units_and_floors
 
 SIGMA = 30e-9
 
@@ -257,3 +257,14 @@ def test_a_rest_that_is_exactly_constant_has_no_noise(samples):
     for level in levels:
         response = np.concatenate([np.linspace(0, level, 50), np.full(samples, level)])
         assert all(value <= 1e-12 * abs(level) for value, _ in rest_noise(drive, response))
+
+
+def test_the_noise_of_an_axis_is_estimated_once_for_a_result(monkeypatch):
+    drive = np.sin(0.01 * np.arange(4000))
+    records = [rig.record(drive, drive, response=drive + white((2, drive.size)))]
+    floor, asked = pooled_floor(records), []
+    monkeypatch.setattr(
+        "pzt_ident.data.noise.noise_floor", lambda records, axis: asked.append(axis) or noise_floor(records, axis)
+    )
+    assert units_and_floors(records)["floor"] == floor
+    assert asked == [0, 1]
