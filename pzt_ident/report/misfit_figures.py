@@ -145,7 +145,8 @@ def draw_misfit_map(figure: Figure, misfit: Facts) -> None:
     for (i, j), value in np.ndenumerate(share):
         if value >= 0.005:
             dark = rmse[i, j] > 0.6 * np.nanmax(rmse)
-            axes.text(j, i, f"{100 * value:.0f}", ha="center", va="center", size=5.5, color="white" if dark else INK)
+            colour = "white" if dark else INK
+            axes.text(j, i, f"{100 * value:.0f}", ha="center", va="center", size=5.5, color=colour, in_layout=False)
     units = {view["name"]: view["unit"] for view in misfit["views"]}
     for axis, name, labels in ((axes.yaxis, "rows", rows), (axes.xaxis, "columns", columns)):
         view_unit = units[crossed[name]]

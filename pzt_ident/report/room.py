@@ -42,9 +42,9 @@ def make_room(figure: Figure) -> None:
 
 
 def _beside(axes: Axes, renderer: RendererBase) -> Iterator[BboxBase]:
-    """Where the texts of a panel are, in pixels, but for its title."""
+    """Where the texts of a panel are, in pixels, but for its title and those within it, which are out of the layout."""
     boxes = [axis.get_tightbbox(renderer) for axis in (axes.xaxis, axes.yaxis) if axes.axison]
-    boxes += [text.get_window_extent(renderer) for text in axes.texts]
+    boxes += [text.get_window_extent(renderer) for text in axes.texts if text.get_in_layout()]
     yield from (box for box in boxes if box is not None)
 
 

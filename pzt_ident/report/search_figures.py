@@ -170,6 +170,7 @@ def draw_correlation(figure: Figure, results: Results) -> None:
                 va="center",
                 color=shade,
                 size=5.5,
+                in_layout=False,
             )
     frame = Frame(top + 1, right=width - left - across, bottom=left)
     colour_bar(figure, image, frame).set_label_text("correlation")
