@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import rig
 from noises import record, rising, white
 from pzt_ident.data.evidence import rest_noise
 from pzt_ident.data.noise import error_scales, noise_floor, pooled_floor, units_and_floors
