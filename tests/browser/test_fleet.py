@@ -82,10 +82,14 @@ def test_a_bar_shows_its_devices_in_the_table_by_key(lot):
 
 def test_a_fleet_that_is_not_done_is_followed_and_goes_on(lot, folder):
     name = lot.locator("#table-devices a[data-device]").last.text_content()
+    bar = lot.locator(f"[data-below]:not([aria-label*='{name}'])").first
+    said = bar.get_attribute("aria-label")
+    bar.focus()
     shutil.rmtree(folder / "workbench" / "fleet" / "devices" / name)
     expect(lot.locator("#counts")).to_have_text(f"{DEVICES - 2} of {DEVICES} devices done, 1 broken")
     expect(lot.locator("#live progress")).to_be_visible()
     expect(lot.locator("#table-devices tbody tr")).to_have_count(DEVICES - 2)
+    assert lot.evaluate("document.activeElement.getAttribute('aria-label')") == said  # drawn again since
     lot.click("#go-on")
     expect(lot.locator("#table-devices tbody tr")).to_have_count(DEVICES - 1)
     expect(lot.locator("#live progress")).to_be_hidden()
