@@ -15,26 +15,31 @@ NEGLIGIBLE = 1e-7  # of the largest singular value: directions below are roundin
 ROUNDING = 1e-12  # of a signal
 MOST_EXCHANGES = 12  # of bounds, all at once
 OVERSHOOT = 1e-9  # of its range, by which a parameter may pass its bound
+ALIKE = 1e-14  # of the largest inner product: traces that differ by less are one
 
 
 @dataclass(frozen=True)
 class Split:
     """Signals in two parts: inside what small steps of the parameters can produce, as (signals, directions), and
-    outside of it, (signals, samples)."""
+    outside of it, (signals, samples); or several sets of them."""
 
     inside: Array
     outside: Array
 
-    def __getitem__(self, rows: slice | Sequence[int]) -> Split:
+    def __getitem__(self, rows: int | slice | Sequence[int]) -> Split:
         return Split(self.inside[rows], self.outside[rows])
 
     @cached_property
     def norms_outside(self) -> Array:
-        return np.linalg.norm(self.outside, axis=1)
+        return np.linalg.norm(self.outside, axis=-1)
 
     @cached_property
     def norms(self) -> Array:
-        return np.hypot(np.linalg.norm(self.inside, axis=1), self.norms_outside)
+        return np.hypot(np.linalg.norm(self.inside, axis=-1), self.norms_outside)
+
+    def sets(self, count: int) -> Split:
+        """The same in sets of so many: (sets, count, ...)."""
+        return Split(*(part.reshape(-1, count, part.shape[1]) for part in (self.inside, self.outside)))
 
 
 def rotated(signal: Split, traces: Split) -> tuple[Split, Split]:
@@ -75,6 +80,15 @@ class Projection:
         if self._reachable(-self._steps @ inside):
             return np.zeros(0)
         return inside + self._responses @ bounded(self._responses, inside, self._least, self._most)
+
+    def least(self, signal: Split, sets: Split) -> Array:
+        """Norms that multiples of each set of traces would leave of a signal if nothing had bounds: (sets,)."""
+        traces, target = sets.outside, signal.outside[0]
+        products, directions = np.linalg.eigh(traces @ traces.swapaxes(1, 2))
+        along = np.einsum("scd,sc->sd", directions, traces @ target)
+        told = products > ALIKE * products[:, -1:]
+        taken = np.where(told, along**2 / np.where(told, products, 1), 0).sum(axis=1)
+        return np.sqrt(np.maximum(target @ target - taken, 0))
 
     def fit(
         self, signal: Split, traces: Split, one_sided: NDArray[np.bool_], least: float = np.inf
@@ -119,9 +133,10 @@ def bounded(matrix: Array, target: Array, least: Array, most: Array) -> Array:
 
 def exchanged_together(matrix: Array, target: Array, low: Array, high: Array) -> Array | None:
     """The steps by block pivoting (Portugal, Judice & Vicente 1994, Math. Comp. 63, 625); None where it does not
-    settle."""
-    x, free = np.zeros(low.size), low < high
-    for _ in range(MOST_EXCHANGES):
+    settle, as where a set of free steps comes back."""
+    x, free, seen = np.zeros(low.size), low < high, set[bytes]()
+    while len(seen) < MOST_EXCHANGES and free.tobytes() not in seen:
+        seen.add(free.tobytes())
         beside = target + matrix[:, ~free] @ x[~free]
         x[free] = np.linalg.lstsq(matrix[:, free], -beside, rcond=ROUNDING)[0]
         beyond = free & ((x < low) | (x > high))

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.diagnosis import misfit
-from pzt_ident.diagnosis.projection import Projection, Split, rotated
+from pzt_ident.diagnosis.projection import Projection, Split
 from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.diagnosis.trials import ShapesByAxis, Trial, parameter_grid
 from pzt_ident.model.block import Coupling, Term
@@ -123,18 +123,25 @@ class Scorer:
         clearest: Split | None = None
         guesses: list[dict[str, float]] = []
         planned, by_axis = self._planned_trials(effect, problem), ShapesByAxis(self.projection, problem, self.left)
-        for trial, signal, traces in chain(self._trials(problem, planned), self._trials(problem, by_axis)):
-            norm = traces.norms.max()
-            if norm > LEAST_TRACE * self.split.norms[0]:
-                place = (trial.size, -float(traces.norms_outside.max() / norm))
-                order, clearest = (place, traces) if place < order else (order, clearest)
-            if trial.size == max(blocks[effect].sizes):
-                strongest = max(strongest, float(norm / trial.size / self.case.floor))
-            amounts, left = self.projection.fit(signal, traces, trial.one_sided(problem), least)
-            by_axis.take(trial, signal, traces)
-            if self.explained(left) > score.explained:
-                score.explained, least = self.explained(left), left
-                guesses = [self._guess(problem, trial, scales) for scales in (amounts, np.ones(amounts.size))]
+        for trials, sets in chain(self._trials(problem, planned), self._trials(problem, by_axis)):
+            for number, trial in enumerate(trials):
+                traces = sets[number]
+                norm = traces.norms.max()
+                if norm > LEAST_TRACE * self.split.norms[0]:
+                    place = (trial.size, -float(traces.norms_outside.max() / norm))
+                    order, clearest = (place, traces) if place < order else (order, clearest)
+                if trial.size == max(blocks[effect].sizes):
+                    strongest = max(strongest, float(norm / trial.size / self.case.floor))
+                by_axis.take(trial, self.split, traces)
+            possible = self.projection.least(self.split, sets)
+            for number in np.argsort(possible, kind="stable"):
+                if possible[number] >= least:
+                    break
+                trial = trials[number]
+                amounts, left = self.projection.fit(self.split, sets[number], trial.one_sided(problem), least)
+                if self.explained(left) > score.explained:
+                    score.explained, least = self.explained(left), left
+                    guesses = [self._guess(problem, trial, scales) for scales in (amounts, np.ones(amounts.size))]
         self._take_best_guess(score, problem, guesses)
         visibility = float(self.projection.left(clearest).max() / clearest.norms.max()) if clearest else 0.0
         return replace(score, visibility=visibility, power=visibility * strongest)
@@ -162,20 +169,19 @@ class Scorer:
         linearised: (candidates,)."""
         return self.projection.left(self.projection.split(self._residuals(problem, physical)))
 
-    def _trials(self, problem: Problem, planned: Iterable[Trial]) -> Iterator[tuple[Trial, Split, Split]]:
-        """Each trial, the residual, and the changes of the response by its steps, one of each amplitude."""
+    def _trials(self, problem: Problem, planned: Iterable[Trial]) -> Iterator[tuple[list[Trial], Split]]:
+        """Trials side by side, and the changes of the response by the steps of each, one of each amplitude."""
         trials = list(planned)
         batch_size = max(1, BATCH // max(1, len(trials[0].amplitudes))) if trials else 1
         for first in range(0, len(trials), batch_size):
             batch = trials[first : first + batch_size]
             residuals = self._residuals(problem, np.concatenate([trial.stepped for trial in batch]))
             held = np.isfinite(residuals.sum(axis=1))
-            residuals[~held] = self.residual
-            traces, count = self.projection.split(residuals - self.residual), len(trials[0].amplitudes)
-            for number, trial in enumerate(batch):
-                rows = slice(number * count, (number + 1) * count)
-                if held[rows].all():
-                    yield trial, *rotated(self.split, traces[rows])
+            count = len(trials[0].amplitudes)
+            whole = held.reshape(-1, count).all(axis=1)
+            if whole.any():
+                traces = self.projection.split((residuals - self.residual)[np.repeat(whole, count)])
+                yield [trial for trial, kept in zip(batch, whole, strict=True) if kept], traces.sets(count)
 
     def _planned_trials(self, effect: str, problem: Problem) -> Iterator[Trial]:
         """A trial for each value of the shape parameters and each size."""

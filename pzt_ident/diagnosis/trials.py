@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.diagnosis.projection import Projection, Split
+from pzt_ident.diagnosis.projection import Projection, Split, rotated
 from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
@@ -61,6 +61,7 @@ class ShapesByAxis:
         both = {self.axes[i] for i in trial.shapes} & set(owners)
         if len(both) < 2:
             return
+        signal, traces = rotated(signal, traces)
         own = {axis: [row for row, owner in enumerate(owners) if owner == axis] for axis in sorted(both)}
         one_sided = trial.one_sided(self.problem)
         for axis, rows in own.items():
