@@ -11,8 +11,8 @@ LEAST = 60.0  # s, of CPU
 PER_SAMPLE = 1e-3  # s
 BESIDE = 0.35  # of the budget: other effects beside one that explains nearly all, but for a second one, get no more
 EXPLORING = 0.7  # of the budget: the rest is for proving what was found
-WHOLE = 1.0  # of the budget: ties, intervals and what promises to explain most of what is left get no more
-LAST = 1.25  # of the budget: fits end there, settled or not
+PROVING = 0.9  # of the budget: ties, intervals and what promises to explain most of what is left get no more
+WHOLE = 1.0  # of the budget: fits end there, settled or not
 
 
 class Budget:
@@ -48,7 +48,7 @@ class Budget:
 
     def lasts(self) -> bool:
         """Whether a fit may go on."""
-        return self.allows("settled fits", LAST)
+        return self.allows("settled fits", WHOLE)
 
     @property
     def sentence(self) -> str:

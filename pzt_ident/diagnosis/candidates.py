@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from pzt_ident.diagnosis.budget import BESIDE, EXPLORING, LAST, WHOLE
+from pzt_ident.diagnosis.budget import BESIDE, EXPLORING, PROVING, WHOLE
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, reaches_noise, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit_from, side_by_side
@@ -57,7 +57,7 @@ def score_all(case: Case, first: Fit, before: Fit, scorer: Scorer) -> list[Candi
         scored = before is first or case.budget.allows("the scores of all effects", share)
         return scorer.scores(word) if scored else []
 
-    share = WHOLE if adequate(case, first, before) else LAST
+    share = PROVING if adequate(case, first, before) else WHOLE
     words, candidates = applicable(case, before.effects), list[Candidate]()
     for scores in filter(None, side_by_side(scores_of, words)):
         candidates.append(Candidate.of(scores))
@@ -75,7 +75,7 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
 
     def share_allowed(candidate: Candidate) -> float:
         if candidate is candidates[0] and candidate.score.explained >= DECISIVE:
-            return WHOLE
+            return PROVING
         return BESIDE if second_missing(case, first, before, fits) else EXPLORING
 
     def refits(candidate: Candidate) -> dict[str, Fit]:

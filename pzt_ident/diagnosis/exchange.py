@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from pzt_ident.diagnosis.budget import WHOLE
+from pzt_ident.diagnosis.budget import PROVING
 from pzt_ident.diagnosis.candidates import TIE, is_equal, is_tied, strangers
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.misfit import share_explained
@@ -89,7 +89,7 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
     now, last = steps[-1].fit, steps[-1]
     added = now.effects[len(first.effects) :]
     known = added == (last.added,) and last.removed is None
-    for effect in added if not known and case.budget.allows("ties", WHOLE) else ():
+    for effect in added if not known and case.budget.allows("ties", PROVING) else ():
         fits = fits_in_place(case, now, effect, look_alikes(case, now, effect))
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
         rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
@@ -110,7 +110,7 @@ def drop_outdone_rivals(case: Case, now: Fit, steps: Sequence[Step]) -> None:
         if step.added not in now.effects:
             continue
         others = [item for item in strangers(step.added, step.tied) if word_of(item) not in map(word_of, now.effects)]
-        if not others or not case.budget.allows("ties", WHOLE):
+        if not others or not case.budget.allows("ties", PROVING):
             continue
         equal = [fit.effects[-1] for fit in fits_in_place(case, now, step.added, others) if is_equal(case, now, fit)]
         outdone = {*others} - {*equal}

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.noise import error_scales, pooled_floor
 from pzt_ident.data.record import Record
-from pzt_ident.diagnosis.budget import WHOLE, Budget
+from pzt_ident.diagnosis.budget import PROVING, Budget
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.model.block import Coupling
 from pzt_ident.model.chain import Chain
@@ -171,7 +171,7 @@ class Fit:
         profiles of it as that suffices for."""
         word = "profiled" if budget else "curved"
         if word not in self.__dict__:
-            going = partial(budget.allows, "intervals by profiles", WHOLE) if budget else lambda: False
+            going = partial(budget.allows, "intervals by profiles", PROVING) if budget else lambda: False
             self.__dict__[word] = estimates(self.problem, self.point, going)[0]
         return list(self.__dict__[word])
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from pzt_ident.diagnosis.bounds import beyond_bounds, brought_back, continued, stands_in
-from pzt_ident.diagnosis.budget import LAST
+from pzt_ident.diagnosis.budget import WHOLE
 from pzt_ident.diagnosis.candidates import TIE, Candidate
 from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, climb
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms, removes_enough
@@ -62,7 +62,7 @@ def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, F
 
 def settles_for(case: Case, first: Fit, lean: Staircase) -> bool:
     """Whether the staircase without mechanics is better than the model as given, and there is no time for another."""
-    return end_of(lean).total < first.total and not case.budget.allows("effects beside the mechanics", LAST)
+    return end_of(lean).total < first.total and not case.budget.allows("effects beside the mechanics", WHOLE)
 
 
 def end_of(staircase: Staircase) -> Fit:
