@@ -16,6 +16,7 @@ from pzt_ident.diagnosis.starts import restart
 from pzt_ident.model.registry import blocks, form_of, word_of
 
 TIE = 0.2  # noise floors between two refits: less does not distinguish them; of look-alikes twice that
+TWIN = 1e-3  # noise floors: two models that fit as closely are one on these data
 LOOK_ALIKE_TIE = 0.01  # of the total RMSE: less does not distinguish refits of look-alikes far above the noise
 FORM_GAIN = 0.02  # of the misfit, by which another form of an effect explains more than the first one
 NEARLY_ALL = 0.9  # of the misfit: what explains as much may be a look-alike of what is missing, in another form
@@ -199,6 +200,13 @@ def differ(one: float, other: float, floor: float) -> bool:
 def is_tied(case: Case, effect: str, fit: Fit, rival: Fit) -> bool:
     """Whether a fit with a look-alike in the place of an effect is hardly worse."""
     return is_equal(case, fit, rival) and are_look_alikes(effect, rival.effects[-1])
+
+
+def is_twin(case: Case, effect: str, forms: Collection[Fit], rival: Fit) -> bool:
+    """Whether a fit with a look-alike in the place of an effect is that with another form of the effect: a form that
+    the look-alike does not have tells nothing between them."""
+    twin = any(abs(fit.total - rival.total) < TWIN * case.floor for fit in forms)
+    return twin and are_look_alikes(effect, rival.effects[-1])
 
 
 def is_equal(case: Case, fit: Fit, rival: Fit) -> bool:

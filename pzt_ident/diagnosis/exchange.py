@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from pzt_ident.diagnosis.budget import PROVING
-from pzt_ident.diagnosis.candidates import TIE, is_equal, is_tied, strangers
+from pzt_ident.diagnosis.candidates import TIE, is_equal, is_tied, is_twin, strangers
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit, refit_beside
@@ -94,6 +94,8 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
         rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
         taken = min(rivals, key=lambda item: rivals[item].problem.dimensions)
+        forms = fits_in_place(case, now, effect, other_forms(case, now, effect) if len(tied) < len(fits) else [])
+        rivals |= {fit.effects[-1]: fit for fit in fits if is_twin(case, effect, forms, fit)}
         if taken == effect:
             step = next(step for step in reversed(steps) if step.added == effect)
         else:

@@ -17,6 +17,7 @@ from pzt_ident.diagnosis.candidates import (
     decide_by_score,
     generalises,
     is_tied,
+    is_twin,
     promises_enough,
     refit_all,
     refit_other_forms,
@@ -110,6 +111,8 @@ def with_effects(
     best = within_bounds(before, min(tied, key=simplicity), passing)
     tied += [best] if best not in tied else []
     word = best.score.effect
+    forms = [fit for item, fit in best.refits.items() if item != word]
+    tied += [item for item in passing if item not in tied and is_twin(case, word, forms, fits[item.score.effect])]
     for item in tied:
         item.decision = "missing"
     candidates.sort(key=lambda item: (item is not best, item.fit.total if item.fit else np.inf))

@@ -8,7 +8,7 @@ import pytest
 
 from pzt_ident.diagnosis import candidates, verdict
 from pzt_ident.diagnosis.budget import Budget
-from pzt_ident.diagnosis.candidates import Candidate, choose_forms, generalises, is_tied
+from pzt_ident.diagnosis.candidates import Candidate, choose_forms, generalises, is_tied, is_twin
 from pzt_ident.diagnosis.criteria import adequate, not_in_validation, reaches_noise, removes_enough, threshold
 from pzt_ident.diagnosis.refit import Fit
 from pzt_ident.diagnosis.score import Score, squared_misfit
@@ -185,6 +185,33 @@ def test_look_alikes_are_a_tie_where_they_are_twice_as_far_apart(total, apart, c
 def test_far_above_the_noise_look_alikes_are_a_tie_to_one_percent(share, close):
     best, rival = fit(50.0, 50.0, ["amplifier_lag"]), fit(50.0 * share, 50.0 * share, ["sensor_lag"])
     assert is_tied(CASE, "amplifier_lag", best, rival) == close
+
+
+@pytest.mark.parametrize(
+    ("apart", "word", "twin"),
+    [(9e-4, "kinematic_coupling", True), (1.1e-3, "kinematic_coupling", False), (0.0, "creep", False)],
+)
+def test_what_fits_as_another_form_of_an_effect_does_is_not_told_from_it(apart, word, twin):
+    """A coupling by the other axis' voltage fits better than by its force, which is that of its displacement."""
+    force, rival = fit(3.0, 3.0, ["cross_coupling"]), fit(3.0 + apart, 3.0 + apart, [word])
+    assert is_twin(CASE, "cross_coupling.voltage", [force], rival) == twin
+
+
+def test_such_a_twin_is_in_the_class_of_the_effect_and_never_leads_it():
+    candidate, twin = (
+        Candidate(Score(words[0]), forms=list(map(Score, words)))
+        for words in (["cross_coupling", "cross_coupling.voltage"], ["kinematic_coupling"])
+    )
+    candidate.refits = {
+        "cross_coupling": fit(3.0, 3.0, ["cross_coupling"]),
+        "cross_coupling.voltage": fit(1.0, 1.0, ["cross_coupling.voltage"], 9),
+    }
+    candidate.take("cross_coupling.voltage")
+    twin.refits = {"kinematic_coupling": fit(3.0, 3.0, ["kinematic_coupling"])}
+    twin.take("kinematic_coupling")
+    first = fit(20.0, 20.0)
+    diagnosis = verdict.with_effects(CASE, first, first, [candidate, twin], [candidate, twin])
+    assert (diagnosis.verdict, diagnosis.tied) == ("inconclusive", ["cross_coupling.voltage", "kinematic_coupling"])
 
 
 @pytest.mark.parametrize(
