@@ -11,7 +11,7 @@ from pzt_ident.diagnosis.criteria import DECISIVE, beyond_form, form_of_others, 
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.step import effects_without
-from pzt_ident.model.registry import blocks, phrase_of
+from pzt_ident.model.registry import blocks, phrase_of, word_of
 
 ENOUGH = 3 / 4  # of the misfit as given: what one effect must remove
 BESIDE = 2 / 3  # of the misfit beside the others: what each must remove of those that do not remove most of it together
@@ -22,8 +22,9 @@ ALONE = 1 / 3  # what each must remove of those that do
 class Suspect:
     """What an effect takes up beside the others: the shares of the misfit on the identification and on the validation
     records (None without any), the fit without it, whether that is more than the form of the others may leave, the
-    effects of another kind that fitted as well when it was added, and the share of all records together where each
-    has its own amount of it: one that has little says nothing against it."""
+    effects of another kind that fitted as well when it was added, its parameters that ended on a bound and have no
+    null, and the share of all records together where each has its own amount of it: one that has little says nothing
+    against it."""
 
     effect: str
     identify: float
@@ -31,12 +32,13 @@ class Suspect:
     without: Fit
     beyond_form: bool = True
     strangers: tuple[str, ...] = ()
+    limits: tuple[str, ...] = ()
     of_all: float | None = None
 
     @property
-    def rank(self) -> tuple[bool, bool, float]:
+    def rank(self) -> tuple[bool, bool, bool, float]:
         """The order in which effects are taken out."""
-        return self.beyond_form, not self.strangers, self.share
+        return self.beyond_form, not self.strangers, not self.limits, self.share
 
     @property
     def share(self) -> float:
@@ -53,6 +55,8 @@ class Suspect:
         if self.beyond_form and self.strangers:
             names = listed(map(phrase_of, self.strangers))
             rest = f" of a model that stays above the noise with it, and {names} fitted as well when it was added."
+        elif self.beyond_form and self.limits:
+            rest = f" of a model that stays above the noise with it, and {listed(self.limits)} ended on a bound."
         elif self.beyond_form:
             rest = " of a model that stays above the noise with it: it may stand in for something else."
         else:
@@ -70,7 +74,8 @@ def unproven(
     together as much of the misfit as given as if the first removed ENOUGH, or DECISIVE where the identification records
     are at the noise, and each of the others DECISIVE of the rest, and each the share ALONE beside the others; or each
     of several the share BESIDE. None may have rivals that fit as well and are not its look-alikes: what any
-    effect takes up is not that of one.
+    effect takes up is not that of one. And none may have the shape of its limit, as a cyclic error whose pitch is as
+    long as the stroke.
     """
     suspects: list[Suspect] = []
     while added := now.effects[len(first.effects) :]:
@@ -79,7 +84,7 @@ def unproven(
         one = DECISIVE if reaches_noise(case, first, now) else ENOUGH
         together = removed_by_all(case, first, now) >= 1 - (1 - one) * (1 - DECISIVE) ** (len(added) - 1)
         least_share = ALONE if together else BESIDE if len(added) > 1 else one
-        decisive = not least.strangers and least.share >= least_share
+        decisive = not least.strangers and not least.limits and least.share >= least_share
         if least.beyond_form and (decisive or near_noise(case, first, now)):
             break
         suspects.append(least)
@@ -109,8 +114,21 @@ def suspect(
     if validate is not None and differs_by_record(effect):
         of_all = share_explained(without.total, now.total, case.floor)
         clear = removed_rms(without.total, now.total) > form_of_others(case, first.total)
-        return Suspect(effect, identify, validate, without, clear, others, of_all)
-    return Suspect(effect, identify, validate, without, beyond_form(case, first, without, now), others)
+        return Suspect(effect, identify, validate, without, clear, others, of_all=of_all)
+    clear = beyond_form(case, first, without, now)
+    return Suspect(effect, identify, validate, without, clear, others, limits_of(now, effect))
+
+
+def limits_of(fit: Fit, effect: str) -> tuple[str, ...]:
+    """The parameters of an effect that ended on a bound and have no null."""
+    problem = fit.problem
+    entries = {name: problem.model.entries[column] for name, column in zip(problem.names, problem.free, strict=True)}
+    return tuple(
+        name
+        for name in fit.on_bounds
+        if entries[name].parameter.null is None
+        and word_of(effect) in (entries[name].block.name, word_of(entries[name].parameter.effect or ""))
+    )
 
 
 def differs_by_record(effect: str) -> bool:

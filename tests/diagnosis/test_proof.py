@@ -12,15 +12,28 @@ from pzt_ident.diagnosis.refit import Fit
 CASE = SimpleNamespace(floor=1.0)
 
 
-def fit(identify, validate, effects=()):
-    return Fit(tuple(effects), SimpleNamespace(dimensions=4), np.zeros(0), identify, validate)
+def fit(identify, validate, effects=(), shapes=None):
+    """shapes: the place in its range of a parameter of some effects that has no null."""
+    shapes = shapes or {}
+    entries = [
+        SimpleNamespace(parameter=SimpleNamespace(null=None, effect=""), block=SimpleNamespace(name=effect))
+        for effect in shapes
+    ]
+    problem = SimpleNamespace(
+        dimensions=4,
+        names=[f"{effect}.shape" for effect in shapes],
+        free=range(len(shapes)),
+        model=SimpleNamespace(entries=entries),
+        physical=np.atleast_2d,
+    )
+    return Fit(tuple(effects), problem, np.array([*shapes.values()], float), identify, validate)
 
 
 @pytest.fixture
 def taken_out(monkeypatch):
     """The suspects among some effects, given the error of a model without each set of them."""
 
-    def of(errors, validation=None, first=30.0, rivals=None, known=()):
+    def of(errors, validation=None, first=30.0, rivals=None, known=(), shapes=None):
         validation = validation or errors
 
         def refitted(case, before, effects, guess):
@@ -30,7 +43,7 @@ def taken_out(monkeypatch):
         by_record = proof.differs_by_record
         monkeypatch.setattr(proof, "differs_by_record", lambda effect: len(effect) > 1 and by_record(effect))
         every = max(errors, key=len)
-        now = fit(errors[every], validation[every], sorted(every))
+        now = fit(errors[every], validation[every], sorted(every), shapes)
         return [item.effect for item in unproven(CASE, fit(first, first), now, rivals or {}, known)]
 
     return of
@@ -56,6 +69,13 @@ def test_one_removes_three_quarters_of_what_there_was_and_two_together_seven_eig
 def test_a_refit_that_ended_with_the_budget_proves_nothing_beside_a_known_fit(taken_out):
     assert taken_out(of(a=7.0, none=50.0)) == []
     assert taken_out(of(a=7.0, none=50.0), known=[fit(8.0, 8.0), fit(2.0, 2.0, "b")]) == ["a"]
+
+
+@pytest.mark.parametrize(
+    ("place", "left", "suspects"), [(1.0, 5.0, ["a"]), (0.0, 5.0, ["a"]), (0.9, 5.0, []), (1.0, 1.4, [])]
+)
+def test_above_the_noise_what_has_the_shape_of_its_limit_is_a_suspect(taken_out, place, left, suspects):
+    assert taken_out(of(ab=left, a=20.0, b=25.0, none=300.0), first=300.0, shapes={"a": place, "b": 0.5}) == suspects
 
 
 def test_two_thirds_beside_the_others_are_enough_however_much_all_remove_together(taken_out):
