@@ -81,7 +81,7 @@ def test_a_block_is_found_elsewhere_and_a_fit_at_the_noise_stays(plain):
     assert restart(plain, fit).identify == pytest.approx(fit.identify, rel=1e-3)
 
 
-def test_a_descent_ends_with_twice_the_budget(plain):
+def test_a_descent_ends_with_the_budget(plain):
     problem, budget = plain.problem(()), Budget(0.0)
     start = np.full(problem.dimensions, 0.5)
     assert (descend(problem, start, going=budget.lasts) == start).all()
