@@ -22,7 +22,7 @@ Function = Callable[[np.ndarray], float]
 def without_logging() -> Iterator[None]:
     """Keep pyswarms from configuring logging and writing report.log when it is imported or a handler is created."""
     configured = os.environ.get("LOG_CFG")
-    os.environ["LOG_CFG"] = str(Path(__file__).with_name("pyswarms_logging.yaml"))
+    os.environ["LOG_CFG"] = str(Path(__file__).with_name("pyswarms_logging.yml"))
     try:
         yield
     finally:

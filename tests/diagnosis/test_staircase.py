@@ -200,7 +200,10 @@ def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, mon
 
 
 @pytest.mark.parametrize(("parameters", "taken"), [(1, "sensor_lag"), (3, "friction.coulomb"), (4, "friction.coulomb")])
-def test_beside_other_effects_too_the_simpler_of_tied_look_alikes_is_taken(monkeypatch, parameters, taken):
+@pytest.mark.parametrize("twin", [False, True])
+def test_beside_other_effects_too_the_simpler_of_tied_look_alikes_is_taken(monkeypatch, parameters, taken, twin):
+    """twin: whether the delay, which is worse, fits as another form of the friction does."""
+
     def fitted(word, total, dimensions):
         problem = SimpleNamespace(dimensions=dimensions)
         return SimpleNamespace(effects=("creep", word), total=total, identify=total, problem=problem)
@@ -210,14 +213,16 @@ def test_beside_other_effects_too_the_simpler_of_tied_look_alikes_is_taken(monke
         fitted("sensor_lag", 1.15, parameters),
         fitted("delay", 2, 1),
     )
-    monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect: [])
-    others = {"creep": [], "friction.coulomb": [rival, worse]}
-    monkeypatch.setattr(exchange, "fits_in_place", lambda case, now, effect, items: others[effect])
+    others = {"creep": [], "friction.coulomb": [rival, worse], "forms": [fitted("friction", 2 if twin else 2.1, 3)]}
+    monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect: [effect])
+    monkeypatch.setattr(exchange, "other_forms", lambda case, now, effect: ["forms"])
+    monkeypatch.setattr(exchange, "fits_in_place", lambda case, now, effect, items: others[items[0]] if items else [])
     steps, told = [Step(now, "creep"), Step(now, "friction.coulomb")], []
     case = SimpleNamespace(floor=1.0, budget=Budget())
     exchange.find_rivals(case, SimpleNamespace(effects=()), steps, told.append)
     assert steps[-1].fit.effects == ("creep", taken)
-    assert (steps[-1].added, set(steps[-1].tied)) == (taken, {"friction.coulomb", "sensor_lag"})
+    tied = {"friction.coulomb", "sensor_lag", *(["delay"] if twin else [])}
+    assert (steps[-1].added, set(steps[-1].tied)) == (taken, tied)
     assert steps[-1].tied[0] == taken
     assert told == steps[2:]
 
