@@ -74,8 +74,8 @@ def unproven(
     together as much of the misfit as given as if the first removed ENOUGH, or DECISIVE where the identification records
     are at the noise, and each of the others DECISIVE of the rest, and each the share ALONE beside the others; or each
     of several the share BESIDE. None may have rivals that fit as well and are not its look-alikes: what any
-    effect takes up is not that of one. And none may have the shape of its limit, as a cyclic error whose pitch is as
-    long as the stroke.
+    effect takes up is not that of one. And none may have a shape that ended on a bound, as a cyclic error whose pitch
+    is as long as the stroke: it stands for what it is like there.
     """
     suspects: list[Suspect] = []
     while added := now.effects[len(first.effects) :]:

@@ -17,7 +17,8 @@ DAMPINGS = 10.0 ** np.arange(-12, 4)  # of the curvature, tried side by side, wh
 FARTHEST = 0.3  # of a parameter's range in a step
 REFINED, PATIENCE = 1e-4, 3  # of the loss: so many steps in a row that take less off end a descent
 PROMISED = 1e-8  # of the loss: a step that would take less off ends it, too
-FAR, CRAWLING = 2.0, 1e-3  # times the loss of a rival, above which steps in a row that take less off end it, too
+FAR = 2.0  # times the loss of a rival
+CRAWLING = 1e-3  # of the loss: so many steps in a row that take less off end a descent that is far above a rival
 SETTLED = 1e-11  # of the loss: a step that takes less off, or would, ends a polish
 NEXT = 1e-3  # of a parameter's range: twice the longest step that still leads to the minimum next to it
 ROUNDING = 1e-10  # of the loss: it rises by less where only its digits end
@@ -32,7 +33,7 @@ def descend(
     rival: float = np.inf,
 ) -> Array:
     """The point that few steps reach. held: a parameter that stays where it is. going: whether there is time for
-    another step. rival: a loss, FAR above which a descent that is CRAWLING is given up."""
+    another step. rival: the loss of another model; a descent that crawls far above it is given up."""
     best, falls = np.clip(point, 0, 1), [1.0]
     for step, loss, fall in islice(steps(problem, best, PROMISED, held, going), most):
         best = step
