@@ -118,26 +118,32 @@ def rotated(simulator: Simulator, theta: Array, weights: Array) -> tuple[list[Ar
     """Combinations `weights`, (combinations, candidates), of the errors without offset and additions, rotated so that
     few rows are left: for each measured axis (rows, combinations). And which candidates failed: (candidates,); their
     errors are taken as zero."""
-    sums = [Rotated(simulator, axis, theta, weights) for axis in simulator.model.measured]
-    failed = np.zeros(len(theta), dtype=bool)
-    for at, error in simulator.tiles(theta):
+    fewer = simulator.distinct(theta)
+    sums = [
+        Rotated(simulator, axis, fewer.theta, weights @ fewer.chosen(i))
+        for i, axis in enumerate(simulator.model.measured)
+    ]
+    failed = np.zeros((len(fewer.theta), len(sums)), dtype=bool)
+    for at, error in simulator.deviations(fewer.theta):
         with np.errstate(all="ignore"):
-            failed |= ~(np.einsum("mas,mas->m", error, error) < np.inf)
+            failed |= ~(np.einsum("mas,mas->ma", error, error) < np.inf)
         error[failed] = 0
         for i, axis in enumerate(sums):
-            failed |= axis.add(at, error[:, i])
-    return [axis.combinations for axis in sums], failed
+            failed[:, i] |= axis.add(at, error[:, i])
+    return [axis.combinations for axis in sums], np.asarray(fewer.of_candidates(failed).any(axis=1))
 
 
 class Rotated:
     """Those of one axis. Errors that are combined and have the same signals of additions are combined sample by sample,
-    before they are rotated; the others afterwards."""
+    before they are rotated; the others afterwards. Combinations of nothing are left out."""
 
     def __init__(self, simulator: Simulator, axis: int, theta: Array, weights: Array) -> None:
-        self.additions, self.axis, self.theta, self.weights = simulator.additions, axis, theta, weights
+        self.additions, self.axis, self.theta = simulator.additions, axis, theta
+        self.combined = np.asarray(weights.any(axis=1))
+        self.weights = weights[self.combined]
         self.groups, self.count = self.additions.groups(axis, theta), self.additions.count(axis)
         self.alike = len(self.groups) == 1
-        self.triangle = Triangle(len(self.groups) * self.count + (len(weights) if self.alike else len(theta)))
+        self.triangle = Triangle(len(self.groups) * self.count + len(self.weights if self.alike else theta))
 
     def add(self, at: slice, error: Array) -> NDArray[np.bool_]:
         """Take up the errors (candidates, samples) of a stretch; which candidates have signals that are not finite."""
@@ -152,6 +158,13 @@ class Rotated:
     @property
     def combinations(self) -> Array:
         """(rows, combinations)"""
+        combined = self._combined
+        combinations = np.zeros((len(combined), len(self.combined)))
+        combinations[:, self.combined] = combined
+        return combinations
+
+    @property
+    def _combined(self) -> Array:
         bases, errors = np.split(self.triangle.r, [len(self.groups) * self.count], axis=1)
         if self.count == 1:
             return errors[1:]  # the ones alone have their row

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from pzt_ident.data.record import Record, interpolated
 from pzt_ident.engine.additions import Additions
 from pzt_ident.engine.amounts import ROUGH, Amounts, Held
+from pzt_ident.engine.distinct import Distinct, columns_of_axes, distinct
 from pzt_ident.engine.gather import squares
 from pzt_ident.engine.program import Program
 from pzt_ident.model.block import TILES
@@ -37,6 +38,7 @@ class Simulator:
         self.additions = Additions(self._program)
         self.amounts: Amounts | Held = Amounts(self)
         self._measured = TILES * np.array(model.measured, dtype=np.int64)
+        self._columns = columns_of_axes(model)
         self._sums = self._program.rows  # row of the scratch after those of the blocks
         self._each = self.additions.sums or 2  # rows of sums of an axis
         self._rows = self._sums + self._each * len(model.measured)
@@ -83,6 +85,10 @@ class Simulator:
         the errors (candidates, measured axes, samples of the stretch)."""
         return self.deviations(self.amounts.complete(np.atleast_2d(theta)))
 
+    def distinct(self, theta: Array) -> Distinct:
+        """The fewest candidates, with the amounts of the record, that have each axis of those of theta."""
+        return distinct(self.amounts.complete(np.atleast_2d(theta)), self._columns)
+
     def deviations(self, theta: Array) -> Iterator[tuple[slice, Array]]:
         """The same without the amounts of the record, unless theta has them."""
         measured, settle = list(self.model.measured), self.record.settle
@@ -97,17 +103,18 @@ class Simulator:
         """The responses (candidates, measured axes, samples), stretch by stretch of so many samples at most."""
         from pzt_ident.engine.kernel import TILE
 
-        scratch = self._program.scratch(theta, self._rows)
+        fewer = distinct(theta, self._columns)
+        scratch = self._program.scratch(fewer.theta, self._rows)
         steps, signals = self._shared(scratch, np.array(self._program.steps, dtype=np.int64).reshape(-1, 5))
         length = -(-most // TILE) * TILE
         lead, samples = self.record.run_in * self.record.samples, self.record.samples
         for first in range(0, lead + samples, length):
             last = min(first + length, lead + samples)
             at = slice(max(first - lead, 0), last - lead)
-            output = np.empty((len(theta), len(self.model.measured), max(at.stop - at.start, 0)))
+            output = np.empty((len(fewer.theta), len(self.model.measured), max(at.stop - at.start, 0)))
             self._run(scratch, steps, signals, output, first, last)
             if output.size:
-                yield at, output
+                yield at, fewer.of_candidates(output)
 
     def squares(self, theta: Array) -> Array:
         """Sum of squared errors over the scored samples, without the free offset: (candidates, measured axes)."""
@@ -116,24 +123,23 @@ class Simulator:
         theta = np.atleast_2d(theta)
         if self.substeps > 1:
             return squares(self, theta)
-        scratch = self._program.scratch(self.amounts.complete(theta), self._rows)
+        fewer = self.distinct(theta)
+        scratch = self._program.scratch(fewer.theta, self._rows)
         sums = scratch.reshape(scratch.shape[0], self._rows, WIDTH)[:, self._sums :]
         self.additions.begin(sums)
         steps, signals = self._shared(scratch, self._scoring)
         last = self.record.samples * (self.record.run_in + 1)
         self._run(scratch, steps, signals, np.empty((0, 0, 0)), 0, last)
+        table = sums.reshape(-1, len(self.model.measured), self._each, WIDTH).transpose(0, 3, 1, 2)
+        table = fewer.of_candidates(table.reshape(-1, *table.shape[2:])[: len(fewer.theta)])
         if self.model.additions:
-            table = sums.reshape(-1, len(self.model.measured), self._each, WIDTH).transpose(0, 3, 1, 2)
-            squared, sure = self.additions.squares(table.reshape(-1, *table.shape[2:])[: theta.shape[0]], self.scored)
+            squared, sure = self.additions.squares(table, self.scored)
             if not sure.all():
                 squared[~sure] = squares(self, theta[~sure])
             return squared
-        with np.errstate(invalid="ignore", over="ignore"):
-            squared = (
-                sums[:, 1::2] - (sums[:, 0::2] / np.sqrt(self.scored)) ** 2
-            )  # overflows only where the sum of squares does
-        squared = np.maximum(squared, 0)  # negative by rounding for a perfect fit
-        return squared.swapaxes(1, 2).reshape(-1, len(self.model.measured))[: theta.shape[0]]
+        with np.errstate(invalid="ignore", over="ignore"):  # overflows only where the sum of squares does
+            squared = table[:, :, 1] - (table[:, :, 0] / np.sqrt(self.scored)) ** 2
+        return np.maximum(squared, 0)  # negative by rounding for a perfect fit
 
     def residuals(self, theta: Array) -> Array:
         """Model minus measurement over the scored samples, without offset and additions; see `errors`."""
@@ -143,7 +149,8 @@ class Simulator:
         """Model minus measurement over all samples: (candidates, measured axes, samples). The offset of the record and
         the amounts of its additions are subtracted; they follow from least squares over the scored samples."""
         theta = np.atleast_2d(theta)
-        error = self.simulate(self.amounts.complete(theta)) - self.record.response[list(self.model.measured)]
+        error = self.simulate(self.amounts.complete(theta))
+        error -= self.record.response[list(self.model.measured)]
         self.additions.remove(error, theta)
         return error
 

@@ -128,15 +128,18 @@ class Problem(Cube):
         """(candidates, scored samples of all records and axes), scaled so that the norm is the loss; inf if failed."""
         residuals = self._scaled(self.parameters(points))
         with np.errstate(all="ignore"):
-            failed = ~np.isfinite(np.square(residuals).sum(axis=1))
+            failed = ~np.isfinite(np.einsum("cs,cs->c", residuals, residuals))
         self.failed += int(failed.sum())
         residuals[failed] = np.inf
         return residuals
 
     def _scaled(self, theta: Array) -> Array:
         with np.errstate(all="ignore"):
-            parts = [simulator.residuals(theta) / self.sizes[:, None] for simulator in self.simulators["identify"]]
-            scaled = np.hstack([part.reshape(len(theta), -1) for part in parts]) / np.sqrt(self.scored)
+            scaled, end = np.empty((len(theta), self.scored)), 0
+            for simulator in self.simulators["identify"]:
+                for error, size in zip(simulator.residuals(theta).swapaxes(0, 1), self.sizes, strict=True):
+                    begin, end = end, end + simulator.scored
+                    np.divide(error, size * np.sqrt(self.scored), out=scaled[:, begin:end])
             return self._tangent.follow(scaled) if self._tangent else scaled
 
     def _changes(self, theta: Array) -> Array:
