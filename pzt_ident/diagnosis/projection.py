@@ -16,12 +16,13 @@ ROUNDING = 1e-12  # of a signal
 MOST_EXCHANGES = 12  # of bounds, all at once
 OVERSHOOT = 1e-9  # of its range, by which a parameter may pass its bound
 ALIKE = 1e-14  # of the largest inner product: traces that differ by less are one
+STRETCH = 2048  # samples that are projected at once
 
 
 @dataclass(frozen=True)
 class Split:
     """Signals in two parts: inside what small steps of the parameters can produce, as (signals, directions), and
-    outside of it, (signals, samples); or several sets of them."""
+    outside of it, (signals, samples), or rotated into fewer rows; or several sets of them."""
 
     inside: Array
     outside: Array
@@ -37,15 +38,34 @@ class Split:
     def norms(self) -> Array:
         return np.hypot(np.linalg.norm(self.inside, axis=-1), self.norms_outside)
 
-    def sets(self, count: int) -> Split:
-        """The same in sets of so many: (sets, count, ...)."""
-        return Split(*(part.reshape(-1, count, part.shape[1]) for part in (self.inside, self.outside)))
 
+@dataclass(frozen=True)
+class Sets:
+    """Sets of traces beside a signal. signals: (sets, 1, ...), and traces: (sets, count, ...), what is outside rotated
+    together into a few rows for each set: norms and inner products stay, to half the digits. signal: as it is; outside:
+    of the traces, (sets, count, samples)."""
 
-def rotated(signal: Split, traces: Split) -> tuple[Split, Split]:
-    """Both, with what is outside rotated together into a few rows: norms and inner products stay."""
-    triangle = np.asarray(np.linalg.qr(np.vstack([traces.outside, signal.outside]).T, mode="r"))
-    return Split(signal.inside, triangle[:, -1:].T), Split(traces.inside, triangle[:, :-1].T)
+    signals: Split
+    traces: Split
+    signal: Split
+    outside: Array
+
+    @cached_property
+    def least(self) -> Array:
+        """Norms that multiples of each set would leave of the signal if nothing had bounds: (sets,)."""
+        traces, target = self.traces.outside, self.signals.outside[:, 0]
+        products, directions = np.linalg.eigh(traces @ traces.swapaxes(1, 2))
+        along = np.einsum("scd,sc->sd", directions, np.einsum("scr,sr->sc", traces, target))
+        told = products > ALIKE * products[:, -1:]
+        taken = np.where(told, along**2 / np.where(told, products, 1), 0).sum(axis=1)
+        return np.asarray(np.sqrt(np.maximum(np.square(target).sum(axis=1) - taken, 0)))
+
+    def exact(self, number: int) -> tuple[Split, Split]:
+        """The signal and a set of traces, what is outside rotated together to all digits."""
+        columns = np.vstack([self.outside[number], self.signal.outside]).T
+        triangle = np.asarray(np.linalg.qr(columns, mode="r"))
+        inside = self.traces.inside[number]
+        return Split(self.signal.inside, triangle[:, -1:].T), Split(inside, triangle[:, :-1].T)
 
 
 class Projection:
@@ -71,6 +91,23 @@ class Projection:
         inside = signals @ self._basis
         return Split(inside, signals - inside @ self._basis.T)
 
+    def split_sets(self, signal: Split, traces: Array, count: int) -> Sets:
+        """Sets of so many traces, (sets * count, samples), beside one signal; what is inside of the traces is taken
+        away in place."""
+        inside = traces @ self._basis
+        products = np.zeros((len(traces) // count, 1 + count, 1 + count))
+        for first in range(0, traces.shape[1], STRETCH):
+            at = slice(first, first + STRETCH)
+            outside = traces[:, at]
+            outside -= inside @ self._basis[at].T
+            both = np.empty((*products.shape[:2], outside.shape[1]))
+            both[:, 0], both[:, 1:] = signal.outside[0, at], outside.reshape(-1, count, outside.shape[1])
+            products += both @ both.swapaxes(1, 2)
+        rows = rows_of(products)
+        alone = np.broadcast_to(signal.inside, (len(rows), *signal.inside.shape))
+        short = Split(alone, rows[:, :1]), Split(inside.reshape(-1, count, inside.shape[1]), rows[:, 1:])
+        return Sets(*short, signal, traces.reshape(-1, count, traces.shape[1]))
+
     def left(self, signals: Split) -> Array:
         """Norms of what is left of signals at best: (signals,)."""
         beside = np.array([np.linalg.norm(self._left_inside(inside)) for inside in signals.inside])
@@ -81,21 +118,11 @@ class Projection:
             return np.zeros(0)
         return inside + self._responses @ bounded(self._responses, inside, self._least, self._most)
 
-    def least(self, signal: Split, sets: Split) -> Array:
-        """Norms that multiples of each set of traces would leave of a signal if nothing had bounds: (sets,)."""
-        traces, target = sets.outside, signal.outside[0]
-        products, directions = np.linalg.eigh(traces @ traces.swapaxes(1, 2))
-        along = np.einsum("scd,sc->sd", directions, traces @ target)
-        told = products > ALIKE * products[:, -1:]
-        taken = np.where(told, along**2 / np.where(told, products, 1), 0).sum(axis=1)
-        return np.sqrt(np.maximum(target @ target - taken, 0))
-
     def fit(
         self, signal: Split, traces: Split, one_sided: NDArray[np.bool_], least: float = np.inf
     ) -> tuple[Array, float]:
         """Multiples of the traces that, together with the parameters, leave least of the signal, and the norm of what
         is left. A multiple is not negative where `one_sided`. least: no less needs to be told exactly."""
-        signal, traces = rotated(signal, traces)
         matrix, target = traces.outside.T, signal.outside[0]
         inside, trace_inside = signal.inside[0], traces.inside.T
         amounts = _amounts(matrix, target, one_sided)
@@ -111,6 +138,14 @@ class Projection:
 
     def _reachable(self, steps: Array) -> bool:
         return bool((steps >= self._least - OVERSHOOT).all() and (steps <= self._most + OVERSHOOT).all())
+
+
+def rows_of(products: Array) -> Array:
+    """Vectors of the inner products (sets, vectors, vectors): (sets, vectors, rows)."""
+    norms = np.sqrt(np.einsum("svv->sv", products))
+    scales = np.where(norms > 0, norms, 1)[:, :, None]
+    values, directions = np.linalg.eigh(products / scales / scales.swapaxes(1, 2))
+    return np.asarray(scales * directions * np.sqrt(np.maximum(values, 0))[:, None, :])
 
 
 def _amounts(traces: Array, signal: Array, one_sided: NDArray[np.bool_]) -> Array:

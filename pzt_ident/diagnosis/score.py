@@ -6,7 +6,7 @@ The change of the response as an effect leaves its null, less the part that the 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain
 from math import prod
@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.diagnosis import misfit
-from pzt_ident.diagnosis.projection import Projection, Split
+from pzt_ident.diagnosis.projection import Projection, Sets, Split
 from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.diagnosis.trials import ShapesByAxis, Trial, parameter_grid
-from pzt_ident.model.block import Coupling, Term
+from pzt_ident.model.block import Block, Coupling, Term
 from pzt_ident.model.registry import blocks, word_of
 from pzt_ident.search.problem import Problem
 
@@ -38,9 +38,10 @@ class Score:
 
     explained: share of the misfit that the effect would remove if it were linear and without bounds;
     explained_in_bounds: the share within the bounds. guesses: expected parameters, in the user's `units`, the best
-    first, and others of a disturbance that explain nearly as much. visibility: share of the effect's clearest trace, at
-    the least size that leaves one, that the fitted parameters cannot produce. power: that share of the largest
-    plausible trace, root mean square in noise floors.
+    first, and others of a disturbance that explain nearly as much. shapes: where an effect has many trials, its
+    parameters without a null in those that explain at least half as much as the best. visibility: share of the effect's
+    clearest trace, at the least size that leaves one, that the fitted parameters cannot produce. power: that share of
+    the largest plausible trace, root mean square in noise floors.
     """
 
     effect: str
@@ -48,6 +49,7 @@ class Score:
     explained_in_bounds: float = 0.0
     guesses: list[dict[str, float]] = field(default_factory=list)
     units: dict[str, str] = field(default_factory=dict)
+    shapes: list[dict[str, float]] = field(default_factory=list)
     visibility: float = 0.0
     power: float = 0.0
 
@@ -94,54 +96,61 @@ class Scorer:
 
     def scores(self, effect: str) -> list[Score]:
         """The scores of all forms of an effect, the first form first; of one with many trials or amounts of each record
-        the others only where the first explains some."""
+        the others only where the first explains some, and near the shapes with which it does."""
         usual, *others = fitting_forms(self.case, self.fit.effects, effect)
         first, block = self.score(usual), blocks[effect]
-        if first.explained <= LEAST_SCORE and (block.amounts() or prod(block.trials.values()) > MANY_TRIALS):
+        if first.explained <= LEAST_SCORE and (block.amounts() or has_many_trials(block)):
             others = []
-        return [first, *map(self.score, others)]
+        return [first, *(self.score(item, first.shapes) for item in others)]
 
-    def score(self, effect: str) -> Score:
+    def score(self, effect: str, near: Sequence[Mapping[str, float]] = ()) -> Score:
         """The score of an effect. On axes without a response it acts as the effects of the fit do; if it is the first
-        for which that matters, the better of both ways counts."""
+        for which that matters, the better of both ways counts. near: shapes that are tried, by default all."""
         case, fit, effects = self.case, self.fit, (*self.fit.effects, effect)
         first = case.unmeasured_nulls(effects) and not case.unmeasured_nulls(fit.effects)
         variants = (False, True) if first else (fit.measured_only,)
         problems = [case.problem(effects, fit.steps, measured_only).along(*self.followed) for measured_only in variants]
-        scores = [self._score(effect, problem) for problem in problems]
+        scores = [self._score(effect, problem, near) for problem in problems]
         return max(scores, key=lambda score: score.explained)
 
-    def _score(self, effect: str, problem: Problem) -> Score:
+    def _score(self, effect: str, problem: Problem, near: Sequence[Mapping[str, float]]) -> Score:
         solved = blocks[effect].amounts()
-        score = self._score_disturbance(effect, problem) if solved else self._score_block(effect, problem)
+        score = self._score_disturbance(effect, problem) if solved else self._score_block(effect, problem, near)
         units = zip(problem.names, problem.units, strict=True)
         return replace(score, units={name: unit for name, unit in units if name in score.guess})
 
-    def _score_block(self, effect: str, problem: Problem) -> Score:
+    def _score_block(self, effect: str, problem: Problem, near: Sequence[Mapping[str, float]]) -> Score:
         """The score of an effect in the chain, by the change of the response as it leaves its null."""
         score, least, strongest, order = Score(effect), self.left, 0.0, (np.inf, 0.0)
         clearest: Split | None = None
-        guesses: list[dict[str, float]] = []
-        planned, by_axis = self._planned_trials(effect, problem), ShapesByAxis(self.projection, problem, self.left)
+        guesses, tried = list[dict[str, float]](), list[tuple[float, Trial]]()
+        planned, by_axis = (
+            self._planned_trials(effect, problem, near),
+            ShapesByAxis(self.projection, problem, self.left),
+        )
         for trials, sets in chain(self._trials(problem, planned), self._trials(problem, by_axis)):
             for number, trial in enumerate(trials):
-                traces = sets[number]
+                traces = sets.traces[number]
                 norm = traces.norms.max()
                 if norm > LEAST_TRACE * self.split.norms[0]:
                     place = (trial.size, -float(traces.norms_outside.max() / norm))
                     order, clearest = (place, traces) if place < order else (order, clearest)
                 if trial.size == max(blocks[effect].sizes):
                     strongest = max(strongest, float(norm / trial.size / self.case.floor))
-                by_axis.take(trial, self.split, traces)
-            possible = self.projection.least(self.split, sets)
-            for number in np.argsort(possible, kind="stable"):
-                if possible[number] >= least:
+                by_axis.take(trial, sets.signals[number], traces)
+            tried += zip(sets.least.tolist(), trials, strict=True)
+            for number in np.argsort(sets.least, kind="stable"):
+                if sets.least[number] >= least:
                     break
                 trial = trials[number]
-                amounts, left = self.projection.fit(self.split, sets[number], trial.one_sided(problem), least)
+                amounts, left = self.projection.fit(*sets.exact(number), trial.one_sided(problem), least)
                 if self.explained(left) > score.explained:
                     score.explained, least = self.explained(left), left
                     guesses = [self._guess(problem, trial, scales) for scales in (amounts, np.ones(amounts.size))]
+        if has_many_trials(blocks[effect]):
+            score.shapes = [
+                trial.shape(problem) for left, trial in tried if 2 * self.explained(left) >= score.explained
+            ]
         self._take_best_guess(score, problem, guesses)
         visibility = float(self.projection.left(clearest).max() / clearest.norms.max()) if clearest else 0.0
         return replace(score, visibility=visibility, power=visibility * strongest)
@@ -169,22 +178,28 @@ class Scorer:
         linearised: (candidates,)."""
         return self.projection.left(self.projection.split(self._residuals(problem, physical)))
 
-    def _trials(self, problem: Problem, planned: Iterable[Trial]) -> Iterator[tuple[list[Trial], Split]]:
-        """Trials side by side, and the changes of the response by the steps of each, one of each amplitude."""
+    def _trials(self, problem: Problem, planned: Iterable[Trial]) -> Iterator[tuple[list[Trial], Sets]]:
+        """Trials side by side, and beside the residual the changes of the response by the steps of each, one of each
+        amplitude."""
         trials = list(planned)
         batch_size = max(1, BATCH // max(1, len(trials[0].amplitudes))) if trials else 1
         for first in range(0, len(trials), batch_size):
             batch = trials[first : first + batch_size]
-            residuals = self._residuals(problem, np.concatenate([trial.stepped for trial in batch]))
+            stepped = [trial.stepped(problem, trials[0].start) for trial in batch]
+            residuals = self._residuals(problem, np.concatenate(stepped))
             held = np.isfinite(residuals.sum(axis=1))
             count = len(trials[0].amplitudes)
             whole = held.reshape(-1, count).all(axis=1)
             if whole.any():
-                traces = self.projection.split((residuals - self.residual)[np.repeat(whole, count)])
-                yield [trial for trial, kept in zip(batch, whole, strict=True) if kept], traces.sets(count)
+                traces = residuals if whole.all() else residuals[np.repeat(whole, count)]
+                traces -= self.residual
+                sets = self.projection.split_sets(self.split, traces, count)
+                yield [trial for trial, kept in zip(batch, whole, strict=True) if kept], sets
 
-    def _planned_trials(self, effect: str, problem: Problem) -> Iterator[Trial]:
-        """A trial for each value of the shape parameters and each size."""
+    def _planned_trials(
+        self, effect: str, problem: Problem, near: Sequence[Mapping[str, float]] = ()
+    ) -> Iterator[Trial]:
+        """A trial for each value of the shape parameters, see `parameter_grid`, and each size."""
         new = [i for i, name in enumerate(problem.names) if name not in self.fit.problem.names]
         nulls = {i: problem.model.entries[problem.free[i]].parameter.null for i in new}
         tried = blocks[effect].trials
@@ -195,7 +210,7 @@ class Scorer:
         start = np.array([known.get(name, nulls.get(i) or 0) for i, name in enumerate(problem.names)], float)
         bounds = np.where(problem.upper != start, problem.upper, problem.lower)[amplitudes]
         full_steps = bounds - start[amplitudes]
-        for values in parameter_grid(problem, shapes, tried):
+        for values in parameter_grid(problem, shapes, tried, near):
             start[shapes] = values
             for size in blocks[effect].sizes:
                 yield Trial(size, start.copy(), amplitudes, shapes, size * full_steps)
@@ -253,6 +268,11 @@ class Scorer:
             axis_residuals = [residual[row] for residual in residuals]
             guesses.append(guess(times, axis_drives, axis_residuals, problem.lower[i], problem.upper[i]).tolist())
         return guesses
+
+
+def has_many_trials(block: type[Block]) -> bool:
+    """Whether there are many values of an effect's shape parameters to try."""
+    return prod(block.trials.values()) > MANY_TRIALS
 
 
 def on_bound(problem: Problem, guess: Mapping[str, float]) -> bool:

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.diagnosis.projection import Projection, Split, rotated
+from pzt_ident.diagnosis.projection import Projection, Split
 from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
 
+ROUNDING = 1e-9  # of a step
 TRIALS = 5  # values over the range of a parameter that means nothing at the null
 
 
@@ -31,12 +32,20 @@ class Trial:
     shapes: list[int]
     steps: Array
 
-    @property
-    def stepped(self) -> Array:
-        """One row for each step: (amplitudes, free)."""
+    def stepped(self, problem: Problem, usual: Array) -> Array:
+        """One row for each step: (amplitudes, free). An axis without a step has its shape parameters from `usual`: they
+        mean nothing there, and the axis is that of other trials."""
+        axes = np.array([problem.model.entries[column].axis for column in problem.free])
         rows = np.tile(self.start, (len(self.amplitudes), 1))
-        rows[np.arange(len(self.amplitudes)), self.amplitudes] += self.steps
+        for row, amplitude, step in zip(rows, self.amplitudes, self.steps, strict=True):
+            others = [i for i in self.shapes if axes[i] != axes[amplitude]]
+            row[others] = usual[others]
+            row[amplitude] += step
         return rows
+
+    def shape(self, problem: Problem) -> dict[str, float]:
+        """The shape parameters by name."""
+        return {problem.names[i]: float(self.start[i]) for i in self.shapes}
 
     def one_sided(self, problem: Problem) -> NDArray[np.bool_]:
         """Of each amplitude, whether it may only grow."""
@@ -56,12 +65,11 @@ class ShapesByAxis:
         self.best: dict[str, tuple[float, Trial]] = {}
 
     def take(self, trial: Trial, signal: Split, traces: Split) -> None:
-        """Take up a trial and its traces, see `Projection.fit`."""
+        """Take up a trial and its traces beside the signal, see `Projection.fit`."""
         owners = [self.axes[i] for i in trial.amplitudes]
         both = {self.axes[i] for i in trial.shapes} & set(owners)
         if len(both) < 2:
             return
-        signal, traces = rotated(signal, traces)
         own = {axis: [row for row, owner in enumerate(owners) if owner == axis] for axis in sorted(both)}
         one_sided = trial.one_sided(self.problem)
         for axis, rows in own.items():
@@ -82,11 +90,26 @@ class ShapesByAxis:
             yield replace(trials[0], size=size, start=start, steps=trials[0].steps * size / trials[0].size)
 
 
-def parameter_grid(problem: Problem, columns: list[int], counts: Mapping[str, int]) -> Iterator[tuple[float, ...]]:
-    """Values of some parameters over their ranges, in the user's units; the same shares of the range on every axis."""
+def parameter_grid(
+    problem: Problem, columns: list[int], counts: Mapping[str, int], near: Sequence[Mapping[str, float]] = ()
+) -> Iterator[tuple[float, ...]]:
+    """Values of some parameters over their ranges, in the user's units; the same shares of the range on every axis.
+    near: values by name, of which one must be a step away at most, where there are any."""
     words = [problem.model.entries[problem.free[i]].word for i in columns]
-    distinct = list(dict.fromkeys(words))
-    for shares in product(*(((np.arange(n) + 0.5) / n) for n in (counts.get(word, TRIALS) for word in distinct))):
+    number = {word: counts.get(word, TRIALS) for word in dict.fromkeys(words)}
+    places, steps = places_of(problem, columns, near), np.array([1 / number[word] for word in words])
+    for shares in product(*((np.arange(n) + 0.5) / n for n in number.values())):
+        place = np.array([dict(zip(number, shares, strict=True))[word] for word in words])
+        if len(near) and (np.abs(places - place) > (1 + ROUNDING) * steps).any(axis=1).all():
+            continue
         point = np.full(problem.dimensions, 0.5)
-        point[columns] = [shares[distinct.index(word)] for word in words]
+        point[columns] = place
         yield tuple(problem.physical(point)[0][columns])
+
+
+def places_of(problem: Problem, columns: list[int], known: Sequence[Mapping[str, float]]) -> Array:
+    """Where in their ranges values by name are, (values, columns); NaN for parameters that have none."""
+    middle = dict(zip(problem.names, problem.physical(np.full(problem.dimensions, 0.5))[0].tolist(), strict=True))
+    places = np.array([problem.unit_point(middle | {**values})[columns] for values in known])
+    given = np.array([[problem.names[i] in values for i in columns] for values in known])
+    return np.where(given, places, np.nan)

@@ -168,6 +168,17 @@ def test_records_of_any_length_are_scored_and_a_line_that_they_are_too_short_for
         assert scorer.score("periodic_disturbance").power == 0
 
 
+def test_other_forms_of_an_effect_with_many_shapes_are_tried_where_the_first_explains_something():
+    """What is tried near the shapes of the first form scores as if all were tried."""
+    case = stage.with_response(stage.case(), lambda r: 20e-9 * np.sin(1e6 * np.pi * r.response))
+    scorer = Scorer(case, first_fit(case, 0))
+    first, other = scorer.scores("encoder_cyclic_error")
+    problem = case.problem((other.effect,))
+    counts = [len(list(scorer._planned_trials(other.effect, problem, near))) for near in ((), first.shapes)]
+    assert 0 < counts[1] < counts[0] / 4
+    assert other.explained == pytest.approx(scorer.score(other.effect).explained, rel=1e-9)
+
+
 @pytest.mark.parametrize("pitches", [(2.0, 5.0), (4.1, 1.7)])
 def test_every_axis_has_its_own_shape(pitches):
     """Two gratings, which the same trial of both axes does not hold."""
