@@ -13,7 +13,8 @@ from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.step import effects_without
 from pzt_ident.model.registry import blocks, phrase_of, word_of
 
-ENOUGH = 3 / 4  # of the misfit as given: what one effect must remove
+ENOUGH = 3 / 4  # of the misfit as given, of all records together: what one effect must remove
+EACH = 1 / 2  # of that of the identification and of the validation records
 BESIDE = 2 / 3  # of the misfit beside the others: what each must remove of those that do not remove most of it together
 ALONE = 1 / 3  # what each must remove of those that do
 
@@ -70,21 +71,20 @@ def unproven(
     """The effects to be taken out again, the least first. known: other fits of the case.
 
     Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may stand
-    in for what is not in the catalogue: on the identification and on the validation records they must also remove
-    together as much of the misfit as given as if the first removed ENOUGH, or DECISIVE where the identification records
-    are at the noise, and each of the others DECISIVE of the rest, and each the share ALONE beside the others; or each
-    of several the share BESIDE. None may have rivals that fit as well and are not its look-alikes: what any
-    effect takes up is not that of one. And none may have a shape that ended on a bound, as a cyclic error whose pitch
-    is as long as the stroke: it stands for what it is like there.
+    in for what is not in the catalogue: they must also remove together as much of the misfit as given as if the first
+    removed ENOUGH of all records, or DECISIVE where the identification records are at the noise, and EACH of either kind
+    of them, and each of the others half of the rest, and each the share ALONE beside the others; or each of several the
+    share BESIDE. None may have rivals that fit as well and are not its look-alikes: what any effect takes up is not
+    that of one. And none may have a shape that ended on a bound, as a cyclic error whose pitch is as long as the
+    stroke: it stands for what it is like there.
     """
     suspects: list[Suspect] = []
     while added := now.effects[len(first.effects) :]:
         suspected = [suspect(case, first, now, effect, rivals.get(effect, ()), known) for effect in added]
         least = min(suspected, key=lambda item: item.rank)
-        one = DECISIVE if reaches_noise(case, first, now) else ENOUGH
-        together = removed_by_all(case, first, now) >= 1 - (1 - one) * (1 - DECISIVE) ** (len(added) - 1)
-        least_share = ALONE if together else BESIDE if len(added) > 1 else one
-        decisive = not least.strangers and not least.limits and least.share >= least_share
+        together = remove_enough_together(case, first, now, len(added))
+        enough = least.share >= (ALONE if together else BESIDE) and (together or len(added) > 1)
+        decisive = enough and not least.strangers and not least.limits
         if least.beyond_form and (decisive or near_noise(case, first, now)):
             break
         suspects.append(least)
@@ -92,10 +92,14 @@ def unproven(
     return suspects
 
 
-def removed_by_all(case: Case, first: Fit, now: Fit) -> float:
-    """Share of the misfit as given that a fit removes, the smaller one of both kinds of records."""
+def remove_enough_together(case: Case, first: Fit, now: Fit, effects: int) -> bool:
+    """Whether a fit removes as much of the misfit as given as so many effects must: of all records together, and of
+    the identification and of the validation records."""
+    one, rest = DECISIVE if reaches_noise(case, first, now) else ENOUGH, (1 - DECISIVE) ** (effects - 1)
+    of_all = share_explained(first.total, now.total, case.floor)
     both = [(first.identify, now.identify), (first.validate, now.validate)]
-    return min(share_explained(before, after, case.floor) for before, after in both if before and after)
+    least = min(share_explained(before, after, case.floor) for before, after in both if before and after)
+    return of_all >= 1 - (1 - one) * rest and least >= 1 - (1 - EACH) * rest
 
 
 def suspect(

@@ -44,7 +44,8 @@ def taken_out(monkeypatch):
         monkeypatch.setattr(proof, "differs_by_record", lambda effect: len(effect) > 1 and by_record(effect))
         every = max(errors, key=len)
         now = fit(errors[every], validation[every], sorted(every), shapes)
-        return [item.effect for item in unproven(CASE, fit(first, first), now, rivals or {}, known)]
+        given = fit(*first) if isinstance(first, tuple) else fit(first, first)
+        return [item.effect for item in unproven(CASE, given, now, rivals or {}, known)]
 
     return of
 
@@ -64,6 +65,15 @@ def test_one_removes_three_quarters_of_what_there_was_and_two_together_seven_eig
     assert taken_out(of(a=15.1, none=30.0)) == ["a"]
     assert taken_out(of(ab=10.6, a=15.2, b=15.5, none=30.0)) == []
     assert taken_out(of(ab=10.7, a=15.2, b=15.5, none=30.0)) == ["b", "a"]
+
+
+@pytest.mark.parametrize(
+    ("validate", "left", "suspects"), [(10.0, 7.0, []), (10.0, 7.2, ["a"]), (30.0, 20.0, []), (30.0, 20.8, ["a"])]
+)
+def test_it_is_three_quarters_of_all_records_together_and_half_of_each_kind(taken_out, validate, left, suspects):
+    """Of the identification records it leaves 5 of 30."""
+    seen, unseen = of(a=5.0, none=30.0), of(a=left, none=validate)
+    assert taken_out(seen, unseen, first=(30.0, validate)) == suspects
 
 
 def test_a_refit_that_ended_with_the_budget_proves_nothing_beside_a_known_fit(taken_out):
