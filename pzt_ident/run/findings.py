@@ -15,6 +15,8 @@ from pzt_ident.diagnosis.bounds import bounds_that_changed, narrow_bounds_senten
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.candidates import Candidate
 from pzt_ident.diagnosis.caveats import broken_conditions, caveats, misfit_sentences
+from pzt_ident.diagnosis.criteria import DECISIVE
+from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.job.schema import Job
@@ -39,6 +41,7 @@ def improvement_of(
     reason, end = last["reason"], steps[-1].fit
     added = [effect for effect in end.effects if effect not in job.effects]
     reason += "".join(f" {suspect.why_not}" for suspect in suspects)
+    reason += prediction_sentence(case, steps)
     undecided = dict.fromkeys(step.tied for step in ties(steps))
     reason += "".join(f" These data cannot tell {' from '.join(map(phrase_of, tied))}." for tied in undecided)
     reason += no_drive_sentence(job, case) if undecided and not proposed else ""
@@ -59,6 +62,23 @@ def improvement_of(
         **units_and_floors(list(case.records)),
         "next_experiment": proposed,
     }
+
+
+def prediction_sentence(case: Case, steps: Sequence[stairs.Step]) -> str:
+    """A sentence about a model with more effects than are proven, where it leaves much less on the validation records
+    than the last one; empty where there is none."""
+    end = steps[-1].fit
+    fits = [step.fit for step in steps if step.fit.validate is not None]
+    best = min(fits, key=lambda fit: fit.validate or 0.0, default=end)
+    if not end.validate or not best.validate or {*best.effects} <= {*end.effects}:
+        return ""
+    if share_explained(end.validate, best.validate, case.floor) < DECISIVE:
+        return ""
+    floors = f"{best.validate / case.floor:.1f} instead of {end.validate / case.floor:.1f} noise floors"
+    return (
+        f" `effects: [{', '.join(best.effects)}]` leave {floors} on the validation records: a model to predict with,"
+        " whose effects are not proven."
+    )
 
 
 def forms_of(effects: Iterable[str]) -> dict[str, str]:

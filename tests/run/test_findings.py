@@ -22,7 +22,7 @@ def test_an_improvement_says_what_it_added_and_what_it_suspects(verdict, monkeyp
     silent = {"stair": {}, "caveats": "", "narrow_bounds_sentence": "", "units_and_floors": {}, "limits_of": "10 V"}
     for name, nothing in silent.items():
         monkeypatch.setattr(findings, name, lambda *arguments, nothing=nothing: nothing)
-    before, after = SimpleNamespace(effects=("drift",)), SimpleNamespace(effects=("drift", "creep"))
+    before, after = (SimpleNamespace(effects=effects, validate=None) for effects in (("drift",), ("drift", "creep")))
     steps = [stairs.Step(before), stairs.Step(after, "creep", None, {"creep": after, "thermal_relaxation": after})]
     job, case = SimpleNamespace(name="job", effects=("drift",)), SimpleNamespace(records=(), budget=Budget())
     doubted = Suspect("asymmetry.constant", 0.4, -0.02, before)
@@ -43,6 +43,16 @@ def test_an_improvement_says_what_it_added_and_what_it_suspects(verdict, monkeyp
     steps[1].rivals = {"creep": after}
     content = findings.improvement_of(job, case, staircase, {"verdict": verdict, "reason": ""})
     assert "cannot tell" not in content["reason"]
+
+
+@pytest.mark.parametrize(
+    ("effects", "left", "said"),
+    [(("drift", "creep"), 4.0, True), (("drift", "creep"), 8.0, False), (("drift",), 4.0, False), ((), None, False)],
+)
+def test_a_model_that_predicts_better_and_is_not_proven_is_told(effects, left, said):
+    fits = [SimpleNamespace(effects=words, validate=error) for words, error in ((effects, left), (("drift",), 10.0))]
+    sentence = findings.prediction_sentence(SimpleNamespace(floor=1.0), [stairs.Step(fit) for fit in fits])
+    assert ("`effects: [drift, creep]` leave 4.0 instead of 10.0 noise floors" in sentence) == said == bool(sentence)
 
 
 def test_what_is_to_be_said_of_the_last_fit_is_said_once(monkeypatch, tmp_path):
