@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from pzt_ident.diagnosis.bounds import beyond_bounds, stands_in
 from pzt_ident.diagnosis.candidates import Candidate
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removes_enough
@@ -166,8 +168,11 @@ def restarted_by_block(case: Case, diagnosis: Diagnosis, every_block: bool) -> I
 def started_anew(case: Case, diagnosis: Diagnosis) -> Iterator[tuple[Score, Fit]]:
     """The short list in each form that was refitted, with all blocks from random points, but for the frequency that a
     disturbance is guessed to have."""
+    least = np.inf
     for candidate in diagnosis.candidates:
         for item, fit in candidate.refits.items():
             if case.budget.allows("other starts"):
                 guess = candidate.score.guess if blocks[item].amounts() else {}
-                yield replace(candidate.score, effect=item), first_fit(case, 0, effects=fit.effects, guess=guess)
+                anew = first_fit(case, 0, effects=fit.effects, guess=guess, rival=least)
+                least = min(least, anew.identify)
+                yield replace(candidate.score, effect=item), anew

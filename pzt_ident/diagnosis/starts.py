@@ -30,15 +30,16 @@ def first_fit(
     known: Array | None = None,
     effects: tuple[str, ...] | None = None,
     guess: Mapping[str, float] | None = None,
+    rival: float = np.inf,
 ) -> Fit:
     """The job's own model, or the one with other effects, fitted from random points, the fewer the better it is; not
     converged where the two best minima differ, and restarts of single blocks still lead lower. known: the point of a
     fit that was searched for, beside which one batch of random points is enough. guess: values of some parameters at
-    all random points."""
+    all random points. rival: the loss of another model, far above which a descent that crawls is given up."""
     effects = case.effects if effects is None else effects
     problem = case.problem(effects)
     minima = np.empty((0, problem.dimensions)) if known is None else case.descend(problem, known)[None]
-    order, agreed, least = ranked_points(problem, seed, guess or {}), False, np.inf
+    order, agreed, least = ranked_points(problem, seed, guess or {}), False, rival
     most = MOST_REFINED if known is None else REFINED
     for number in range(0, most, REFINED):
         starts = order[number : number + REFINED]
@@ -46,7 +47,7 @@ def first_fit(
             minima = np.vstack([minima, minimum])
             case.on_event({"event": "fitted", "done": len(minima), "of": most + (known is not None)})
         losses = problem.loss(minima)
-        least = float(losses.min())
+        least = min(rival, float(losses.min()))
         alike = np.count_nonzero(losses <= (1 + AGREEMENT) * losses.min() + 0.1 * case.floor)
         agreed = bool(alike > 1 and np.isfinite(losses.min()))
         lowest = fit_at(effects, problem, minima[np.argmin(losses)])
@@ -73,7 +74,7 @@ def ranked_points(problem: Problem, seed: int, guess: Mapping[str, float]) -> Ar
     middle = problem.physical(np.full(problem.dimensions, 0.5))[0]
     guessed = [name in guess for name in problem.names]
     points[:, guessed] = problem.unit_point({**dict(zip(problem.names, middle, strict=True)), **guess})[guessed]
-    return points[np.argsort(problem.loss(points), kind="stable")]
+    return points[np.argsort(problem.rough().loss(points), kind="stable")]
 
 
 def best_of_each_axis(case: Case, problem: Problem, minima: Array) -> Array:

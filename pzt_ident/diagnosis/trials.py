@@ -94,8 +94,11 @@ def parameter_grid(
     problem: Problem, columns: list[int], counts: Mapping[str, int], near: Sequence[Mapping[str, float]] = ()
 ) -> Iterator[tuple[float, ...]]:
     """Values of some parameters over their ranges, in the user's units; the same shares of the range on every axis.
-    near: values by name, of which one must be a step away at most, where there are any."""
+    No frequency is above all sampling rates: what it does to a record is that of a lower one. near: values by name, of
+    which one must be a step away at most, where there are any."""
     words = [problem.model.entries[problem.free[i]].word for i in columns]
+    most = max(1 / record.dt for record in problem.records)
+    above = np.array([most if problem.units[i] == "Hz" else np.inf for i in columns])
     number = {word: counts.get(word, TRIALS) for word in dict.fromkeys(words)}
     places, steps = places_of(problem, columns, near), np.array([1 / number[word] for word in words])
     for shares in product(*((np.arange(n) + 0.5) / n for n in number.values())):
@@ -104,7 +107,9 @@ def parameter_grid(
             continue
         point = np.full(problem.dimensions, 0.5)
         point[columns] = place
-        yield tuple(problem.physical(point)[0][columns])
+        values = problem.physical(point)[0][columns]
+        if not (values > above).any():
+            yield tuple(values)
 
 
 def places_of(problem: Problem, columns: list[int], known: Sequence[Mapping[str, float]]) -> Array:

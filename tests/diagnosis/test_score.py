@@ -179,6 +179,19 @@ def test_other_forms_of_an_effect_with_many_shapes_are_tried_where_the_first_exp
     assert other.explained == pytest.approx(scorer.score(other.effect).explained, rel=1e-9)
 
 
+def test_no_mode_is_tried_above_all_sampling_rates():
+    """And where none can be below, none is seen."""
+    for dt, tried in ((1e-3, True), (0.2, False)):
+        case = stage.case(dt=dt)
+        scorer = Scorer(case, first_fit(case, 0))
+        problem = case.problem(("resonance",))
+        column = problem.names.index("resonance.frequency")
+        frequencies = [trial.start[column] for trial in scorer._planned_trials("resonance", problem)]
+        assert bool(frequencies) == tried
+        assert max(frequencies, default=0) <= 1 / dt
+        assert (scorer.score("resonance").power > 0) == tried
+
+
 @pytest.mark.parametrize("pitches", [(2.0, 5.0), (4.1, 1.7)])
 def test_every_axis_has_its_own_shape(pitches):
     """Two gratings, which the same trial of both axes does not hold."""
