@@ -124,10 +124,8 @@ class Scorer:
         score, least, strongest, order = Score(effect), self.left, 0.0, (np.inf, 0.0)
         clearest: Split | None = None
         guesses, tried = list[dict[str, float]](), list[tuple[float, Trial]]()
-        planned, by_axis = (
-            self._planned_trials(effect, problem, near),
-            ShapesByAxis(self.projection, problem, self.left),
-        )
+        planned = self._planned_trials(effect, problem, near)
+        by_axis = ShapesByAxis(self.projection, problem, self.left)
         for trials, sets in chain(self._trials(problem, planned), self._trials(problem, by_axis)):
             for number, trial in enumerate(trials):
                 traces = sets.traces[number]
