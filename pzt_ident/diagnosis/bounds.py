@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pzt_ident.diagnosis.criteria import removes_enough
+from pzt_ident.diagnosis.criteria import DECISIVE, removes_enough
+from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, fit_at, refine_steps
 from pzt_ident.diagnosis.undetermined import undetermined_mechanics
 
@@ -28,6 +29,14 @@ def beyond_bounds(case: Case, first: Fit, fit: Fit) -> tuple[Case, Fit] | None:
     wide = case.with_specs(specs)
     after = continued(wide, fit)
     return (wide, after) if removes_enough(case, first, fit, after) else None
+
+
+def are_decisive(case: Case, before: Fit, after: Fit) -> bool:
+    """Whether wider bounds remove most of the misfit of the identification records, or most of that of an axis on all
+    records together, which may be little beside what the other axis lacks."""
+    axes = zip(before.by_axis.tolist(), after.by_axis.tolist(), case.floors.tolist(), strict=True)
+    shares = [share_explained(*axis) for axis in axes]
+    return max(share_explained(before.identify, after.identify, case.floor), *shares) >= DECISIVE
 
 
 def continued(wide: Case, fit: Fit) -> Fit:

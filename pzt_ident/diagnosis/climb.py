@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from pzt_ident.diagnosis.bounds import beyond_bounds, stands_in
+from pzt_ident.diagnosis.bounds import are_decisive, beyond_bounds, stands_in
 from pzt_ident.diagnosis.candidates import Candidate
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removes_enough
 from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, remove_unneeded
@@ -71,16 +71,15 @@ def climb(
 
 
 def wider_bounds(case: Case, first: Fit, fit: Fit) -> Step | None:
-    """The step to wider bounds, where these remove most of what a fit that rests on them
-    leaves, and hold its estimates: an effect would only stand in for what the bounds of the job keep out."""
+    """The step to wider bounds, where these remove most of what a fit that rests on them leaves on an axis, and hold
+    its estimates: an effect would only stand in for what the bounds of the job keep out."""
     beyond = None if adequate(case, first, fit) else beyond_bounds(case, first, fit)
     if beyond is None:
         return None
     wide, after = beyond
-    share = explained_share(case, fit, after)
-    if share < DECISIVE or stands_in(wide, case, after):
+    if not are_decisive(case, fit, after) or stands_in(wide, case, after):
         return None
-    return Step(after, explained=share, change=WIDER, case=wide)
+    return Step(after, explained=explained_share(case, fit, after), change=WIDER, case=wide)
 
 
 def stuck(steps: list[Step]) -> bool:

@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.noise import error_scales, pooled_floor
+from pzt_ident.data.noise import error_scales, noise_floor, pooled_floor
 from pzt_ident.data.record import Record
 from pzt_ident.diagnosis.budget import PROVING, Budget
 from pzt_ident.engine.simulator import Simulator
@@ -127,6 +127,13 @@ class Case:
         """Noise floor of all measured axes together, in units of the loss."""
         return pooled_floor(list(self.records))
 
+    @cached_property
+    def floors(self) -> Array:
+        """Noise floor of each measured axis, in units of the loss: (measured axes,)."""
+        records = list(self.records)
+        floors = [noise_floor(records, axis).value for axis in records[0].measured]
+        return np.asarray(floors / error_scales(records))
+
 
 @dataclass(frozen=True)
 class Fit:
@@ -146,6 +153,13 @@ class Fit:
         """RMSE of both uses together: the criterion by which fits are ranked."""
         errors = [error for error in (self.identify, self.validate) if error is not None]
         return float(np.sqrt(np.mean(np.square(errors))))
+
+    @cached_property
+    def by_axis(self) -> Array:
+        """RMSE of both uses together of each measured axis, in units of the loss: (measured axes,)."""
+        uses = [use for use, error in (("identify", self.identify), ("validate", self.validate)) if error is not None]
+        errors = [self.problem.by_axis(self.point[None], use)[0] / self.problem.sizes for use in uses]
+        return np.asarray(np.sqrt(np.mean(np.square(errors), axis=0)))
 
     @property
     def on_bounds(self) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pzt_ident.diagnosis.bounds import beyond_bounds, brought_back, continued, stands_in
+from pzt_ident.diagnosis.bounds import are_decisive, beyond_bounds, brought_back, continued, stands_in
 from pzt_ident.diagnosis.budget import WHOLE
 from pzt_ident.diagnosis.candidates import TIE, Candidate
 from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, climb
@@ -26,11 +26,11 @@ FIRST_EFFECTS = 2  # effects that are tried as the first to be added
 
 def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
     """The staircase from the model as given to the one with all effects that are proven. Wider bounds, where those of
-    the job are too narrow, are tried first where they remove most of the misfit; mechanics that the data do not
-    determine are left out first where no effect beside them reaches the noise."""
+    the job are too narrow, are tried first where they remove most of the misfit of an axis; mechanics that the data do
+    not determine are left out first where no effect beside them reaches the noise."""
     beyond = None if adequate(case, first, first) else beyond_bounds(case, first, first)
     wide = None
-    if beyond and explained_share(case, first, beyond[1]) >= DECISIVE:
+    if beyond and are_decisive(case, first, beyond[1]):
         wide = improve_beyond(case, first, *beyond, on_step)
         if accounts(wide, case, first):
             return wide

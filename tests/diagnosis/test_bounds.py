@@ -7,12 +7,14 @@ import pytest
 import stage
 from pzt_ident.diagnosis.bounds import (
     Widened,
+    are_decisive,
     beyond_bounds,
     bounds_that_changed,
     brought_back,
     narrow_bounds_sentence,
     widened,
 )
+from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import fit_at
 from pzt_ident.diagnosis.staircase import bounds_beside, improve
 from pzt_ident.diagnosis.starts import first_fit
@@ -115,3 +117,17 @@ def test_wider_bounds_that_help_too_little_are_no_account():
     case = bounded(0.9, 1.2)
     first = first_fit(case, 0)
     assert beyond_bounds(case, first, first) is None
+
+
+def test_bounds_that_keep_out_one_axis_are_widened_though_the_other_lacks_more():
+    curved = stage.case({"quadratic_gain.curvature": 4e-3})
+    beyond = stage.case({"bouc_wen.gain": 1.04 * stage.STAGE["bouc_wen.gain"]}, seed=9)
+    case = stage.beside(curved, beyond).with_specs({"bouc_wen.gain": Widened((0.8 * GAIN, 1.01 * GAIN))})
+    first = first_fit(case, 0)
+    _, wide = beyond_bounds(case, first, first)
+    assert share_explained(first.total, wide.total, case.floor) < 0.5
+    assert are_decisive(case, first, wide) and not are_decisive(case, first, first)
+    found = improve(case, first)
+    assert found.last.verdict == "adequate"
+    assert [step.added or step.change for step in found.steps[1:]] == ["wider bounds", "quadratic_gain"]
+    assert found.steps[-1].fit.values["y.bouc_wen.gain"] == pytest.approx(1.04 * GAIN, rel=1e-2)
