@@ -28,7 +28,8 @@ def beyond_bounds(case: Case, first: Fit, fit: Fit) -> tuple[Case, Fit] | None:
         return None
     wide = case.with_specs(specs)
     after = continued(wide, fit)
-    return (wide, after) if removes_enough(case, first, fit, after) else None
+    enough = removes_enough(case, first, fit, after) or are_decisive(case, fit, after)
+    return (wide, after) if enough else None
 
 
 def are_decisive(case: Case, before: Fit, after: Fit) -> bool:
@@ -48,15 +49,15 @@ def continued(wide: Case, fit: Fit) -> Fit:
 
 def stands_in(wide: Case, case: Case, fit: Fit) -> bool:
     """Whether a parameter rests on its wider bound too: then it makes up for something else."""
-    entries = {name: fit.problem.model.entries[i] for name, i in zip(fit.problem.names, fit.problem.free, strict=True)}
-    moved = {name for name, spec in wide.specs.items() if spec is not case.specs[name]}
-    return any(moved & set(fit.problem.model.spellings(entries[name])) for name in fit.on_bounds)
+    given, problem = case.problem(fit.effects, fit.steps, fit.measured_only), fit.problem
+    ends = zip(problem.names, problem.lower - given.lower, problem.upper - given.upper, fit.point, strict=True)
+    return any(name in fit.on_bounds and (low if place < 0.5 else high) != 0 for name, low, high, place in ends)
 
 
 def widened(case: Case, fit: Fit) -> dict[str, Widened]:
     """Wider bounds, by the names in the job, of the parameters that rest on one; not beyond those declared, and none of
     mechanics that the data do not determine, which may stand in for anything slow."""
-    problem, specs = fit.problem, {}
+    problem, specs = fit.problem, dict[str, Widened]()
     undetermined = undetermined_mechanics(fit) if fit.on_bounds else None
     for name in fit.on_bounds:
         i = problem.names.index(name)
@@ -66,12 +67,13 @@ def widened(case: Case, fit: Fit) -> dict[str, Widened]:
         key = next((word for word in problem.model.spellings(entry) if word in case.specs), None)
         if key is None:
             continue
-        low, high = problem.lower[i], problem.upper[i]
+        given = float(problem.lower[i]), float(problem.upper[i])
+        low, high = specs[key].bounds if key in specs else given
         least, most = problem.declared_bounds(int(problem.free[i]))
         if fit.point[i] < 0.5:
-            low = min(low, max(least, low - SLIP * abs(low)))
+            low = min(low, max(least, given[0] - SLIP * abs(given[0])))
         else:
-            high = max(high, min(most, high + SLIP * abs(high)))
+            high = max(high, min(most, given[1] + SLIP * abs(given[1])))
         if (low, high) != (problem.lower[i], problem.upper[i]):
             specs[key] = Widened((float(low), float(high)))
     return specs

@@ -11,7 +11,9 @@ from pzt_ident.diagnosis.bounds import (
     beyond_bounds,
     bounds_that_changed,
     brought_back,
+    continued,
     narrow_bounds_sentence,
+    stands_in,
     widened,
 )
 from pzt_ident.diagnosis.misfit import share_explained
@@ -120,9 +122,9 @@ def test_wider_bounds_that_help_too_little_are_no_account():
 
 
 def test_bounds_that_keep_out_one_axis_are_widened_though_the_other_lacks_more():
-    curved = stage.case({"quadratic_gain.curvature": 4e-3})
+    curved = stage.case({"quadratic_gain.curvature": -4e-3})
     beyond = stage.case({"bouc_wen.gain": 1.04 * stage.STAGE["bouc_wen.gain"]}, seed=9)
-    case = stage.beside(curved, beyond).with_specs({"bouc_wen.gain": Widened((0.8 * GAIN, 1.01 * GAIN))})
+    case = stage.beside(curved, beyond).with_specs({"bouc_wen.gain": Widened((0.3 * GAIN, 1.01 * GAIN))})
     first = first_fit(case, 0)
     _, wide = beyond_bounds(case, first, first)
     assert share_explained(first.total, wide.total, case.floor) < 0.5
@@ -131,3 +133,18 @@ def test_bounds_that_keep_out_one_axis_are_widened_though_the_other_lacks_more()
     assert found.last.verdict == "adequate"
     assert [step.added or step.change for step in found.steps[1:]] == ["wider bounds", "quadratic_gain"]
     assert found.steps[-1].fit.values["y.bouc_wen.gain"] == pytest.approx(1.04 * GAIN, rel=1e-2)
+
+
+def test_both_ends_of_a_bound_that_axes_share_are_widened_and_only_these_may_stand_in():
+    cases = [stage.case({"bouc_wen.gain": share * stage.STAGE["bouc_wen.gain"]}, seed=9) for share in (0.95, 1.05)]
+    case = stage.beside(*cases).with_specs({"bouc_wen.gain": Widened((0.98 * GAIN, 1.02 * GAIN))})
+    first = first_fit(case, 0)
+    assert {"x.bouc_wen.gain", "y.bouc_wen.gain"} <= {*first.on_bounds}
+    specs = widened(case, first)
+    assert specs["bouc_wen.gain"].bounds == pytest.approx((0.85 * 0.98 * GAIN, 1.15 * 1.02 * GAIN))
+    wide, after = beyond_bounds(case, first, first)
+    assert not stands_in(wide, case, after)
+    beyond = case.with_specs({"bouc_wen.gain": Widened((0.98 * GAIN, 1.03 * GAIN))})
+    assert stands_in(beyond, case, continued(beyond, first))
+    one_end = case.with_specs({"bouc_wen.gain": Widened((0.98 * GAIN, 1.2 * GAIN))})
+    assert not stands_in(one_end, case, continued(one_end, first))
