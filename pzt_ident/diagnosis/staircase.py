@@ -34,6 +34,8 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
         wide = improve_beyond(case, first, *beyond, on_step)
         if accounts(wide, case, first):
             return wide
+        if keeps_within(wide, case) and not case.budget.allows("effects within the bounds of the job"):
+            return wide
     diagnosis = diagnose(case, first)
     lean = improve_lean(case, first, diagnosis, on_step)
     if lean and (lean.last.verdict == "adequate" or settles_for(case, first, lean)):

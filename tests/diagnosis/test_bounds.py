@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 import stage
+from pzt_ident.diagnosis import staircase
 from pzt_ident.diagnosis.bounds import (
     Widened,
     are_decisive,
@@ -16,10 +17,13 @@ from pzt_ident.diagnosis.bounds import (
     stands_in,
     widened,
 )
+from pzt_ident.diagnosis.budget import Budget
+from pzt_ident.diagnosis.climb import Staircase
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import fit_at
 from pzt_ident.diagnosis.staircase import bounds_beside, improve
 from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.diagnosis.step import Step
 from pzt_ident.diagnosis.verdict import diagnose
 from pzt_ident.model.registry import word_of
 
@@ -50,9 +54,9 @@ def test_a_gain_five_percent_beside_its_bounds_is_the_bound_and_no_effect():
 @pytest.mark.parametrize("effect", ["creep", "quadratic_gain"])
 def test_beside_a_narrow_bound_the_effect_is_found_and_alone(effect):
     case = bounded(1.05, 1.3, [effect])
-    staircase = improve(case, first_fit(case, 0))
-    assert staircase.last.verdict == "adequate"
-    assert list(map(word_of, staircase.steps[-1].fit.effects)) == [effect]
+    found = improve(case, first_fit(case, 0))
+    assert found.last.verdict == "adequate"
+    assert list(map(word_of, found.steps[-1].fit.effects)) == [effect]
 
 
 def test_an_effect_that_is_small_beside_what_a_narrow_bound_leaves_is_found():
@@ -60,11 +64,11 @@ def test_an_effect_that_is_small_beside_what_a_narrow_bound_leaves_is_found():
     case = bounded(1.14, 1.3, noise=stage.NOISE / 50)
     hidden = stage.case({"quadratic_gain.curvature": 1e-5}, noise=stage.NOISE / 50).with_specs(case.specs)
     first = first_fit(hidden, 0)
-    staircase = improve(hidden, first)
-    wide = staircase.steps[1].fit
+    found = improve(hidden, first)
+    wide = found.steps[1].fit
     assert wide.identify < 0.03 * first.identify
-    assert staircase.steps[-1].fit.effects == ("quadratic_gain",)
-    assert staircase.last.verdict == "adequate"
+    assert found.steps[-1].fit.effects == ("quadratic_gain",)
+    assert found.last.verdict == "adequate"
 
 
 def test_a_bound_that_only_the_first_effect_reaches_is_widened_before_a_second_one_is_blamed():
@@ -148,3 +152,16 @@ def test_both_ends_of_a_bound_that_axes_share_are_widened_and_only_these_may_sta
     assert stands_in(beyond, case, continued(beyond, first))
     one_end = case.with_specs({"bouc_wen.gain": Widened((0.98 * GAIN, 1.2 * GAIN))})
     assert not stands_in(one_end, case, continued(one_end, first))
+
+
+def test_without_a_budget_for_both_the_wider_bounds_are_kept_that_clear_up_most(monkeypatch):
+    case = bounded(1.05, 1.3)
+    first = first_fit(case, 0)
+    wide, after = beyond_bounds(case, first, first)
+    ended = Staircase([Step(first), Step(after, change="wider bounds", case=wide)], diagnose(wide, after), case=wide)
+    monkeypatch.setattr(staircase, "improve_beyond", lambda *arguments: ended)
+    monkeypatch.setattr(staircase, "accounts", lambda *arguments: False)
+    case.budget = Budget(0.0)
+    case.budget.lasts = lambda: True
+    assert improve(case, first) is ended
+    assert case.budget.untried == ["effects within the bounds of the job"]
