@@ -56,7 +56,8 @@ class Additions:
         """The candidates that have the same signals on an axis, group by group."""
         if not self.signals:
             return [np.arange(len(theta))]
-        columns = [entry.axis == axis and entry.block in self.model.additions for entry in self.model.entries]
+        entries = enumerate(self.model.entries)
+        columns = [i for i, entry in entries if entry.axis == axis and entry.block in self.model.additions]
         distinct, index = np.unique(theta[:, columns], axis=0, return_inverse=True)
         return [np.flatnonzero(index.ravel() == number) for number in range(len(distinct))]
 

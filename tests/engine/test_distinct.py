@@ -10,7 +10,7 @@ from pzt_ident.engine.distinct import columns_of_axes, distinct
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.model.block import Coupling, Term
 from pzt_ident.model.chain import Chain
-from pzt_ident.model.registry import blocks
+from pzt_ident.model.registry import blocks, word_of
 from rig import candidates, model, record
 
 T = 1e-3 * np.arange(500)
@@ -19,9 +19,9 @@ FORMS = [item for word in blocks.effects() for item in blocks.forms(word)]
 COUNT = 12
 
 
-def stepped(base, form):
+def stepped(*words):
     """A simulator of two axes, and candidates of which each differs from the first in one parameter."""
-    made = model(*blocks.chain([base, form]), axes=2)
+    made = model(*blocks.chain(words), axes=2)
     start, other = candidates(made, np.array(DRIVES), 2, seed=4, response=1e-5)
     theta = np.tile(start, (1 + len(made.entries), 1))
     theta[1:][np.diag_indices(len(made.entries))] = other
@@ -40,11 +40,13 @@ def weights_of(count):
 
 
 @pytest.mark.parametrize("form", FORMS)
-@pytest.mark.parametrize("base", ["bouc_wen", "prandtl_ishlinskii"])
-def test_what_is_simulated_once_leaves_every_bit_as_it_is(base, form, monkeypatch):
-    if issubclass(blocks[form], Term) and not any(block.holds(blocks[form]) for block in blocks.chain([base])):
+@pytest.mark.parametrize("beside", [["bouc_wen"], ["prandtl_ishlinskii"], ["bouc_wen", "drift"]], ids=" ".join)
+def test_what_is_simulated_once_leaves_every_bit_as_it_is(beside, form, monkeypatch):
+    if issubclass(blocks[form], Term) and not any(block.holds(blocks[form]) for block in blocks.chain(beside)):
         return
-    simulator, theta = stepped(base, form)
+    if word_of(form) in beside:
+        return
+    simulator, theta = stepped(*beside, form)
     apart = not any(issubclass(block, Coupling) for block in simulator.model.blocks)
     fewer = simulator.distinct(theta)
     assert (len(fewer.theta) < len(theta)) == apart

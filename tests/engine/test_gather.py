@@ -17,6 +17,7 @@ DRIVES = 50 * (1 - np.cos(2 * TIME)), 30 * np.sin(3 * TIME) ** 2
 CHAINS = {
     "an offset": ["bouc_wen", "lumped"],
     "drift and hum": ["bouc_wen", "lumped", "drift", "periodic_disturbance"],
+    "ripple and drift": ["bouc_wen", "lumped", "drift", "periodic_disturbance.ripple"],
 }
 
 
@@ -75,7 +76,7 @@ def test_squares_and_rotated_errors_are_those_of_the_residuals(words, more):
 def test_the_length_of_a_stretch_changes_nothing(words, length, monkeypatch):
     monkeypatch.setattr(simulator, "STRETCH", length)
     where, theta = made(words)
-    whole = where.simulate(theta) - where.record.response
+    whole = where.simulate(where.amounts.complete(theta)) - where.record.response
     tiles = np.concatenate([error for _, error in where.tiles(theta)], axis=2)
     np.testing.assert_array_equal(tiles, whole[:, :, where.record.settle :])
     found = [
