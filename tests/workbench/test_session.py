@@ -22,6 +22,14 @@ from pzt_ident.workbench.step_commands import Command
 
 from .conftest import alone, form, measured
 
+ENDLESS = """\
+name: endless
+records: [{file: data.csv, use: identify}]
+channels: {time: "time [s]", axes: {x: {drive: "u_x [V]", response: "x [um]"}}}
+model: [bouc_wen]
+optimizers: [{name: pso, population: 250, generations: 1000000}]
+"""
+
 
 @pytest.fixture
 def begun(session):
@@ -196,13 +204,16 @@ def test_a_command_that_fails_says_why_and_one_that_is_stopped_says_so(begun, mo
         (begun.step() / "job.yaml").write_text(job)
         shown = bench.state()
         assert "missing key" in shown["error"] and shown["headline"]["verdict"] == "The last command failed."
-        endless = Command("run", begun.step() / "never", ["workbench", "--no-browser"])
-        monkeypatch.setattr(begun, "commands", lambda step: [endless])
+        endless = begun.root / "endless.yaml"
+        endless.write_text(ENDLESS)
+        command = Command("run", begun.step() / "never", ["run", str(endless), "--out", str(begun.root / "endless")])
+        monkeypatch.setattr(begun, "commands", lambda step: [command])
         bench.fill()
         task = bench.runner.task
         bench.fill()
         assert bench.runner.task is task
         while bench.runner.process is None:
+            assert bench.runner.running, bench.runner.failure
             await asyncio.sleep(0.02)
         await bench.runner.stop()
         assert bench.runner.failure.startswith("Stopped")
