@@ -76,8 +76,8 @@ def prediction_sentence(case: Case, steps: Sequence[stairs.Step]) -> str:
         return ""
     floors = f"{best.validate / case.floor:.1f} instead of {end.validate / case.floor:.1f} noise floors"
     return (
-        f" `effects: [{', '.join(best.effects)}]` leave {floors} on the validation records: a model to predict with,"
-        " whose effects are not proven."
+        f" With `effects: [{', '.join(best.effects)}]` the model leaves {floors} on the validation records: use it to"
+        " predict, but its effects are not proven."
     )
 
 

@@ -52,7 +52,11 @@ def test_an_improvement_says_what_it_added_and_what_it_suspects(verdict, monkeyp
 def test_a_model_that_predicts_better_and_is_not_proven_is_told(effects, left, said):
     fits = [SimpleNamespace(effects=words, validate=error) for words, error in ((effects, left), (("drift",), 10.0))]
     sentence = findings.prediction_sentence(SimpleNamespace(floor=1.0), [stairs.Step(fit) for fit in fits])
-    assert ("`effects: [drift, creep]` leave 4.0 instead of 10.0 noise floors" in sentence) == said == bool(sentence)
+    assert (
+        ("With `effects: [drift, creep]` the model leaves 4.0 instead of 10.0 noise floors" in sentence)
+        == said
+        == bool(sentence)
+    )
 
 
 def test_what_is_to_be_said_of_the_last_fit_is_said_once(monkeypatch, tmp_path):
