@@ -124,15 +124,17 @@ def suspect(
 
 
 def limits_of(fit: Fit, effect: str) -> tuple[str, ...]:
-    """The parameters of an effect that ended on a bound and have no null."""
+    """The parameters of an effect that have no null and ended on a bound on every axis: a shape that one axis shows is
+    that of the effect."""
     problem = fit.problem
     entries = {name: problem.model.entries[column] for name, column in zip(problem.names, problem.free, strict=True)}
-    return tuple(
-        name
-        for name in fit.on_bounds
-        if entries[name].parameter.null is None
-        and word_of(effect) in (entries[name].block.name, word_of(entries[name].parameter.effect or ""))
-    )
+    shapes = {
+        name: entry.word
+        for name, entry in entries.items()
+        if entry.parameter.null is None and word_of(effect) in (entry.block.name, word_of(entry.parameter.effect or ""))
+    }
+    shown = {word for name, word in shapes.items() if name not in fit.on_bounds}
+    return tuple(name for name, word in shapes.items() if word not in shown)
 
 
 def differs_by_record(effect: str) -> bool:

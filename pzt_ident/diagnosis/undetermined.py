@@ -11,6 +11,7 @@ from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.score import fits
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.model.block import Place
+from pzt_ident.model.chain import Entry
 from pzt_ident.model.registry import blocks, word_of
 from pzt_ident.search.sandwich import Sandwich
 
@@ -49,20 +50,33 @@ def without_mechanics(case: Case, first: Fit) -> tuple[str, Case, Fit] | None:
 
 
 def undetermined_mechanics(fit: Fit) -> str | None:
-    """The word of the mechanics, if all of its parameters are free and the data determine at most one number of it."""
-    problem = fit.problem
-    chain = [block for block in problem.model.blocks if block.place == Place.MECHANICS]
-    if not chain:
-        return None
-    entries = problem.model.entries
-    columns = [column for column, entry in enumerate(entries) if entry.block is chain[0] and not entry.parameter.effect]
-    places = [place for place, column in enumerate(problem.free) if column in columns]
-    if len(places) < len(columns):
-        return None
-    covariance = Sandwich(lambda: problem.samples(fit.point)).covariance
-    variances = np.linalg.eigvalsh(covariance[np.ix_(places, places)])
-    determined = np.count_nonzero(variances < SURE**2)
-    return chain[0].name if determined < OF_A_MODE * len(problem.model.measured) else None
+    """The word of the mechanics, if the data determine them on no axis."""
+    entries = mechanics_of(fit).values()
+    word = next((entry.block.name for entry in entries), None)
+    return word if undetermined_axes(fit) == {entry.axis for entry in entries} else None
+
+
+def undetermined_axes(fit: Fit) -> set[int]:
+    """The axes on which all parameters of the mechanics are free, and the data determine at most one number of them."""
+    entries, places = mechanics_of(fit), {column: place for place, column in enumerate(fit.problem.free)}
+    fixed = {entry.axis for column, entry in entries.items() if column not in places}
+    free = {entry.axis for entry in entries.values()} - fixed
+    if not free:
+        return set()
+    covariance = Sandwich(lambda: fit.problem.samples(fit.point)).covariance
+    own = {axis: [places[column] for column, entry in entries.items() if entry.axis == axis] for axis in free}
+    variances = {axis: np.linalg.eigvalsh(covariance[np.ix_(rows, rows)]) for axis, rows in own.items()}
+    return {axis for axis, values in variances.items() if np.count_nonzero(values < SURE**2) < OF_A_MODE}
+
+
+def mechanics_of(fit: Fit) -> dict[int, Entry]:
+    """The parameters of the mechanics themselves, by their columns."""
+    entries = dict(enumerate(fit.problem.model.entries))
+    return {
+        column: entry
+        for column, entry in entries.items()
+        if entry.block.place == Place.MECHANICS and not entry.parameter.effect
+    }
 
 
 def has_operator(case: Case) -> bool:

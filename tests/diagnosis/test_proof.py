@@ -13,20 +13,22 @@ CASE = SimpleNamespace(floor=1.0)
 
 
 def fit(identify, validate, effects=(), shapes=None):
-    """shapes: the place in its range of a parameter of some effects that has no null."""
-    shapes = shapes or {}
+    """shapes: the places in its range, one an axis, of a parameter of some effects that has no null."""
+    places = {(axis, effect): place for effect, own in (shapes or {}).items() for axis, place in enumerate(own)}
     entries = [
-        SimpleNamespace(parameter=SimpleNamespace(null=None, effect=""), block=SimpleNamespace(name=effect))
-        for effect in shapes
+        SimpleNamespace(
+            parameter=SimpleNamespace(null=None, effect=""), block=SimpleNamespace(name=effect), word="shape"
+        )
+        for _, effect in places
     ]
     problem = SimpleNamespace(
         dimensions=4,
-        names=[f"{effect}.shape" for effect in shapes],
-        free=range(len(shapes)),
+        names=[f"{axis}.{effect}.shape" for axis, effect in places],
+        free=range(len(places)),
         model=SimpleNamespace(entries=entries),
         physical=np.atleast_2d,
     )
-    return Fit(tuple(effects), problem, np.array([*shapes.values()], float), identify, validate)
+    return Fit(tuple(effects), problem, np.array([*places.values()], float), identify, validate)
 
 
 @pytest.fixture
@@ -82,10 +84,19 @@ def test_a_refit_that_ended_with_the_budget_proves_nothing_beside_a_known_fit(ta
 
 
 @pytest.mark.parametrize(
-    ("place", "left", "suspects"), [(1.0, 5.0, ["a"]), (0.0, 5.0, ["a"]), (0.9, 5.0, []), (1.0, 1.4, [])]
+    ("places", "left", "suspects"),
+    [
+        ([1.0], 5.0, ["a"]),
+        ([0.0], 5.0, ["a"]),
+        ([0.9], 5.0, []),
+        ([1.0], 1.4, []),
+        ([0.0, 1.0], 5.0, ["a"]),
+        ([0.0, 0.9], 5.0, []),
+    ],
 )
-def test_above_the_noise_what_has_the_shape_of_its_limit_is_a_suspect(taken_out, place, left, suspects):
-    assert taken_out(of(ab=left, a=20.0, b=25.0, none=300.0), first=300.0, shapes={"a": place, "b": 0.5}) == suspects
+def test_above_the_noise_what_has_the_shape_of_its_limit_on_all_axes_is_a_suspect(taken_out, places, left, suspects):
+    seen = of(ab=left, a=20.0, b=25.0, none=300.0)
+    assert taken_out(seen, first=300.0, shapes={"a": places, "b": [0.5]}) == suspects
 
 
 def test_two_thirds_beside_the_others_are_enough_however_much_all_remove_together(taken_out):

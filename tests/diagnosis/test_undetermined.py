@@ -6,7 +6,7 @@ import pytest
 import stage
 from pzt_ident.diagnosis import staircase, verdict
 from pzt_ident.diagnosis.starts import first_fit
-from pzt_ident.diagnosis.undetermined import undetermined_mechanics, without_mechanics
+from pzt_ident.diagnosis.undetermined import undetermined_axes, undetermined_mechanics, without_mechanics
 from pzt_ident.model.registry import blocks
 
 SEVERAL = stage.EFFECTS["creep"] | stage.EFFECTS["sensor_lag"] | stage.EFFECTS["quadratic_gain"]
@@ -29,10 +29,22 @@ def test_mechanics_that_the_job_knows_are_kept():
     assert undetermined_mechanics(first_fit(known, 0)) is None
 
 
+def fast(drive):
+    return stage.case(model=BLOCKS, drives=[drive, 0.8 * drive], dt=2e-5, steps=1)
+
+
+RINGING = np.repeat([0.0, 40.0, 10.0, 60.0, 0.0], 200)
+SMOOTH = 5 - 5 * np.cos(np.linspace(0, 2 * np.pi, RINGING.size))
+
+
 def test_a_mode_that_rings_is_determined():
-    steps = np.repeat([0.0, 40.0, 10.0, 60.0, 0.0], 200)
-    ringing = stage.case(model=BLOCKS, drives=[steps, 0.8 * steps], dt=2e-5, steps=1)
-    assert undetermined_mechanics(first_fit(ringing, 0)) is None
+    assert undetermined_mechanics(first_fit(fast(RINGING), 0)) is None
+
+
+def test_mechanics_that_one_axis_shows_are_kept():
+    fit = first_fit(stage.beside(fast(RINGING), fast(SMOOTH)), 0)
+    assert undetermined_axes(fit) == {1}
+    assert undetermined_mechanics(fit) is None
 
 
 def test_mechanics_that_take_up_nothing_are_no_suspect():
