@@ -16,7 +16,7 @@ class SecondMode:
     share = Parameter("1", (-0.4, 0.4), "Part of the static response that the second mode carries.", null=0)
     frequency = Parameter("Hz", (20, 2e4), "Natural frequency of the second mode.", scale="log")
     damping = Parameter("1", (1e-3, 0.3), "Damping ratio of the second mode, zeta.", scale="log")
-    look_alikes = ("load_mass",)
+    look_alikes = ("load_mass", "viscous_damping")
     separate_by = "Chirp with a small amplitude through all modes, sampled ten times faster than the highest."
     remedy = "Put a notch at the identified frequency, or shape the reference so that it does not ring."
 
