@@ -11,7 +11,7 @@ from pzt_ident.diagnosis.budget import BESIDE, EXPLORING, PROVING, WHOLE
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, reaches_noise, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit_from, side_by_side
-from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, applicable, squared_misfit
+from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, applicable, scorer_of, squared_misfit
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.model.registry import blocks, form_of, word_of
 
@@ -52,11 +52,13 @@ class Candidate:
 
 def score_all(case: Case, first: Fit, before: Fit, scorer: Scorer) -> list[Candidate]:
     """Every effect that can be added to the model, with the scores of its forms; beside the model as given all of them,
-    beside other effects those that the budget suffices for."""
+    beside other effects those that the budget suffices for, and of an adequate model the first form: what that is far
+    from, no other form shows."""
+    settled = before is not first and adequate(case, first, before)
 
     def scores_of(word: str) -> list[Score]:
         scored = before is first or case.budget.allows("the scores of all effects", share)
-        return scorer.scores(word) if scored else []
+        return scorer.scores(word, not settled) if scored else []
 
     share = PROVING if adequate(case, first, before) else WHOLE
     words, candidates = applicable(case, before.effects), list[Candidate]()
@@ -65,6 +67,12 @@ def score_all(case: Case, first: Fit, before: Fit, scorer: Scorer) -> list[Candi
         facts = {"effect": word_of(scores[0].effect), "explained": candidates[-1].score.explained}
         case.on_event({"event": "scored", **facts, "done": len(candidates), "of": len(words)})
     return candidates
+
+
+def promises_nearly_all(case: Case, first: Fit, fit: Fit) -> bool:
+    """Whether the score of an effect is nearly all that a fit leaves."""
+    candidates = score_all(case, first, fit, scorer_of(case, fit))
+    return max((item.score.explained_in_bounds for item in candidates), default=0.0) >= NEARLY_ALL
 
 
 def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:

@@ -8,9 +8,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pzt_ident.diagnosis.bounds import are_decisive, beyond_bounds, stands_in
-from pzt_ident.diagnosis.candidates import Candidate
-from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removes_enough
+from pzt_ident.diagnosis.candidates import Candidate, promises_nearly_all
+from pzt_ident.diagnosis.criteria import DECISIVE, adequate, clears_an_axis, removes_enough
 from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, remove_unneeded
+from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.proof import Suspect
 from pzt_ident.diagnosis.refit import Case, Fit, refit
 from pzt_ident.diagnosis.score import Score
@@ -89,8 +90,11 @@ def stuck(steps: list[Step]) -> bool:
 
 
 def restart_if_inadequate(case: Case, first: Fit, before: Fit, step: Step) -> None:
-    """Where a step does not reach the noise, restart its fit before anything else is blamed."""
-    if not adequate(case, first, step.fit) and case.budget.allows("other starts"):
+    """Where a step does not reach the noise, restart its fit before anything else is blamed, but for what explains
+    nearly all of the rest."""
+    if adequate(case, first, step.fit) or promises_nearly_all(case, first, step.fit):
+        return
+    if case.budget.allows("other starts"):
         step.fit = restart(case, step.fit)
         step.explained = explained_share(case, before, step.fit)
 
@@ -103,9 +107,9 @@ def next_steps(
     now = steps[-1].fit
     if candidate is not None and candidate.fit is not None:
         word, fit = candidate.score.effect, candidate.fit
-        anew = add_restarted(case, first, now, diagnosis) if is_astray(case, first, now, fit) else []
-        if anew and anew[0].explained >= DECISIVE and anew[0].fit.total < fit.total:
-            return anew
+        for others in other_ways(case, first, now, diagnosis) if is_astray(case, first, now, fit) else ():
+            if others and explained_share(case, now, others[-1].fit) >= DECISIVE and others[-1].fit.total < fit.total:
+                return others
         rivals = diagnosis.rivals if candidate is diagnosis.best else {word: fit}
         return [Step(fit, word, None, rivals, explained_share(case, now, fit), candidate.score.explained)]
     if diagnosis.verdict in ("adequate", "refused"):
@@ -121,10 +125,18 @@ def next_steps(
 
 
 def is_astray(case: Case, first: Fit, now: Fit, best: Fit) -> bool:
-    """Whether the model as given is far from the noise, and the best effect takes up less than half of its misfit: the
-    fit may rest where no effect helps it."""
+    """Whether the model as given is far from the noise, and the best effect takes up less than half of its misfit, and
+    of that of each axis: the fit may rest where no effect helps it."""
     far = max(now.identify, now.validate or 0.0) > HOPELESS * case.floor
-    return far and now.effects == first.effects and explained_share(case, now, best) < DECISIVE
+    part = share_explained(now.total, best.total, case.floor) < DECISIVE
+    return far and now.effects == first.effects and part and not clears_an_axis(case, first, now, best)
+
+
+def other_ways(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> Iterator[list[Step]]:
+    """Two effects of which each explains about half, then one whose fit starts elsewhere."""
+    if case.budget.allows("pairs and exchanges of effects"):
+        yield add_pair(case, first, now, diagnosis)
+    yield add_restarted(case, first, now, diagnosis)
 
 
 def add_pair(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Step]:
@@ -165,13 +177,12 @@ def restarted_by_block(case: Case, diagnosis: Diagnosis, every_block: bool) -> I
 
 
 def started_anew(case: Case, diagnosis: Diagnosis) -> Iterator[tuple[Score, Fit]]:
-    """The short list in each form that was refitted, with all blocks from random points, but for the frequency that a
-    disturbance is guessed to have."""
+    """The short list in each form that was refitted, with all blocks from random points, but for what has amounts of
+    each record: no random point has its frequency."""
     least = np.inf
     for candidate in diagnosis.candidates:
         for item, fit in candidate.refits.items():
-            if case.budget.allows("other starts"):
-                guess = candidate.score.guess if blocks[item].amounts() else {}
-                anew = first_fit(case, 0, effects=fit.effects, guess=guess, rival=least)
+            if not blocks[item].amounts() and case.budget.allows("other starts"):
+                anew = first_fit(case, 0, effects=fit.effects, rival=least)
                 least = min(least, anew.identify)
                 yield replace(candidate.score, effect=item), anew

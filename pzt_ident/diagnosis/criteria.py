@@ -63,6 +63,15 @@ def removes_enough(case: Case, first: Fit, before: Fit, after: Fit) -> bool:
     return removed > least and removed**2 > LEAST_SHARE * squared_misfit(case, before) and in_validation
 
 
+def clears_an_axis(case: Case, first: Fit, before: Fit, after: Fit) -> bool:
+    """Whether an effect removes most of the misfit of an axis, on the identification and on the validation records,
+    which may be little beside what another axis lacks."""
+    least = np.maximum(CLEAR * case.floors, MODEL_FORM * np.sqrt(np.maximum(first.by_use**2 - case.floors**2, 0)))
+    removed = before.by_use**2 - after.by_use**2
+    most = removed >= DECISIVE * (before.by_use**2 - case.floors**2)
+    return bool((most & (removed > least**2)).all(axis=0).any())
+
+
 def not_in_validation(case: Case, first: Fit, before: Fit, after: Fit) -> bool:
     """Whether an effect explains all of the misfit, and the validation records are at the noise with it and without."""
     noise = np.hypot(case.floor, tolerance(case, first))

@@ -9,7 +9,7 @@ from pzt_ident.diagnosis.candidates import TIE, is_equal, is_tied, is_twin, stra
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit, refit_beside
-from pzt_ident.diagnosis.score import Scorer, applicable, fitting_forms
+from pzt_ident.diagnosis.score import applicable, fitting_forms, scorer_of
 from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explained_share
 from pzt_ident.diagnosis.verdict import diagnose
 from pzt_ident.model.registry import blocks, word_of
@@ -75,7 +75,7 @@ def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str]) -> li
     if not items:
         return []
     without = refit(case, now, effects_without(now, effect), {})
-    scorer = Scorer(case, without)
+    scorer = scorer_of(case, without)
     guesses = {item: scorer.score(item).guess for item in items}
     return [
         refit_beside(case, (without, now), (*without.effects, item), guess, now.identify)

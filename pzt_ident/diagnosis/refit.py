@@ -60,6 +60,7 @@ class Case:
         self.ruled_out, self.shared = tuple(ruled_out), tuple(shared)
         self._resampled: dict[tuple[int, int], Record] = {}
         self.refits: dict[Any, Fit] = {}  # by effects, steps and start
+        self.scorers: list[Any] = []  # of the fits that were diagnosed last
         self.records, self.specs, self.error_scales = tuple(records), specs, error_scales(list(records))
 
     def with_specs(self, specs: Mapping[str, ParameterSpec]) -> Case:
@@ -155,11 +156,16 @@ class Fit:
         return float(np.sqrt(np.mean(np.square(errors))))
 
     @cached_property
+    def by_use(self) -> Array:
+        """RMSE of each use, that of the identification records first, and measured axis, in units of the loss: (uses,
+        measured axes)."""
+        uses = [use for use, error in (("identify", self.identify), ("validate", self.validate)) if error is not None]
+        return np.array([self.problem.by_axis(self.point[None], use)[0] / self.problem.sizes for use in uses])
+
+    @property
     def by_axis(self) -> Array:
         """RMSE of both uses together of each measured axis, in units of the loss: (measured axes,)."""
-        uses = [use for use, error in (("identify", self.identify), ("validate", self.validate)) if error is not None]
-        errors = [self.problem.by_axis(self.point[None], use)[0] / self.problem.sizes for use in uses]
-        return np.asarray(np.sqrt(np.mean(np.square(errors), axis=0)))
+        return np.asarray(np.sqrt(np.mean(np.square(self.by_use), axis=0)))
 
     @property
     def on_bounds(self) -> tuple[str, ...]:

@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 BATCH = 48  # candidates that are simulated together
 LEAST_TRACE = 1e-9  # of the residual: less is rounding
 LEAST_SCORE = 0.02  # of the misfit: an effect that scores less is not refitted
+KEPT = 4  # scorers
 MANY_TRIALS = 50  # values of the shape parameters
 AS_GOOD, MOST_GUESSES = 0.9, 4  # of the share explained by the best guess of a disturbance; guesses that are kept
 
@@ -78,6 +79,13 @@ def fits(case: Case, effects: tuple[str, ...], item: str) -> bool:
     return not issubclass(form, Coupling) or len(case.records[0].axes) > 1
 
 
+def scorer_of(case: Case, fit: Fit) -> Scorer:
+    """The scorer of a fit; those of the last fits are kept: no effect is scored twice beside one of them."""
+    scorer = next((item for item in case.scorers if item.fit is fit), None) or Scorer(case, fit)
+    case.scorers = [scorer, *(item for item in case.scorers if item is not scorer)][:KEPT]
+    return scorer
+
+
 class Scorer:
     """The residual of a fit and the derivatives of its parameters, both over the scored samples."""
 
@@ -89,15 +97,17 @@ class Scorer:
         self.split = self.projection.split(self.residual[None])
         self.left = float(self.projection.left(self.split)[0])
         self.misfit = squared_misfit(case, fit)
+        self._scores: dict[str, Score] = {}
 
     def explained(self, left: float) -> float:
         """Share of the misfit that is gone where a residual of so large a norm is left."""
         return (self.left**2 - left**2) / self.misfit
 
-    def scores(self, effect: str) -> list[Score]:
-        """The scores of all forms of an effect, the first form first; of one with many trials or amounts of each record
-        the others only where the first explains some, and near the shapes with which it does."""
+    def scores(self, effect: str, in_every_form: bool = True) -> list[Score]:
+        """The scores of an effect, the first form first, and of its other forms; of one with many trials or amounts of
+        each record only where the first explains some, and near the shapes with which it does."""
         usual, *others = fitting_forms(self.case, self.fit.effects, effect)
+        others = others if in_every_form else []
         first, block = self.score(usual), blocks[effect]
         if first.explained <= LEAST_SCORE and (block.amounts() or has_many_trials(block)):
             others = []
@@ -106,6 +116,11 @@ class Scorer:
     def score(self, effect: str, near: Sequence[Mapping[str, float]] = ()) -> Score:
         """The score of an effect. On axes without a response it acts as the effects of the fit do; if it is the first
         for which that matters, the better of both ways counts. near: shapes that are tried, by default all."""
+        if effect not in self._scores:
+            self._scores[effect] = self._best_score(effect, near)
+        return self._scores[effect]
+
+    def _best_score(self, effect: str, near: Sequence[Mapping[str, float]]) -> Score:
         case, fit, effects = self.case, self.fit, (*self.fit.effects, effect)
         first = case.unmeasured_nulls(effects) and not case.unmeasured_nulls(fit.effects)
         variants = (False, True) if first else (fit.measured_only,)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 
@@ -20,6 +19,7 @@ REFINED, MOST_REFINED = 4, 24  # points in a batch, and in all batches
 AGREEMENT = 0.01  # of the loss, between the two best minima
 ENOUGH = 12  # minima that agree: a model that is not adequate is fitted from more points than lead to two, until then
 ON_STARTS = 0.1  # of the budget, which ends that where two agree
+STARTS_BESIDE = 60  # random points of the model with other effects
 RESTARTS = 2  # random points of one block that are refined
 MOST_RESTARTED = 4  # times that all blocks are restarted, where no two minima agree
 
@@ -29,17 +29,17 @@ def first_fit(
     seed: int,
     known: Array | None = None,
     effects: tuple[str, ...] | None = None,
-    guess: Mapping[str, float] | None = None,
     rival: float = np.inf,
 ) -> Fit:
     """The job's own model, or the one with other effects, fitted from random points, the fewer the better it is; not
     converged where the two best minima differ, and restarts of single blocks still lead lower. known: the point of a
-    fit that was searched for, beside which one batch of random points is enough. guess: values of some parameters at
-    all random points. rival: the loss of another model, far above which a descent that crawls is given up."""
+    fit that was searched for, beside which one batch of random points is enough. rival: the loss of another model, far
+    above which a descent that crawls is given up."""
+    number_of_points = STARTS if effects is None else STARTS_BESIDE
     effects = case.effects if effects is None else effects
     problem = case.problem(effects)
     minima = np.empty((0, problem.dimensions)) if known is None else case.descend(problem, known)[None]
-    order, agreed, least = ranked_points(problem, seed, guess or {}), False, rival
+    order, agreed, least = ranked_points(problem, seed, number_of_points), False, rival
     most = MOST_REFINED if known is None else REFINED
     for number in range(0, most, REFINED):
         starts = order[number : number + REFINED]
@@ -68,12 +68,9 @@ def settled(case: Case, fit: Fit) -> Fit:
     return fit
 
 
-def ranked_points(problem: Problem, seed: int, guess: Mapping[str, float]) -> Array:
-    """(STARTS, dimensions) random points, with the guess of some parameters, the best first."""
-    points = np.random.default_rng(seed).uniform(size=(STARTS, problem.dimensions))
-    middle = problem.physical(np.full(problem.dimensions, 0.5))[0]
-    guessed = [name in guess for name in problem.names]
-    points[:, guessed] = problem.unit_point({**dict(zip(problem.names, middle, strict=True)), **guess})[guessed]
+def ranked_points(problem: Problem, seed: int, count: int) -> Array:
+    """(count, dimensions) random points, the best first."""
+    points = np.random.default_rng(seed).uniform(size=(count, problem.dimensions))
     return points[np.argsort(problem.rough().loss(points), kind="stable")]
 
 

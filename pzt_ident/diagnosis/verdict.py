@@ -31,6 +31,7 @@ from pzt_ident.diagnosis.criteria import (
     LEAST_SHARE,
     VALIDATION_FACTOR,
     adequate,
+    clears_an_axis,
     not_in_validation,
     reaches_noise,
     removed_rms,
@@ -38,7 +39,7 @@ from pzt_ident.diagnosis.criteria import (
     threshold,
 )
 from pzt_ident.diagnosis.refit import Case, Fit, refit, step_errors
-from pzt_ident.diagnosis.score import LEAST_SCORE, Scorer, squared_misfit
+from pzt_ident.diagnosis.score import LEAST_SCORE, scorer_of, squared_misfit
 from pzt_ident.diagnosis.wording import percent
 from pzt_ident.model.registry import phrase_of
 
@@ -74,8 +75,7 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     first = first or before
     if reason := refusal(case, first, before):
         return Diagnosis("refused", reason, before, [], [])
-    scorer = Scorer(case, before)
-    candidates = sorted(score_all(case, first, before, scorer), key=lambda item: -item.score.explained)
+    candidates = sorted(score_all(case, first, before, scorer_of(case, before)), key=lambda item: -item.score.explained)
     if adequate(case, first, before) and not any(promises_enough(case, first, before, item) for item in candidates):
         decide_by_score(case, first, before, candidates)
         return without_effect(case, first, before, candidates)
@@ -87,10 +87,15 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     restart_look_alikes(case, first, before, shortlist)
     candidates.sort(key=lambda item: (item.fit.total if item.fit else np.inf, -item.score.explained))
     decide_by_score(case, first, before, candidates)
-    passing = [item for item in shortlist if item.fit and removes_enough(case, first, before, item.fit)]
+    passing = [item for item in shortlist if item.fit and is_account(case, first, before, item.fit)]
     if not passing:
         return without_effect(case, first, before, candidates)
     return with_effects(case, first, before, candidates, passing)
+
+
+def is_account(case: Case, first: Fit, before: Fit, fit: Fit) -> bool:
+    """Whether an effect removes enough, or most of what one of several axes lacks."""
+    return removes_enough(case, first, before, fit) or clears_an_axis(case, first, before, fit)
 
 
 def with_effects(

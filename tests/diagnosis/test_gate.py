@@ -9,12 +9,19 @@ import pytest
 from pzt_ident.diagnosis import candidates, verdict
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.candidates import Candidate, choose_forms, generalises, is_tied, is_twin
-from pzt_ident.diagnosis.criteria import adequate, not_in_validation, reaches_noise, removes_enough, threshold
+from pzt_ident.diagnosis.criteria import (
+    adequate,
+    clears_an_axis,
+    not_in_validation,
+    reaches_noise,
+    removes_enough,
+    threshold,
+)
 from pzt_ident.diagnosis.refit import Fit
 from pzt_ident.diagnosis.score import Score, squared_misfit
 from pzt_ident.diagnosis.verdict import best_pair, diagnose
 
-CASE = SimpleNamespace(floor=1.0, on_event=lambda event: None)
+CASE = SimpleNamespace(floor=1.0, floors=np.ones(1), on_event=lambda event: None)
 FAR = 10.0  # an error that nobody takes for noise
 
 
@@ -28,6 +35,8 @@ def fit(identify, validate=None, effects=(), dimensions=4, own=()):
         free=columns,
         model=SimpleNamespace(entries=entries),
         physical=np.atleast_2d,
+        sizes=np.ones(1),
+        by_axis=lambda points, use: np.array([[{"identify": identify, "validate": validate}[use]]]),
     )
     return Fit(tuple(effects), problem, np.array(own, float), identify, validate)
 
@@ -48,6 +57,37 @@ SMALL = above(1.0, FAR)
 def test_the_misfit_is_what_is_above_the_noise_and_never_less_than_could_be_told_from_it():
     assert squared_misfit(CASE, above(3.0)) == pytest.approx(9)
     assert squared_misfit(CASE, fit(1.0)) == squared_misfit(CASE, fit(0.5)) == pytest.approx(0.09)
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "cleared"),
+    [
+        ((19.0, 19.0), (8.0, 8.0), False),
+        ((20.0, 20.0), (2.0, 2.0), True),  # the axis that lacks more is no better
+        ((20.0, 20.0), (2.0, 8.0), False),  # on the records that were fitted alone
+        ((2.0, 2.0), (8.0, 8.0), True),
+        ((20.0, 20.0), (9.0, 9.0), False),
+    ],
+)
+def test_an_axis_is_cleared_of_most_of_its_misfit_on_both_kinds_of_record(x, y, cleared):
+    case = SimpleNamespace(floor=1.0, floors=np.ones(2))
+    before, after = by_axes((20.0, 20.0), (9.0, 9.0)), by_axes(x, y)
+    assert clears_an_axis(case, before, before, after) == cleared
+
+
+@pytest.mark.parametrize(("given", "cleared"), [(10.0, True), (40.0, False)])
+def test_an_axis_at_the_noise_is_cleared_of_nothing(given, cleared):
+    """Nor of what the form of an effect that explains far more may leave."""
+    case, first = SimpleNamespace(floor=1.0, floors=np.ones(2)), by_axes((20.0, 20.0), (given, given))
+    assert not clears_an_axis(case, first, by_axes((20.0, 20.0), (1.1, 1.1)), by_axes((20.0, 20.0), (1.0, 1.0)))
+    assert clears_an_axis(case, first, by_axes((20.0, 20.0), (1.5, 1.5)), by_axes((20.0, 20.0), (1.0, 1.0))) == cleared
+
+
+def by_axes(x, y):
+    """A fit with these errors of two axes, of the identification and of the validation records."""
+    errors = {"identify": np.array([x[0], y[0]]), "validate": np.array([x[1], y[1]])}
+    problem = SimpleNamespace(sizes=np.ones(2), by_axis=lambda points, use: errors[use][None])
+    return Fit((), problem, np.zeros(1), *(float(np.sqrt(np.mean(own**2))) for own in errors.values()))
 
 
 @pytest.mark.parametrize(("first", "enough"), [(1.0, 0.6), (19.0, 0.6), (21.0, 0.63), (100.0, 3.0)])
@@ -128,7 +168,7 @@ def judged(monkeypatch):
 
     def of(fits):
         scores = [Candidate.of([Score(word, explained=0.9, power=3.0)]) for word in fits]
-        monkeypatch.setattr(verdict, "Scorer", lambda case, before: None)
+        monkeypatch.setattr(verdict, "scorer_of", lambda case, before: None)
         monkeypatch.setattr(verdict, "score_all", lambda case, first, before, scorer: scores)
         monkeypatch.setattr(verdict, "refusal", lambda case, first, before: "")
         monkeypatch.setattr(verdict, "restart_look_alikes", lambda case, first, before, candidates: None)

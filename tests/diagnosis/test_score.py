@@ -7,7 +7,7 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis.refit import Case, refit, refit_from
-from pzt_ident.diagnosis.score import Scorer, applicable, fitting_forms, squared_misfit
+from pzt_ident.diagnosis.score import KEPT, Scorer, applicable, fitting_forms, scorer_of, squared_misfit
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.job.sections import Setting
 
@@ -275,3 +275,21 @@ def test_beside_a_ripple_that_is_explained_nothing_is_left_to_score():
     scorer = Scorer(case, fit)
     scores = [score for word in applicable(case, fit.effects) for score in scorer.scores(word)]
     assert all(score.explained * scorer.misfit < case.floor**2 for score in scores)
+
+
+def test_no_effect_is_scored_twice_beside_one_fit(monkeypatch):
+    case = stage.case({})
+    fit = first_fit(case, 0)
+    scores = scorer_of(case, fit).scores("creep")
+    monkeypatch.setattr(Scorer, "_best_score", None)
+    assert all(new is old for new, old in zip(scorer_of(case, fit).scores("creep"), scores, strict=True))
+    assert scorer_of(case, fit).scores("creep", in_every_form=False) == scores[:1]
+    assert scorer_of(case, replace(fit)) is not scorer_of(case, fit)
+
+
+def test_the_scorers_of_the_last_fits_are_kept():
+    case = stage.case({})
+    fits = [first_fit(case, 0), *(replace(first_fit(case, 0)) for _ in range(KEPT))]
+    first, *others = (scorer_of(case, fit) for fit in fits)
+    assert all(scorer_of(case, fit) is kept for fit, kept in zip(fits[1:], others, strict=True))
+    assert scorer_of(case, fits[0]) is not first

@@ -12,7 +12,7 @@ from pzt_ident.diagnosis import staircase as improving
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.climb import Staircase, add_pair, add_restarted
 from pzt_ident.diagnosis.exchange import exchange_any, remove_unneeded
-from pzt_ident.diagnosis.refit import fit_at, refit
+from pzt_ident.diagnosis.refit import Fit, fit_at, refit
 from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.staircase import improve, improve_within
 from pzt_ident.diagnosis.starts import first_fit
@@ -147,12 +147,50 @@ def test_an_effect_that_rests_in_a_side_minimum_is_a_stair_once_nothing_else_is_
 
 @pytest.mark.parametrize(("noise", "takes", "astray"), [(1.0, 0.2, True), (1.0, 0.9, False), (30.0, 0.2, False)])
 def test_a_model_is_astray_far_from_the_noise_where_no_effect_takes_up_half(noise, takes, astray):
-    case = SimpleNamespace(floor=noise)
-    first = SimpleNamespace(effects=())
-    now, best = (SimpleNamespace(effects=(), identify=np.sqrt(1e4 * share), validate=None) for share in (1, 1 - takes))
-    assert climb.is_astray(case, first, now, best) == astray
-    unseen = SimpleNamespace(effects=(), identify=2.0 * noise, validate=100.0 * noise)
-    assert climb.is_astray(case, first, unseen, unseen)
+    case = SimpleNamespace(floor=noise, floors=np.full(1, noise))
+    now, best = (with_errors(100 * np.sqrt(share)) for share in (1, 1 - takes))
+    assert climb.is_astray(case, now, now, best) == astray
+    unseen = with_errors(2.0 * noise, 100.0 * noise)
+    assert climb.is_astray(case, unseen, unseen, unseen)
+    assert not climb.is_astray(case, unseen, unseen, with_errors(2.0 * noise, 10.0 * noise))
+
+
+def test_a_model_of_which_an_effect_clears_an_axis_is_not_astray():
+    case = SimpleNamespace(floor=1.0, floors=np.ones(2))
+    now, half, both = with_errors([90.0, 10.0]), with_errors([90.0, 1.0]), with_errors([80.0, 8.0])
+    assert not climb.is_astray(case, now, now, half)
+    assert climb.is_astray(case, now, now, both)
+
+
+def with_errors(identify, validate=None):
+    """A fit with these errors, of each axis."""
+    errors = {"identify": np.atleast_1d(identify), "validate": validate and np.atleast_1d(validate)}
+    sizes = np.ones(len(errors["identify"]))
+    problem = SimpleNamespace(sizes=sizes, by_axis=lambda points, use: errors[use][None])
+    together = {use: own if own is None else float(np.sqrt(np.mean(own**2))) for use, own in errors.items()}
+    return Fit((), problem, np.zeros(1), together["identify"], together["validate"])
+
+
+def test_two_effects_that_explain_half_each_are_added_together(monkeypatch):
+    """No fit is restarted for them."""
+    case = stage.case(stage.EFFECTS["quadratic_gain"] | stage.EFFECTS["creep"])
+    case.ruled_out = tuple({*blocks.effects()} - {"quadratic_gain", "creep"})
+    first = first_fit(case, 0)
+    monkeypatch.setattr(climb, "is_astray", lambda case, first, now, best: True)
+    monkeypatch.setattr(climb, "add_restarted", lambda *arguments: pytest.fail("restarted"))
+    diagnosis = diagnose(case, first)
+    steps = climb.next_steps(case, first, [Step(first)], diagnosis, diagnosis.best)
+    assert {step.added for step in steps} == {"quadratic_gain", "creep"}
+
+
+@pytest.mark.parametrize(("words", "restarted"), [(["quadratic_gain"], False), (["delay"], True)])
+def test_a_fit_is_not_restarted_where_another_effect_promises_nearly_all_that_is_left(monkeypatch, words, restarted):
+    case, tried = stage.case(stage.EFFECTS["quadratic_gain"]), []
+    case.ruled_out = tuple({*blocks.effects()} - {*words})
+    monkeypatch.setattr(climb, "restart", lambda case, fit: tried.append(fit) or fit)
+    first = first_fit(case, 0)
+    climb.restart_if_inadequate(case, first, first, Step(first))
+    assert bool(tried) == restarted
 
 
 def test_a_proxy_is_exchanged_for_what_is_missing():
