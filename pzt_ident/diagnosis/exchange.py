@@ -10,6 +10,7 @@ from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, remove
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit, refit_beside
 from pzt_ident.diagnosis.score import applicable, fitting_forms, scorer_of
+from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explained_share
 from pzt_ident.diagnosis.verdict import diagnose
 from pzt_ident.model.registry import blocks, word_of
@@ -17,12 +18,14 @@ from pzt_ident.model.registry import blocks, word_of
 LEAST_GAIN = 0.05  # noise floors by which one effect fits better than another: less may be simulation error
 
 
-def remove_unneeded(case: Case, first: Fit, now: Fit, newest: int = 1) -> list[Step]:
+def remove_unneeded(case: Case, first: Fit, now: Fit, newest: int = 1, restarted: bool = False) -> list[Step]:
     """Steps that remove effects, other than the newest and those of the job itself, which no longer remove enough and
-    are of no use to the validation records."""
+    are of no use to the validation records. restarted: whether the model without one is started elsewhere, too."""
     steps: list[Step] = []
     for effect in now.effects[len(first.effects) : len(now.effects) - newest]:
         without = refit(case, now, effects_without(now, effect), {})
+        if restarted and case.budget.allows("other starts", PROVING):
+            without = restart(case, without)
         missed = now.validate is not None and removed_rms(without.validate, now.validate) > threshold(case, first)
         if not missed and not removes_enough(case, first, without, now):
             steps.append(Step(without, None, effect, {}, explained_share(case, now, without)))

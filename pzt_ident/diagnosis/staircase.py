@@ -173,9 +173,9 @@ def first_candidates(case: Case, first: Fit, diagnosis: Diagnosis) -> list[Candi
 
 def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListener) -> None:
     """Steps that take effects out again: those that the last model can do without, which may only have led the fit out
-    of a side minimum, and the unproven ones."""
-    now = staircase.steps[-1].fit
-    steps = remove_unneeded(case, first, now, newest=0) if near_noise(case, first, now) else []
+    of a side minimum, such as that to which the bounds of the job had led it, and the unproven ones."""
+    now, wider = staircase.steps[-1].fit, any(step.change == WIDER for step in staircase.steps)
+    steps = remove_unneeded(case, first, now, newest=0, restarted=wider) if near_noise(case, first, now) else []
     now = steps[-1].fit if steps else now
     if not near_noise(case, first, now):
         drop_outdone_rivals(case, now, staircase.steps)

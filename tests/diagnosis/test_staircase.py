@@ -193,6 +193,16 @@ def test_a_fit_is_not_restarted_where_another_effect_promises_nearly_all_that_is
     assert bool(tried) == restarted
 
 
+@pytest.mark.parametrize("restarted", [False, True])
+def test_an_effect_that_only_led_out_of_a_side_minimum_is_removed(monkeypatch, restarted):
+    monkeypatch.setattr(exchange, "refit", lambda case, now, effects, guess: with_errors(2.0))
+    monkeypatch.setattr(exchange, "restart", lambda case, fit: with_errors(1.0))
+    now = replace(with_errors(1.0), effects=("load_mass",))
+    case = SimpleNamespace(floor=1.0, budget=Budget())
+    steps = remove_unneeded(case, with_errors(12.0), now, newest=0, restarted=restarted)
+    assert [step.removed for step in steps] == (["load_mass"] if restarted else [])
+
+
 def test_a_proxy_is_exchanged_for_what_is_missing():
     case = stage.case(stage.EFFECTS["quadratic_gain"])
     first = first_fit(case, 0)
