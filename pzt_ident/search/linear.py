@@ -17,6 +17,8 @@ Indices = NDArray[np.intp]
 Changes = Callable[[Array], Array]  # (candidates, ...) -> (rows, candidates)
 
 MAX_PASSES = 4  # of linearisation, where a block behind makes the response nonlinear
+STEPS = np.array([1, 1 / 2, 1 / 4, 1 / 8, 0])  # of the way to a solution, the best of which is taken
+ROUGH = 2  # passes, after which candidates are told from each other
 LINEAR = 1e-9  # of the residual: the error of prediction below which no further pass is needed
 NEGLIGIBLE = 1e-6  # of the largest column: below it a column is rounding
 SOLUTIONS, VALUES = 4, 4096  # that are kept: whole ones, and their values
@@ -122,12 +124,14 @@ class Linear:
 
     changes: theta (candidates, parameters) -> (rows, candidates), the residual of the first and how that of each other
     differs from it, rotated so that a few rows are left. units: (linear,), typical size of each parameter with the
-    sign that it may have.
+    sign that it may have. passes: of linearisation, at most.
     """
 
-    def __init__(self, model: Chain, columns: Sequence[int], units: Array, changes: Changes) -> None:
+    def __init__(
+        self, model: Chain, columns: Sequence[int] | Indices, units: Array, changes: Changes, passes: int = MAX_PASSES
+    ) -> None:
         self.columns = np.array(columns, dtype=int)
-        self.units, self._changes = units, changes
+        self.model, self.units, self.passes, self._changes = model, units, passes, changes
         self._solved = lru_cache(SOLUTIONS)(self._solve)
         self._values = lru_cache(VALUES)(lambda raw: self._solved(raw).values)
         entries = [model.entries[column] for column in columns]
@@ -137,6 +141,10 @@ class Linear:
         self._weights = [
             (model.columns(entry.block, entry.axis, entry.axis) or {})[str(entry.parameter.smooth)] for entry in firsts
         ]
+
+    def rough(self) -> Linear:
+        """Those whose solution ends as soon as it tells candidates from each other."""
+        return Linear(self.model, self.columns, self.units, self._changes, ROUGH)
 
     def fill(self, theta: Array) -> None:
         """Write the solved values into theta (candidates, parameters), in place."""
@@ -161,22 +169,24 @@ class Linear:
             theta[:, self.columns] = values
             return self._changes(theta)
 
-        return solve(changes, self.units, self._curves, row[self._weights])
+        return solve(changes, self.units, self._curves, row[self._weights], self.passes)
 
 
-def solve(changes: Changes, units: Array, curves: Sequence[Indices], weights: ArrayLike) -> LinearSolution:
+def solve(
+    changes: Changes, units: Array, curves: Sequence[Indices], weights: ArrayLike, passes: int = MAX_PASSES
+) -> LinearSolution:
     """Non-negative least squares in multiples of `units`, with squared second differences as a smoothness prior.
 
     changes: (candidates, linear) -> (rows, candidates), see `Linear`. units: (linear,), size and sign of each
     parameter. curves: indices of the parameters of each smooth curve, in order. weights: of the squared second
     differences of each curve relative to the squared errors. Lawson & Hanson (1974), Solving Least Squares Problems,
-    ch. 23; linearised again where the response is not linear, which half of a step tells, and how much is left after
-    it. Values are NaN where the residuals are not finite.
+    ch. 23; linearised again, `passes` in all, where the response is not linear, which half of a step tells, and how
+    much is left after it, from the best place on the way there. Values are NaN where the residuals are not finite.
     """
     from scipy.optimize import nnls
 
     values = np.zeros(units.size)
-    for _ in range(MAX_PASSES):
+    for _ in range(passes):
         residual, columns = np.split(changes(values + np.vstack([np.zeros(units.size), np.diag(units)])), [1], axis=1)
         if not np.isfinite(columns).all():
             unknown = np.full(units.size, np.nan)
@@ -192,10 +202,12 @@ def solve(changes: Changes, units: Array, curves: Sequence[Indices], weights: Ar
         solution = nnls(system, np.append(triangle[:, -1], np.zeros(len(prior))), maxiter=100 * units.size)[0]
         multiples[visible] = solution / sizes[visible]
         expected = np.linalg.norm(residual[:, 0] + columns @ (multiples - values / units))
-        before, values = values, multiples * units
-        residual, half, whole = changes(np.array([values, (values + before) / 2, before])).T
-        bend = np.linalg.norm(2 * half - whole)
-        if 2 * bend <= LINEAR * expected and abs(np.linalg.norm(residual) - expected) <= LINEAR * expected:
+        tried = values + STEPS[:, None] * (multiples * units - values)
+        residual, *shorter = changes(tried).T
+        left = np.linalg.norm([residual, *(residual + change for change in shorter)], axis=1)
+        values = tried[np.argmin(np.hypot(left, np.linalg.norm((tried / units) @ prior.T, axis=1)))]
+        bend = np.linalg.norm(2 * shorter[0] - shorter[-1])
+        if 2 * bend <= LINEAR * expected and abs(left[0] - expected) <= LINEAR * expected:
             break
     return LinearSolution(values, columns, prior, units)
 

@@ -118,10 +118,10 @@ class Problem(Cube):
         return points[best], float(losses[best])
 
     def rough_loss(self, points: Array, near: Array) -> Array:
-        """The loss by which points are told from each other where amounts of the records follow those of another point
-        to first order, which costs a simulation each: (candidates,)."""
+        """The loss by which points are told from each other: (candidates,). Amounts of the records follow those of
+        another point to first order, which costs a simulation each."""
         if not self.model.amounts:
-            return self.loss(points)
+            return self.rough().loss(points)
         return self.along(None, self.held(near)).loss(points, squares=exact_squares)
 
     def residuals(self, points: Array) -> Array:
@@ -196,8 +196,9 @@ class Problem(Cube):
         return near
 
     def rough(self) -> Problem:
-        """The problem whose amounts of the records end as soon as they tell points from each other."""
+        """The problem in which what is solved for ends as soon as it tells points from each other."""
         rough = copy(self)
+        rough.linear = self.linear.rough()
         identify = [simulator.rough() for simulator in self.simulators["identify"]]
         rough.simulators = self.simulators | {"identify": identify}
         return rough

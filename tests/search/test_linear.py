@@ -160,6 +160,31 @@ def test_what_is_bent_behind_is_relinearised():
     np.testing.assert_allclose(found.values, truth, rtol=1e-3)
 
 
+@pytest.mark.parametrize("bend", [0.3, 1.0, 3.0, -0.3, -1.0])
+def test_a_pass_that_goes_too_far_is_shortened(bend):
+    """y = q + bend q^2 of ten columns that are nearly the same: what is left falls with every pass."""
+    columns = np.random.default_rng(1).normal(size=(1, 50)) + 0.1 * np.random.default_rng(2).normal(size=(10, 50))
+    bent = lambda values: (q := values @ columns) + bend * q**2  # noqa: E731
+    target = bent(np.full(10, 0.2)) + np.random.default_rng(3).normal(0, 0.3, 50)
+    left = [np.linalg.norm(target)]
+    for passes in range(1, 7):
+        found = solve(changes(lambda values: bent(values) - target), np.full(10, 0.2), [], [], passes)
+        left.append(np.linalg.norm(bent(found.values) - target))
+    assert np.all(np.diff(left) <= 1e-12)
+
+
+@pytest.mark.parametrize(("behind", "most"), [((), 1 + 1e-9), (("quadratic_gain.displacement",), 1.5)])
+def test_few_passes_tell_candidates_from_each_other(measured, behind, most):
+    """With nothing behind they are exact; behind what bends the response they leave more, but in the same order."""
+    made = problem(measured, *behind)
+    points = np.full((7, made.dimensions), 0.52)
+    points[:, made.names.index("homogenized_energy.interaction")] = np.linspace(0.05, 0.95, 7)
+    rough, exact = made.rough().loss(points), made.loss(points)
+    assert not behind or not np.allclose(rough, exact, rtol=1e-9)
+    np.testing.assert_array_equal(np.argsort(rough), np.argsort(exact))
+    assert np.all(np.abs(np.log(rough / exact)) <= np.log(most))
+
+
 @pytest.mark.parametrize(("reach", "says"), [(5e6, "nothing switches: the response is linear"), (5.0, "at once")])
 def test_a_density_far_from_the_drive_is_refused(measured, reach, says):
     with pytest.raises(InputError, match=says) as error:
