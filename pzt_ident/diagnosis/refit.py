@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.noise import error_scales, noise_floor, pooled_floor
 from pzt_ident.data.record import Record
-from pzt_ident.diagnosis.budget import PROVING, Budget
+from pzt_ident.diagnosis.budget import BEHIND, PROVING, WHOLE, Budget
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.model.block import Coupling
 from pzt_ident.model.chain import Chain
@@ -120,8 +120,10 @@ class Case:
         return self._resampled.setdefault((number, steps), replace(self.records[number], steps=steps))
 
     def descend(self, problem: Problem, point: Array, rival: float = np.inf) -> Array:
-        """The point that few steps reach while the budget lasts, see `search.descent`."""
-        return descend(problem, point, going=self.budget.lasts, rival=rival)
+        """The point that few steps reach while the budget lasts, of which a descent far above a rival gets no more than
+        a part, see `search.descent`."""
+        part = self.budget.part(BEHIND)
+        return descend(problem, point, going=self.budget.lasts, rival=rival, patient=lambda: not part.spent(WHOLE))
 
     @cached_property
     def floor(self) -> float:

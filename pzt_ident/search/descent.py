@@ -31,14 +31,17 @@ def descend(
     held: int | None = None,
     going: Callable[[], bool] = lambda: True,
     rival: float = np.inf,
+    patient: Callable[[], bool] = lambda: True,
 ) -> Array:
     """The point that few steps reach. held: a parameter that stays where it is. going: whether there is time for
-    another step. rival: the loss of another model; a descent that crawls far above it is given up."""
+    another step. rival: the loss of another model; a descent far above it is given up where it crawls, or where
+    `patient` says that it took long."""
     best, falls = np.clip(point, 0, 1), [1.0]
     for step, loss, fall in islice(steps(problem, best, PROMISED, held, going), most):
         best = step
         falls.append(fall)
-        if max(falls[-PATIENCE:]) < (CRAWLING if loss > FAR * rival else REFINED):
+        behind = loss > FAR * rival
+        if max(falls[-PATIENCE:]) < (CRAWLING if behind else REFINED) or (behind and not patient()):
             break
     return best
 

@@ -70,6 +70,15 @@ def test_a_descent_that_crawls_far_above_a_rival_is_given_up(monkeypatch, fall, 
     assert descend(None, np.zeros(1), most=30, rival=1.0)[0] + 1 == taken
 
 
+@pytest.mark.parametrize(("above", "taken"), [(10.0, 3), (1.5, 10)])
+def test_a_descent_that_took_long_is_given_up_far_above_a_rival(monkeypatch, above, taken):
+    """After three steps that each took a tenth off, there is no more patience; a loss of 1.5 is not far above 1."""
+    losses = above * 0.9 ** np.arange(10)
+    monkeypatch.setattr(descent, "steps", lambda *args: ((np.array([i]), loss, 0.1) for i, loss in enumerate(losses)))
+    patience = iter([True] * 2 + [False] * 10)
+    assert descend(None, np.zeros(1), most=10, rival=1.0, patient=lambda: next(patience))[0] + 1 == taken
+
+
 @pytest.fixture(scope="module")
 def problem():
     """Two records with noise, so that the optimum leaves something."""
