@@ -171,12 +171,17 @@ class Fit:
 
     @property
     def on_bounds(self) -> tuple[str, ...]:
-        """Names of the parameters that ended on a bound which is not their null."""
+        """Names of the parameters that ended on a bound which is not their null, nor where their range ends of
+        itself."""
         problem, values = self.problem, self.problem.physical(self.point)[0]
-        nulls = [problem.model.entries[column].parameter.null for column in problem.free]
-        ends = (self.point <= EDGE) | (self.point >= 1 - EDGE)
-        rows = zip(problem.names, ends, values, nulls, strict=True)
-        return tuple(name for name, end, value, null in rows if end and (null is None or not np.isclose(value, null)))
+        parameters = [problem.model.entries[column].parameter for column in problem.free]
+        edges = (self.point <= EDGE) | (self.point >= 1 - EDGE)
+        rows = zip(problem.names, edges, values, parameters, strict=True)
+        return tuple(
+            name
+            for name, edge, value, parameter in rows
+            if edge and not any(own is not None and np.isclose(value, own) for own in (parameter.null, parameter.end))
+        )
 
     @property
     def steps(self) -> tuple[int, ...]:

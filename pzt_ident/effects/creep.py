@@ -43,7 +43,7 @@ class Creep(Creeping, Bank):
     branches = BRANCHES
     ratio = Parameter("1", (-0.1, 0.4), "Final creep over the prompt response.", null=0)
     tau = Parameter("s", (0.01, 1000), "Geometric centre of the time constants.", scale="log")
-    decades = Parameter("1", (0, 7), "Decades over which the time constants are spread.")
+    decades = Parameter("1", (0, 7), "Decades over which the time constants are spread.", end=0)
 
     def prepare(ratio, tau, decades, branch, dt):
         branch_tau = tau * 10 ** (decades * ((branch + 0.5) / BRANCHES - 0.5))

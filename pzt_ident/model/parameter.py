@@ -17,6 +17,7 @@ class Parameter:
     of the data: `Parameter("response/drive", (0, 2))` of a record over 100 V and 8 um goes from 0 to 0.16 um/V.
 
     `null` is the value at which the block is exactly the identity; None if there is none.
+    `end` is the value at which the range of a shape ends of itself, such as 0 for a spread; None if there is none.
     `effect` names the effect that the parameter belongs to; unless the job lists it, the parameter stays at its null.
     `count` makes one parameter for each branch of the block, `weight_1`, `weight_2`, ...; a number, or the name of the
     setting that holds it. `per` tells what has a value of its own: every axis, the whole stage, or every axis after the
@@ -40,6 +41,7 @@ class Parameter:
     value: float | None = None
     linear: bool = False
     smooth: str | None = None
+    end: float | None = None
     name: str = ""
 
     def __set_name__(self, owner: type, name: str) -> None:

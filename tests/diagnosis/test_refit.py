@@ -201,6 +201,14 @@ def test_a_lag_within_the_sample_is_told_from_a_delay_by_finer_steps():
     assert delay.total > 1.5 * lag.total
 
 
+def test_a_shape_whose_range_ends_of_itself_is_not_on_a_bound(creeping):
+    """0 decades are one Kelvin-Voigt element, 7 are all that the bounds allow."""
+    fit = refit.refit(creeping, first_fit(creeping, 0), ("creep",), {})
+    places = np.where([name == "creep.decades" for name in fit.problem.names], 1.0, 0.5)
+    assert replace(fit, point=places).on_bounds == ("creep.decades",)
+    assert replace(fit, point=places * (places < 1)).on_bounds == ()
+
+
 def test_a_parameter_on_a_bound_is_told_unless_it_is_its_null(creeping):
     fit = refit.refit(creeping, first_fit(creeping, 0), ("amplifier_lag",), {})
     place = {name: i for i, name in enumerate(fit.problem.names)}
