@@ -6,7 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from pzt_ident.data.notation import listed
-from pzt_ident.diagnosis.candidates import strangers
+from pzt_ident.diagnosis.candidates import TIE, strangers
 from pzt_ident.diagnosis.criteria import DECISIVE, beyond_form, form_of_others, near_noise, reaches_noise, removed_rms
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import Case, Fit, refit
@@ -81,7 +81,7 @@ def unproven(
     suspects: list[Suspect] = []
     while added := now.effects[len(first.effects) :]:
         suspected = [suspect(case, first, now, effect, rivals.get(effect, ()), known) for effect in added]
-        least = min(suspected, key=lambda item: item.rank)
+        least = least_of(case, suspected)
         together = remove_enough_together(case, first, now, len(added))
         enough = least.share >= (ALONE if together else BESIDE) and (together or len(added) > 1)
         decisive = enough and not least.strangers and not least.limits
@@ -90,6 +90,18 @@ def unproven(
         suspects.append(least)
         now = least.without
     return suspects
+
+
+def least_of(case: Case, suspected: Sequence[Suspect]) -> Suspect:
+    """The first to be taken out: of those without which a model fits as well, the one with most parameters."""
+    least = min(suspected, key=lambda item: item.rank)
+    equal = [
+        item
+        for item in suspected
+        if item.rank[:-1] == least.rank[:-1]
+        and abs(removed_rms(least.without.total, item.without.total)) < 2 * TIE * case.floor
+    ]
+    return min(equal, key=lambda item: (item.without.problem.dimensions, item.rank))
 
 
 def remove_enough_together(case: Case, first: Fit, now: Fit, effects: int) -> bool:

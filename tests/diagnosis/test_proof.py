@@ -12,17 +12,17 @@ from pzt_ident.diagnosis.refit import Fit
 CASE = SimpleNamespace(floor=1.0)
 
 
-def fit(identify, validate, effects=(), shapes=None):
+def fit(identify, validate, effects=(), shapes=None, dimensions=4):
     """shapes: the places in its range, one an axis, of a parameter of some effects that has no null."""
     places = {(axis, effect): place for effect, own in (shapes or {}).items() for axis, place in enumerate(own)}
     entries = [
         SimpleNamespace(
-            parameter=SimpleNamespace(null=None, effect=""), block=SimpleNamespace(name=effect), word="shape"
+            parameter=SimpleNamespace(null=None, end=None, effect=""), block=SimpleNamespace(name=effect), word="shape"
         )
         for _, effect in places
     ]
     problem = SimpleNamespace(
-        dimensions=4,
+        dimensions=dimensions,
         names=[f"{axis}.{effect}.shape" for axis, effect in places],
         free=range(len(places)),
         model=SimpleNamespace(entries=entries),
@@ -35,11 +35,14 @@ def fit(identify, validate, effects=(), shapes=None):
 def taken_out(monkeypatch):
     """The suspects among some effects, given the error of a model without each set of them."""
 
-    def of(errors, validation=None, first=30.0, rivals=None, known=(), shapes=None):
+    def of(errors, validation=None, first=30.0, rivals=None, known=(), shapes=None, sizes=None):
+        """sizes: the parameters of a model without each effect."""
         validation = validation or errors
 
         def refitted(case, before, effects, guess):
-            return fit(errors[frozenset(effects)], validation[frozenset(effects)], effects)
+            left = frozenset(effects)
+            size = sum((sizes or {}).get(effect, 1) for effect in left)
+            return fit(errors[left], validation[left], effects, dimensions=size)
 
         monkeypatch.setattr(proof, "refit", refitted)
         by_record = proof.differs_by_record
@@ -139,6 +142,15 @@ def test_one_record_without_an_effect_of_which_each_has_its_own_amount_says_noth
 
 def test_one_after_the_other_is_taken_out_the_least_first(taken_out):
     assert taken_out(of(ab=20.0, a=21.0, b=22.0, none=23.0)) == ["b", "a"]
+
+
+@pytest.mark.parametrize(("without", "suspect"), [(1.17, "b"), (1.21, "b"), (1.4, "a")])
+def test_of_two_without_which_a_model_fits_as_well_the_one_with_more_parameters_is_taken_out(
+    taken_out, without, suspect
+):
+    """b has five parameters, a one; neither takes up more than the form of c may leave."""
+    seen = of(abc=0.95, bc=1.17, ac=without, ab=20.0, a=20.0, b=20.0, c=20.0, none=30.0)
+    assert taken_out(seen, sizes={"b": 5}) == [suspect]
 
 
 def test_records_that_were_kept_back_must_show_it_too(taken_out):
