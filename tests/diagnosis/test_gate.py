@@ -28,7 +28,7 @@ FAR = 10.0  # an error that nobody takes for noise
 def fit(identify, validate=None, effects=(), dimensions=4, own=()):
     """own: places in their ranges of the parameters that its last effect brought along."""
     columns = range(len(own))
-    entries = [SimpleNamespace(parameter=SimpleNamespace(null=None)) for _ in own]
+    entries = [SimpleNamespace(parameter=SimpleNamespace(null=None, end=None)) for _ in own]
     problem = SimpleNamespace(
         dimensions=dimensions,
         names=[f"own_{i}" for i in columns],
