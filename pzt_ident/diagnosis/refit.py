@@ -171,17 +171,12 @@ class Fit:
 
     @property
     def on_bounds(self) -> tuple[str, ...]:
-        """Names of the parameters that ended on a bound which is not their null, nor where their range ends of
-        itself."""
+        """Names of the parameters that ended on a bound, but for those whose range ends there of itself."""
         problem, values = self.problem, self.problem.physical(self.point)[0]
         parameters = [problem.model.entries[column].parameter for column in problem.free]
         edges = (self.point <= EDGE) | (self.point >= 1 - EDGE)
         rows = zip(problem.names, edges, values, parameters, strict=True)
-        return tuple(
-            name
-            for name, edge, value, parameter in rows
-            if edge and not any(own is not None and np.isclose(value, own) for own in (parameter.null, parameter.end))
-        )
+        return tuple(name for name, edge, value, parameter in rows if edge and not parameter.ends_at(value))
 
     @property
     def steps(self) -> tuple[int, ...]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal
 
+import numpy as np
+
 from pzt_ident.errors import InputError, nearest
 
 
@@ -46,6 +48,10 @@ class Parameter:
 
     def __set_name__(self, owner: type, name: str) -> None:
         object.__setattr__(self, "name", name)
+
+    def ends_at(self, value: float) -> bool:
+        """Whether a value is the null, or where the range ends of itself: one that rests there rests on no bound."""
+        return any(own is not None and bool(np.isclose(value, own)) for own in (self.null, self.end))
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from pzt_ident.diagnosis.criteria import (
 from pzt_ident.diagnosis.refit import Fit
 from pzt_ident.diagnosis.score import Score, squared_misfit
 from pzt_ident.diagnosis.verdict import best_pair, diagnose
+from pzt_ident.model.parameter import Parameter
 
 CASE = SimpleNamespace(floor=1.0, floors=np.ones(1), on_event=lambda event: None)
 FAR = 10.0  # an error that nobody takes for noise
@@ -28,7 +29,7 @@ FAR = 10.0  # an error that nobody takes for noise
 def fit(identify, validate=None, effects=(), dimensions=4, own=()):
     """own: places in their ranges of the parameters that its last effect brought along."""
     columns = range(len(own))
-    entries = [SimpleNamespace(parameter=SimpleNamespace(null=None, end=None)) for _ in own]
+    entries = [SimpleNamespace(parameter=Parameter("1", (0, 1), "")) for _ in own]
     problem = SimpleNamespace(
         dimensions=dimensions,
         names=[f"own_{i}" for i in columns],

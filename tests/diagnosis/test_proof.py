@@ -8,6 +8,7 @@ import pytest
 from pzt_ident.diagnosis import proof
 from pzt_ident.diagnosis.proof import unproven
 from pzt_ident.diagnosis.refit import Fit
+from pzt_ident.model.parameter import Parameter
 
 CASE = SimpleNamespace(floor=1.0)
 
@@ -16,9 +17,7 @@ def fit(identify, validate, effects=(), shapes=None, dimensions=4):
     """shapes: the places in its range, one an axis, of a parameter of some effects that has no null."""
     places = {(axis, effect): place for effect, own in (shapes or {}).items() for axis, place in enumerate(own)}
     entries = [
-        SimpleNamespace(
-            parameter=SimpleNamespace(null=None, end=None, effect=""), block=SimpleNamespace(name=effect), word="shape"
-        )
+        SimpleNamespace(parameter=Parameter("1", (0, 1), ""), block=SimpleNamespace(name=effect), word="shape")
         for _, effect in places
     ]
     problem = SimpleNamespace(
