@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import isclose
 from typing import Any, Literal
-
-import numpy as np
 
 from pzt_ident.errors import InputError, nearest
 
@@ -51,7 +50,7 @@ class Parameter:
 
     def ends_at(self, value: float) -> bool:
         """Whether a value is the null, or where the range ends of itself: one that rests there rests on no bound."""
-        return any(own is not None and bool(np.isclose(value, own)) for own in (self.null, self.end))
+        return any(own is not None and isclose(value, own, rel_tol=1e-5, abs_tol=1e-8) for own in (self.null, self.end))
 
 
 @dataclass(frozen=True)
