@@ -15,7 +15,7 @@ class EncoderCyclicError(Block):
     """
 
     place = Place.SENSOR
-    form = Form("first", ("first", "second"), "Up to which harmonic of the grating.")
+    form = Form("first", ("first", "second", "rezeroed"), "Up to which harmonic of the grating, and from which zero.")
     trials = {"pitch": 120}
     sine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, odd about x = 0, a.", null=0)
     cosine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, even about x = 0, b.", null=0)
@@ -54,4 +54,17 @@ class SecondHarmonic(EncoderCyclicError):
         return u + sine * a + cosine * (b - 1) + 2 * second_sine * a * b - 2 * second_cosine * a * a
 
 
-EncoderCyclicError.forms = {"second": SecondHarmonic}
+class Rezeroed(EncoderCyclicError):
+    """The encoder is set to zero, or the stage clamped anew, before each record r, which begins at another place on the
+    grating: y = x + a_r sin(2 pi x / p) + b_r (cos(2 pi x / p) - 1).
+
+    Fleming (2013), Sensors and Actuators A 190, 106. A stroke has four lines of the grating or more: with fewer the
+    amounts of a record would bend its reading like any curve.
+    """
+
+    sine = Parameter("response", (-0.05, 0.05), "Error of a record, odd about x = 0, a.", null=0, per_record=True)
+    cosine = Parameter("response", (-0.05, 0.05), "Error of a record, even about x = 0, b.", null=0, per_record=True)
+    pitch = Parameter("response", (0.01, 0.25), "Period of the grating's signal, p.", scale="log")
+
+
+EncoderCyclicError.forms = {"second": SecondHarmonic, "rezeroed": Rezeroed}

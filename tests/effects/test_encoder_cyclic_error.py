@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from rig import response
+from pzt_ident.engine.simulator import Simulator
+from rig import model, record, response
 
 
 def read(x, sine=0.03, cosine=-0.02, pitch=0.5):
@@ -22,3 +23,17 @@ def test_none_at_zero_and_half_a_pitch_on_the_other_sign():
     x = np.linspace(-3, 3, 100)
     error, shifted = read(x) - x, read(x + 0.25) - (x + 0.25)
     np.testing.assert_allclose(error + shifted, 2 * 0.02, rtol=0, atol=1e-13)
+
+
+def test_an_encoder_that_is_set_to_zero_anew_has_a_phase_of_its_own_in_each_record():
+    """Of one size and pitch, about another place on the grating: what is left is nothing but the noise."""
+    x = 20 * np.abs(np.sin(np.linspace(0, 9, 2000)))
+    chain = model("encoder_cyclic_error.rezeroed")
+    theta = np.array([[0.5]])
+    for zero in (0.0, 0.11, 0.37):
+        measured = x + 0.03 * np.sin(2 * np.pi * (x + zero) / 0.5)
+        simulator = Simulator(chain, record(x, response=measured[None]))
+        phase = 2 * np.pi * zero / 0.5
+        found = simulator.amounts.complete(theta)[0, 1:]
+        np.testing.assert_allclose(found, [0.03 * np.cos(phase), 0.03 * np.sin(phase)], atol=1e-8)
+        assert simulator.squares(theta)[0, 0] < 1e-12 * np.square(measured).sum()
