@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 
 PASSES = 30  # of linearisation at most
 SETTLED = 1e-9  # of the sum of squares: a step that promises less is not taken
+NEAR = 1e-6  # beside a point from which a descent goes on
 ROUGH = 1e-3  # where points are only ranked
 WIDTH = 1e-5  # of the range of an amount: its difference
 SHORTER = 0.25  # the next step after one that led uphill
@@ -25,11 +26,11 @@ class Amounts:
     """The amounts of a record, from least squares over its scored samples together with the offset and the additions.
 
     Gauss and Newton's steps from zero, as many for every candidate, so that what follows is a smooth function of its
-    other parameters.
+    other parameters; or from those of a candidate beside, `near`.
     """
 
-    def __init__(self, simulator: Simulator, settled: float = SETTLED) -> None:
-        self.simulator, self.settled = simulator, settled
+    def __init__(self, simulator: Simulator, settled: float = SETTLED, near: Array | float = 0.0) -> None:
+        self.simulator, self.settled, self.near = simulator, settled, near
         model, record = simulator.model, simulator.record
         signals = [record.drive if entry.parameter.unit == "drive" else record.response for entry in model.amounts]
         axes = [entry.axis for entry in model.amounts]
@@ -38,20 +39,26 @@ class Amounts:
         self._low, self._high = bounds.T * np.array(sizes)
         self._widths = WIDTH * (self._high - self._low)
         self._scales = 1 / np.maximum(np.ptp(record.response[list(model.measured)], axis=1), 1e-300)
-        self._known: tuple[bytes, Array] = (b"", np.empty((0, 0)))
+        self._known: dict[bytes, Array] = {}  # amounts of the candidates that were asked for last
+
+    def beside(self, simulator: Simulator, held: Held) -> Amounts:
+        """Those of a simulator, sought from amounts that are held, less exactly: what is known stays known."""
+        beside = Amounts(simulator, NEAR, held.values)
+        beside._known = self._known
+        return beside
 
     def complete(self, theta: Array) -> Array:
         """theta (candidates, parameters) with the amounts behind them."""
         if not self._low.size:
             return theta
-        key, known = theta.tobytes(), self._known  # which another thread may replace
-        if known[0] != key:
-            known = self._known = key, np.hstack([theta, self._solved(theta)])
-        return known[1]
+        keys, known = [row.tobytes() for row in theta], self._known  # which another thread may replace
+        if not known.keys() >= {*keys}:
+            known = self._known = dict(zip(keys, self._solved(theta), strict=True))
+        return np.hstack([theta, [known[key] for key in keys]])
 
     def _solved(self, theta: Array) -> Array:
         """Those of each candidate: (candidates, amounts)."""
-        amounts = np.zeros((len(theta), self._low.size))
+        amounts = np.full((len(theta), self._low.size), self.near)
         best, steps, least = amounts.copy(), amounts.copy(), np.full(len(theta), np.inf)
         promised = np.full(len(theta), np.inf)  # by the next step, of the sum of squares
         moving = np.arange(len(theta))

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.record import Record, interpolated
-from pzt_ident.engine.additions import Additions
+from pzt_ident.engine.additions import SURE, Additions
 from pzt_ident.engine.amounts import ROUGH, Amounts, Held
 from pzt_ident.engine.distinct import Distinct, columns_of_axes, distinct
 from pzt_ident.engine.gather import squares
@@ -56,6 +56,13 @@ class Simulator:
         near = copy(self)
         near.amounts, near.additions = held, Additions(self._program, held.directions)
         return near
+
+    def beginning(self, held: Held) -> Simulator:
+        """The simulator whose amounts are sought from those that are held."""
+        beginning = copy(self)
+        if isinstance(self.amounts, Amounts):
+            beginning.amounts = self.amounts.beside(beginning, held)
+        return beginning
 
     def rough(self) -> Simulator:
         """The simulator whose amounts end as soon as they tell points from each other; those that are held do."""
@@ -118,11 +125,24 @@ class Simulator:
 
     def squares(self, theta: Array) -> Array:
         """Sum of squared errors over the scored samples, without the free offset: (candidates, measured axes)."""
+        return self._squares(np.atleast_2d(theta))[0]
+
+    def sure_squares(self, theta: Array) -> Array:
+        """The same; where the sums of the samples have less than half of their digits, from the errors themselves."""
+        theta = np.atleast_2d(theta)
+        if self.additions.follow:
+            return squares(self, theta)
+        squared, sure = self._squares(theta)
+        if not sure.all():
+            squared[~sure] = squares(self, theta[~sure])
+        return squared
+
+    def _squares(self, theta: Array) -> tuple[Array, NDArray[np.bool_]]:
+        """Those of `squares`, and of which candidates rounding leaves enough digits."""
         from pzt_ident.engine.kernel import WIDTH
 
-        theta = np.atleast_2d(theta)
         if self.substeps > 1:
-            return squares(self, theta)
+            return squares(self, theta), np.ones(len(theta), dtype=bool)
         fewer = self.distinct(theta)
         scratch = self._program.scratch(fewer.theta, self._rows)
         sums = scratch.reshape(scratch.shape[0], self._rows, WIDTH)[:, self._sums :]
@@ -136,10 +156,11 @@ class Simulator:
             squared, sure = self.additions.squares(table, self.scored)
             if not sure.all():
                 squared[~sure] = squares(self, theta[~sure])
-            return squared
+            return squared, np.ones_like(sure)
         with np.errstate(invalid="ignore", over="ignore"):  # overflows only where the sum of squares does
             squared = table[:, :, 1] - (table[:, :, 0] / np.sqrt(self.scored)) ** 2
-        return np.maximum(squared, 0)  # negative by rounding for a perfect fit
+            sure = ~(squared < SURE * table[:, :, 1]).any(axis=1)
+        return np.maximum(squared, 0), sure  # negative by rounding for a perfect fit
 
     def residuals(self, theta: Array) -> Array:
         """Model minus measurement over the scored samples, without offset and additions; see `errors`."""

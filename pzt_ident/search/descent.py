@@ -8,8 +8,9 @@ from itertools import islice
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.engine.simulator import Simulator
 from pzt_ident.optimizers.least_squares import bounded_steps
-from pzt_ident.search.problem import Problem
+from pzt_ident.search.problem import Problem, Squares, exact_squares
 
 Array = NDArray[np.float64]
 
@@ -37,7 +38,7 @@ def descend(
     another step. rival: the loss of another model; a descent far above it is given up where it crawls, or where
     `patient` says that it took long."""
     best, falls = np.clip(point, 0, 1), [1.0]
-    for step, loss, fall in islice(steps(problem, best, PROMISED, held, going), most):
+    for step, loss, fall in islice(steps(problem, best, PROMISED, held, going, Simulator.sure_squares), most):
         best = step
         falls.append(fall)
         behind = loss > FAR * rival
@@ -83,20 +84,26 @@ def settled(problem: Problem, point: Array) -> Array:
 
 
 def steps(
-    problem: Problem, point: Array, least: float, held: int | None = None, going: Callable[[], bool] = lambda: True
+    problem: Problem,
+    point: Array,
+    least: float,
+    held: int | None = None,
+    going: Callable[[], bool] = lambda: True,
+    squares: Squares = exact_squares,
 ) -> Iterator[tuple[Array, float, float]]:
     """Steps of Levenberg and Marquardt: points of lower and lower loss in the unit cube, their losses, and by which
     share each fell, until none is lower or the residuals, if they were linear, would promise none that falls by the
-    least."""
-    loss = problem.best(point[None], point)[1]
+    least. squares: by which losses are told from each other."""
+    loss = problem.best(point[None], point, squares)[1]
     movable = np.arange(point.size) != held
     while 0 < loss < np.inf and going():
+        problem = problem.beginning(point)
         jacobian, residual = (part / loss for part in problem.equations(point, central=False))
         gradient, curvature = jacobian.T @ residual, jacobian.T @ jacobian
         moves = np.clip(bounded_steps(point, gradient, curvature, DAMPINGS, movable), -FARTHEST, FARTHEST)
         if 1 - np.linalg.norm(residual[:, None] + jacobian @ moves.T, axis=0).min() < least:
             break
-        best, reached = problem.best(np.clip(point + moves, 0, 1), point)
+        best, reached = problem.best(np.clip(point + moves, 0, 1), point, squares)
         if not reached < loss:
             break
         yield best, reached, 1 - reached / loss

@@ -22,6 +22,7 @@ from pzt_ident.search.scales import size_of
 from pzt_ident.search.stencil import DIFFERENCE, forward, half_widths, stencil
 
 Array = NDArray[np.float64]
+ALIKE = 1e-8  # of the loss, where it has half of its digits
 FEW = 2  # points beside another one, for which amounts of the records are settled
 Squares = Callable[[Simulator, Array], Array]
 
@@ -102,9 +103,10 @@ class Problem(Cube):
         rmse = self.by_axis(points, use, squares) / self.sizes
         return rmse[:, 0] if rmse.shape[1] == 1 else np.sqrt(np.mean(rmse**2, axis=1))
 
-    def best(self, points: Array, near: Array) -> tuple[Array, float]:
-        """The point of least loss of those beside another one, and its loss, to the last digits; where parameters are
-        solved for, they follow to first order until few points are left."""
+    def best(self, points: Array, near: Array, squares: Squares = exact_squares) -> tuple[Array, float]:
+        """The point of least loss of those beside another one, and its loss, to the last digits unless `squares` has
+        fewer, and then the first of those that are alike; where parameters are solved for, they follow to first order
+        until few points are left."""
         tangent = self.tangent(near)
         if tangent:
             followed = self.along(tangent, self.held(near)).rotated_residuals(points)
@@ -113,8 +115,9 @@ class Problem(Cube):
         else:
             if self.model.amounts and len(points) > FEW:
                 points = points[np.argsort(self.rough_loss(points, near), kind="stable")[:FEW]]
-            losses = self.loss(points, squares=exact_squares)
-        best = int(np.argmin(losses))
+            losses = self.loss(points, squares=squares)
+        alike = 0.0 if squares is exact_squares else ALIKE
+        best = int(np.argmax(losses <= (1 + alike) * losses.min()))
         return points[best], float(losses[best])
 
     def rough_loss(self, points: Array, near: Array) -> Array:
@@ -172,11 +175,19 @@ class Problem(Cube):
 
     def _holding(self, held: tuple[Held, ...]) -> Problem:
         """The problem whose amounts of the records follow to first order; itself without any."""
+        return self._with_amounts(Simulator.near, held)
+
+    def beginning(self, point: Array) -> Problem:
+        """The problem whose amounts of the records are sought from those of a point, which takes fewer steps beside it;
+        itself without any."""
+        return self._with_amounts(Simulator.beginning, self.held(point)) if self.model.amounts else self
+
+    def _with_amounts(self, changed: Callable[[Simulator, Held], Simulator], held: tuple[Held, ...]) -> Problem:
         if not held:
             return self
         near = copy(self)
         identify = zip(self.simulators["identify"], held, strict=True)
-        near.simulators = self.simulators | {"identify": [simulator.near(each) for simulator, each in identify]}
+        near.simulators = self.simulators | {"identify": [changed(simulator, each) for simulator, each in identify]}
         return near
 
     def along(self, tangent: Tangent | None, held: tuple[Held, ...] = ()) -> Problem:

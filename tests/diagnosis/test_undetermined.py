@@ -34,7 +34,7 @@ def fast(drive):
 
 
 RINGING = np.repeat([0.0, 40.0, 10.0, 60.0, 0.0], 200)
-SMOOTH = 5 - 5 * np.cos(np.linspace(0, 2 * np.pi, RINGING.size))
+SMOOTH = 5 - 5 * np.cos(np.linspace(0, np.pi, RINGING.size))
 
 
 def test_a_mode_that_rings_is_determined():

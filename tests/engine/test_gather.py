@@ -93,3 +93,14 @@ def test_a_candidate_that_fails_spoils_no_other():
     assert failed.tolist() == [False, False, True, False, False]
     assert np.isfinite(parts).all()
     assert np.isnan(where.squares(theta)[2]).all() and np.isfinite(np.delete(where.squares(theta), 2, 0)).all()
+
+
+def test_squares_of_which_rounding_leaves_little_are_those_of_the_errors():
+    """A response that a model meets to one part in a million million."""
+    made, drive = Chain(blocks.chain(["bouc_wen"]), ["x"], [0]), 50 * np.abs(np.sin(np.linspace(0, 9, 3000)))
+    theta = np.array([[1e-7, 0.5, 0.02, 0.05]]) * (1 + np.array([[0], [1e-12], [1e-3]]))
+    response = Simulator(made, record(drive)).simulate(theta)[0, 0] + 5e-5
+    simulator = Simulator(made, record(drive, response=response[None]))
+    errors = np.square(simulator.residuals(theta)).sum(axis=2)
+    np.testing.assert_allclose(simulator.sure_squares(theta), errors, rtol=1e-7, atol=1e-28 * response.size)
+    assert abs(simulator.squares(theta)[1] / errors[1] - 1) > 1e-3
