@@ -101,7 +101,7 @@ def least_of(case: Case, suspected: Sequence[Suspect]) -> Suspect:
         if item.rank[:-1] == least.rank[:-1]
         and abs(removed_rms(least.without.total, item.without.total)) < 2 * TIE * case.floor
     ]
-    return min(equal, key=lambda item: (item.without.problem.dimensions, item.rank))
+    return min(equal, key=lambda item: (item.without.freedom, item.rank))
 
 
 def remove_enough_together(case: Case, first: Fit, now: Fit, effects: int) -> bool:

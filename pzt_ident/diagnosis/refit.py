@@ -152,6 +152,13 @@ class Fit:
     measured_only: bool = False
 
     @property
+    def freedom(self) -> int:
+        """Number of free parameters, with those of which each record has its own."""
+        model = self.problem.model
+        added = len(model.measured) * sum(block.amounts() for block in model.additions)
+        return self.problem.dimensions + len(model.amounts) + added
+
+    @property
     def total(self) -> float:
         """RMSE of both uses together: the criterion by which fits are ranked."""
         errors = [error for error in (self.identify, self.validate) if error is not None]

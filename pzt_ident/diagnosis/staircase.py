@@ -153,7 +153,7 @@ def best_path(case: Case, paths: Sequence[Staircase]) -> Staircase:
     settled = [path for path in paths if path.last.verdict == "adequate"] or paths
     least = min(end_of(path).total for path in settled)
     close = [path for path in settled if removed_rms(end_of(path).total, least) < TIE * case.floor]
-    return min(close, key=lambda path: (end_of(path).problem.dimensions, end_of(path).total))
+    return min(close, key=lambda path: (end_of(path).freedom, end_of(path).total))
 
 
 def first_candidates(case: Case, first: Fit, diagnosis: Diagnosis) -> list[Candidate]:

@@ -105,7 +105,7 @@ def with_effects(
     fits = {item.score.effect: item.fit for item in passing if item.fit}
 
     def simplicity(item: Candidate) -> tuple[int, float]:
-        return fits[item.score.effect].problem.dimensions, fits[item.score.effect].total
+        return fits[item.score.effect].freedom, fits[item.score.effect].total
 
     total = min(fit.total for fit in fits.values())
     close = [item for item in passing if removed_rms(fits[item.score.effect].total, total) < TIE * case.floor]

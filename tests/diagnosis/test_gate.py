@@ -34,7 +34,7 @@ def fit(identify, validate=None, effects=(), dimensions=4, own=()):
         dimensions=dimensions,
         names=[f"own_{i}" for i in columns],
         free=columns,
-        model=SimpleNamespace(entries=entries),
+        model=SimpleNamespace(entries=entries, measured=(), amounts=(), additions=()),
         physical=np.atleast_2d,
         sizes=np.ones(1),
         by_axis=lambda points, use: np.array([[{"identify": identify, "validate": validate}[use]]]),
@@ -169,7 +169,9 @@ def judged(monkeypatch):
 
     def of(fits):
         scores = [Candidate.of([Score(word, explained=0.9, power=3.0)]) for word in fits]
-        monkeypatch.setattr(verdict, "scorer_of", lambda case, before: None)
+        scorer = SimpleNamespace(scores=lambda word: next(item.forms for item in scores if item.score.effect == word))
+        monkeypatch.setattr(verdict, "scorer_of", lambda case, before: scorer)
+        monkeypatch.setattr(candidates, "scorer_of", lambda case, before: scorer)
         monkeypatch.setattr(verdict, "score_all", lambda case, first, before, scorer: scores)
         monkeypatch.setattr(verdict, "refusal", lambda case, first, before: "")
         monkeypatch.setattr(verdict, "restart_look_alikes", lambda case, first, before, candidates: None)

@@ -24,7 +24,7 @@ def fit(identify, validate, effects=(), shapes=None, dimensions=4):
         dimensions=dimensions,
         names=[f"{axis}.{effect}.shape" for axis, effect in places],
         free=range(len(places)),
-        model=SimpleNamespace(entries=entries),
+        model=SimpleNamespace(entries=entries, measured=(), amounts=(), additions=()),
         physical=np.atleast_2d,
     )
     return Fit(tuple(effects), problem, np.array([*places.values()], float), identify, validate)

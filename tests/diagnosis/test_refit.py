@@ -311,3 +311,13 @@ def test_two_starts_that_agree_far_from_the_noise_do_not_end_the_search(plain, m
     fit = first_fit(plain, 0)
     assert fit.converged and fit.identify < 1.1 * plain.floor
     assert len(points) == 12
+
+
+def test_amounts_of_each_record_count_among_the_parameters(plain):
+    """A ripple has four of them, and a frequency as a hum, which has two."""
+    numbers = {}
+    for effect in ("periodic_disturbance", "periodic_disturbance.ripple", "drift"):
+        problem = plain.problem((effect,))
+        numbers[effect] = fit_at((effect,), problem, np.full(problem.dimensions, 0.5)).freedom
+    free = plain.problem(()).dimensions
+    assert numbers == {"periodic_disturbance": free + 3, "periodic_disturbance.ripple": free + 5, "drift": free + 2}

@@ -252,9 +252,8 @@ def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, mon
 def test_beside_other_effects_too_the_simpler_of_tied_look_alikes_is_taken(monkeypatch, parameters, taken, twin):
     """twin: whether the delay, which is worse, fits as another form of the friction does."""
 
-    def fitted(word, total, dimensions):
-        problem = SimpleNamespace(dimensions=dimensions)
-        return SimpleNamespace(effects=("creep", word), total=total, identify=total, problem=problem)
+    def fitted(word, total, freedom):
+        return SimpleNamespace(effects=("creep", word), total=total, identify=total, freedom=freedom)
 
     now, rival, worse = (
         fitted("friction.coulomb", 1.1, 3),
@@ -277,7 +276,7 @@ def test_beside_other_effects_too_the_simpler_of_tied_look_alikes_is_taken(monke
 
 def test_the_rivals_of_an_effect_that_is_alone_again_are_asked_for_anew(monkeypatch):
     def fitted(*effects):
-        return SimpleNamespace(effects=effects, total=1.1, identify=1.1, problem=SimpleNamespace(dimensions=3))
+        return SimpleNamespace(effects=effects, total=1.1, identify=1.1, freedom=3)
 
     alone, rival = fitted("sensor_lag"), fitted("delay")
     monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect: ["delay"])
@@ -305,7 +304,7 @@ def test_a_rival_of_another_kind_is_one_as_long_as_it_fits_as_well_beside_what_w
 
 
 def ending(identify, total, parameters=3):
-    return SimpleNamespace(identify=identify, total=total, problem=SimpleNamespace(dimensions=parameters))
+    return SimpleNamespace(identify=identify, total=total, freedom=parameters)
 
 
 def test_of_paths_that_end_as_low_the_one_with_fewer_parameters_is_taken():
