@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
@@ -50,28 +51,43 @@ class Candidate:
         self.score, self.fit = next(score for score in self.forms if score.effect == item), self.refits[item]
 
 
-def score_all(case: Case, first: Fit, before: Fit, scorer: Scorer) -> list[Candidate]:
+def score_all(case: Case, first: Fit, before: Fit, scorer: Scorer, in_every_form: bool = True) -> list[Candidate]:
     """Every effect that can be added to the model, with the scores of its forms; beside the model as given all of them,
-    beside other effects those that the budget suffices for, and of an adequate model the first form: what that is far
-    from, no other form shows."""
-    settled = before is not first and adequate(case, first, before)
-
-    def scores_of(word: str) -> list[Score]:
-        scored = before is first or case.budget.allows("the scores of all effects", share)
-        return scorer.scores(word, not settled) if scored else []
-
+    beside other effects those that the budget suffices for. Of an adequate model the first forms: what they are far
+    from, no other form shows. Where the first form of an effect explains nearly all, other forms of it and of its
+    look-alikes only."""
     share = PROVING if adequate(case, first, before) else WHOLE
-    words, candidates = applicable(case, before.effects), list[Candidate]()
-    for scores in filter(None, side_by_side(scores_of, words)):
-        candidates.append(Candidate.of(scores))
-        facts = {"effect": word_of(scores[0].effect), "explained": candidates[-1].score.explained}
-        case.on_event({"event": "scored", **facts, "done": len(candidates), "of": len(words)})
-    return candidates
+    words, candidates = applicable(case, before.effects), dict[str, Candidate]()
+
+    def scores_of(word: str, in_every_form: bool) -> list[Score]:
+        scored = before is first or case.budget.allows("the scores of all effects", share)
+        return scorer.scores(word, in_every_form) if scored else []
+
+    def score(some: Sequence[str], in_every_form: bool) -> None:
+        scored = side_by_side(partial(scores_of, in_every_form=in_every_form), some)
+        for word, scores in zip(some, scored, strict=True):
+            if scores:
+                candidates[word] = Candidate.of(scores)
+                facts = {"effect": word, "explained": candidates[word].score.explained}
+                case.on_event({"event": "scored", **facts, "done": len(candidates), "of": len(words)})
+
+    score(words, False)
+    if in_every_form and not (before is not first and adequate(case, first, before)):
+        score(worth_other_forms(candidates), True)
+    return list(candidates.values())
+
+
+def worth_other_forms(candidates: Mapping[str, Candidate]) -> list[str]:
+    """Words of the effects of which other forms may change what is found."""
+    best = max(candidates, key=lambda word: candidates[word].score.explained_in_bounds, default="")
+    if not best or candidates[best].score.explained_in_bounds < NEARLY_ALL:
+        return list(candidates)
+    return [word for word in candidates if word == best or are_look_alikes(best, word)]
 
 
 def promises_nearly_all(case: Case, first: Fit, fit: Fit) -> bool:
-    """Whether the score of an effect is nearly all that a fit leaves."""
-    candidates = score_all(case, first, fit, scorer_of(case, fit))
+    """Whether the score of an effect, in its first form, is nearly all that a fit leaves."""
+    candidates = score_all(case, first, fit, scorer_of(case, fit), in_every_form=False)
     return max((item.score.explained_in_bounds for item in candidates), default=0.0) >= NEARLY_ALL
 
 
@@ -128,8 +144,7 @@ def choose_forms(case: Case, first: Fit, candidates: Sequence[Candidate]) -> Non
         usual, refits = candidate.forms[0].effect, candidate.refits
         chosen = clearly_best(case, refits, usual)
         if not enough and share_explained(least, refits[chosen].total, case.floor) < DECISIVE:
-            most = refits[usual].problem.dimensions
-            simple = {item: fit for item, fit in refits.items() if fit.problem.dimensions <= most}
+            simple = {item: fit for item, fit in refits.items() if fit.freedom <= refits[usual].freedom}
             chosen = clearly_best(case, simple, usual)
         candidate.take(chosen)
 
@@ -184,6 +199,7 @@ def refit_other_forms(
         wanted = [*shortlist, *others] if share < DECISIVE else []
     allowed = BESIDE if second_missing(case, first, before, fits) else EXPLORING
     for candidate in wanted:
+        candidate.forms = scorer_of(case, before).scores(word_of(candidate.score.effect))
         missing = [score for score in candidate.forms if score.effect not in candidate.refits]
         if missing and not case.budget.allows("other forms", allowed):
             break
@@ -236,7 +252,7 @@ def rests_on_own_bounds(before: Fit, fit: Fit) -> bool:
 
 def generalises(rival: Fit, fit: Fit) -> bool:
     """Whether a rival fits in a form of more parameters than its first, which may contain the other effect."""
-    return form_of(rival.effects[-1]) is not None and rival.problem.dimensions > fit.problem.dimensions
+    return form_of(rival.effects[-1]) is not None and rival.freedom > fit.freedom
 
 
 def promises_enough(case: Case, first: Fit, before: Fit, candidate: Candidate) -> bool:

@@ -15,6 +15,7 @@ from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explai
 from pzt_ident.diagnosis.verdict import diagnose
 from pzt_ident.model.registry import blocks, word_of
 
+COMPARABLE = 0.3  # of the share that an effect explains by its score: what explains less cannot take its place
 LEAST_GAIN = 0.05  # noise floors by which one effect fits better than another: less may be simulation error
 
 
@@ -74,15 +75,17 @@ def at_noise(case: Case, fit: Fit) -> bool:
 
 
 def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str]) -> list[Fit]:
-    """The model refitted with each of the items in the place of an effect."""
+    """The model refitted with each of the items in the place of an effect, but for those that explain little of what
+    that explains."""
     if not items:
         return []
     without = refit(case, now, effects_without(now, effect), {})
     scorer = scorer_of(case, without)
-    guesses = {item: scorer.score(item).guess for item in items}
+    scores, own = [scorer.score(item) for item in items], scorer.score(effect).explained
     return [
-        refit_beside(case, (without, now), (*without.effects, item), guess, now.identify)
-        for item, guess in guesses.items()
+        refit_beside(case, (without, now), (*without.effects, score.effect), score.guess, now.identify)
+        for score in scores
+        if score.explained >= COMPARABLE * own
     ]
 
 
@@ -96,7 +99,7 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
         fits = fits_in_place(case, now, effect, look_alikes(case, now, effect))
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
         rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
-        taken = min(rivals, key=lambda item: rivals[item].problem.dimensions)
+        taken = min(rivals, key=lambda item: rivals[item].freedom)
         forms = fits_in_place(case, now, effect, other_forms(case, now, effect) if len(tied) < len(fits) else [])
         rivals |= {fit.effects[-1]: fit for fit in fits if is_twin(case, effect, forms, fit)}
         if taken == effect:

@@ -30,6 +30,7 @@ LEAST_TRACE = 1e-9  # of the residual: less is rounding
 LEAST_SCORE = 0.02  # of the misfit: an effect that scores less is not refitted
 KEPT = 4  # scorers
 MANY_TRIALS = 50  # values of the shape parameters
+MOST_SHAPES = 12  # beside which others are tried
 AS_GOOD, MOST_GUESSES = 0.9, 4  # of the share explained by the best guess of a disturbance; guesses that are kept
 
 
@@ -130,7 +131,7 @@ class Scorer:
 
     def _score(self, effect: str, problem: Problem, near: Sequence[Mapping[str, float]]) -> Score:
         solved = blocks[effect].amounts()
-        score = self._score_disturbance(effect, problem) if solved else self._score_block(effect, problem, near)
+        score = (self._score_disturbance if solved else self._score_block)(effect, problem, near)
         units = zip(problem.names, problem.units, strict=True)
         return replace(score, units={name: unit for name, unit in units if name in score.guess})
 
@@ -139,9 +140,12 @@ class Scorer:
         score, least, strongest, order = Score(effect), self.left, 0.0, (np.inf, 0.0)
         clearest: Split | None = None
         guesses, tried = list[dict[str, float]](), list[tuple[float, Trial]]()
-        planned = self._planned_trials(effect, problem, near)
-        by_axis = ShapesByAxis(self.projection, problem, self.left)
-        for trials, sets in chain(self._trials(problem, planned), self._trials(problem, by_axis)):
+        by_axis, counts = ShapesByAxis(self.projection, problem, self.left), blocks[effect].trials
+        plans: list[Iterable[Trial]] = [self._planned_trials(effect, problem, counts, near)]
+        if has_many_trials(blocks[effect]) and not near:
+            one_by_one = {word: count if count == max(counts.values()) else 1 for word, count in counts.items()}
+            plans = [self._planned_trials(effect, problem, one_by_one), self._beside(effect, problem, tried)]
+        for trials, sets in chain.from_iterable(self._trials(problem, plan) for plan in (*plans, by_axis)):
             for number, trial in enumerate(trials):
                 traces = sets.traces[number]
                 norm = traces.norms.max()
@@ -161,9 +165,8 @@ class Scorer:
                     score.explained, least = self.explained(left), left
                     guesses = [self._guess(problem, trial, scales) for scales in (amounts, np.ones(amounts.size))]
         if has_many_trials(blocks[effect]):
-            score.shapes = [
-                trial.shape(problem) for left, trial in tried if 2 * self.explained(left) >= score.explained
-            ]
+            good = [(left, trial) for left, trial in tried if 2 * self.explained(left) >= score.explained]
+            score.shapes = [trial.shape(problem) for _, trial in sorted(good, key=itemgetter(0))[:MOST_SHAPES]]
         self._take_best_guess(score, problem, guesses)
         visibility = float(self.projection.left(clearest).max() / clearest.norms.max()) if clearest else 0.0
         return replace(score, visibility=visibility, power=visibility * strongest)
@@ -209,13 +212,21 @@ class Scorer:
                 sets = self.projection.split_sets(self.split, traces, count)
                 yield [trial for trial, kept in zip(batch, whole, strict=True) if kept], sets
 
+    def _beside(self, effect: str, problem: Problem, tried: list[tuple[float, Trial]]) -> Iterator[Trial]:
+        """Trials beside the best of those that were tried with one value of all shape parameters but one."""
+        best = sorted(tried, key=itemgetter(0))[:MOST_SHAPES]
+        known = {trial.start.tobytes() for _, trial in tried}
+        shapes = [trial.shape(problem) for _, trial in best]
+        trials = self._planned_trials(effect, problem, blocks[effect].trials, shapes) if best else iter(())
+        return (trial for trial in trials if trial.start.tobytes() not in known)
+
     def _planned_trials(
-        self, effect: str, problem: Problem, near: Sequence[Mapping[str, float]] = ()
+        self, effect: str, problem: Problem, tried: Mapping[str, int], near: Sequence[Mapping[str, float]] = ()
     ) -> Iterator[Trial]:
-        """A trial for each value of the shape parameters, see `parameter_grid`, and each size."""
+        """A trial for each value of the shape parameters, see `parameter_grid`, and each size. tried: how many values
+        of each."""
         new = [i for i, name in enumerate(problem.names) if name not in self.fit.problem.names]
         nulls = {i: problem.model.entries[problem.free[i]].parameter.null for i in new}
-        tried = blocks[effect].trials
         words = {i: problem.model.entries[problem.free[i]].word for i in new}
         amplitudes = [i for i in new if nulls[i] is not None and words[i] not in tried]
         shapes = [i for i in new if i not in amplitudes]
@@ -234,9 +245,9 @@ class Scorer:
             np.array([problem.unit_point(dict(zip(problem.names, row, strict=True))) for row in physical])
         )
 
-    def _score_disturbance(self, effect: str, problem: Problem) -> Score:
+    def _score_disturbance(self, effect: str, problem: Problem, near: Sequence[Mapping[str, float]]) -> Score:
         """The score of an effect in amounts of each record, which are solved for and not stepped: at the guesses that
-        its block makes from the residuals, one column after the other, else on a grid."""
+        its block makes from the residuals, one column after the other, else on a grid. near: as of `score`."""
         columns = [i for i, name in enumerate(problem.names) if name not in self.fit.problem.names]
         start = np.array([self.fit.values.get(name, 0.0) for name in problem.names])
         rough, shares = problem.rough(), dict[tuple[float, ...], float]()
@@ -256,8 +267,10 @@ class Scorer:
                 take([(*best[:place], option, *best[place + 1 :]) for option in options])
                 best = max(shares, key=shares.__getitem__)
         else:
-            take(list(parameter_grid(problem, columns, blocks[effect].trials)))
+            take(list(parameter_grid(problem, columns, blocks[effect].trials, near)))
         tried = sorted(shares, key=shares.__getitem__, reverse=True)
+        if not tried:
+            return Score(effect)
         share = max(shares[tried[0]], 0.0)
         close = [values for values in tried if shares[values] >= AS_GOOD * share > 0][:MOST_GUESSES]
         guesses = [{problem.names[i]: value for i, value in zip(columns, values, strict=True)} for values in close]

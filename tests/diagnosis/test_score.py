@@ -10,6 +10,7 @@ from pzt_ident.diagnosis.refit import Case, refit, refit_from
 from pzt_ident.diagnosis.score import KEPT, Scorer, applicable, fitting_forms, scorer_of, squared_misfit
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.job.sections import Setting
+from pzt_ident.model.registry import blocks
 
 
 def scored(case, effect):
@@ -155,7 +156,7 @@ def test_every_axis_has_its_own_amounts_and_its_own_line():
     case = stage.beside(stage.case(stage.EFFECTS["creep"]), stage.case(stage.EFFECTS["creep"]))
     scorer = Scorer(case, first_fit(case, 0))
     assert scorer.score("creep").explained > 0.9
-    assert len(list(scorer._planned_trials("creep", case.problem(("creep",))))) <= 36
+    assert len(list(scorer._planned_trials("creep", case.problem(("creep",)), blocks["creep"].trials))) <= 36
 
 
 @pytest.mark.parametrize("dt", [1e-6, 1e-3, 1.0])
@@ -172,9 +173,9 @@ def test_other_forms_of_an_effect_with_many_shapes_are_tried_where_the_first_exp
     """What is tried near the shapes of the first form scores as if all were tried."""
     case = stage.with_response(stage.case(), lambda r: 20e-9 * np.sin(1e6 * np.pi * r.response))
     scorer = Scorer(case, first_fit(case, 0))
-    first, other = scorer.scores("encoder_cyclic_error")
-    problem = case.problem((other.effect,))
-    counts = [len(list(scorer._planned_trials(other.effect, problem, near))) for near in ((), first.shapes)]
+    first, other, _ = scorer.scores("encoder_cyclic_error")
+    problem, tried = case.problem((other.effect,)), blocks[other.effect].trials
+    counts = [len(list(scorer._planned_trials(other.effect, problem, tried, near))) for near in ((), first.shapes)]
     assert 0 < counts[1] < counts[0] / 4
     assert other.explained == pytest.approx(scorer.score(other.effect).explained, rel=1e-9)
 
@@ -186,7 +187,9 @@ def test_no_mode_is_tried_above_all_sampling_rates():
         scorer = Scorer(case, first_fit(case, 0))
         problem = case.problem(("resonance",))
         column = problem.names.index("resonance.frequency")
-        frequencies = [trial.start[column] for trial in scorer._planned_trials("resonance", problem)]
+        frequencies = [
+            trial.start[column] for trial in scorer._planned_trials("resonance", problem, blocks["resonance"].trials)
+        ]
         assert bool(frequencies) == tried
         assert max(frequencies, default=0) <= 1 / dt
         assert (scorer.score("resonance").power > 0) == tried

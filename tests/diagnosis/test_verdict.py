@@ -315,3 +315,12 @@ def test_beside_what_explains_nearly_all_but_not_the_noise_time_is_kept_for_a_se
     alone = stage.case({"quadratic_gain.curvature": 3e-3})
     given = first_fit(alone, 0)
     assert refitted_words(alone, given, given, 0.5) == {"quadratic_gain", "saturation"}
+
+
+def test_beside_what_explains_nearly_all_only_its_look_alikes_are_scored_in_other_forms():
+    case = stage.case(stage.EFFECTS["amplifier_lag"])
+    before = first_fit(case, 0)
+    forms = {item.score.effect: len(item.forms) for item in score_all(case, before, before, Scorer(case, before))}
+    assert forms["amplifier_lag"] > 1 and forms["sensor_lag"] > 1
+    assert forms["rate_dependence"] > 1, "it counts the lag among its look-alikes"
+    assert {forms["amplitude_gain"], forms["saturation"], forms["encoder_cyclic_error"]} == {1}
