@@ -46,12 +46,13 @@ def listed_devices(path: Path, job: Job) -> list[Device]:
             device = Device("", files | channels_beside(path.parent, job), columns, missing)
         devices.append(replace(device, name=row[named].strip() if named is not None else ""))
     _check_rows(path, rows, devices)
-    if named is None:
-        places = [
-            _path(path, row[at], "") if at is not None else next(iter(device.files.values()))
-            for (_, row), device in zip(rows, devices, strict=True)
-        ]
-        devices = [replace(device, name=name) for device, name in zip(devices, names_of(places), strict=True)]
+    places = [
+        _path(path, row[at], "") if at is not None else next(iter(device.files.values()))
+        for (_, row), device in zip(rows, devices, strict=True)
+    ]
+    devices = [
+        replace(device, name=device.name or name) for device, name in zip(devices, names_of(places), strict=True)
+    ]
     return devices
 
 

@@ -24,10 +24,11 @@ RMSE = {"rmse": "{} RMSE", "rmse_improved": "improved {} RMSE"}
 
 
 def folder_of(fleet: Path, name: str) -> Path:
-    """Where the results of a device are; a name that no file system would take is put into letters that all take."""
-    safe = quote(name, safe=" +,=@()[]")
+    """Where the results of a device are: a folder of its own below `devices`, whatever the name. A name that no file
+    system would take is put into letters that all take."""
+    safe = quote(name, safe=" +,=@()[]", errors="surrogatepass") or "%"
     if len(safe) > LONGEST:
-        safe = f"{safe[:LONGEST]}~{sha256(name.encode()).hexdigest()[:8]}"
+        safe = f"{safe[:LONGEST]}~{sha256(name.encode(errors='surrogatepass')).hexdigest()[:8]}"
     return fleet / "devices" / (f"%2E{safe[1:]}" if safe.startswith(".") else safe)
 
 

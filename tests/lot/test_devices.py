@@ -94,6 +94,13 @@ def test_a_row_without_its_file_is_a_device_with_a_fault(here):
     assert (a.name, a.fault, b.name, b.fault) == ("a", "", "b", "b.csv: no such file")
 
 
+@pytest.mark.parametrize("heading", ["device", "Name"])
+def test_a_device_whose_cell_is_empty_has_the_name_of_its_path(here, heading):
+    touch(here / "a.csv", here / "b.csv", here / "c.csv")
+    (here / "lot.csv").write_text(f"{heading},file\nfirst,a.csv\n,b.csv\n  ,c.csv\n")
+    assert [device.name for device in devices_of(["lot.csv"], job(ONE, here))] == ["b", "c", "first"]
+
+
 @pytest.mark.parametrize(
     ("text", "patterns", "table", "sentence"),
     [
