@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import glob
+import os
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -54,12 +55,12 @@ def matched(patterns: Sequence[str]) -> list[Path]:
         if not paths:
             raise InputError("matches nothing", where=repr(pattern), remedy=_nearby(pattern))
         for path in paths:
-            if path.resolve() in by:
-                problem = f"{path} is there twice: by {by[path.resolve()]!r} and by {pattern!r}"
+            if real(path) in by:
+                problem = f"{path} is there twice: by {by[real(path)]!r} and by {pattern!r}"
                 raise InputError(problem, remedy="let one pattern match it")
-            by[path.resolve()] = pattern
+            by[real(path)] = pattern
         matches += paths
-    folders = [path for path in matches if path.is_dir()]
+    folders = [path for path in matches if os.path.isdir(path)]
     if folders and len(folders) < len(matches):
         problem = f"{len(folders)} folders and {len(matches) - len(folders)} files are matched"
         remedy = "a pattern that ends with / takes the folders alone, one that ends with *.csv the files"
@@ -73,15 +74,23 @@ def _nearby(pattern: str) -> str:
     for count in range(len(parts) - 1, 0, -1):
         place = Path(*parts[:count])
         if glob.glob(str(place)):
-            inside = sorted(path.name for match in glob.glob(str(place)) for path in Path(match).glob("*"))
-            return f"in {place} there is {', '.join(inside[:5]) or 'nothing'}{', ...' if len(inside) > 5 else ''}"
+            inside = sorted(name for match in glob.glob(str(place)) for name in _listed(Path(match)))
+            return f"in {place} there is {_some(inside)}"
     return f"there is no {parts[0] if parts else 'such file'} in {Path.cwd()}"
+
+
+def real(path: Path) -> Path:
+    """Where a path leads past all links, as far as that can be told."""
+    try:
+        return Path(os.path.realpath(path))
+    except ValueError:  # no path holds a NUL
+        return path.absolute()
 
 
 def names_of(paths: Sequence[Path]) -> list[str]:
     """The last parts of the paths, as many as make them distinct; of files without the suffix where that does."""
-    stems = [path if path.is_dir() else path.with_suffix("") for path in paths]
-    for parts in ([path.parts for path in stems], [path.resolve().parts for path in paths]):
+    stems = [path if os.path.isdir(path) else path.with_suffix("") for path in paths]
+    for parts in ([path.parts for path in stems], [real(path).parts for path in paths]):
         for count in range(1, max(map(len, parts), default=0) + 1):
             names = ["-".join(part for part in path[-count:] if part != "/") for path in parts]
             if len(set(names)) == len(names):
@@ -92,33 +101,69 @@ def names_of(paths: Sequence[Path]) -> list[str]:
 def device_at(path: Path, name: str, columns: Mapping[str, Value], job: Job) -> Device:
     """The device of a folder that holds the files of the job's records by name, or of the one file of all of them."""
     wanted = record_files(job)
-    if path.is_dir():
-        files, missing = _in_folder(path, wanted)
-        fault = f"{path}: holds no {missing}: it holds {_content(path)}" if missing else ""
+    folder = path if os.path.isdir(path) else path.parent
+    if folder == path:
+        files, fault = _in_folder(path, wanted)
     else:
-        files = dict.fromkeys(wanted, path)
-        fault = "" if path.is_file() else f"{path}: no such file"
-        if len(wanted) > 1:
-            remedy = "put the files of a device into a folder, or list them in a table with a column for each of them"
-            problem = f"the job has records in {len(wanted)} files, {', '.join(wanted)}, the device is one file"
-            raise InputError(problem, where=str(path), remedy=remedy)
-    return Device(name, files | channels_beside(path if path.is_dir() else path.parent, job), columns, fault)
+        files, fault = dict.fromkeys(wanted, path), fault_of(path)
+        if not fault and len(wanted) > 1:
+            fault = (
+                f"{path}: the job has records in {len(wanted)} files, {', '.join(wanted)}, the device is one file: put "
+                "the files of a device into a folder, or list them in a CSV file with a column for each of them"
+            )
+    return Device(name, files | channels_beside(folder, job), columns, fault)
+
+
+def fault_of(path: Path) -> str:
+    """Why a path is no file that can be read; empty where it is one."""
+    if os.path.isfile(path):
+        return "" if os.access(path, os.R_OK) else f"{path}: permission denied"
+    if os.path.islink(path) and not os.path.exists(path):
+        return f"{path}: is a link that leads nowhere"
+    if os.path.isdir(path):
+        return f"{path}: is a folder, not a file"
+    return f"{path}: is no file but a pipe or a device" if os.path.exists(path) else f"{path}: no such file"
 
 
 def _in_folder(folder: Path, wanted: Sequence[str]) -> tuple[dict[str, Path], str]:
-    """Where each file is in a folder, by its path in the job or its name alone; and the first that is not there."""
+    """Where each file is in a folder, by its path in the job or its name alone; and why one of them is not there."""
     files: dict[str, Path] = {}
     for file in wanted:
-        path = next((place for place in _places(folder, file) if place.is_file()), None)
+        places = list(_places(folder, file))
+        path = next(filter(os.path.isfile, places), None) or next(filter(os.path.lexists, places), None)
         if path is None:
-            return files, Path(file).name
+            return files, f"{folder}: {_missing(folder, Path(file).name)}"
+        if fault := fault_of(path):
+            return files, fault
+        if other := next((other for other, place in files.items() if place == path), None):
+            remedy = "give the files of the job's records different names, or keep them in folders as the job does"
+            return files, f"{other} and {file} of the job are the same file {path}: {remedy}"
         files[file] = path
-    same = Counter(files.values())
-    if path := next((path for path, count in same.items() if count > 1), None):
-        twice = " and ".join(file for file in wanted if files[file] == path)
-        problem = f"{twice} of the job are the same file {path}"
-        raise InputError(problem, remedy="give the files of the job's records different names")
     return files, ""
+
+
+def _missing(folder: Path, name: str) -> str:
+    """What a folder holds in place of a file: one of almost its name, one in a folder below, else all that it holds."""
+    if not os.access(folder, os.R_OK | os.X_OK):
+        return "permission denied"
+    inside = _listed(folder)
+    below = [f"{place}/{inner}" for place in inside for inner in _listed(folder / place)]
+    alike = [path for path in [*inside, *below] if Path(path).name.lower() == name.lower()]
+    if len(alike) == 1:
+        return f"holds no {name}: it holds {alike[0]}, which must be there as {name}"
+    return f"holds no {name}: it holds {_some(inside)}"
+
+
+def _listed(folder: Path) -> list[str]:
+    """The names in a folder; none where it is no folder or cannot be looked into."""
+    try:
+        return sorted(os.listdir(folder))
+    except OSError:
+        return []
+
+
+def _some(names: Sequence[str]) -> str:
+    return ", ".join(names[:5]) + ", ..." * (len(names) > 5) if names else "nothing"
 
 
 def _places(folder: Path, file: str) -> Iterator[Path]:
@@ -131,14 +176,9 @@ def channels_beside(folder: Path, job: Job) -> dict[str, Path]:
     """Where the files of single channels are: in the device's folder, else where the job has them."""
     places = {}
     for file in channel_files(job):
-        beside = (path for path in _places(folder, file) if path.is_file())
+        beside = (path for path in _places(folder, file) if os.path.isfile(path))
         places[file] = next(beside, job.folder / file)
     return places
-
-
-def _content(folder: Path) -> str:
-    names = sorted(path.name for path in folder.iterdir())
-    return ", ".join(names[:5]) + (", ..." if len(names) > 5 else "") if names else "nothing"
 
 
 def _check_twice(devices: Sequence[Device]) -> None:
@@ -152,9 +192,10 @@ def _reject(patterns: Sequence[str], devices: Sequence[Device]) -> None:
     if not devices:
         raise InputError("no device", where=" ".join(map(repr, patterns)), remedy=HOW)
     remedy = "in the folder of a device, files have the names that they have in the job"
-    if inside := next(
-        (pattern for pattern in patterns if any(path.is_dir() for path in Path(pattern).glob("*"))), None
-    ):
+    parents = (
+        pattern for pattern in patterns if any(os.path.isdir(Path(pattern) / name) for name in _listed(Path(pattern)))
+    )
+    if inside := next(parents, None):
         remedy = f"did you mean {f'{Path(inside)}/*/'!r}? {remedy.capitalize()}"
     problem = f"no device has the files of the job. The first: {devices[0].fault}"
     raise InputError(problem, where=" ".join(map(repr, patterns)), remedy=remedy)

@@ -10,7 +10,7 @@ from pathlib import Path
 from pzt_ident.errors import InputError
 from pzt_ident.job.files import record_files
 from pzt_ident.job.schema import Job
-from pzt_ident.lot.devices import Device, Value, channels_beside, device_at, names_of
+from pzt_ident.lot.devices import Device, Value, channels_beside, device_at, fault_of, names_of, real
 
 SUFFIXES = (".csv", ".tsv", ".txt")
 NAMES = ("device", "name")
@@ -42,8 +42,8 @@ def listed_devices(path: Path, job: Job) -> list[Device]:
             device = device_at(_path(path, row[at], where), "", columns, job)
         else:
             files = {file: _path(path, row[place], where) for file, place in by_file.items()}
-            missing = next((f"{place}: no such file" for place in files.values() if not place.is_file()), "")
-            device = Device("", files | channels_beside(path.parent, job), columns, missing)
+            fault = next(filter(None, map(fault_of, files.values())), "")
+            device = Device("", files | channels_beside(path.parent, job), columns, fault)
         devices.append(replace(device, name=row[named].strip() if named is not None else ""))
     _check_rows(path, rows, devices)
     places = [
@@ -122,12 +122,12 @@ def _check_rows(path: Path, rows: Sequence[tuple[int, list[str]]], devices: Sequ
     names: dict[str, int] = {}
     files: dict[tuple[Path, ...], int] = {}
     for (line, _), device in zip(rows, devices, strict=True):
-        paths = tuple(place.resolve() for place in device.files.values())
+        paths = () if device.fault else tuple(map(real, device.files.values()))
         if device.name and device.name in names:
             problem = f"the device {device.name!r} is in line {names[device.name]} already"
             remedy = "give each row a name of its own; what rows share belongs into a column such as `serial`"
             raise InputError(problem, where=f"{path}:{line}", remedy=remedy)
-        if paths and not device.fault and paths in files:
+        if paths and paths in files:
             problem = f"names the same data as line {files[paths]}"
             raise InputError(problem, where=f"{path}:{line}", remedy="leave one of the rows out")
         names[device.name], files[paths] = line, line

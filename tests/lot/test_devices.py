@@ -1,5 +1,6 @@
 """Which files are whose, by folders, files and tables, and what is told where that cannot be."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -92,6 +93,65 @@ def test_a_row_without_its_file_is_a_device_with_a_fault(here):
     (here / "lot.csv").write_text("file,serial\na.csv,1\nb.csv,2\n")
     a, b = devices_of(["lot.csv"], job(ONE, here))
     assert (a.name, a.fault, b.name, b.fault) == ("a", "", "b", "b.csv: no such file")
+
+
+FAULTS = {
+    "nothing": (lambda path: None, "no such file"),
+    "folder": (lambda path: path.mkdir(), "is a folder, not a file"),
+    "pipe": (os.mkfifo, "is no file but a pipe"),
+    "dangling": (lambda path: path.symlink_to("gone"), "is a link that leads nowhere"),
+    "loop": (lambda path: path.symlink_to(path.name), "is a link that leads nowhere"),
+}
+
+
+@pytest.mark.parametrize("text", [ONE, TWO])
+@pytest.mark.parametrize(("make", "said"), FAULTS.values(), ids=FAULTS)
+def test_what_is_no_file_is_the_fault_of_its_device_alone(here, text, make, said):
+    touch(here / "lot/good/loops.csv", here / "lot/good/slow.csv", here / "lot/bad/slow.csv")
+    make(here / "lot/bad/loops.csv")
+    rows = ["device,loops,slow", "bad,lot/bad/loops.csv,a", "good,lot/good/loops.csv,lot/good/slow.csv"]
+    (here / "lot.csv").write_text("\n".join(rows))
+    for patterns in (["lot/*/"], ["lot.csv"]):
+        bad, good = devices_of(patterns, job(text, here))
+        assert (bad.name, good.name, good.fault) == ("bad", "good", "")
+        assert said in bad.fault or (said == "no such file" and "holds no loops.csv: it holds slow.csv" in bad.fault)
+
+
+@pytest.mark.parametrize("cell", ["gone", "lot\\a", "a\0b", "x" * 300, "lot/a/loops.csv", "lot/empty", "."])
+@pytest.mark.parametrize("text", [ONE, TWO])
+def test_a_row_that_leads_to_no_device_is_its_own_fault(here, text, cell):
+    touch(here / "lot/a/loops.csv", here / "lot/b/loops.csv", here / "lot/b/slow.csv")
+    (here / "lot/empty").mkdir()
+    (here / "lot.csv").write_text(f"device,folder\nbad,{cell}\ngood,lot/b\n")
+    bad, good = devices_of(["lot.csv"], job(text, here))
+    assert (bad.name, good.fault) == ("bad", "")
+    assert bad.fault or (text, cell) == (ONE, "lot/a/loops.csv")
+
+
+@pytest.mark.parametrize("path", ["lot/bad", "lot/bad/loops.csv"])
+def test_what_may_not_be_read_is_the_fault_of_its_device_alone(here, monkeypatch, path):
+    touch(here / "lot/good/loops.csv", here / "lot/bad/loops.csv")
+    denied, listdir = here / path, os.listdir
+
+    def checked(act):
+        def checked_act(name, *more, **options):
+            if denied in Path(os.path.abspath(name)).parents or (act is listdir and Path(name).absolute() == denied):
+                raise PermissionError(13, "Permission denied", str(name))
+            return act(name, *more, **options)
+
+        return checked_act
+
+    monkeypatch.setattr(os, "access", lambda name, mode: Path(name).absolute() != denied)
+    for name in ("listdir", "stat", "lstat"):
+        monkeypatch.setattr(os, name, checked(getattr(os, name)))
+    bad, good = devices_of(["lot/*/"], job(ONE, here))
+    assert (bad.fault, good.fault) == (f"{path}: permission denied", "")
+
+
+@pytest.mark.parametrize("other", ["Loops.CSV", "raw/loops.csv"])
+def test_a_file_that_is_almost_there_is_named(here, other):
+    touch(here / "lot/a/loops.csv", here / "lot/b" / other, *(here / f"lot/b/{letter}" for letter in "ABCDEFG"))
+    assert f"it holds {other}, which must be there as loops.csv" in devices_of(["lot/*/"], job(ONE, here))[1].fault
 
 
 @pytest.mark.parametrize("heading", ["device", "Name"])
