@@ -6,10 +6,10 @@ import glob
 import os
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from pzt_ident.errors import InputError
+from pzt_ident.errors import InputError, printable
 from pzt_ident.job.files import channel_files, record_files
 from pzt_ident.job.schema import Job
 
@@ -40,10 +40,19 @@ def devices_of(patterns: Sequence[str], job: Job) -> list[Device]:
     paths = matched([pattern for pattern in patterns if Path(pattern) not in tables])
     named = zip(names_of(paths), paths, strict=True)
     devices += [device_at(path, name, {}, job) for name, path in named]
+    devices = [_printable(device) for device in devices]
     _check_twice(devices)
     if not devices or all(device.fault for device in devices):
         _reject(patterns, devices)
     return sorted(devices, key=lambda device: device.name)
+
+
+def _printable(device: Device) -> Device:
+    """The device with all that is told of it as a terminal, a table and a page can show it."""
+    columns = {
+        printable(name): printable(value) if isinstance(value, str) else value for name, value in device.columns.items()
+    }
+    return replace(device, name=printable(device.name), columns=columns, fault=printable(device.fault))
 
 
 def matched(patterns: Sequence[str]) -> list[Path]:
@@ -92,9 +101,9 @@ def names_of(paths: Sequence[Path]) -> list[str]:
     stems = [path if os.path.isdir(path) else path.with_suffix("") for path in paths]
     for parts in ([path.parts for path in stems], [real(path).parts for path in paths]):
         for count in range(1, max(map(len, parts), default=0) + 1):
-            names = ["-".join(part for part in path[-count:] if part != "/") for path in parts]
+            names = [printable("-".join(part for part in path[-count:] if part != "/")) for path in parts]
             if len(set(names)) == len(names):
-                return [name.encode("utf-8", "backslashreplace").decode() for name in names]
+                return names
     return [f"{path}" for path in paths]
 
 
@@ -163,7 +172,7 @@ def _listed(folder: Path) -> list[str]:
 
 
 def _some(names: Sequence[str]) -> str:
-    return ", ".join(names[:5]) + ", ..." * (len(names) > 5) if names else "nothing"
+    return printable(", ".join(names[:5])) + ", ..." * (len(names) > 5) if names else "nothing"
 
 
 def _places(folder: Path, file: str) -> Iterator[Path]:

@@ -154,6 +154,29 @@ def test_a_file_that_is_almost_there_is_named(here, other):
     assert f"it holds {other}, which must be there as loops.csv" in devices_of(["lot/*/"], job(ONE, here))[1].fault
 
 
+BAD_LETTERS = [b"\xff", b"\x1b[31m", b"\n", b"\xe2\x80\xae", b"\xc2\x9b2J"]
+
+
+@pytest.mark.parametrize("letters", BAD_LETTERS)
+def test_what_is_told_of_a_device_is_printable(here, letters):
+    name = os.fsdecode(b"d" + letters)
+    touch(here / "lot" / name / "loops.csv", here / "lot" / f"{name}2/tones.csv", here / "lot/good/loops.csv")
+    devices = devices_of(["lot/*/"], job(ONE, here))
+    assert [bool(device.fault) for device in devices] == [False, True, False]
+    assert os.path.isfile(devices[0].files["loops.csv"])
+    assert all(device.name.isprintable() and device.fault.isprintable() for device in devices)
+    with pytest.raises(InputError) as caught:
+        devices_of([f"lot/{name}2/"], job(ONE, here))
+    assert str(caught.value).replace("\n  ", "").isprintable()
+
+
+def test_the_cells_of_a_table_are_printable(here):
+    touch(here / "a.csv")
+    (here / "lot.csv").write_text('device,file,"se\x1brial"\n"a\x07b",a.csv,\x1b[31mred 5\u00a0µm\n')
+    (device,) = devices_of(["lot.csv"], job(ONE, here))
+    assert (device.name, device.columns) == (r"a\x07b", {r"se\x1brial": "\\x1b[31mred 5\u00a0µm"})
+
+
 @pytest.mark.parametrize("heading", ["device", "Name"])
 def test_a_device_whose_cell_is_empty_has_the_name_of_its_path(here, heading):
     touch(here / "a.csv", here / "b.csv", here / "c.csv")
