@@ -1,12 +1,17 @@
-"""Devices from a table: a row says which file or folder is which device, and what else is known of it."""
+"""Devices from a list: a row says which file or folder is which device, and what else is known of it."""
 
 from __future__ import annotations
 
 import csv
+import os
+import re
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from io import StringIO
 from pathlib import Path
 
+from pzt_ident.data.formats._layout import COMMENTS
+from pzt_ident.data.formats.text import decode
 from pzt_ident.errors import InputError
 from pzt_ident.job.files import record_files
 from pzt_ident.job.schema import Job
@@ -15,19 +20,72 @@ from pzt_ident.lot.devices import Device, Value, channels_beside, device_at, fau
 SUFFIXES = (".csv", ".tsv", ".txt")
 NAMES = ("device", "name")
 PLACES = ("file", "folder")
+BEGINNING = 65536  # bytes that hold the header of a list
+SEPARATOR = re.compile(r'"?sep=([,;|:\t])"?\s*', re.IGNORECASE)  # as spreadsheets write it above the header
+
+
+@dataclass(frozen=True)
+class Listing:
+    """A list as it is written. rows: the line and the cells of each that is not empty, as many cells as the header."""
+
+    path: Path
+    delimiter: str
+    header: list[str]
+    rows: list[tuple[int, list[str]]]
 
 
 def is_table(path: Path, job: Job) -> bool:
     """Whether a file lists devices: a column is `file`, `folder` or one of the job's files."""
-    if path.suffix.lower() not in SUFFIXES or not path.is_file():
+    if path.suffix.lower() not in SUFFIXES or not os.path.isfile(path):
         return False
-    header, _ = _rows(path, 0)
+    try:
+        with path.open("rb") as file:
+            header = read_listing(path, file.read(BEGINNING), whole=False).header
+    except (OSError, InputError):
+        return False
     return any(name.lower() in PLACES for name in header) or bool(_file_columns(header, job))
+
+
+def read_listing(path: Path, content: bytes, whole: bool = True) -> Listing:
+    """The list of a file with this content; no rows where that is not the whole. Raises InputError where it is none."""
+    try:
+        lines = StringIO(decode(content, whole), newline="").readlines()
+    except UnicodeDecodeError:
+        raise InputError("is no text", where=str(path), remedy="save the list as CSV in UTF-8") from None
+    first = next((place for place, line in enumerate(lines) if not _is_above(line)), 0)
+    marks = [mark[1] for line in lines[:first] if (mark := SEPARATOR.fullmatch(line))]
+    delimiter = marks[0] if marks else max(",;\t", key="".join(lines[first : first + 1]).count)
+    reader = csv.reader(lines[first:], delimiter=delimiter)
+    try:
+        header = [name.strip() for name in next(reader, [])]
+        cells = [(first + reader.line_num, row) for row in reader if any(map(str.strip, row))] if whole else []
+    except csv.Error as error:
+        where = f"{path}:{first + reader.line_num}"
+        raise InputError(f"is no list of devices: {error}", where=where, remedy="is a quote missing?") from None
+    return Listing(path, delimiter, header, [(line, _as_long(row, header)) for line, row in cells])
+
+
+def _is_above(line: str) -> bool:
+    """Whether a line above the header is no part of a list."""
+    return not line.strip() or line.startswith(COMMENTS) or bool(SEPARATOR.fullmatch(line))
+
+
+def _as_long(row: Sequence[str], header: Sequence[str]) -> list[str]:
+    """The cells of a row, as many as the header has; more where they are not empty."""
+    surplus = row[len(header) :] if any(map(str.strip, row[len(header) :])) else []
+    return [*row[: len(header)], *[""] * (len(header) - len(row)), *surplus]
 
 
 def listed_devices(path: Path, job: Job) -> list[Device]:
     """A device a row. Raises InputError where a row names no file, or one that another row names too."""
-    header, rows = _rows(path)
+    try:
+        listing = read_listing(path, path.read_bytes())
+    except OSError as error:
+        raise InputError(error.strerror or "cannot be read", where=str(path)) from None
+    header, rows = listing.header, listing.rows
+    if long := next(((line, row) for line, row in rows if len(row) > len(header)), None):
+        problem = f"has {len(long[1])} cells, the header {len(header)}"
+        raise InputError(problem, where=f"{path}:{long[0]}", remedy="put text with commas in quotes")
     if not rows:
         raise InputError("lists no device", where=str(path), remedy="write a row for each device below its header")
     named = next((place for place, name in enumerate(header) if name.lower() in NAMES), None)
@@ -56,34 +114,13 @@ def listed_devices(path: Path, job: Job) -> list[Device]:
     return devices
 
 
-def _rows(path: Path, most: int | None = None) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """The header, and line and cells of each row that is not empty, all as long as the header."""
-    try:
-        text = path.read_text(encoding="utf-8-sig", errors="strict")
-    except UnicodeDecodeError:
-        text = path.read_text(encoding="latin-1")
-    lines = text.splitlines()
-    first = lines[0] if lines else ""
-    delimiter = max(",;\t", key=first.count)
-    reader = csv.reader(lines[: None if most is None else most + 1], delimiter=delimiter)
-    header = [name.strip() for name in next(reader, [])]
-    rows = []
-    for row in reader:
-        if any(cell.strip() for cell in row):
-            if len(row) > len(header):
-                problem = f"has {len(row)} cells, the header {len(header)}"
-                raise InputError(problem, where=f"{path}:{reader.line_num}", remedy="put text with commas in quotes")
-            rows.append((reader.line_num, row + [""] * (len(header) - len(row))))
-    return header, rows
-
-
 def _file_columns(header: Sequence[str], job: Job) -> dict[str, int]:
     """The column of each file of the job: by its path, its name with or without suffix, or the name of a record."""
     places = {name.lower(): place for place, name in enumerate(header)}
     columns = {}
     for file in record_files(job):
         records = [source.name or "" for source in job.records if source.file == file]
-        words = (file, Path(file).name, Path(file).stem, *records)
+        words = filter(None, (file, Path(file).name, Path(file).stem, *records))
         place = next((places[word.lower()] for word in words if word.lower() in places), None)
         if place is None:
             return {}

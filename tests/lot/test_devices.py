@@ -172,9 +172,9 @@ def test_what_is_told_of_a_device_is_printable(here, letters):
 
 def test_the_cells_of_a_table_are_printable(here):
     touch(here / "a.csv")
-    (here / "lot.csv").write_text('device,file,"se\x1brial"\n"a\x07b",a.csv,\x1b[31mred 5\u00a0µm\n')
+    (here / "lot.csv").write_text('device,file,"se\x1brial"\n"a\nb",a.csv,\x1b[31mred 5\u00a0µm\n')
     (device,) = devices_of(["lot.csv"], job(ONE, here))
-    assert (device.name, device.columns) == (r"a\x07b", {r"se\x1brial": "\\x1b[31mred 5\u00a0µm"})
+    assert (device.name, device.columns) == (r"a\nb", {r"se\x1brial": "\\x1b[31mred 5\u00a0µm"})
 
 
 @pytest.mark.parametrize("heading", ["device", "Name"])

@@ -1,0 +1,71 @@
+"""What is a list of devices and what is data, whatever is in the file; and what a list says."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, example, given, settings
+from hypothesis import strategies as st
+
+from lot.test_devices import ONE, TWO, here, job, touch
+from pzt_ident.errors import InputError
+from pzt_ident.lot.devices import devices_of
+from pzt_ident.lot.listed import is_table
+
+__all__ = ["here"]
+LONG = 200_000  # characters, above the limit of a field of Python's csv
+CONTENTS = st.binary(max_size=60) | st.text('fileoldr,;\t#"\n\r\0 é', max_size=60).map(str.encode)
+
+
+@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(CONTENTS)
+@example(b"a" * LONG)
+@example(b'time,"' + b"a,\n" * LONG)
+@example(b"\xff\xfea")
+@example(b"\0")
+def test_any_file_is_data_or_a_list_and_never_the_end_of_a_lot(here, content):
+    touch(here / "good.csv")
+    (here / "any.csv").write_bytes(content)
+    try:
+        devices = devices_of(["good.csv", "any.csv"], job(ONE, here))
+    except InputError as error:
+        assert is_table(Path("any.csv"), job(ONE, here)) and "any.csv" in str(error)
+    else:
+        assert "good" in [device.name for device in devices]
+
+
+@pytest.mark.parametrize("header", ["time [s],u [V],x [um],", "time [s];u [V];x [um];", ",time [s],u [V],x [um]"])
+@pytest.mark.parametrize("text", [ONE, TWO])
+def test_data_with_an_empty_heading_are_no_list(here, header, text):
+    (here / "a.csv").write_text(f"{header}\n0,0,0,\n")
+    assert not is_table(Path("a.csv"), job(text, here))
+
+
+def test_data_are_not_read_to_tell_them_from_a_list(here, monkeypatch):
+    touch(here / "a.csv")
+    (here / "lot.csv").write_text("file\n" + "a.csv\n" * LONG)
+    monkeypatch.setattr(Path, "read_bytes", None)
+    monkeypatch.setattr(Path, "read_text", None)
+    assert not is_table(Path("a.csv"), job(ONE, here))
+    assert is_table(Path("lot.csv"), job(ONE, here))
+
+
+LIST = "device;file;batch\r\nd1;a.csv;Gerät…\r\nd2;b.csv;A, B\r\n"
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
+@pytest.mark.parametrize("above", ["", "sep=;\r\n", "# written by hand, 3 May\r\n#\r\n", "\r\n"])
+def test_a_list_is_read_as_spreadsheets_write_it(here, encoding, above):
+    touch(here / "a.csv", here / "b.csv")
+    (here / "lot.csv").write_bytes((above + LIST).encode(encoding))
+    devices = devices_of(["lot.csv"], job(ONE, here))
+    assert [(device.name, device.columns) for device in devices] == [
+        ("d1", {"batch": "Gerät…"}),
+        ("d2", {"batch": "A, B"}),
+    ]
+
+
+def test_an_empty_cell_behind_the_last_heading_is_none(here):
+    touch(here / "a.csv", here / "b.csv")
+    (here / "lot.csv").write_text("file,batch\na.csv,A,,\nb.csv\n")
+    devices = devices_of(["lot.csv"], job(ONE, here))
+    assert [(device.name, device.columns) for device in devices] == [("a", {"batch": "A"}), ("b", {"batch": None})]
