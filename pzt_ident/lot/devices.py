@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import glob
 import os
+import warnings
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -56,25 +57,38 @@ def _printable(device: Device) -> Device:
 
 
 def matched(patterns: Sequence[str]) -> list[Path]:
-    """The folders or files that the patterns match. Raises InputError where one matches nothing, both or twice."""
-    by: dict[Path, str] = {}
-    matches: list[Path] = []
-    for pattern in patterns:
-        paths = [Path(name) for name in sorted(glob.glob(pattern, recursive=True))]
-        if not paths:
-            raise InputError("matches nothing", where=repr(pattern), remedy=_nearby(pattern))
-        for path in paths:
-            if real(path) in by:
-                problem = f"{path} is there twice: by {by[real(path)]!r} and by {pattern!r}"
-                raise InputError(problem, remedy="let one pattern match it")
-            by[real(path)] = pattern
-        matches += paths
-    folders = [path for path in matches if os.path.isdir(path)]
-    if folders and len(folders) < len(matches):
-        problem = f"{len(folders)} folders and {len(matches) - len(folders)} files are matched"
+    """The folders or files that the patterns match, each once, less folders of results; of a link and what it leads to
+    the latter, with a warning. Raises InputError where a pattern matches nothing, or folders and files are matched."""
+    paths = dict.fromkeys(path for pattern in patterns for path in matches_of(pattern, alone=len(patterns) == 1))
+    by_place: dict[Path, Path] = {}
+    for path in sorted(paths, key=_links):
+        first = by_place.setdefault(real(path) if os.path.exists(path) else path, path)
+        if _links(path) > _links(first):
+            warnings.warn(f"{printable(str(path))} leads to {printable(str(first))}: it is one device", stacklevel=2)
+    matches = [path for path in by_place.values() if not os.path.isfile(path / "fleet.json")]
+    folders, files = (sum(map(is_kind, matches)) for is_kind in (os.path.isdir, os.path.isfile))
+    if folders and files:
+        problem = f"{folders} folders and {files} files are matched"
         remedy = "a pattern that ends with / takes the folders alone, one that ends with *.csv the files"
         raise InputError(problem, where=" ".join(map(repr, patterns)), remedy=remedy)
     return matches
+
+
+def matches_of(pattern: str, alone: bool = True) -> list[Path]:
+    """What a pattern matches: the path that it is, letter by letter, or what it is a pattern of, with links that lead
+    nowhere. Raises InputError where that is nothing; a path that is not `alone` need not be there."""
+    if os.path.lexists(pattern) or not (alone or glob.has_magic(pattern)):
+        return [Path(pattern)]
+    names = glob.glob(pattern, recursive=True)
+    if pattern.endswith("/"):
+        names += [name for name in glob.glob(pattern.rstrip("/"), recursive=True) if not os.path.exists(name)]
+    if not names:
+        raise InputError("matches nothing", where=repr(pattern), remedy=_nearby(pattern))
+    return [Path(name) for name in sorted(names)]
+
+
+def _links(path: Path) -> int:
+    return sum(map(os.path.islink, (path, *path.parents)))
 
 
 def _nearby(pattern: str) -> str:
