@@ -5,10 +5,10 @@ from __future__ import annotations
 import glob
 import os
 import warnings
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from pzt_ident.errors import InputError, printable
 from pzt_ident.job.files import channel_files, record_files
@@ -21,28 +21,28 @@ HOW = "give folders ('lot/*/'), files ('lot/*.csv') or a table with a column `fi
 @dataclass(frozen=True)
 class Device:
     """files: where each file of the job is of this device. columns: what is known of it beside its data. fault: why it
-    cannot be identified, from its files alone."""
+    cannot be identified, from its files alone. where: the line of a list or the path that names it."""
 
     name: str
     files: Mapping[str, Path]
     columns: Mapping[str, Value] = field(default_factory=dict)
     fault: str = ""
+    where: str = ""
 
 
 def devices_of(patterns: Sequence[str], job: Job) -> list[Device]:
     """The devices that patterns or tables name, in the order of their names.
 
-    Raises InputError where there is none, one is there twice, or the files of the job cannot be told apart.
+    Raises InputError where there is none that can be identified, or a pattern or a table leaves open what is meant.
     """
     from pzt_ident.lot.listed import is_table, listed_devices
 
-    tables = [Path(pattern) for pattern in patterns if is_table(Path(pattern), job)]
+    tables = list(dict.fromkeys(Path(pattern) for pattern in patterns if is_table(Path(pattern), job)))
     devices = [device for table in tables for device in listed_devices(table, job)]
     paths = matched([pattern for pattern in patterns if Path(pattern) not in tables])
     named = zip(names_of(paths), paths, strict=True)
     devices += [device_at(path, name, {}, job) for name, path in named]
-    devices = [_printable(device) for device in devices]
-    _check_twice(devices)
+    devices = _apart([_printable(device) for device in devices])
     if not devices or all(device.fault for device in devices):
         _reject(patterns, devices)
     return sorted(devices, key=lambda device: device.name)
@@ -53,7 +53,13 @@ def _printable(device: Device) -> Device:
     columns = {
         printable(name): printable(value) if isinstance(value, str) else value for name, value in device.columns.items()
     }
-    return replace(device, name=printable(device.name), columns=columns, fault=printable(device.fault))
+    return replace(
+        device,
+        name=printable(device.name),
+        columns=columns,
+        fault=printable(device.fault),
+        where=printable(device.where),
+    )
 
 
 def matched(patterns: Sequence[str]) -> list[Path]:
@@ -134,7 +140,7 @@ def device_at(path: Path, name: str, columns: Mapping[str, Value], job: Job) -> 
                 f"{path}: the job has records in {len(wanted)} files, {', '.join(wanted)}, the device is one file: put "
                 "the files of a device into a folder, or list them in a CSV file with a column for each of them"
             )
-    return Device(name, files | channels_beside(folder, job), columns, fault)
+    return Device(name, files | channels_beside(folder, job), columns, fault, str(path))
 
 
 def fault_of(path: Path) -> str:
@@ -204,11 +210,46 @@ def channels_beside(folder: Path, job: Job) -> dict[str, Path]:
     return places
 
 
-def _check_twice(devices: Sequence[Device]) -> None:
-    for name, count in Counter(device.name for device in devices).items():
-        if count > 1:
-            remedy = "give each its own name, in a table in the column `device`"
-            raise InputError(f"the device {name!r} is there {count} times", remedy=remedy)
+def _apart(devices: Sequence[Device]) -> list[Device]:
+    """The devices, each once. Where several have one name or one file, nobody can tell which is meant: each has a fault
+    that says where the other is, and a name of its own. Raises InputError where that is taken, too."""
+    devices = _once(devices)
+    by_name, by_data = _groups(devices, lambda device: device.name), _groups(devices, _data)
+    apart = []
+    for device in devices:
+        if other := next((other for other in by_name[device.name] if other is not device), None):
+            remedy = "give each a name of its own; what they share belongs into a column such as `serial`"
+            fault = f"{device.where}: the device {device.name!r} is in {other.where}, too: {remedy}"
+            device = replace(device, name=f"{device.name} ({device.where})", fault=device.fault or fault)
+        elif other := next((other for other in by_data[_data(device)] if other is not device), None):
+            fault = f"{device.where}: names the same data as {other.where}: leave one of them out"
+            device = replace(device, fault=fault)
+        apart.append(device)
+    if doubled := next(
+        (names for names in _groups(apart, lambda device: device.name).values() if len(names) > 1), None
+    ):
+        remedy = "give each its own name, in a table in the column `device`"
+        raise InputError(f"the device {doubled[0].name!r} is there {len(doubled)} times", remedy=remedy)
+    return apart
+
+
+def _once(devices: Sequence[Device]) -> list[Device]:
+    """The devices, less those of a name and data that another has, of which nothing more is known."""
+    first: dict[Any, Device] = {}
+    alike = [(device, first.setdefault((device.name, _data(device)), device)) for device in devices]
+    return [device for device, other in alike if device is other or device.columns not in ({}, other.columns)]
+
+
+def _groups(devices: Sequence[Device], key: Callable[[Device], Any]) -> dict[Any, list[Device]]:
+    groups: dict[Any, list[Device]] = {}
+    for device in devices:
+        groups.setdefault(key(device), []).append(device)
+    return groups
+
+
+def _data(device: Device) -> tuple[Any, ...]:
+    """What no other device has: its files, or where it is named if they have a fault."""
+    return (device.where,) if device.fault else tuple(map(real, device.files.values()))
 
 
 def _reject(patterns: Sequence[str], devices: Sequence[Device]) -> None:
@@ -220,5 +261,5 @@ def _reject(patterns: Sequence[str], devices: Sequence[Device]) -> None:
     )
     if inside := next(parents, None):
         remedy = f"did you mean {f'{Path(inside)}/*/'!r}? {remedy.capitalize()}"
-    problem = f"no device has the files of the job. The first: {devices[0].fault}"
+    problem = f"no device can be identified. The first: {devices[0].fault}"
     raise InputError(problem, where=" ".join(map(repr, patterns)), remedy=remedy)

@@ -15,7 +15,7 @@ from pzt_ident.data.formats.text import decode
 from pzt_ident.errors import InputError
 from pzt_ident.job.files import record_files
 from pzt_ident.job.schema import Job
-from pzt_ident.lot.devices import Device, Value, channels_beside, device_at, fault_of, names_of, real
+from pzt_ident.lot.devices import Device, Value, channels_beside, device_at, fault_of, names_of
 
 SUFFIXES = (".csv", ".tsv", ".txt")
 NAMES = ("device", "name")
@@ -33,6 +33,10 @@ class Listing:
     header: list[str]
     rows: list[tuple[int, list[str]]]
 
+    def places(self, names: Sequence[str]) -> list[int]:
+        """The columns with one of these headings."""
+        return [place for place, name in enumerate(self.header) if name.lower() in names]
+
 
 def is_table(path: Path, job: Job) -> bool:
     """Whether a file lists devices: a column is `file`, `folder` or one of the job's files."""
@@ -40,10 +44,10 @@ def is_table(path: Path, job: Job) -> bool:
         return False
     try:
         with path.open("rb") as file:
-            header = read_listing(path, file.read(BEGINNING), whole=False).header
+            listing = read_listing(path, file.read(BEGINNING), whole=False)
     except (OSError, InputError):
         return False
-    return any(name.lower() in PLACES for name in header) or bool(_file_columns(header, job))
+    return bool(listing.places(PLACES) or _file_columns(listing.header, job))
 
 
 def read_listing(path: Path, content: bytes, whole: bool = True) -> Listing:
@@ -77,41 +81,61 @@ def _as_long(row: Sequence[str], header: Sequence[str]) -> list[str]:
 
 
 def listed_devices(path: Path, job: Job) -> list[Device]:
-    """A device a row. Raises InputError where a row names no file, or one that another row names too."""
+    """A device a row; one whose row names no file is a device with a fault. Raises InputError where the list cannot be
+    read, lists no device, or leaves open what a column is."""
     try:
         listing = read_listing(path, path.read_bytes())
     except OSError as error:
         raise InputError(error.strerror or "cannot be read", where=str(path)) from None
-    header, rows = listing.header, listing.rows
-    if long := next(((line, row) for line, row in rows if len(row) > len(header)), None):
-        problem = f"has {len(long[1])} cells, the header {len(header)}"
-        raise InputError(problem, where=f"{path}:{long[0]}", remedy="put text with commas in quotes")
-    if not rows:
-        raise InputError("lists no device", where=str(path), remedy="write a row for each device below its header")
-    named = next((place for place, name in enumerate(header) if name.lower() in NAMES), None)
-    at = next((place for place, name in enumerate(header) if name.lower() in PLACES), None)
-    by_file = _file_columns(header, job)
-    used = {named, at, *by_file.values()}
-    known = _known(header, rows, [place for place in range(len(header)) if place not in used])
+    _check(listing)
+    named, at = listing.places(NAMES)[:1], listing.places(PLACES)
+    by_file = {"": at[0]} if at else _file_columns(listing.header, job)
+    used = {*named, *by_file.values()}
+    known = _known(listing.header, listing.rows, [place for place in range(len(listing.header)) if place not in used])
+    files = [
+        {file: path.parent / row[place].strip() for file, place in by_file.items() if row[place].strip()}
+        for _, row in listing.rows
+    ]
+    own = iter(names_of([next(iter(places.values())) for places in files if places]))
     devices = []
-    for (line, row), columns in zip(rows, known, strict=True):
-        where = f"{path}:{line}"
-        if at is not None:
-            device = device_at(_path(path, row[at], where), "", columns, job)
-        else:
-            files = {file: _path(path, row[place], where) for file, place in by_file.items()}
-            fault = next(filter(None, map(fault_of, files.values())), "")
-            device = Device("", files | channels_beside(path.parent, job), columns, fault)
-        devices.append(replace(device, name=row[named].strip() if named is not None else ""))
-    _check_rows(path, rows, devices)
-    places = [
-        _path(path, row[at], "") if at is not None else next(iter(device.files.values()))
-        for (_, row), device in zip(rows, devices, strict=True)
-    ]
-    devices = [
-        replace(device, name=device.name or name) for device, name in zip(devices, names_of(places), strict=True)
-    ]
+    for (line, row), places, columns in zip(listing.rows, files, known, strict=True):
+        name = next(own) if places else f"line {line}"
+        name = next((row[place].strip() for place in named if row[place].strip()), name)
+        device = _device(name, places, path.parent, job)
+        fault, where = _fault(row, len(listing.header), len(places) == len(by_file)), f"{path}:{line}"
+        devices.append(
+            replace(device, columns=columns, where=where, fault=f"{where}: {fault}" if fault else device.fault)
+        )
     return devices
+
+
+def _check(listing: Listing) -> None:
+    where = str(listing.path)
+    if not listing.rows:
+        raise InputError("lists no device", where=where, remedy="write a row for each device below its header")
+    if len(places := listing.places(PLACES)) > 1:
+        problem = f"has the columns {' and '.join(f'`{listing.header[place]}`' for place in places)}"
+        remedy = "where a device is belongs into one of them: its folder, or its file with the folder"
+        raise InputError(problem, where=where, remedy=remedy)
+    for place, name in enumerate(listing.header):
+        if name and name in listing.header[:place]:
+            problem = f"the columns {listing.header.index(name) + 1} and {place + 1} have the same heading {name!r}"
+            raise InputError(problem, where=where, remedy="give each column a heading of its own")
+
+
+def _fault(row: Sequence[str], headings: int, named: bool) -> str:
+    """What is wrong with a row itself; empty where nothing is."""
+    if len(row) > headings:
+        return f"has {len(row)} cells, the header {headings}: put text with commas in quotes"
+    return "" if named else "names no file: fill the cell, or leave the row out"
+
+
+def _device(name: str, files: dict[str, Path], beside: Path, job: Job) -> Device:
+    """The device of a row. files: by those of the job, or the one place of all of them by an empty name."""
+    if "" in files:
+        return device_at(files[""], name, {}, job)
+    fault = next(filter(None, map(fault_of, files.values())), "")
+    return Device(name, files | channels_beside(beside, job), {}, fault)
 
 
 def _file_columns(header: Sequence[str], job: Job) -> dict[str, int]:
@@ -126,12 +150,6 @@ def _file_columns(header: Sequence[str], job: Job) -> dict[str, int]:
             return {}
         columns[file] = place
     return columns
-
-
-def _path(table: Path, cell: str, where: str) -> Path:
-    if not cell.strip():
-        raise InputError("names no file", where=where, remedy="fill the cell, or leave the row out")
-    return table.parent / cell.strip()
 
 
 def _known(
@@ -153,18 +171,3 @@ def _are_numbers(cells: Sequence[str]) -> bool:
         return bool([float(cell) for cell in cells if cell.strip()])
     except ValueError:
         return False
-
-
-def _check_rows(path: Path, rows: Sequence[tuple[int, list[str]]], devices: Sequence[Device]) -> None:
-    names: dict[str, int] = {}
-    files: dict[tuple[Path, ...], int] = {}
-    for (line, _), device in zip(rows, devices, strict=True):
-        paths = () if device.fault else tuple(map(real, device.files.values()))
-        if device.name and device.name in names:
-            problem = f"the device {device.name!r} is in line {names[device.name]} already"
-            remedy = "give each row a name of its own; what rows share belongs into a column such as `serial`"
-            raise InputError(problem, where=f"{path}:{line}", remedy=remedy)
-        if paths and paths in files:
-            problem = f"names the same data as line {files[paths]}"
-            raise InputError(problem, where=f"{path}:{line}", remedy="leave one of the rows out")
-        names[device.name], files[paths] = line, line

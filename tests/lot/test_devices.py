@@ -241,16 +241,21 @@ def test_a_device_whose_cell_is_empty_has_the_name_of_its_path(here, heading):
         (TWO, ["lot/a/loops.csv"], "", "the job has records in 2 files, loops.csv, data/slow.csv, the device is one"),
         (TWO.replace("data/slow.csv", "data/loops.csv"), ["lot/*/"], "", "are the same file lot/a/loops.csv"),
         (ONE, ["t.csv"], "file\n", "t.csv: lists no device"),
-        (ONE, ["t.csv"], "device,file\nd,lot/a/loops.csv\nd,lot/b/loops.csv\n", "t.csv:3: the device 'd' is in line 2"),
+        (
+            ONE,
+            ["t.csv"],
+            "device,file\nd,lot/a/loops.csv\nd,lot/b/loops.csv\n",
+            "t.csv:2: the device 'd' is in t.csv:3, too",
+        ),
         (
             ONE,
             ["t.csv"],
             "device,file\nc,lot/a/loops.csv\nd,lot/a/loops.csv\n",
-            "t.csv:3: names the same data as line 2",
+            "t.csv:2: names the same data as t.csv:3",
         ),
         (ONE, ["t.csv"], "device,file\nd,\n", "t.csv:2: names no file"),
         (ONE, ["t.csv"], "device,file\nd,lot/a/loops.csv,7\n", "t.csv:2: has 3 cells, the header 2"),
-        (ONE, ["t.csv"], "device,file\nd,no.csv\n", "no device has the files of the job. The first: no.csv: no such"),
+        (ONE, ["t.csv"], "device,file\nd,no.csv\n", "no device can be identified. The first: no.csv: no such"),
     ],
 )
 def test_clumsy_use_is_told_with_a_remedy(here, text, patterns, table, sentence):

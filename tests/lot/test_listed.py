@@ -69,3 +69,48 @@ def test_an_empty_cell_behind_the_last_heading_is_none(here):
     (here / "lot.csv").write_text("file,batch\na.csv,A,,\nb.csv\n")
     devices = devices_of(["lot.csv"], job(ONE, here))
     assert [(device.name, device.columns) for device in devices] == [("a", {"batch": "A"}), ("b", {"batch": None})]
+
+
+BAD_ROWS = {
+    "no file": ("bad,", "names no file: fill the cell"),
+    "no file, no name": (",,x", "names no file: fill the cell"),
+    "more cells": ("bad,b.csv,,7", "has 4 cells, the header 3: put text with commas in quotes"),
+    "no such file": ("bad,no.csv", "no such file"),
+    "a name twice": ("twin,b.csv\ntwin,c.csv", "the device 'twin' is in lot.csv:"),
+    "data twice": ("c1,c.csv\nc2,./c.csv", "names the same data as lot.csv:"),
+}
+
+
+@pytest.mark.parametrize(("row", "said"), BAD_ROWS.values(), ids=BAD_ROWS)
+def test_a_bad_row_is_the_fault_of_its_devices_alone(here, row, said):
+    touch(here / "a.csv", here / "b.csv", here / "c.csv")
+    (here / "lot.csv").write_text(f"device,file,batch\n{row}\ngood,a.csv,A\n")
+    *bad, good = sorted(devices_of(["lot.csv"], job(ONE, here)), key=lambda device: not device.fault)
+    assert (good.name, good.fault, len(bad)) == ("good", "", row.count("\n") + 1)
+    assert all(said in device.fault and device.name not in ("twin", "good") for device in bad)
+    assert len({device.name for device in bad}) == len(bad)
+
+
+def test_the_same_row_again_is_the_same_device(here):
+    touch(here / "lot/a/loops.csv", here / "lot/b/loops.csv")
+    (here / "lot.csv").write_text("device,folder,batch\na,lot/a,A\na,lot/a,A\n")
+    devices = devices_of(["lot.csv", "lot/*/", "lot.csv"], job(ONE, here))
+    assert [(device.name, device.columns, device.fault) for device in devices] == [
+        ("a", {"batch": "A"}, ""),
+        ("b", {}, ""),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("header", "said"),
+    [
+        ("file,batch,batch", "the columns 2 and 3 have the same heading 'batch'"),
+        ("device,file,device", "the columns 1 and 3 have the same heading 'device'"),
+        ("device,folder,File", "has the columns `folder` and `File`"),
+    ],
+)
+def test_a_list_that_leaves_open_what_is_meant_is_refused(here, header, said):
+    (here / "lot.csv").write_text(f"{header}\na,b,c\n")
+    with pytest.raises(InputError, match=f"lot.csv: {said}") as caught:
+        devices_of(["lot.csv"], job(ONE, here))
+    assert caught.value.remedy
