@@ -137,8 +137,8 @@ def device_at(path: Path, name: str, columns: Mapping[str, Value], job: Job) -> 
         files, fault = dict.fromkeys(wanted, path), fault_of(path)
         if not fault and len(wanted) > 1:
             fault = (
-                f"{path}: the job has records in {len(wanted)} files, {', '.join(wanted)}, the device is one file: put "
-                "the files of a device into a folder, or list them in a CSV file with a column for each of them"
+                f"{path}: the job has records in {len(wanted)} files, {', '.join(wanted)}, the device is one file: "
+                "put its files into a folder, or list them in a CSV file with a column `folder` or one for each of them"
             )
     return Device(name, files | channels_beside(folder, job), columns, fault, str(path))
 

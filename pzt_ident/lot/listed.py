@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 import os
 import re
 from collections.abc import Mapping, Sequence
@@ -10,7 +11,7 @@ from dataclasses import dataclass, replace
 from io import StringIO
 from pathlib import Path
 
-from pzt_ident.data.formats._layout import COMMENTS
+from pzt_ident.data.formats._layout import COMMENTS, GAPS
 from pzt_ident.data.formats.text import decode
 from pzt_ident.errors import InputError
 from pzt_ident.job.files import record_files
@@ -19,8 +20,11 @@ from pzt_ident.lot.devices import Device, Value, channels_beside, device_at, fau
 
 SUFFIXES = (".csv", ".tsv", ".txt")
 NAMES = ("device", "name")
-PLACES = ("file", "folder")
+PLACES = ("file", "folder", "path", "filename", "directory")
 BEGINNING = 65536  # bytes that hold the header of a list
+WORDS = {"none"}  # a gap among numbers, and a word among words
+NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?", re.IGNORECASE)
+IDENTIFIER = re.compile(r"[+-]?(0[0-9]+|[0-9]{16,})")
 SEPARATOR = re.compile(r'"?sep=([,;|:\t])"?\s*', re.IGNORECASE)  # as spreadsheets write it above the header
 
 
@@ -91,7 +95,7 @@ def listed_devices(path: Path, job: Job) -> list[Device]:
     named, at = listing.places(NAMES)[:1], listing.places(PLACES)
     by_file = {"": at[0]} if at else _file_columns(listing.header, job)
     used = {*named, *by_file.values()}
-    known = _known(listing.header, listing.rows, [place for place in range(len(listing.header)) if place not in used])
+    known = _known(listing, [place for place in range(len(listing.header)) if place not in used])
     files = [
         {file: path.parent / row[place].strip() for file, place in by_file.items() if row[place].strip()}
         for _, row in listing.rows
@@ -152,22 +156,30 @@ def _file_columns(header: Sequence[str], job: Job) -> dict[str, int]:
     return columns
 
 
-def _known(
-    header: Sequence[str], rows: Sequence[tuple[int, list[str]]], places: Sequence[int]
-) -> list[Mapping[str, Value]]:
-    """The other columns of each row, numbers where all cells of a column are numbers or empty."""
-    kinds = {place: _are_numbers([row[place] for _, row in rows]) for place in places}
-
-    def value(cell: str, number: bool) -> Value:
-        return (float(cell) if number else cell.strip()) if cell.strip() else None
-
-    return [
-        {header[place] or f"column {place + 1}": value(row[place], kinds[place]) for place in places} for _, row in rows
-    ]
+def _known(listing: Listing, places: Sequence[int]) -> list[Mapping[str, Value]]:
+    """The other columns of each row, less those that have neither a heading nor a cell."""
+    cells = {
+        listing.header[place] or f"column {place + 1}": [row[place] for _, row in listing.rows] for place in places
+    }
+    shown = {name for name in cells if name in listing.header or any(map(str.strip, cells[name]))}
+    columns = {name: values_of(cells[name], decimal=".," if listing.delimiter != "," else ".") for name in shown}
+    return [{name: columns[name][row] for name in cells if name in shown} for row in range(len(listing.rows))]
 
 
-def _are_numbers(cells: Sequence[str]) -> bool:
-    try:
-        return bool([float(cell) for cell in cells if cell.strip()])
-    except ValueError:
-        return False
+def values_of(cells: Sequence[str], decimal: str = ".") -> list[Value]:
+    """The cells of a column: numbers where all that are not missing are such, else words, as they are written. decimal:
+    the signs that part decimals. Numbers of 16 digits or with a leading zero are words: they count nothing."""
+    texts = [cell.strip() for cell in cells]
+    numbers = [None if text.lower() in GAPS else _number(text, decimal) for text in texts]
+    if any(number is not None and math.isfinite(number) for number in numbers) and math.nan not in numbers:
+        return list(numbers)
+    return [None if text.lower() in GAPS - WORDS else text for text in texts]
+
+
+def _number(text: str, decimal: str) -> float:
+    """The number that a cell holds; NaN where it holds none."""
+    plain = text.replace("\N{MINUS SIGN}", "-")
+    if "," in decimal:
+        plain = plain.replace(",", ".")
+    number = float(plain) if NUMBER.fullmatch(plain) and not IDENTIFIER.fullmatch(plain) else math.nan
+    return number if math.isfinite(number) else math.nan

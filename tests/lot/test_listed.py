@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from lot.test_devices import ONE, TWO, here, job, touch
 from pzt_ident.errors import InputError
 from pzt_ident.lot.devices import devices_of
-from pzt_ident.lot.listed import is_table
+from pzt_ident.lot.listed import is_table, values_of
 
 __all__ = ["here"]
 LONG = 200_000  # characters, above the limit of a field of Python's csv
@@ -114,3 +114,47 @@ def test_a_list_that_leaves_open_what_is_meant_is_refused(here, header, said):
     with pytest.raises(InputError, match=f"lot.csv: {said}") as caught:
         devices_of(["lot.csv"], job(ONE, here))
     assert caught.value.remedy
+
+
+@pytest.mark.parametrize(
+    ("cells", "values"),
+    [
+        (["23", "23.5", "-1e3", "+.5", "\u22124"], [23.0, 23.5, -1000.0, 0.5, -4.0]),
+        (["23", "NA", "", " n/a ", "none", "-"], [23.0, None, None, None, None, None]),
+        (["A", "NA", "", "none", "-"], ["A", None, None, "none", None]),
+        (["23", "23 C"], ["23", "23 C"]),
+        (["00012", "12345"], ["00012", "12345"]),
+        (["4001234567890123"], ["4001234567890123"]),
+        (["0.30000000000000004", "0", "023.5"], [0.30000000000000004, 0.0, 23.5]),
+        (["1_000", "٣", "inf", "1e999", "nan"], ["1_000", "٣", "inf", "1e999", None]),
+        (["23,5", "24"], ["23,5", "24"]),
+        (["", "NA"], [None, None]),
+    ],
+)
+def test_a_column_holds_numbers_or_words(cells, values):
+    assert values_of(cells) == values
+
+
+@pytest.mark.parametrize("cells", [["23,5", "24", "1.5e3", "-"], ["1,234"]])
+def test_decimals_may_have_a_comma_where_cells_have_none(cells):
+    assert values_of(cells, ".,") == [None if cell == "-" else float(cell.replace(",", ".")) for cell in cells]
+    assert values_of(["1.234,5"], ".,") == ["1.234,5"]
+
+
+@given(st.lists(st.floats(allow_nan=False, allow_infinity=False).map(repr), min_size=1))
+def test_numbers_are_kept_to_the_last_digit(cells):
+    assert values_of(cells) == [float(cell) for cell in cells]
+
+
+@given(st.lists(st.integers(0, 10**24).map(str), min_size=1))
+def test_no_digit_of_an_identifier_is_lost(cells):
+    values = values_of(cells)
+    assert [value if isinstance(value, str) else f"{value:.0f}" for value in values] == cells
+
+
+@pytest.mark.parametrize("heading", ["file", "Folder", "path", "filename", "directory"])
+def test_where_a_device_is_has_several_names(here, heading):
+    touch(here / "lot/a/loops.csv")
+    (here / "lot.csv").write_text(f"{heading};temperature [K];\nlot/a;23,5;\n")
+    (device,) = devices_of(["lot.csv"], job(ONE, here))
+    assert (device.fault, device.columns) == ("", {"temperature [K]": 23.5})

@@ -96,3 +96,26 @@ def test_dates_are_days_and_words_are_groups():
     np.testing.assert_array_equal(numbers["date [days]"], [0, np.nan, 3])
     np.testing.assert_array_equal(numbers["K"], [1, np.nan, 2])
     assert list(groups(columns | {"batch": ["A", "B", "A"]}, 6)) == ["batch"]
+
+
+@pytest.mark.parametrize(
+    "dates",
+    [
+        ["2026-03-02", None, "2026-03-05"],
+        ["02.03.2026", None, "5.3.2026"],
+        ["02.03.2026 14:05", None, "05.03.2026 14:05:00"],
+        ["2026-03-02T23:30+01:00", None, "2026-03-05T22:30Z"],
+        ["2026-03-02 08:00", "2026-03-02T08:00:00", "2026-03-05 08:00"],
+    ],
+)
+def test_dates_are_read_as_they_are_written(dates, recwarn):
+    days = numeric({"date": dates})["date [days]"]
+    np.testing.assert_allclose(days[[0, 2]], [0, 3])
+    assert not recwarn
+
+
+@pytest.mark.parametrize(
+    "word", ["now", "today", "NaT", "20260302", "PX-1000", "2026-99", "32.01.2026", "03/02/2026", "1"]
+)
+def test_words_are_no_dates(word):
+    assert numeric({"date": ["2026-03-02", word]}) == {}
