@@ -17,6 +17,8 @@ from pzt_ident.data.notation import quantity as in_words
 Array = NDArray[np.float64]
 
 MAD = 1.4826  # times the median absolute deviation is the standard deviation of a normal distribution
+MEAN = 1.2533  # times the mean absolute deviation is, too
+LEAST = 1e-6  # of the median: a spread below it is of no consequence
 FAR = 3.5  # spreads from the median: Iglewicz and Hoaglin (1993), How to Detect and Handle Outliers
 FEWEST = 8  # devices that tell what is usual
 WORSE = 1.5  # times the usual error: less is of no consequence
@@ -111,8 +113,12 @@ class Finding:
 
 
 def spread(values: Array) -> float:
-    """The median absolute deviation, as a standard deviation."""
-    return float(MAD * np.median(np.abs(values - np.median(values)))) if values.size else float("nan")
+    """The median absolute deviation, as a standard deviation; the mean one where more than half of the values are
+    equal (Iglewicz and Hoaglin 1993)."""
+    if not values.size:
+        return float("nan")
+    deviations = np.abs(values - np.median(values))
+    return float(MAD * np.median(deviations) or MEAN * np.mean(deviations))
 
 
 def trends(quantities: Sequence[Quantity], columns: Mapping[str, Sequence[Any]]) -> list[Trend]:
@@ -213,7 +219,7 @@ def out_of_line(
             continue
         usual, beside = _usual(quantity, known, numeric(columns or {}))
         off = quantity.values - usual
-        size = max(spread(off[quantity.usable & np.isfinite(off)]), quantity.own_error, 1e-9 * abs(quantity.median))
+        size = max(spread(off[quantity.usable & np.isfinite(off)]), quantity.own_error, LEAST * abs(quantity.median))
         distance = off / size if size > 0 else np.zeros(off.size)
         far = (distance > FAR) & (quantity.values > WORSE * usual) if quantity.one_sided else np.abs(distance) > FAR
         for place in np.flatnonzero(far & quantity.usable).tolist():
@@ -232,7 +238,7 @@ def _usual(quantity: Quantity, known: Sequence[Trend], columns: Mapping[str, Arr
     for trend in known:
         if trend.quantity == quantity.name and trend.clear and trend.column in columns:
             line = trend.at(columns[trend.column])
-            return np.where(np.isfinite(line), line, usual), trend.column
+            return np.where(np.isfinite(line) & ((line > 0) | (not quantity.one_sided)), line, usual), trend.column
     return usual, ""
 
 

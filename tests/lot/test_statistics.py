@@ -47,6 +47,26 @@ def test_a_device_within_its_own_error_or_not_determined_is_in_line():
     assert out_of_line(NAMES, [quantity(values, known=np.arange(N) != 2)], [], {}) == []
 
 
+@pytest.mark.parametrize("share", [0.05, 0.3, 0.45])
+@pytest.mark.parametrize("difference", [1e-12, 1e-6, 1e-3])
+def test_where_most_values_are_equal_the_others_are_out_of_line_where_they_are_few_and_far(share, difference):
+    values = np.where(np.arange(N) < share * N, 1 + difference * (1 + 0.1 * NORMAL), 1.0)
+    findings = out_of_line(NAMES, [quantity(values)], [], {})
+    assert bool(findings) == (difference == 1e-3 and share < 0.2)
+    values[:1] = 1.2
+    assert [finding.device for finding in out_of_line(NAMES, [quantity(values)], [], {})][:1] == ["d0"]
+
+
+def test_what_is_usual_of_an_error_is_more_than_nothing():
+    kelvin = np.linspace(280, 340, N)
+    values = np.maximum(1.0 - (kelvin - 280) / 40 + 0.01 * NORMAL, 0.01)
+    values[-1] = 5.0
+    noise = quantity(values, name="noise floor", one_sided=True)
+    columns = {"temperature [K]": kelvin.tolist()}
+    (finding,) = [f for f in out_of_line(NAMES, [noise], trends([noise], columns), columns) if f.device == f"d{N - 1}"]
+    assert trends([noise], columns)[0].at(kelvin)[-1] < 0 < float(finding.sentence.split()[-4])
+
+
 def test_few_devices_do_not_tell_what_is_usual():
     assert out_of_line(NAMES[:7], [quantity(np.array([1, 1, 1, 1, 1, 1, 9.0]))], [], {}) == []
 
