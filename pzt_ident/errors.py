@@ -40,6 +40,15 @@ def nearest(word: str, words: Iterable[str]) -> str:
     return "known: " + ", ".join(known)
 
 
+UNPRINTABLE = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
+
+
+def printable(text: str) -> str:
+    """The text with what no terminal, table or page should get as an escape: control characters, ends of lines, changes
+    of the direction of writing, and bytes that are no UTF-8."""
+    return UNPRINTABLE.sub(lambda match: match[0].encode("unicode_escape").decode(), text)
+
+
 FOR_PROGRAMMERS = re.compile(r"\b[A-Z]\w*(Error|Exception)\b|\b0x[0-9a-f]+|[<>]|::|\bdtype\b|\bNoneType\b")
 
 

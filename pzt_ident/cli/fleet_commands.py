@@ -63,9 +63,12 @@ def identify(
 ) -> None:
     """Identify the model of a job file JOB on every device that the patterns or tables name."""
     from pzt_ident.cli.progress import listening
+    from pzt_ident.errors import InputError
     from pzt_ident.job.schema import load_job
     from pzt_ident.lot.identify import fleet
 
+    if budget is not None and not improve:
+        raise InputError("is the time of each diagnosis", where="--budget", remedy="add --improve, or leave it out")
     with listening(silent=as_json or quiet) as listen:
         loaded = load_job(job, plugins)
         folder = fleet(loaded, patterns, out, improve=improve, budget=budget, place=place, listen=listen)

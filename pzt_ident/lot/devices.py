@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import glob
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+import os
+import warnings
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
-from pzt_ident.errors import InputError
+from pzt_ident.errors import InputError, printable
 from pzt_ident.job.files import channel_files, record_files
 from pzt_ident.job.schema import Job
 
@@ -19,52 +21,80 @@ HOW = "give folders ('lot/*/'), files ('lot/*.csv') or a table with a column `fi
 @dataclass(frozen=True)
 class Device:
     """files: where each file of the job is of this device. columns: what is known of it beside its data. fault: why it
-    cannot be identified, from its files alone."""
+    cannot be identified, from its files alone. where: the line of a list or the path that names it."""
 
     name: str
     files: Mapping[str, Path]
     columns: Mapping[str, Value] = field(default_factory=dict)
     fault: str = ""
+    where: str = ""
 
 
 def devices_of(patterns: Sequence[str], job: Job) -> list[Device]:
     """The devices that patterns or tables name, in the order of their names.
 
-    Raises InputError where there is none, one is there twice, or the files of the job cannot be told apart.
+    Raises InputError where there is none that can be identified, or a pattern or a table leaves open what is meant.
     """
     from pzt_ident.lot.listed import is_table, listed_devices
 
-    tables = [Path(pattern) for pattern in patterns if is_table(Path(pattern), job)]
+    tables = list(dict.fromkeys(Path(pattern) for pattern in patterns if is_table(Path(pattern), job)))
     devices = [device for table in tables for device in listed_devices(table, job)]
     paths = matched([pattern for pattern in patterns if Path(pattern) not in tables])
     named = zip(names_of(paths), paths, strict=True)
     devices += [device_at(path, name, {}, job) for name, path in named]
-    _check_twice(devices)
+    devices = _apart([_printable(device) for device in devices])
     if not devices or all(device.fault for device in devices):
         _reject(patterns, devices)
     return sorted(devices, key=lambda device: device.name)
 
 
+def _printable(device: Device) -> Device:
+    """The device with all that is told of it as a terminal, a table and a page can show it."""
+    columns = {
+        printable(name): printable(value) if isinstance(value, str) else value for name, value in device.columns.items()
+    }
+    return replace(
+        device,
+        name=printable(device.name),
+        columns=columns,
+        fault=printable(device.fault),
+        where=printable(device.where),
+    )
+
+
 def matched(patterns: Sequence[str]) -> list[Path]:
-    """The folders or files that the patterns match. Raises InputError where one matches nothing, both or twice."""
-    by: dict[Path, str] = {}
-    matches: list[Path] = []
-    for pattern in patterns:
-        paths = [Path(name) for name in sorted(glob.glob(pattern, recursive=True))]
-        if not paths:
-            raise InputError("matches nothing", where=repr(pattern), remedy=_nearby(pattern))
-        for path in paths:
-            if path.resolve() in by:
-                problem = f"{path} is there twice: by {by[path.resolve()]!r} and by {pattern!r}"
-                raise InputError(problem, remedy="let one pattern match it")
-            by[path.resolve()] = pattern
-        matches += paths
-    folders = [path for path in matches if path.is_dir()]
-    if folders and len(folders) < len(matches):
-        problem = f"{len(folders)} folders and {len(matches) - len(folders)} files are matched"
+    """The folders or files that the patterns match, each once, less folders of results; of a link and what it leads to
+    the latter, with a warning. Raises InputError where a pattern matches nothing, or folders and files are matched."""
+    paths = dict.fromkeys(path for pattern in patterns for path in matches_of(pattern, alone=len(patterns) == 1))
+    by_place: dict[Path, Path] = {}
+    for path in sorted(paths, key=_links):
+        first = by_place.setdefault(real(path) if os.path.exists(path) else path, path)
+        if _links(path) > _links(first):
+            warnings.warn(f"{printable(str(path))} leads to {printable(str(first))}: it is one device", stacklevel=2)
+    matches = [path for path in by_place.values() if not os.path.isfile(path / "fleet.json")]
+    folders, files = (sum(map(is_kind, matches)) for is_kind in (os.path.isdir, os.path.isfile))
+    if folders and files:
+        problem = f"{folders} folders and {files} files are matched"
         remedy = "a pattern that ends with / takes the folders alone, one that ends with *.csv the files"
         raise InputError(problem, where=" ".join(map(repr, patterns)), remedy=remedy)
     return matches
+
+
+def matches_of(pattern: str, alone: bool = True) -> list[Path]:
+    """What a pattern matches: the path that it is, letter by letter, or what it is a pattern of, with links that lead
+    nowhere. Raises InputError where that is nothing; a path that is not `alone` need not be there."""
+    if os.path.lexists(pattern) or not (alone or glob.has_magic(pattern)):
+        return [Path(pattern)]
+    names = glob.glob(pattern, recursive=True)
+    if pattern.endswith("/"):
+        names += [name for name in glob.glob(pattern.rstrip("/"), recursive=True) if not os.path.exists(name)]
+    if not names:
+        raise InputError("matches nothing", where=repr(pattern), remedy=_nearby(pattern))
+    return [Path(name) for name in sorted(names)]
+
+
+def _links(path: Path) -> int:
+    return sum(map(os.path.islink, (path, *path.parents)))
 
 
 def _nearby(pattern: str) -> str:
@@ -73,52 +103,96 @@ def _nearby(pattern: str) -> str:
     for count in range(len(parts) - 1, 0, -1):
         place = Path(*parts[:count])
         if glob.glob(str(place)):
-            inside = sorted(path.name for match in glob.glob(str(place)) for path in Path(match).glob("*"))
-            return f"in {place} there is {', '.join(inside[:5]) or 'nothing'}{', ...' if len(inside) > 5 else ''}"
+            inside = sorted(name for match in glob.glob(str(place)) for name in _listed(Path(match)))
+            return f"in {place} there is {_some(inside)}"
     return f"there is no {parts[0] if parts else 'such file'} in {Path.cwd()}"
+
+
+def real(path: Path) -> Path:
+    """Where a path leads past all links, as far as that can be told."""
+    try:
+        return Path(os.path.realpath(path))
+    except ValueError:  # no path holds a NUL
+        return path.absolute()
 
 
 def names_of(paths: Sequence[Path]) -> list[str]:
     """The last parts of the paths, as many as make them distinct; of files without the suffix where that does."""
-    stems = [path if path.is_dir() else path.with_suffix("") for path in paths]
-    for parts in ([path.parts for path in stems], [path.resolve().parts for path in paths]):
+    stems = [path if os.path.isdir(path) else path.with_suffix("") for path in paths]
+    for parts in ([path.parts for path in stems], [real(path).parts for path in paths]):
         for count in range(1, max(map(len, parts), default=0) + 1):
-            names = ["-".join(part for part in path[-count:] if part != "/") for path in parts]
+            names = [printable("-".join(part for part in path[-count:] if part != "/")) for path in parts]
             if len(set(names)) == len(names):
-                return [name.encode("utf-8", "backslashreplace").decode() for name in names]
+                return names
     return [f"{path}" for path in paths]
 
 
 def device_at(path: Path, name: str, columns: Mapping[str, Value], job: Job) -> Device:
     """The device of a folder that holds the files of the job's records by name, or of the one file of all of them."""
     wanted = record_files(job)
-    if path.is_dir():
-        files, missing = _in_folder(path, wanted)
-        fault = f"{path}: holds no {missing}: it holds {_content(path)}" if missing else ""
+    folder = path if os.path.isdir(path) else path.parent
+    if folder == path:
+        files, fault = _in_folder(path, wanted)
     else:
-        files = dict.fromkeys(wanted, path)
-        fault = "" if path.is_file() else f"{path}: no such file"
-        if len(wanted) > 1:
-            remedy = "put the files of a device into a folder, or list them in a table with a column for each of them"
-            problem = f"the job has records in {len(wanted)} files, {', '.join(wanted)}, the device is one file"
-            raise InputError(problem, where=str(path), remedy=remedy)
-    return Device(name, files | channels_beside(path if path.is_dir() else path.parent, job), columns, fault)
+        files, fault = dict.fromkeys(wanted, path), fault_of(path)
+        if not fault and len(wanted) > 1:
+            fault = (
+                f"{path}: the job has records in {len(wanted)} files, {', '.join(wanted)}, the device is one file: "
+                "put its files into a folder, or list them in a CSV file with a column `folder` or one for each of them"
+            )
+    return Device(name, files | channels_beside(folder, job), columns, fault, str(path))
+
+
+def fault_of(path: Path) -> str:
+    """Why a path is no file that can be read; empty where it is one."""
+    if os.path.isfile(path):
+        return "" if os.access(path, os.R_OK) else f"{path}: permission denied"
+    if os.path.islink(path) and not os.path.exists(path):
+        return f"{path}: is a link that leads nowhere"
+    if os.path.isdir(path):
+        return f"{path}: is a folder, not a file"
+    return f"{path}: is no file but a pipe or a device" if os.path.exists(path) else f"{path}: no such file"
 
 
 def _in_folder(folder: Path, wanted: Sequence[str]) -> tuple[dict[str, Path], str]:
-    """Where each file is in a folder, by its path in the job or its name alone; and the first that is not there."""
+    """Where each file is in a folder, by its path in the job or its name alone; and why one of them is not there."""
     files: dict[str, Path] = {}
     for file in wanted:
-        path = next((place for place in _places(folder, file) if place.is_file()), None)
+        places = list(_places(folder, file))
+        path = next(filter(os.path.isfile, places), None) or next(filter(os.path.lexists, places), None)
         if path is None:
-            return files, Path(file).name
+            return files, f"{folder}: {_missing(folder, Path(file).name)}"
+        if fault := fault_of(path):
+            return files, fault
+        if other := next((other for other, place in files.items() if place == path), None):
+            remedy = "give the files of the job's records different names, or keep them in folders as the job does"
+            return files, f"{other} and {file} of the job are the same file {path}: {remedy}"
         files[file] = path
-    same = Counter(files.values())
-    if path := next((path for path, count in same.items() if count > 1), None):
-        twice = " and ".join(file for file in wanted if files[file] == path)
-        problem = f"{twice} of the job are the same file {path}"
-        raise InputError(problem, remedy="give the files of the job's records different names")
     return files, ""
+
+
+def _missing(folder: Path, name: str) -> str:
+    """What a folder holds in place of a file: one of almost its name, one in a folder below, else all that it holds."""
+    if not os.access(folder, os.R_OK | os.X_OK):
+        return "permission denied"
+    inside = _listed(folder)
+    below = [f"{place}/{inner}" for place in inside for inner in _listed(folder / place)]
+    alike = [path for path in [*inside, *below] if Path(path).name.lower() == name.lower()]
+    if len(alike) == 1:
+        return f"holds no {name}: it holds {alike[0]}, which must be there as {name}"
+    return f"holds no {name}: it holds {_some(inside)}"
+
+
+def _listed(folder: Path) -> list[str]:
+    """The names in a folder; none where it is no folder or cannot be looked into."""
+    try:
+        return sorted(os.listdir(folder))
+    except OSError:
+        return []
+
+
+def _some(names: Sequence[str]) -> str:
+    return printable(", ".join(names[:5])) + ", ..." * (len(names) > 5) if names else "nothing"
 
 
 def _places(folder: Path, file: str) -> Iterator[Path]:
@@ -131,30 +205,61 @@ def channels_beside(folder: Path, job: Job) -> dict[str, Path]:
     """Where the files of single channels are: in the device's folder, else where the job has them."""
     places = {}
     for file in channel_files(job):
-        beside = (path for path in _places(folder, file) if path.is_file())
+        beside = (path for path in _places(folder, file) if os.path.isfile(path))
         places[file] = next(beside, job.folder / file)
     return places
 
 
-def _content(folder: Path) -> str:
-    names = sorted(path.name for path in folder.iterdir())
-    return ", ".join(names[:5]) + (", ..." if len(names) > 5 else "") if names else "nothing"
+def _apart(devices: Sequence[Device]) -> list[Device]:
+    """The devices, each once. Where several have one name or one file, nobody can tell which is meant: each has a fault
+    that says where the other is, and a name of its own. Raises InputError where that is taken, too."""
+    devices = _once(devices)
+    by_name, by_data = _groups(devices, lambda device: device.name), _groups(devices, _data)
+    apart = []
+    for device in devices:
+        if other := next((other for other in by_name[device.name] if other is not device), None):
+            remedy = "give each a name of its own; what they share belongs into a column such as `serial`"
+            fault = f"{device.where}: the device {device.name!r} is in {other.where}, too: {remedy}"
+            device = replace(device, name=f"{device.name} ({device.where})", fault=device.fault or fault)
+        elif other := next((other for other in by_data[_data(device)] if other is not device), None):
+            fault = f"{device.where}: names the same data as {other.where}: leave one of them out"
+            device = replace(device, fault=fault)
+        apart.append(device)
+    if doubled := next(
+        (names for names in _groups(apart, lambda device: device.name).values() if len(names) > 1), None
+    ):
+        remedy = "give each its own name, in a table in the column `device`"
+        raise InputError(f"the device {doubled[0].name!r} is there {len(doubled)} times", remedy=remedy)
+    return apart
 
 
-def _check_twice(devices: Sequence[Device]) -> None:
-    for name, count in Counter(device.name for device in devices).items():
-        if count > 1:
-            remedy = "give each its own name, in a table in the column `device`"
-            raise InputError(f"the device {name!r} is there {count} times", remedy=remedy)
+def _once(devices: Sequence[Device]) -> list[Device]:
+    """The devices, less those of a name and data that another has, of which nothing more is known."""
+    first: dict[Any, Device] = {}
+    alike = [(device, first.setdefault((device.name, _data(device)), device)) for device in devices]
+    return [device for device, other in alike if device is other or device.columns not in ({}, other.columns)]
+
+
+def _groups(devices: Sequence[Device], key: Callable[[Device], Any]) -> dict[Any, list[Device]]:
+    groups: dict[Any, list[Device]] = {}
+    for device in devices:
+        groups.setdefault(key(device), []).append(device)
+    return groups
+
+
+def _data(device: Device) -> tuple[Any, ...]:
+    """What no other device has: its files, or where it is named if they have a fault."""
+    return (device.where,) if device.fault else tuple(map(real, device.files.values()))
 
 
 def _reject(patterns: Sequence[str], devices: Sequence[Device]) -> None:
     if not devices:
         raise InputError("no device", where=" ".join(map(repr, patterns)), remedy=HOW)
     remedy = "in the folder of a device, files have the names that they have in the job"
-    if inside := next(
-        (pattern for pattern in patterns if any(path.is_dir() for path in Path(pattern).glob("*"))), None
-    ):
+    parents = (
+        pattern for pattern in patterns if any(os.path.isdir(Path(pattern) / name) for name in _listed(Path(pattern)))
+    )
+    if inside := next(parents, None):
         remedy = f"did you mean {f'{Path(inside)}/*/'!r}? {remedy.capitalize()}"
-    problem = f"no device has the files of the job. The first: {devices[0].fault}"
+    problem = f"no device can be identified. The first: {devices[0].fault}"
     raise InputError(problem, where=" ".join(map(repr, patterns)), remedy=remedy)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pzt_ident.errors import DamagedError, InputError, LostError
+from pzt_ident.errors import DamagedError, InputError, LostError, printable
 from pzt_ident.files import read_sealed, write_sealed, write_text
 from pzt_ident.job.files import Template
 from pzt_ident.job.schema import Job
@@ -153,7 +153,7 @@ class Identification:
 
     def break_(self, name: str, reason: str) -> None:
         """Write down why a device could not be identified."""
-        reason = reason.replace("\n  ", "; ")
+        reason = printable(reason.replace("\n  ", "; "))
         self.broken += 1
         home = folder_of(self.folder, name)
         shutil.rmtree(home, ignore_errors=True)

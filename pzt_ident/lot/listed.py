@@ -1,79 +1,145 @@
-"""Devices from a table: a row says which file or folder is which device, and what else is known of it."""
+"""Devices from a list: a row says which file or folder is which device, and what else is known of it."""
 
 from __future__ import annotations
 
 import csv
+import math
+import os
+import re
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from io import StringIO
 from pathlib import Path
 
+from pzt_ident.data.formats._layout import COMMENTS, GAPS
+from pzt_ident.data.formats.text import decode
 from pzt_ident.errors import InputError
 from pzt_ident.job.files import record_files
 from pzt_ident.job.schema import Job
-from pzt_ident.lot.devices import Device, Value, channels_beside, device_at, names_of
+from pzt_ident.lot.devices import Device, Value, channels_beside, device_at, fault_of, names_of
 
 SUFFIXES = (".csv", ".tsv", ".txt")
 NAMES = ("device", "name")
-PLACES = ("file", "folder")
+PLACES = ("file", "folder", "path", "filename", "directory")
+BEGINNING = 65536  # bytes that hold the header of a list
+WORDS = {"none"}  # a gap among numbers, and a word among words
+NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?", re.IGNORECASE)
+IDENTIFIER = re.compile(r"[+-]?(0[0-9]+|[0-9]{16,})")
+SEPARATOR = re.compile(r'"?sep=([,;|:\t])"?\s*', re.IGNORECASE)  # as spreadsheets write it above the header
+
+
+@dataclass(frozen=True)
+class Listing:
+    """A list as it is written. rows: the line and the cells of each that is not empty, as many cells as the header."""
+
+    path: Path
+    delimiter: str
+    header: list[str]
+    rows: list[tuple[int, list[str]]]
+
+    def places(self, names: Sequence[str]) -> list[int]:
+        """The columns with one of these headings."""
+        return [place for place, name in enumerate(self.header) if name.lower() in names]
 
 
 def is_table(path: Path, job: Job) -> bool:
     """Whether a file lists devices: a column is `file`, `folder` or one of the job's files."""
-    if path.suffix.lower() not in SUFFIXES or not path.is_file():
+    if path.suffix.lower() not in SUFFIXES or not os.path.isfile(path):
         return False
-    header, _ = _rows(path, 0)
-    return any(name.lower() in PLACES for name in header) or bool(_file_columns(header, job))
+    try:
+        with path.open("rb") as file:
+            listing = read_listing(path, file.read(BEGINNING), whole=False)
+    except (OSError, InputError):
+        return False
+    return bool(listing.places(PLACES) or _file_columns(listing.header, job))
+
+
+def read_listing(path: Path, content: bytes, whole: bool = True) -> Listing:
+    """The list of a file with this content; no rows where that is not the whole. Raises InputError where it is none."""
+    try:
+        lines = StringIO(decode(content, whole), newline="").readlines()
+    except UnicodeDecodeError:
+        raise InputError("is no text", where=str(path), remedy="save the list as CSV in UTF-8") from None
+    first = next((place for place, line in enumerate(lines) if not _is_above(line)), 0)
+    marks = [mark[1] for line in lines[:first] if (mark := SEPARATOR.fullmatch(line))]
+    delimiter = marks[0] if marks else max(",;\t", key="".join(lines[first : first + 1]).count)
+    reader = csv.reader(lines[first:], delimiter=delimiter)
+    try:
+        header = [name.strip() for name in next(reader, [])]
+        cells = [(first + reader.line_num, row) for row in reader if any(map(str.strip, row))] if whole else []
+    except csv.Error as error:
+        where = f"{path}:{first + reader.line_num}"
+        raise InputError(f"is no list of devices: {error}", where=where, remedy="is a quote missing?") from None
+    return Listing(path, delimiter, header, [(line, _as_long(row, header)) for line, row in cells])
+
+
+def _is_above(line: str) -> bool:
+    """Whether a line above the header is no part of a list."""
+    return not line.strip() or line.startswith(COMMENTS) or bool(SEPARATOR.fullmatch(line))
+
+
+def _as_long(row: Sequence[str], header: Sequence[str]) -> list[str]:
+    """The cells of a row, as many as the header has; more where they are not empty."""
+    surplus = row[len(header) :] if any(map(str.strip, row[len(header) :])) else []
+    return [*row[: len(header)], *[""] * (len(header) - len(row)), *surplus]
 
 
 def listed_devices(path: Path, job: Job) -> list[Device]:
-    """A device a row. Raises InputError where a row names no file, or one that another row names too."""
-    header, rows = _rows(path)
-    if not rows:
-        raise InputError("lists no device", where=str(path), remedy="write a row for each device below its header")
-    named = next((place for place, name in enumerate(header) if name.lower() in NAMES), None)
-    at = next((place for place, name in enumerate(header) if name.lower() in PLACES), None)
-    by_file = _file_columns(header, job)
-    used = {named, at, *by_file.values()}
-    known = _known(header, rows, [place for place in range(len(header)) if place not in used])
+    """A device a row; one whose row names no file is a device with a fault. Raises InputError where the list cannot be
+    read, lists no device, or leaves open what a column is."""
+    try:
+        listing = read_listing(path, path.read_bytes())
+    except OSError as error:
+        raise InputError(error.strerror or "cannot be read", where=str(path)) from None
+    _check(listing)
+    named, at = listing.places(NAMES)[:1], listing.places(PLACES)
+    by_file = {"": at[0]} if at else _file_columns(listing.header, job)
+    used = {*named, *by_file.values()}
+    known = _known(listing, [place for place in range(len(listing.header)) if place not in used])
+    files = [
+        {file: path.parent / row[place].strip() for file, place in by_file.items() if row[place].strip()}
+        for _, row in listing.rows
+    ]
+    own = iter(names_of([next(iter(places.values())) for places in files if places]))
     devices = []
-    for (line, row), columns in zip(rows, known, strict=True):
-        where = f"{path}:{line}"
-        if at is not None:
-            device = device_at(_path(path, row[at], where), "", columns, job)
-        else:
-            files = {file: _path(path, row[place], where) for file, place in by_file.items()}
-            missing = next((f"{place}: no such file" for place in files.values() if not place.is_file()), "")
-            device = Device("", files | channels_beside(path.parent, job), columns, missing)
-        devices.append(replace(device, name=row[named].strip() if named is not None else ""))
-    _check_rows(path, rows, devices)
-    if named is None:
-        places = [
-            _path(path, row[at], "") if at is not None else next(iter(device.files.values()))
-            for (_, row), device in zip(rows, devices, strict=True)
-        ]
-        devices = [replace(device, name=name) for device, name in zip(devices, names_of(places), strict=True)]
+    for (line, row), places, columns in zip(listing.rows, files, known, strict=True):
+        name = next(own) if places else f"line {line}"
+        name = next((row[place].strip() for place in named if row[place].strip()), name)
+        device = _device(name, places, path.parent, job)
+        fault, where = _fault(row, len(listing.header), len(places) == len(by_file)), f"{path}:{line}"
+        devices.append(
+            replace(device, columns=columns, where=where, fault=f"{where}: {fault}" if fault else device.fault)
+        )
     return devices
 
 
-def _rows(path: Path, most: int | None = None) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """The header, and line and cells of each row that is not empty, all as long as the header."""
-    try:
-        text = path.read_text(encoding="utf-8-sig", errors="strict")
-    except UnicodeDecodeError:
-        text = path.read_text(encoding="latin-1")
-    lines = text.splitlines()
-    first = lines[0] if lines else ""
-    delimiter = max(",;\t", key=first.count)
-    reader = csv.reader(lines[: None if most is None else most + 1], delimiter=delimiter)
-    header = [name.strip() for name in next(reader, [])]
-    rows = []
-    for row in reader:
-        if any(cell.strip() for cell in row):
-            if len(row) > len(header):
-                problem = f"has {len(row)} cells, the header {len(header)}"
-                raise InputError(problem, where=f"{path}:{reader.line_num}", remedy="put text with commas in quotes")
-            rows.append((reader.line_num, row + [""] * (len(header) - len(row))))
-    return header, rows
+def _check(listing: Listing) -> None:
+    where = str(listing.path)
+    if not listing.rows:
+        raise InputError("lists no device", where=where, remedy="write a row for each device below its header")
+    if len(places := listing.places(PLACES)) > 1:
+        problem = f"has the columns {' and '.join(f'`{listing.header[place]}`' for place in places)}"
+        remedy = "where a device is belongs into one of them: its folder, or its file with the folder"
+        raise InputError(problem, where=where, remedy=remedy)
+    for place, name in enumerate(listing.header):
+        if name and name in listing.header[:place]:
+            problem = f"the columns {listing.header.index(name) + 1} and {place + 1} have the same heading {name!r}"
+            raise InputError(problem, where=where, remedy="give each column a heading of its own")
+
+
+def _fault(row: Sequence[str], headings: int, named: bool) -> str:
+    """What is wrong with a row itself; empty where nothing is."""
+    if len(row) > headings:
+        return f"has {len(row)} cells, the header {headings}: put text with commas in quotes"
+    return "" if named else "names no file: fill the cell, or leave the row out"
+
+
+def _device(name: str, files: dict[str, Path], beside: Path, job: Job) -> Device:
+    """The device of a row. files: by those of the job, or the one place of all of them by an empty name."""
+    if "" in files:
+        return device_at(files[""], name, {}, job)
+    fault = next(filter(None, map(fault_of, files.values())), "")
+    return Device(name, files | channels_beside(beside, job), {}, fault)
 
 
 def _file_columns(header: Sequence[str], job: Job) -> dict[str, int]:
@@ -82,7 +148,7 @@ def _file_columns(header: Sequence[str], job: Job) -> dict[str, int]:
     columns = {}
     for file in record_files(job):
         records = [source.name or "" for source in job.records if source.file == file]
-        words = (file, Path(file).name, Path(file).stem, *records)
+        words = filter(None, (file, Path(file).name, Path(file).stem, *records))
         place = next((places[word.lower()] for word in words if word.lower() in places), None)
         if place is None:
             return {}
@@ -90,43 +156,30 @@ def _file_columns(header: Sequence[str], job: Job) -> dict[str, int]:
     return columns
 
 
-def _path(table: Path, cell: str, where: str) -> Path:
-    if not cell.strip():
-        raise InputError("names no file", where=where, remedy="fill the cell, or leave the row out")
-    return table.parent / cell.strip()
+def _known(listing: Listing, places: Sequence[int]) -> list[Mapping[str, Value]]:
+    """The other columns of each row, less those that have neither a heading nor a cell."""
+    cells = {
+        listing.header[place] or f"column {place + 1}": [row[place] for _, row in listing.rows] for place in places
+    }
+    shown = {name for name in cells if name in listing.header or any(map(str.strip, cells[name]))}
+    columns = {name: values_of(cells[name], decimal=".," if listing.delimiter != "," else ".") for name in shown}
+    return [{name: columns[name][row] for name in cells if name in shown} for row in range(len(listing.rows))]
 
 
-def _known(
-    header: Sequence[str], rows: Sequence[tuple[int, list[str]]], places: Sequence[int]
-) -> list[Mapping[str, Value]]:
-    """The other columns of each row, numbers where all cells of a column are numbers or empty."""
-    kinds = {place: _are_numbers([row[place] for _, row in rows]) for place in places}
-
-    def value(cell: str, number: bool) -> Value:
-        return (float(cell) if number else cell.strip()) if cell.strip() else None
-
-    return [
-        {header[place] or f"column {place + 1}": value(row[place], kinds[place]) for place in places} for _, row in rows
-    ]
+def values_of(cells: Sequence[str], decimal: str = ".") -> list[Value]:
+    """The cells of a column: numbers where all that are not missing are such, else words, as they are written. decimal:
+    the signs that part decimals. Numbers of 16 digits or with a leading zero are words: they count nothing."""
+    texts = [cell.strip() for cell in cells]
+    numbers = [None if text.lower() in GAPS else _number(text, decimal) for text in texts]
+    if any(number is not None and math.isfinite(number) for number in numbers) and math.nan not in numbers:
+        return list(numbers)
+    return [None if text.lower() in GAPS - WORDS else text for text in texts]
 
 
-def _are_numbers(cells: Sequence[str]) -> bool:
-    try:
-        return bool([float(cell) for cell in cells if cell.strip()])
-    except ValueError:
-        return False
-
-
-def _check_rows(path: Path, rows: Sequence[tuple[int, list[str]]], devices: Sequence[Device]) -> None:
-    names: dict[str, int] = {}
-    files: dict[tuple[Path, ...], int] = {}
-    for (line, _), device in zip(rows, devices, strict=True):
-        paths = tuple(place.resolve() for place in device.files.values())
-        if device.name and device.name in names:
-            problem = f"the device {device.name!r} is in line {names[device.name]} already"
-            remedy = "give each row a name of its own; what rows share belongs into a column such as `serial`"
-            raise InputError(problem, where=f"{path}:{line}", remedy=remedy)
-        if paths and not device.fault and paths in files:
-            problem = f"names the same data as line {files[paths]}"
-            raise InputError(problem, where=f"{path}:{line}", remedy="leave one of the rows out")
-        names[device.name], files[paths] = line, line
+def _number(text: str, decimal: str) -> float:
+    """The number that a cell holds; NaN where it holds none."""
+    plain = text.replace("\N{MINUS SIGN}", "-")
+    if "," in decimal:
+        plain = plain.replace(",", ".")
+    number = float(plain) if NUMBER.fullmatch(plain) and not IDENTIFIER.fullmatch(plain) else math.nan
+    return number if math.isfinite(number) else math.nan

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
@@ -15,11 +17,16 @@ from pzt_ident.data.notation import quantity as in_words
 Array = NDArray[np.float64]
 
 MAD = 1.4826  # times the median absolute deviation is the standard deviation of a normal distribution
+MEAN = 1.2533  # times the mean absolute deviation is, too
+LEAST = 1e-6  # of the median: a spread below it is of no consequence
 FAR = 3.5  # spreads from the median: Iglewicz and Hoaglin (1993), How to Detect and Handle Outliers
 FEWEST = 8  # devices that tell what is usual
 WORSE = 1.5  # times the usual error: less is of no consequence
 CLEAR = 0.5  # correlation of ranks from which a trend is followed
 CERTAIN = 3.0  # standard errors of a correlation of ranks
+
+DAY_FIRST = re.compile(r"^([0-9]{1,2})\.([0-9]{1,2})\.([0-9]{4})\b")
+YEAR_FIRST = re.compile(r"[0-9]{4}-[0-9]{2}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,8 +113,12 @@ class Finding:
 
 
 def spread(values: Array) -> float:
-    """The median absolute deviation, as a standard deviation."""
-    return float(MAD * np.median(np.abs(values - np.median(values)))) if values.size else float("nan")
+    """The median absolute deviation, as a standard deviation; the mean one where more than half of the values are
+    equal (Iglewicz and Hoaglin 1993)."""
+    if not values.size:
+        return float("nan")
+    deviations = np.abs(values - np.median(values))
+    return float(MAD * np.median(deviations) or MEAN * np.mean(deviations))
 
 
 def trends(quantities: Sequence[Quantity], columns: Mapping[str, Sequence[Any]]) -> list[Trend]:
@@ -143,13 +154,23 @@ def numeric(columns: Mapping[str, Sequence[Any]]) -> dict[str, Array]:
 
 
 def _days(values: Sequence[Any]) -> Array | None:
-    """Days since the first of dates such as 2026-03-02; None where a value is none."""
+    """Days since the first of dates such as 2026-03-02, 02.03.2026 or 2026-03-02T14:05+01:00; None where a value is
+    none. One without a time zone is taken as UTC."""
     try:
-        dates = np.array(["NaT" if value is None else str(value) for value in values], dtype="datetime64[s]")
+        dates = [None if value is None else _date(str(value)) for value in values]
     except ValueError:
         return None
-    seconds = (dates - np.nanmin(dates)).astype("timedelta64[s]").astype(float)
-    return np.where(np.isnat(dates), np.nan, seconds / 86400)
+    first = min(date for date in dates if date is not None)
+    return np.array([np.nan if date is None else (date - first).total_seconds() / 86400 for date in dates])
+
+
+def _date(text: str) -> datetime:
+    """Raises ValueError where the text is no date."""
+    text = DAY_FIRST.sub(lambda match: f"{match[3]}-{match[2]:0>2}-{match[1]:0>2}", text.strip())
+    if not YEAR_FIRST.match(text):
+        raise ValueError(text)
+    date = datetime.fromisoformat(f"{text}-01" if YEAR_FIRST.fullmatch(text) else text)
+    return date if date.tzinfo else date.replace(tzinfo=UTC)
 
 
 def groups(columns: Mapping[str, Sequence[Any]], devices: int) -> dict[str, dict[str, NDArray[np.bool_]]]:
@@ -198,7 +219,7 @@ def out_of_line(
             continue
         usual, beside = _usual(quantity, known, numeric(columns or {}))
         off = quantity.values - usual
-        size = max(spread(off[quantity.usable & np.isfinite(off)]), quantity.own_error, 1e-9 * abs(quantity.median))
+        size = max(spread(off[quantity.usable & np.isfinite(off)]), quantity.own_error, LEAST * abs(quantity.median))
         distance = off / size if size > 0 else np.zeros(off.size)
         far = (distance > FAR) & (quantity.values > WORSE * usual) if quantity.one_sided else np.abs(distance) > FAR
         for place in np.flatnonzero(far & quantity.usable).tolist():
@@ -217,7 +238,7 @@ def _usual(quantity: Quantity, known: Sequence[Trend], columns: Mapping[str, Arr
     for trend in known:
         if trend.quantity == quantity.name and trend.clear and trend.column in columns:
             line = trend.at(columns[trend.column])
-            return np.where(np.isfinite(line), line, usual), trend.column
+            return np.where(np.isfinite(line) & ((line > 0) | (not quantity.one_sided)), line, usual), trend.column
     return usual, ""
 
 

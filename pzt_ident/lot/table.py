@@ -24,10 +24,11 @@ RMSE = {"rmse": "{} RMSE", "rmse_improved": "improved {} RMSE"}
 
 
 def folder_of(fleet: Path, name: str) -> Path:
-    """Where the results of a device are; a name that no file system would take is put into letters that all take."""
-    safe = quote(name, safe=" +,=@()[]")
+    """Where the results of a device are: a folder of its own below `devices`, whatever the name. A name that no file
+    system would take is put into letters that all take."""
+    safe = quote(name, safe=" +,=@()[]", errors="surrogatepass") or "%"
     if len(safe) > LONGEST:
-        safe = f"{safe[:LONGEST]}~{sha256(name.encode()).hexdigest()[:8]}"
+        safe = f"{safe[:LONGEST]}~{sha256(name.encode(errors='surrogatepass')).hexdigest()[:8]}"
     return fleet / "devices" / (f"%2E{safe[1:]}" if safe.startswith(".") else safe)
 
 
@@ -64,30 +65,58 @@ def rows_of(folder: Path, known: dict[str, Any]) -> Iterator[Row]:
         yield row | {"columns": columns}
 
 
+GIVEN = " (given)"  # behind the heading of a user's column that the table has itself
+
+
 def frame_of(rows: Iterator[Row]) -> pd.DataFrame:
-    """A line a device; numbers of all devices in the unit of the first, which stands in the heading."""
+    """A line a device; numbers of all devices in the unit of the first, which stands in the heading. What is known of a
+    device under a heading that the table has itself stands under that heading and ` (given)`."""
     import pandas as pd
 
     units: dict[str, str] = {}
-    columns: dict[str, list[Value]] = {}
-    kinds: dict[tuple[str, ...], None] = {}
+    columns: dict[tuple[str, bool], list[Value]] = {}
+    kinds: dict[tuple[tuple[str, bool], ...], None] = {}
     count = 0
     for count, row in enumerate(rows, 1):
-        line = line_of(row, units)
+        known = {(name, True): value for name, value in row["columns"].items()}
+        line = {(name, False): value for name, value in line_of(row, units).items()}
+        line = {DEVICE: line[DEVICE]} | known | line
         kinds.setdefault(tuple(line))
-        for name, value in line.items():
-            column = columns.setdefault(name, [])
+        for key, value in line.items():
+            column = columns.setdefault(key, [])
             column += [None] * (count - 1 - len(column))
             column.append(sys.intern(value) if isinstance(value, str) else value)
-    headings = dict.fromkeys(name for kind in sorted(kinds, key=len, reverse=True) for name in kind)
-    return pd.DataFrame({name: columns[name] + [None] * (count - len(columns[name])) for name in headings})
+    keys = dict.fromkeys(key for kind in sorted(kinds, key=len, reverse=True) for key in kind)
+    cells = {key: _of_one_kind(columns[key] + [None] * (count - len(columns[key]))) for key in keys}
+    return pd.DataFrame({heading: cells[key] for key, heading in _headings(list(keys)).items()})
+
+
+DEVICE = ("device", False)
+
+
+def _headings(keys: Sequence[tuple[str, bool]]) -> dict[tuple[str, bool], str]:
+    """The heading of each column, no two alike."""
+    taken = {name for name, given in keys if not given}
+    headings = {}
+    for name, given in keys:
+        heading = name
+        while given and heading in taken:
+            heading += GIVEN
+        taken.add(heading)
+        headings[name, given] = heading
+    return headings
+
+
+def _of_one_kind(cells: list[Value]) -> list[Value]:
+    """The cells of a column, numbers as text where others are words: a column of a table has one kind."""
+    if not any(isinstance(cell, str) for cell in cells):
+        return cells
+    return [str(cell).removesuffix(".0") if isinstance(cell, int | float) else cell for cell in cells]
 
 
 def line_of(row: Row, units: dict[str, str]) -> dict[str, Value]:
-    """The cells of a row under their headings. units: that of each quantity so far, which the row adds to."""
-    headings = {"device", "state", "verdict", "effects", "suspects", "folder", "reason", "sha256"}
-    columns = {f"{name} (given)" if name in headings else name: value for name, value in row["columns"].items()}
-    line: dict[str, Value] = {"device": row["device"], **columns, "state": row["state"]}
+    """What was found, under its headings. units: that of each quantity so far, which the row adds to."""
+    line: dict[str, Value] = {"device": row["device"], "state": row["state"]}
     if row["state"] != "done":
         return line | {"reason": row["reason"]}
     line |= {"verdict": row["verdict"], "effects": ", ".join(row["effects"]), "suspects": ", ".join(row["suspects"])}

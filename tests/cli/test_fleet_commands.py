@@ -56,6 +56,7 @@ def test_report_of_a_fleet(out):
         (["fleet", "{lot}/job.yaml", "nothing/*/", "--out", "{lot}/x"], "matches nothing"),
         (["fleet", "{lot}/no.yaml", "{lot}/lot/*/"], "no such file"),
         (["fleet", "report", "{lot}"], "holds no fleet"),
+        (["fleet", "{lot}/job.yaml", "{lot}/lot/*/", "--budget", "9"], "--budget: is the time of each diagnosis"),
         (["fleet", "{lot}/job.yaml", "{lot}/lot/*/", "--on", "cloud"], "is no place to run at"),
         (["run", "{lot}/job.yaml", "--on", "local:1", "--workers", "1"], "write --on local:1 alone"),
     ],

@@ -170,6 +170,19 @@ def test_names_that_no_file_system_takes(lot, tmp_path):
     assert {path.name for path in tmp_path.iterdir()} == {"0", "1", "2", "3", "lot.csv", "out"}
 
 
+def test_a_broken_device_of_any_name_is_in_the_table(lot, tmp_path):
+    source = next(name for name, kind in kinds(lot).items() if kind == "plain")
+    shutil.copytree(lot / "lot" / source, tmp_path / "lot/good")
+    for letters in (b"\xff", b"\x1b[31m"):
+        broken = tmp_path / "lot" / os.fsdecode(letters)
+        shutil.copytree(lot / "lot" / source, broken)
+        (broken / "loops.csv").write_text("")
+    out = fleet(load_job(lot / "job.yaml"), [f"{tmp_path}/lot/*/"], tmp_path / "out", place=Local(1))
+    frame = table(out).set_index("device")
+    assert dict(frame.state) == {"good": "done", r"\udcff": "broken", r"\x1b[31m": "broken"}
+    assert all("lot/" in reason and reason.isprintable() for reason in frame.reason.drop("good"))
+
+
 def test_a_folder_with_something_else_is_not_written_into(lot, tmp_path):
     (tmp_path / "mine.txt").touch()
     with pytest.raises(InputError, match="not empty"):

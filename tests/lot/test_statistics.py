@@ -47,6 +47,26 @@ def test_a_device_within_its_own_error_or_not_determined_is_in_line():
     assert out_of_line(NAMES, [quantity(values, known=np.arange(N) != 2)], [], {}) == []
 
 
+@pytest.mark.parametrize("share", [0.05, 0.3, 0.45])
+@pytest.mark.parametrize("difference", [1e-12, 1e-6, 1e-3])
+def test_where_most_values_are_equal_the_others_are_out_of_line_where_they_are_few_and_far(share, difference):
+    values = np.where(np.arange(N) < share * N, 1 + difference * (1 + 0.1 * NORMAL), 1.0)
+    findings = out_of_line(NAMES, [quantity(values)], [], {})
+    assert bool(findings) == (difference == 1e-3 and share < 0.2)
+    values[:1] = 1.2
+    assert [finding.device for finding in out_of_line(NAMES, [quantity(values)], [], {})][:1] == ["d0"]
+
+
+def test_what_is_usual_of_an_error_is_more_than_nothing():
+    kelvin = np.linspace(280, 340, N)
+    values = np.maximum(1.0 - (kelvin - 280) / 40 + 0.01 * NORMAL, 0.01)
+    values[-1] = 5.0
+    noise = quantity(values, name="noise floor", one_sided=True)
+    columns = {"temperature [K]": kelvin.tolist()}
+    (finding,) = [f for f in out_of_line(NAMES, [noise], trends([noise], columns), columns) if f.device == f"d{N - 1}"]
+    assert trends([noise], columns)[0].at(kelvin)[-1] < 0 < float(finding.sentence.split()[-4])
+
+
 def test_few_devices_do_not_tell_what_is_usual():
     assert out_of_line(NAMES[:7], [quantity(np.array([1, 1, 1, 1, 1, 1, 9.0]))], [], {}) == []
 
@@ -96,3 +116,26 @@ def test_dates_are_days_and_words_are_groups():
     np.testing.assert_array_equal(numbers["date [days]"], [0, np.nan, 3])
     np.testing.assert_array_equal(numbers["K"], [1, np.nan, 2])
     assert list(groups(columns | {"batch": ["A", "B", "A"]}, 6)) == ["batch"]
+
+
+@pytest.mark.parametrize(
+    "dates",
+    [
+        ["2026-03-02", None, "2026-03-05"],
+        ["02.03.2026", None, "5.3.2026"],
+        ["02.03.2026 14:05", None, "05.03.2026 14:05:00"],
+        ["2026-03-02T23:30+01:00", None, "2026-03-05T22:30Z"],
+        ["2026-03-02 08:00", "2026-03-02T08:00:00", "2026-03-05 08:00"],
+    ],
+)
+def test_dates_are_read_as_they_are_written(dates, recwarn):
+    days = numeric({"date": dates})["date [days]"]
+    np.testing.assert_allclose(days[[0, 2]], [0, 3])
+    assert not recwarn
+
+
+@pytest.mark.parametrize(
+    "word", ["now", "today", "NaT", "20260302", "PX-1000", "2026-99", "32.01.2026", "03/02/2026", "1"]
+)
+def test_words_are_no_dates(word):
+    assert numeric({"date": ["2026-03-02", word]}) == {}

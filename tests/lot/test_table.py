@@ -1,0 +1,73 @@
+"""The folder of a device, whatever its name, and the table, whatever is known of a device."""
+
+from collections import Counter
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from pzt_ident.lot.table import folder_of, frame_of, line_of
+
+NAMES = st.text(max_size=300) | st.text(st.sampled_from("./\\%~ \0\n\x1b"), max_size=8) | st.text(min_size=200)
+FLEET = Path("/fleet")
+
+
+@given(NAMES, NAMES)
+@example("", "%")
+@example(".", "..")
+@example("/", "//")
+@example(".new", "%2Enew")
+@example("\udcff", "\\udcff")
+@example("é" * 4000, "é" * 4001)
+def test_each_name_leads_to_a_folder_of_its_own_below_devices(name, other):
+    home = folder_of(FLEET, name)
+    assert home.parent == FLEET / "devices" and home.resolve() == home
+    assert home.name.isascii() and home.name.isprintable() and not home.name.startswith(".")
+    assert 0 < len(home.name) < 200 and not set('/\\:*?"<>|') & set(home.name)
+    assert (home == folder_of(FLEET, other)) == (name == other)
+
+
+def row_of(device, state="done", columns=None):
+    row = {"device": device, "state": state, "reason": "", "columns": columns or {}}
+    found = {
+        "verdict": "adequate",
+        "effects": ["creep"],
+        "suspects": [],
+        "unit": "um",
+        "cpu_seconds": 1.5,
+        "sha256": "0",
+    }
+    gain = {"value": 0.1, "low": 0.0, "high": 0.2, "unit": "um/V", "verdict": "determined"}
+    found |= {"rmse": {"identify": 0.1}, "rmse_improved": None, "noise_floor": 0.01, "parameters": {"gain": gain}}
+    return row | found if state == "done" else row
+
+
+OWN = list(frame_of(iter([row_of("a")])).columns)
+VALUES = st.none() | st.floats(allow_nan=False, allow_infinity=False) | st.text("23 C", max_size=4)
+HEADINGS = st.sampled_from([*OWN, *(f"{name} (given)" for name in OWN), "batch", "temperature [K]"])
+ROWS = st.lists(
+    st.tuples(st.sampled_from(["done", "broken", "not done"]), st.dictionaries(HEADINGS, VALUES)), max_size=6
+)
+
+
+@settings(max_examples=60, deadline=None)
+@given(ROWS)
+@example([("done", {"temperature [K]": 23.0}), ("done", {"temperature [K]": "23 C"})])
+@example([("done", {}), ("broken", {"cpu [s]": "slow"})])
+@example([("done", {"device": "x", "device (given)": "y"})])
+def test_the_table_keeps_what_was_given_and_what_was_found(rows):
+    rows = [row_of(f"d{place}", state, columns) for place, (state, columns) in enumerate(rows)]
+    frame = frame_of(iter(rows))
+    for index, row in enumerate(rows):
+        line = frame.iloc[index].replace({np.nan: None}).to_dict()
+        found = line_of(row, {})
+        assert {name: line[name] for name in found} == found
+        cells = [str(value).removesuffix(".0") for name, value in line.items() if name not in found]
+        given = [str(value).removesuffix(".0") for value in row["columns"].values()]
+        assert not Counter(given) - Counter(cells)
+    content = BytesIO()
+    frame.to_parquet(content, engine="pyarrow")
+    assert list(pd.read_parquet(content).columns) == list(frame.columns)
