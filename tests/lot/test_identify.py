@@ -13,8 +13,9 @@ import pandas as pd
 import pytest
 
 from experiments.fleet.lot import BROKEN, write_lot
+from experiments.trust.essence import differences, essence
 from lot.conftest import DEVICES
-from pzt_ident.errors import InputError
+from pzt_ident.errors import InputError, LostError
 from pzt_ident.files import read_sealed, write_sealed
 from pzt_ident.job.schema import load_job
 from pzt_ident.lot.identify import fleet, resume
@@ -117,7 +118,7 @@ def test_what_was_done_is_not_done_again_unless_data_or_job_changed(lot, identif
     assert again == {*done, mended}
 
 
-def test_a_fleet_killed_hard_goes_on_to_the_same_table(lot, identified, tmp_path):
+def test_a_fleet_killed_hard_goes_on_to_the_same_results_bit_for_bit(lot, identified, tmp_path):
     out = tmp_path / "out"
     command = ["fleet", str(lot / "job.yaml"), str(lot / "lot.csv"), "--out", str(out), "--on", "local:1", "--quiet"]
     process = subprocess.Popen([sys.executable, "-m", "pzt_ident", *command], start_new_session=True)
@@ -128,26 +129,37 @@ def test_a_fleet_killed_hard_goes_on_to_the_same_table(lot, identified, tmp_path
     process.wait()
     assert not (out / "devices.csv").exists()
     resume(out, place=Local(2))
-    pd.testing.assert_frame_equal(table(out), table(identified[0]))
+    assert differences(essence(identified[0]), essence(out)) == []
     assert not list(out.rglob(".new"))
 
 
-def test_the_same_table_on_a_cluster_of_which_a_worker_is_killed(lot, identified, tmp_path):
+def test_the_same_results_bit_for_bit_on_a_cluster_of_which_a_worker_or_the_scheduler_is_lost(
+    lot, identified, tmp_path
+):
     pytest.importorskip("distributed")
     from experiments.fleet.cluster import TCP
 
     cluster = TCP(workers=2)
+
+    def on_cluster(out, lost, after):
+        def listen(event):
+            if event["event"] == "devices" and event["done"] == after:
+                lost.kill()
+
+        fleet(job, [str(lot / "lot.csv")], out, place=place_of(cluster.address), listen=listen)
+
+    job, whole, broken_off = load_job(lot / "job.yaml"), tmp_path / "out", tmp_path / "lost"
     try:
-
-        def kill_one(event):
-            if event["event"] == "devices" and event["done"] == 2:
-                cluster.workers[0].kill()
-
-        job, out = load_job(lot / "job.yaml"), tmp_path / "out"
-        fleet(job, [str(lot / "lot.csv")], out, place=place_of(cluster.address), listen=kill_one)
+        on_cluster(whole, cluster.workers[0], 2)
+        with pytest.raises(LostError, match="scheduler"):
+            on_cluster(broken_off, cluster.scheduler, 3)
     finally:
         cluster.end()
-    pd.testing.assert_frame_equal(table(out), table(identified[0]))
+    assert differences(essence(identified[0]), essence(whole)) == []
+    states = pd.read_csv(broken_off / "devices.csv").set_index("device")["state"]
+    assert 3 <= list(states).count("done") < DEVICES - len(BROKEN)
+    resume(broken_off, place=Local(1))
+    assert differences(essence(identified[0]), essence(broken_off)) == []
 
 
 def test_names_that_no_file_system_takes(lot, tmp_path):
