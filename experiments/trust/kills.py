@@ -158,7 +158,7 @@ def cuts(numbers: range, seed: int, scratch: Path) -> Iterator[Case]:
         here(words_of(command, job, scratch / command / "warm"))  # what it imports and compiles, its forks have
         writes = writes_of(words_of(command, job, whole), whole)
         true = essence(whole)
-        for write in np.unique(np.linspace(0, writes - 1, len(numbers)).astype(int)):
+        for write in np.unique(((np.array(numbers) + 0.5) / len(numbers) * writes).astype(int)):
             rng = np.random.default_rng([seed, number])
             torn = rng if rng.random() < 0.5 else None
             out = scratch / command / f"cut{write}"
