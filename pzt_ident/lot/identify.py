@@ -20,6 +20,7 @@ from pzt_ident.job.schema import Job
 from pzt_ident.lot.device import Given, Orders, identify_device
 from pzt_ident.lot.devices import Device, devices_of
 from pzt_ident.lot.table import folder_of, read_row, write_devices, write_table
+from pzt_ident.run.alone import alone_in
 from pzt_ident.run.events import Listen, nobody
 from pzt_ident.run.folder import make_empty, read_job
 from pzt_ident.run.place import HERE, Place
@@ -41,13 +42,21 @@ def fleet(
 
     A folder a device, `devices.parquet` and `devices.csv` of all. In a folder that holds a fleet, what was done with
     the same job on the same data stays. patterns: of folders, of files, or tables with a column `file` or `folder`.
-    Raises InputError where job or patterns are wrong, LostError where the place is gone.
+    Raises InputError where job or patterns are wrong, or another process is at work in the folder, LostError where the
+    place is gone.
     """
     folder = out or Path("results") / job.name / "fleet"
     devices = devices_of(patterns, job)
     if not (folder / "fleet.json").is_file():
         make_empty(folder, job.text)
-    stated: dict[str, Any] = {
+    with alone_in(folder):
+        orders = orders_of(job, patterns, improve, budget, folder)
+        return Identification(folder, devices, job, orders, listen).identify(place)
+
+
+def orders_of(job: Job, patterns: Sequence[str], improve: bool, budget: float | None, folder: Path) -> Orders:
+    """Write what a fleet is asked for into its folder; the same as orders to its workers."""
+    statement = {
         "job_name": job.name,
         "job_folder": str(job.folder.resolve()),
         "job_hash": job.hash,
@@ -58,9 +67,8 @@ def fleet(
         "command": " ".join(["pzt-ident", *sys.argv[1:]]),
     }
     write_text(folder / "job.yaml", job.text, lasting=True)
-    write_sealed(folder / "fleet.json", stated, lasting=True)
-    orders = Orders(Template(job), job.folder.resolve(), stated["command"], improve, budget)
-    return Identification(folder, devices, job, orders, listen).identify(place)
+    write_sealed(folder / "fleet.json", statement, lasting=True)
+    return Orders(Template(job), job.folder.resolve(), str(statement["command"]), improve, budget)
 
 
 def is_fleet(folder: Path) -> bool:

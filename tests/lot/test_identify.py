@@ -2,6 +2,7 @@
 
 import json
 import os
+import platform
 import shutil
 import signal
 import subprocess
@@ -21,6 +22,7 @@ from pzt_ident.job.schema import load_job
 from pzt_ident.lot.identify import fleet, resume
 from pzt_ident.lot.outcome import read_lot
 from pzt_ident.model.registry import blocks
+from pzt_ident.run.alone import LOCK
 from pzt_ident.run.identify import run
 from pzt_ident.run.place import Local, place_of
 
@@ -128,6 +130,7 @@ def test_a_fleet_killed_hard_goes_on_to_the_same_results_bit_for_bit(lot, identi
     os.killpg(process.pid, signal.SIGKILL)
     process.wait()
     assert not (out / "devices.csv").exists()
+    assert f"process {process.pid} on" in (out / LOCK).read_text()
     resume(out, place=Local(2))
     assert differences(essence(identified[0]), essence(out)) == []
     assert not list(out.rglob(".new"))
@@ -160,6 +163,23 @@ def test_the_same_results_bit_for_bit_on_a_cluster_of_which_a_worker_or_the_sche
     assert 3 <= list(states).count("done") < DEVICES - len(BROKEN)
     resume(broken_off, place=Local(1))
     assert differences(essence(identified[0]), essence(broken_off)) == []
+
+
+def test_a_second_fleet_in_one_folder_is_refused_while_the_first_is_at_work(lot, tmp_path):
+    command = [sys.executable, "-m", "pzt_ident", "fleet", str(lot / "job.yaml"), str(lot / "lot.csv"), "--quiet"]
+    refused = []
+
+    def listen(event):
+        if event["event"] == "devices" and event["done"] == 1 and not refused:
+            refused.append(subprocess.run([*command, "--out", str(out)], capture_output=True, text=True))
+            refused.append(pytest.raises(InputError, resume, out))
+
+    job, out = load_job(lot / "job.yaml"), tmp_path / "out"
+    fleet(job, [str(lot / "lot.csv")], out, place=Local(1), listen=listen)
+    said = f"{out}: process {os.getpid()} on {platform.node()} is at work in this folder\n  wait until"
+    assert refused[0].returncode == 2 and refused[0].stderr.startswith(f"Error: {said}")
+    assert str(refused[1].value).startswith(said)
+    assert list(table(out)["state"]).count("done") == DEVICES - len(BROKEN)
 
 
 def test_names_that_no_file_system_takes(lot, tmp_path):
