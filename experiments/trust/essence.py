@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-CLOCK = ("seconds", "cpu", "created", "command", "digest", "history.csv", "environment.json")
+CLOCK = ("seconds", "cpu", "created", "command", "digest", "written", "history.csv", "environment.json")
 STATEMENTS = ("result.json", "improvement.json", "diagnosis.json", "device.json", "residuals.json")
 
 

@@ -16,7 +16,7 @@ from pzt_ident.data.readers import read_records
 from pzt_ident.data.record import Record
 from pzt_ident.diagnosis.criteria import CLEAR, VALIDATION_FACTOR
 from pzt_ident.errors import InputError, RunError
-from pzt_ident.files import read_files, read_sealed, write_bytes, write_json, write_sealed, write_text
+from pzt_ident.files import digest_of, read_files, read_sealed, write_bytes, write_json, write_sealed, write_text
 from pzt_ident.job.files import Template, on_files
 from pzt_ident.job.schema import Job
 from pzt_ident.run.collect import collect
@@ -75,8 +75,14 @@ def identify_device(tell: Any, orders: Orders, given: Given) -> dict[str, bytes]
         result = identified(job, records, orders, folder)
         improvement = improved(job, records, orders, given, folder / "improved") if orders.improve else {}
         row = row_of(given, result, improvement) | {"cpu_seconds": time.process_time() - start}
-        write_sealed(folder / "device.json", row)
+        write_sealed(folder / "device.json", row | {"written": written(folder)})
         return read_files(folder)
+
+
+def written(folder: Path) -> dict[str, str]:
+    """The digest of each file of a device, less what a report makes again."""
+    files = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.name != "residuals.json")
+    return {path.relative_to(folder).as_posix(): digest_of(path) for path in files}
 
 
 @lru_cache(maxsize=4)

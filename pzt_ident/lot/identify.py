@@ -19,7 +19,7 @@ from pzt_ident.job.files import Template
 from pzt_ident.job.schema import Job
 from pzt_ident.lot.device import Given, Orders, identify_device
 from pzt_ident.lot.devices import Device, devices_of
-from pzt_ident.lot.table import folder_of, read_row, write_devices, write_table
+from pzt_ident.lot.table import check_whole, folder_of, read_devices, read_row, some, write_devices, write_table
 from pzt_ident.run.alone import alone_in
 from pzt_ident.run.events import Listen, nobody
 from pzt_ident.run.folder import make_empty, read_job
@@ -110,6 +110,7 @@ class Identification:
     def identify(self, place: Place) -> Path:
         self.by_name = {device.name: device for device in self.devices}
         shutil.rmtree(self.folder / "devices" / ".new", ignore_errors=True)
+        self.tell_gone()
         write_devices(self.folder, self.devices)
         self.tell({})
         try:
@@ -121,6 +122,18 @@ class Identification:
         shutil.rmtree(self.folder / "devices" / ".new", ignore_errors=True)
         write_table(self.folder, self.devices)
         return self.folder
+
+    def tell_gone(self) -> None:
+        """Name the devices of the fleet that are none any more."""
+        try:
+            gone = [name for name in read_devices(self.folder) if name not in self.by_name]
+        except DamagedError:
+            return
+        if gone:
+            verb = "is no device" if len(gone) == 1 else "are no devices"
+            where = f"is left in {self.folder / 'devices'}"
+            sentence = f"{some(gone)} {verb} any more: left out of the table; what was identified {where}"
+            self.listen({"event": "gone", "said": sentence})
 
     def tasks(self, place: Place) -> Iterator[tuple[str, tuple[Any, ...]]]:
         """The devices that are not done, read one by one as there is room for them."""
@@ -134,11 +147,25 @@ class Identification:
                 continue
             key = self.key(contents)
             home = folder_of(self.folder, device.name)
-            if (row := read_row(home)) and row["key"] == key and row["state"] == "done":
+            if self.is_done(home, key):
                 self.done += 1
                 continue
             given = Given(device.name, key, home.absolute(), device.files, None if place.shares_disk else contents)
             yield device.name, (given,)
+
+    def is_done(self, home: Path, key: str) -> bool:
+        """Whether a device was identified with this key; where its results are damaged, that is told."""
+        if not home.exists():
+            return False
+        try:
+            row = read_row(home)
+            if row["key"] != key or row["state"] != "done":
+                return False
+            check_whole(home, row)
+        except DamagedError as error:
+            self.listen({"event": "damaged", "said": f"{error.where} {error.message}; the device is identified again"})
+            return False
+        return True
 
     def key(self, contents: dict[str, bytes]) -> str:
         """What the result of a device is a function of: what was asked, and its data."""

@@ -12,7 +12,7 @@ from urllib.parse import quote
 
 from pzt_ident.data.units import factor, same_kind
 from pzt_ident.errors import DamagedError
-from pzt_ident.files import read_sealed, replaced, write_sealed
+from pzt_ident.files import check_digest, damaged, read_sealed, replaced, write_sealed
 from pzt_ident.lot.devices import Device, Value
 
 if TYPE_CHECKING:
@@ -31,19 +31,35 @@ def folder_of(fleet: Path, name: str) -> Path:
     return fleet / "devices" / (f"%2E{safe[1:]}" if safe.startswith(".") else safe)
 
 
-def read_row(folder: Path) -> Row | None:
-    """The row of a device; None where its folder holds none that is whole."""
-    try:
-        row = read_sealed(folder / "device.json")
-    except DamagedError:
-        return None
-    return row if {"device", "key", "state", "reason"} <= set(row) else None
+def read_row(folder: Path) -> Row:
+    """The row of a device. Raises DamagedError where its folder holds none that is whole."""
+    return read_sealed(folder / "device.json", "device", "key", "state", "reason")
+
+
+def check_whole(folder: Path, row: Row) -> None:
+    """Raises DamagedError where a file of a device that was done is not as it was written."""
+    for name, digest in row.get("written", {}).items():
+        check_digest(folder / name, digest)
 
 
 def write_devices(folder: Path, devices: Sequence[Device]) -> None:
     """Write `devices.json`: which devices there are, and what is known of them."""
     listed = [{"device": device.name, "columns": dict(device.columns)} for device in devices]
     write_sealed(folder / "devices.json", {"devices": listed})
+
+
+def read_devices(folder: Path) -> dict[str, dict[str, Value]]:
+    """What is known of each device, by its name. Raises DamagedError where `devices.json` does not say."""
+    devices = read_sealed(folder / "devices.json", "devices")["devices"]
+    try:
+        return {device["device"]: dict(device["columns"]) for device in devices}
+    except (KeyError, TypeError, ValueError):
+        raise damaged(folder / "devices.json", "lists no devices") from None
+
+
+def some(names: Sequence[str], most: int = 5) -> str:
+    """Names in a sentence, the first of them where there are many."""
+    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
 
 
 def write_table(folder: Path, devices: Sequence[Device]) -> None:
@@ -60,7 +76,10 @@ def write_table(folder: Path, devices: Sequence[Device]) -> None:
 def rows_of(folder: Path, known: dict[str, Any]) -> Iterator[Row]:
     """The row of each device with its columns; one that was not begun is `not done`."""
     for name, columns in known.items():
-        row = read_row(folder_of(folder, name)) or {"device": name, "state": "not done", "reason": ""}
+        try:
+            row = read_row(folder_of(folder, name))
+        except DamagedError:
+            row = {"device": name, "state": "not done", "reason": ""}
         yield row | {"columns": columns}
 
 

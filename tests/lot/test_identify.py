@@ -26,6 +26,10 @@ from pzt_ident.run.alone import LOCK
 from pzt_ident.run.identify import run
 from pzt_ident.run.place import Local, place_of
 
+DAMAGES = {
+    "emptied": lambda path: path.write_bytes(b""),
+    "garbled": lambda path: path.write_bytes(path.read_bytes()[:-9] + b"x" + path.read_bytes()[-8:]),
+}
 CLOCK = ["cpu [s]"]
 SAID = {
     "empty": "the file is empty",
@@ -118,6 +122,39 @@ def test_what_was_done_is_not_done_again_unless_data_or_job_changed(lot, identif
     job = load_job(copy / "job.yaml")
     again = done_again(out, lambda: fleet(job, [str(copy / "lot.csv")], out, place=Local(1)))
     assert again == {*done, mended}
+
+
+FILES = ("device.json", "result.json", "signals.nc", "history.csv", "job.yaml")
+"""Of a device."""
+
+
+@pytest.mark.parametrize("damage", ["emptied", "garbled", "gone"])
+def test_a_damaged_device_is_identified_again_and_that_is_said(lot, identified, tmp_path, damage):
+    out, events = shutil.copytree(identified[0], tmp_path / "out"), []
+    done = [row["device"] for row in read_lot(out).done]
+    hurt = {out / "devices" / name / file: name for name, file in zip(done, FILES, strict=False)}
+    for path in hurt:
+        DAMAGES.get(damage, lambda path: path.unlink())(path)
+    again = done_again(out, lambda: resume(out, place=Local(1), listen=events.append))
+    assert again == set(hurt.values())
+    said = [event["said"] for event in events if event["event"] == "damaged"]
+    assert [sentence.partition(" is damaged: it ")[0] for sentence in said] == [str(path) for path in hurt]
+    assert all(sentence.endswith("; the device is identified again") for sentence in said)
+    assert differences(essence(identified[0]), essence(out)) == []
+    assert done_again(out, lambda: resume(out, place=Local(1))) == set()
+
+
+def test_a_device_that_is_gone_is_left_out_and_that_is_said(lot, identified, tmp_path):
+    copy, out = copied(lot, identified, tmp_path)
+    events, stated = [], read_sealed(out / "fleet.json")
+    write_sealed(out / "fleet.json", stated | {"patterns": [f"{copy}/lot/*/"]})
+    names = [row["device"] for row in read_lot(out).rows]
+    for name in names[:2]:
+        shutil.rmtree(copy / "lot" / name)
+    resume(out, place=Local(1), listen=events.append)
+    (said,) = [event["said"] for event in events if event["event"] == "gone"]
+    assert said.startswith(f"{names[0]}, {names[1]} are no devices any more") and str(out / "devices") in said
+    assert sorted(table(out)["device"]) == names[2:]
 
 
 def test_a_fleet_killed_hard_goes_on_to_the_same_results_bit_for_bit(lot, identified, tmp_path):
