@@ -188,7 +188,7 @@ class Identification:
 
     def break_(self, name: str, reason: str) -> None:
         """Write down why a device could not be identified."""
-        reason = reason.replace("\n  ", "; ")
+        reason = in_a_line(reason)
         self.broken += 1
         home = folder_of(self.folder, name)
         shutil.rmtree(home, ignore_errors=True)
@@ -205,6 +205,11 @@ class Identification:
     def tell(self, more: dict[str, Any]) -> None:
         counts = {"of": len(self.devices), "done": self.done, "broken": self.broken, "folder": str(self.folder)}
         self.listen({"event": "devices", **counts, **more})
+
+
+def in_a_line(reason: str) -> str:
+    """A message and its remedy."""
+    return reason.replace("\n  ", "; ")
 
 
 def read(path: Path) -> bytes:

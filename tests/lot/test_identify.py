@@ -209,7 +209,9 @@ def test_a_second_fleet_in_one_folder_is_refused_while_the_first_is_at_work(lot,
     def listen(event):
         if event["event"] == "devices" and event["done"] == 1 and not refused:
             refused.append(subprocess.run([*command, "--out", str(out)], capture_output=True, text=True))
-            refused.append(pytest.raises(InputError, resume, out))
+            with pytest.raises(InputError) as second:
+                resume(out)
+            refused.append(second)
 
     job, out = load_job(lot / "job.yaml"), tmp_path / "out"
     fleet(job, [str(lot / "lot.csv")], out, place=Local(1), listen=listen)
