@@ -44,11 +44,13 @@ class Orders:
 
 @dataclass(frozen=True)
 class Given:
-    """A device as a worker gets it. key: of job and data. home: its folder of results. files: where each file of the
-    job is, as the user named it. contents: those of the files, where the worker does not share the disk."""
+    """A device as a worker gets it. key: of job and data. sha256: of the data. home: its folder of results. files:
+    where each file of the job is, as the user named it. contents: those of the files, where the worker does not share
+    the disk."""
 
     name: str
     key: str
+    sha256: str
     home: Path
     files: Mapping[str, Path]
     contents: Mapping[str, bytes] | None = None
@@ -166,7 +168,7 @@ def row_of(given: Given, result: dict[str, Any], improvement: dict[str, Any]) ->
         "noise_floor": floor,
         "parameters": {name: _interval(parameter) for name, parameter in best["parameters"].items()},
         "files": {file: str(path) for file, path in given.files.items()},
-        "sha256": result["records"][0]["sha256"],
+        "sha256": given.sha256,
     }
 
 

@@ -7,7 +7,7 @@ import json
 import os
 import shutil
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,7 +19,17 @@ from pzt_ident.job.files import Template
 from pzt_ident.job.schema import Job
 from pzt_ident.lot.device import Given, Orders, identify_device
 from pzt_ident.lot.devices import Device, devices_of
-from pzt_ident.lot.table import check_whole, folder_of, read_devices, read_row, some, write_devices, write_table
+from pzt_ident.lot.table import (
+    FOR_PARQUET,
+    check_whole,
+    folder_of,
+    has_parquet,
+    read_devices,
+    read_row,
+    some,
+    write_devices,
+    write_table,
+)
 from pzt_ident.run.alone import alone_in
 from pzt_ident.run.events import Listen, nobody
 from pzt_ident.run.folder import make_empty, read_job
@@ -104,6 +114,7 @@ class Identification:
     orders: Orders
     listen: Listen
     by_name: dict[str, Device] = field(init=False)
+    sha256: dict[str, str] = field(default_factory=dict)  # of the data of devices that are at work
     done: int = 0
     broken: int = 0
 
@@ -121,6 +132,8 @@ class Identification:
             raise
         shutil.rmtree(self.folder / "devices" / ".new", ignore_errors=True)
         write_table(self.folder, self.devices)
+        if not has_parquet():
+            self.listen({"event": "table", "said": f"the table is not written as Parquet: that needs {FOR_PARQUET}"})
         return self.folder
 
     def tell_gone(self) -> None:
@@ -145,12 +158,21 @@ class Identification:
             except InputError as error:
                 self.break_(device.name, str(error))
                 continue
-            key = self.key(contents)
+            self.sha256[device.name] = sha256_of(contents.values())
+            key = self.key(self.sha256[device.name])
             home = folder_of(self.folder, device.name)
             if self.is_done(home, key):
                 self.done += 1
+                del self.sha256[device.name]
                 continue
-            given = Given(device.name, key, home.absolute(), device.files, None if place.shares_disk else contents)
+            given = Given(
+                device.name,
+                key,
+                self.sha256[device.name],
+                home.absolute(),
+                device.files,
+                None if place.shares_disk else contents,
+            )
             yield device.name, (given,)
 
     def is_done(self, home: Path, key: str) -> bool:
@@ -167,15 +189,15 @@ class Identification:
             return False
         return True
 
-    def key(self, contents: dict[str, bytes]) -> str:
-        """What the result of a device is a function of: what was asked, and its data."""
+    def key(self, data: str) -> str:
+        """What the result of a device is a function of: what was asked, and its data, by their hash."""
         asked = [self.job.hash, self.orders.improve, self.orders.budget if self.orders.improve else None]
-        hashes = [hashlib.sha256(content).hexdigest() for content in contents.values()]
-        return hashlib.sha256(json.dumps([asked, hashes]).encode()).hexdigest()
+        return hashlib.sha256(json.dumps([asked, data]).encode()).hexdigest()
 
     def keep(self, name: str, files: dict[str, bytes]) -> None:
         """Put a device's files into its folder, all of them or none."""
         self.done += 1
+        del self.sha256[name]
         home = folder_of(self.folder, name)
         new = self.folder / "devices" / ".new" / home.name
         for file, content in files.items():
@@ -192,7 +214,8 @@ class Identification:
         self.broken += 1
         home = folder_of(self.folder, name)
         shutil.rmtree(home, ignore_errors=True)
-        write_sealed(home / "device.json", {"device": name, "key": "", "state": "broken", "reason": reason})
+        row = {"device": name, "key": "", "sha256": self.sha256.pop(name, ""), "state": "broken", "reason": reason}
+        write_sealed(home / "device.json", row)
         self.tell({"device": name, "failed": reason})
 
     def note(self, event: dict[str, Any]) -> None:
@@ -205,6 +228,11 @@ class Identification:
     def tell(self, more: dict[str, Any]) -> None:
         counts = {"of": len(self.devices), "done": self.done, "broken": self.broken, "folder": str(self.folder)}
         self.listen({"event": "devices", **counts, **more})
+
+
+def sha256_of(contents: Iterable[bytes]) -> str:
+    """That of the files of a device: of their own, one after the other in the order of the job."""
+    return hashlib.sha256(b"".join(hashlib.sha256(content).digest() for content in contents)).hexdigest()
 
 
 def in_a_line(reason: str) -> str:

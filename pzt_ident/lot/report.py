@@ -20,7 +20,7 @@ from pzt_ident.lot.figures import plates
 from pzt_ident.lot.identify import in_a_line
 from pzt_ident.lot.outcome import Lot, read_lot
 from pzt_ident.lot.statistics import Quantity
-from pzt_ident.lot.table import Row, folder_of, write_table
+from pzt_ident.lot.table import FOR_PARQUET, Row, folder_of, tables_in, write_table
 from pzt_ident.report.figures import Plate, write_plate
 from pzt_ident.report.inline import inline
 from pzt_ident.report.page import environment as page_environment
@@ -33,6 +33,8 @@ from pzt_ident.run.place import HERE, Place
 if TYPE_CHECKING:
     from jinja2 import Environment
     from markupsafe import Markup
+
+    Figures = Mapping[str | None, list[tuple[Plate, Markup]]]  # by their sections
 
 MOST_PAGES = 500
 MOST_LINES = 2000
@@ -65,7 +67,7 @@ def write_fleet_report(folder: Path, *, place: Place = HERE, listen: Listen = no
     return folder / "report.html"
 
 
-def figures(lot: Lot, draw: Callable[[Plate], bytes]) -> dict[str | None, list[tuple[Plate, Markup]]]:
+def figures(lot: Lot, draw: Callable[[Plate], bytes]) -> Figures:
     """The figures of the page by their sections. draw: a plate as SVG."""
     sections: dict[str | None, list[tuple[Plate, Markup]]] = {}
     for plate in plates(lot):
@@ -116,12 +118,7 @@ def draw_page(tell: Any, folder: Path) -> None:
             write_report(results, static=False)
 
 
-def page(
-    lot: Lot,
-    figures: Mapping[str | None, list[tuple[Plate, Markup]]],
-    served: Served | None = None,
-    undrawn: Sequence[str] = (),
-) -> str:
+def page(lot: Lot, figures: Figures, served: Served | None = None, undrawn: Sequence[str] = ()) -> str:
     """The report, or, where it is `served`, the same with the devices on one screen with what is said of them. undrawn:
     why devices have no page."""
     from markupsafe import Markup
@@ -151,6 +148,8 @@ def page(
             figures=figures,
             quantities=quantities,
             header=header(lot),
+            tables=tables_in(lot.folder),
+            for_parquet=FOR_PARQUET,
             lines=list(device_lines(lot)),
             page_of={row["device"]: page_of(lot, row["device"]) for row in lot.rows},
         )

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Row = dict[str, Any]
+CSV, PARQUET = "devices.csv", "devices.parquet"
+FOR_PARQUET = "pip install 'pzt-ident[parquet]'"
 LONGEST = 120  # characters of a folder's name
 RMSE = {"rmse": "{} RMSE", "rmse_improved": "improved {} RMSE"}
 
@@ -40,6 +42,18 @@ def check_whole(folder: Path, row: Row) -> None:
     """Raises DamagedError where a file of a device that was done is not as it was written."""
     for name, digest in row.get("written", {}).items():
         check_digest(folder / name, digest)
+
+
+def has_parquet() -> bool:
+    """Whether a table is written as Parquet, too."""
+    return find_spec("pyarrow") is not None
+
+
+def tables_in(folder: Path) -> list[str]:
+    """The files of the table of a fleet; of one that has none yet those that it will have."""
+    if (folder / CSV).exists():
+        return [name for name in (CSV, PARQUET) if (folder / name).exists()]
+    return [CSV, *[PARQUET] * has_parquet()]
 
 
 def write_devices(folder: Path, devices: Sequence[Device]) -> None:
@@ -66,11 +80,13 @@ def write_table(folder: Path, devices: Sequence[Device]) -> None:
     """Write the devices, and the table as it is by now."""
     write_devices(folder, devices)
     frame = frame_of(rows_of(folder, {device.name: device.columns for device in devices}))
-    with replaced(folder / "devices.csv") as path:
-        frame.to_csv(path, index=False, lineterminator="\n")
-    if find_spec("pyarrow"):
-        with replaced(folder / "devices.parquet") as path:
+    if has_parquet():
+        with replaced(folder / PARQUET) as path:
             frame.to_parquet(path, index=False, engine="pyarrow")
+    else:
+        (folder / PARQUET).unlink(missing_ok=True)  # an older one would say otherwise than the CSV
+    with replaced(folder / CSV) as path:
+        frame.to_csv(path, index=False, lineterminator="\n")
 
 
 def rows_of(folder: Path, known: dict[str, Any]) -> Iterator[Row]:
@@ -108,7 +124,7 @@ def line_of(row: Row, units: dict[str, str]) -> dict[str, Value]:
     columns = {f"{name} (given)" if name in headings else name: value for name, value in row["columns"].items()}
     line: dict[str, Value] = {"device": row["device"], **columns, "state": row["state"]}
     if row["state"] != "done":
-        return line | {"reason": row["reason"]}
+        return line | {"sha256": row.get("sha256") or None, "reason": row["reason"]}
     line |= {"verdict": row["verdict"], "effects": ", ".join(row["effects"]), "suspects": ", ".join(row["suspects"])}
     for key, heading in RMSE.items():
         for use, value in (row[key] or {}).items():

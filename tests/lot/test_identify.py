@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from html import unescape
 from pathlib import Path
 
 import pandas as pd
@@ -21,6 +22,7 @@ from pzt_ident.files import read_sealed, write_sealed
 from pzt_ident.job.schema import load_job
 from pzt_ident.lot.identify import fleet, resume
 from pzt_ident.lot.outcome import read_lot
+from pzt_ident.lot.report import page
 from pzt_ident.model.registry import blocks
 from pzt_ident.run.alone import LOCK
 from pzt_ident.run.identify import run
@@ -73,10 +75,50 @@ def test_the_table_has_what_is_known_and_what_was_found(lot, identified):
     assert first["noise floor [um]"] > 0
     assert len(first["sha256"]) == 64
     assert (identified[0] / first["folder"] / "result.json").is_file()
+    broken = frame[frame.state == "broken"].set_index("device")
+    has_hash = {kinds(lot)[name]: isinstance(value, str) for name, value in broken["sha256"].items()}
+    assert has_hash == dict.fromkeys(BROKEN, True) | {"missing": False}
+    assert frame["sha256"].nunique() == DEVICES - 1
     parquet = pd.read_parquet(identified[0] / "devices.parquet")
     assert list(parquet.columns) == list(pd.read_csv(identified[0] / "devices.csv").columns)
     assert set(frame.columns) >= {"serial", "temperature [K]", "date", "batch"}
     assert parquet["temperature [K]"].tolist() == pd.read_csv(lot / "lot.csv")["temperature [K]"].tolist()
+
+
+def test_the_hash_is_that_of_all_files_of_a_device(lot, identified, tmp_path):
+    copy, out = copied(lot, identified, tmp_path)
+    before = table(out).set_index("device")["sha256"]
+    broken = next(name for name, kind in kinds(lot).items() if kind == "gap")
+    whole = next(name for name, kind in kinds(lot).items() if kind not in BROKEN)
+    for name in (broken, whole):
+        with (copy / "lot" / name / "tones.csv").open("a") as file:
+            file.write("\n")
+    resume(out, place=Local(1))
+    after = table(out).set_index("device")["sha256"]
+    assert set(after.index[after.ne(before) & after.notna()]) == {broken, whole}
+
+
+def test_a_table_keeps_types_for_whoever_reads_parquet(identified):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    types = {field.name: str(field.type) for field in parquet.read_schema(identified[0] / "devices.parquet")}
+    assert types["temperature [K]"] == types["bouc_wen.gain low [um/V]"] == "double"
+    assert types["device"].endswith("string") and types["verdict"].endswith("string")
+
+
+def test_without_pyarrow_the_table_is_csv_and_how_to_get_the_other_is_said_once(lot, identified, tmp_path, monkeypatch):
+    _, out = copied(lot, identified, tmp_path)
+    monkeypatch.setattr("pzt_ident.lot.table.find_spec", lambda name: None)
+    events = []
+    resume(out, place=Local(1), listen=events.append)
+    (said,) = [event["said"] for event in events if event["event"] == "table"]
+    assert said.endswith("pip install 'pzt-ident[parquet]'")
+    assert not (out / "devices.parquet").exists()
+    text = page(read_lot(out), {})
+    assert (
+        "devices.parquet" not in text
+        and said.rpartition(" that needs ")[2] in unescape(text)
+        and 'href="devices.csv"' in text
+    )
 
 
 def test_a_device_is_as_if_identified_alone(identified, tmp_path):
