@@ -166,17 +166,21 @@ def row_of(given: Given, result: dict[str, Any], improvement: dict[str, Any]) ->
         "rmse": best["rmse"],
         "rmse_improved": last["rmse"] if improvement else None,
         "noise_floor": floor,
-        "parameters": {name: _interval(parameter) for name, parameter in best["parameters"].items()},
+        "parameters": {
+            name: interval(parameter) | {"verdict": parameter["verdict"]}
+            for name, parameter in best["parameters"].items()
+        },
+        "improved": {name: interval(parameter) for name, parameter in last["parameters"].items() if improvement},
         "files": {file: str(path) for file, path in given.files.items()},
         "sha256": given.sha256,
     }
 
 
-def _interval(parameter: Mapping[str, Any]) -> dict[str, Any]:
+def interval(parameter: Mapping[str, Any]) -> dict[str, Any]:
     """A parameter with the ends of its interval of 95 %; none where the data do not determine it."""
     value, error = parameter["value"], parameter["standard_error"]
     ends = (None, None) if error is None else (value - WITHIN_95 * error, value + WITHIN_95 * error)
-    return {"value": value, "unit": parameter["unit"], "low": ends[0], "high": ends[1], "verdict": parameter["verdict"]}
+    return {"value": value, "unit": parameter["unit"], "low": ends[0], "high": ends[1]}
 
 
 def verdict_of(rmse: Mapping[str, float | None], floor: float | None) -> str:

@@ -131,11 +131,19 @@ def line_of(row: Row, units: dict[str, str]) -> dict[str, Value]:
             line |= _cell(heading.format(use), "", value, row["unit"], units)
     line |= _cell("noise floor", "", row["noise_floor"], row["unit"], units)
     for name, parameter in row["parameters"].items():
-        for end in ("value", "low", "high"):
-            line |= _cell(name, "" if end == "value" else f" {end}", parameter[end], parameter["unit"], units)
-        line[f"{name} verdict"] = parameter["verdict"]
+        line |= _interval(name, parameter, units) | {f"{name} verdict": parameter["verdict"]}
+    for name, parameter in row.get("improved", {}).items():
+        line |= _interval(f"improved {name}", parameter, units)
     folder = folder_of(Path(), row["device"]).as_posix()
     return line | {"cpu [s]": row["cpu_seconds"], "sha256": row["sha256"], "folder": folder, "reason": row["reason"]}
+
+
+def _interval(name: str, parameter: Row, units: dict[str, str]) -> dict[str, Value]:
+    """The cells of a parameter: its value and the ends of its interval."""
+    line: dict[str, Value] = {}
+    for end in ("value", "low", "high"):
+        line |= _cell(name, "" if end == "value" else f" {end}", parameter[end], parameter["unit"], units)
+    return line
 
 
 def _cell(name: str, end: str, value: float | None, unit: str, units: dict[str, str]) -> dict[str, Value]:

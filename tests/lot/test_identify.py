@@ -308,3 +308,16 @@ def test_each_device_is_diagnosed_where_that_is_asked(tmp_path):
         improved = load_job(out / row["folder"] / "improved" / "improved.yaml")
         assert all((improved.folder / source.file).is_file() for source in improved.records)
         assert row["improved identify RMSE [um]"] <= row["identify RMSE [um]"] * 1.01
+        steps = read_sealed(out / row["folder"] / "improved" / "improvement.json")["steps"]
+        for parameter, found in steps[-1]["parameters"].items():
+            at = f"improved {parameter}{{}} [{found['unit']}]"
+            half, middle = found["standard_error"], row[at.format("")]
+            if half is None:
+                assert pd.isna(row[at.format(" low")]) and pd.isna(row[at.format(" high")])
+            else:
+                assert row[at.format(" low")] == pytest.approx(middle - 1.96 * half, rel=1e-9, abs=1e-12)
+                assert row[at.format(" high")] == pytest.approx(middle + 1.96 * half, rel=1e-9, abs=1e-12)
+            assert middle == pytest.approx(found["value"], rel=1e-9)
+        known = {heading.split(" [")[0] for heading in row.dropna().index if heading.startswith("improved ")}
+        assert {f"improved {parameter}" for parameter in steps[-1]["parameters"]} <= known
+        assert any(heading.startswith("improved quadratic_gain.") for heading in known) == (kind == "quadratic_gain")
