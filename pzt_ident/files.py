@@ -117,6 +117,12 @@ def digest_of(path: Path) -> str:
         raise damaged(path, "cannot be read") from None
 
 
+def check_digest(path: Path, digest: str | None) -> None:
+    """Raises DamagedError where a file is not the one of which this is the SHA-256."""
+    if digest_of(path) != digest:
+        raise damaged(path, "is not as it was written")
+
+
 def damaged(path: Path, how: str) -> DamagedError:
     remedy = f"`pzt-ident resume {path.parent}` makes it again where it can"
     return DamagedError(f"is damaged: it {how}", where=str(path), remedy=remedy)

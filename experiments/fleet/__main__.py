@@ -4,20 +4,29 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import time
+from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
+from typing import Any
 
 import click
 
 from experiments.fleet.cluster import TCP
 from experiments.fleet.lot import write_lot
-from experiments.fleet.measure import Memory, overhead, peak, write_rows
+from experiments.fleet.measure import Memory, overhead, peak
+from experiments.fleet.shared import grown
+from experiments.fleet.tables import OUT, keep
+from experiments.trust.essence import differences, essence
 from pzt_ident.job.schema import load_job
 from pzt_ident.lot.identify import fleet
 from pzt_ident.lot.outcome import read_lot
-from pzt_ident.run.place import Local, place_of
+from pzt_ident.run.events import nobody
+from pzt_ident.run.place import Local, Place, place_of
 
 FOLDER = click.argument("folder", type=click.Path(path_type=Path))
+KEPT = click.option("--out", type=click.Path(path_type=Path), default=OUT, show_default=True, help="Rows and tables.")
 
 
 @click.group()
@@ -40,18 +49,55 @@ def draw(folder: Path, devices: int, **facts: object) -> None:
     click.echo(write_lot(folder, devices, **facts))  # type: ignore[arg-type]
 
 
+def identified(folder: Path, name: str, place: Place, listen: Callable[[dict], None] = nobody, **more: Any) -> Path:
+    """The lot in a folder, identified anew into its folder `name`."""
+    shutil.rmtree(folder / name, ignore_errors=True)
+    job, devices = load_job(folder / "job.yaml"), [str(folder / "lot.csv")]
+    return fleet(job, devices, folder / name, place=place, listen=listen, **more)
+
+
 @main.command("overhead")
 @click.option("--tasks", type=int, default=40, show_default=True)
 @click.option("--seconds", type=float, default=1.0, show_default=True)
-def overhead_(tasks: int, seconds: float) -> None:
-    """What a task costs beside itself, in processes of this machine and on a scheduler on TCP, two workers each."""
-    cluster = TCP(workers=2)
-    try:
-        for name, place in (("local:2", Local(2)), ("tcp, 2 workers", place_of(cluster.address))):
-            cost = overhead(place, tasks, seconds, 2)
-            click.echo(f"{name}: {1000 * cost['overhead']:.1f} ms a task, efficiency {cost['efficiency']:.1%}")
-    finally:
-        cluster.end()
+@KEPT
+def overhead_(tasks: int, seconds: float, out: Path) -> None:
+    """What a task that waits costs beside itself, in processes of this machine and on a scheduler on TCP, two workers
+    each."""
+    with TCP(workers=2) as cluster:
+        places = {"local:2": Local(2), "tcp, 2 workers": place_of(cluster.address)}
+        costs = {name: overhead(place, tasks, seconds, 2) for name, place in places.items()}
+    rows = [
+        {"place": name, "tasks": tasks, "ms a task": 1000 * cost["overhead"], "efficiency": cost["efficiency"]}
+        for name, cost in costs.items()
+    ]
+    click.echo(keep("overhead", rows, out))
+
+
+@main.command()
+@FOLDER
+@KEPT
+def workers(folder: Path, out: Path) -> None:
+    """How much sooner two workers than one have identified the lot in FOLDER, by the clock: the devices compute."""
+    rows: list[dict[str, Any]] = []
+    for place in ("local", "tcp"):
+        one, two = clocked(folder, place, 1), clocked(folder, place, 2)
+        times = {"one worker [s a device]": one, "two workers [s a device]": two}
+        devices = len(read_lot(folder / "workers").done)
+        rows.append({"place": place, "devices": devices, **times, "efficiency": one / (2 * two)})
+    click.echo(keep("workers", rows, out))
+
+
+def clocked(folder: Path, place: str, count: int) -> float:
+    """Seconds a device, from the first that each worker has done to the last: what starting takes is not counted."""
+    ends: list[float] = []
+
+    def listen(event: dict) -> None:
+        if event["event"] == "devices" and event["done"]:
+            ends.append(time.perf_counter())
+
+    with TCP(workers=count) if place == "tcp" else nullcontext() as cluster:
+        identified(folder, "workers", place_of(cluster.address) if cluster else Local(count), listen)
+    return (ends[-1] - ends[count - 1]) / (len(ends) - count)
 
 
 @main.command()
@@ -59,38 +105,34 @@ def overhead_(tasks: int, seconds: float) -> None:
 @click.option("--every", type=int, default=250, show_default=True)
 @click.option("--budget", type=float, default=1e9, help="Stop after so many seconds.")
 @click.option("--on", help="As of `pzt-ident fleet --on`; a scheduler and two workers on TCP if not given.")
-def memory(folder: Path, every: int, budget: float, on: str | None) -> None:
+@KEPT
+def memory(folder: Path, every: int, budget: float, on: str | None, out: Path) -> None:
     """The memory of client, scheduler and workers over the devices of the lot in FOLDER, and the client's time."""
-    cluster, numbers = None if on else TCP(workers=2), {"client": os.getpid()}
-    if cluster:
-        numbers |= {"scheduler": cluster.scheduler.pid, "worker": cluster.workers[0].pid}
-    note = Memory(numbers, every)
-    start, cpu = time.perf_counter(), time.process_time()
-
-    def listen(event: dict) -> None:
-        note(event)
-        if time.perf_counter() - start > budget:
-            raise KeyboardInterrupt
-
-    try:
-        fleet(
-            load_job(folder / "job.yaml"),
-            [str(folder / "lot.csv")],
-            folder / "out",
-            place=place_of(on or cluster.address),
-            listen=listen,
-        )
-    except KeyboardInterrupt:
-        click.echo("stopped")
-    finally:
+    with nullcontext() if on else TCP(workers=2) as cluster:
+        numbers = {"client": os.getpid()}
         if cluster:
-            cluster.end()
-    write_rows(folder / "memory.csv", note.rows)
+            numbers |= {"scheduler": cluster.scheduler.pid, "worker": cluster.workers[0].pid}
+        note, start, cpu = Memory(numbers, every), time.perf_counter(), time.process_time()
+
+        def listen(event: dict) -> None:
+            note(event)
+            if time.perf_counter() - start > budget:
+                raise KeyboardInterrupt
+
+        try:
+            identified(folder, "out", place_of(on or cluster.address), listen)
+        except KeyboardInterrupt:
+            click.echo("stopped")
     last, spent = note.rows[-1], time.process_time() - cpu
+    client = {"ms of CPU a device": 1000 * spent / last["devices"], "MiB with the table": peak()}
+    rows = [
+        {"process": name, "MiB": last[name], "KiB a device": note.growth(name), **(client if name == "client" else {})}
+        for name in numbers
+    ]
     click.echo(f"{last['devices']:.0f} devices in {last['seconds']:.0f} s")
-    for name in numbers:
-        click.echo(f"{name}: {last[name]:.0f} MiB, {note.growth(name):+.2f} KiB a device")
-    click.echo(f"client: {1000 * spent / last['devices']:.1f} ms of CPU a device, {peak():.0f} MiB with the table")
+    words = "memory-local" if on else "memory"
+    keep(f"{words}-by-device", note.rows, out)
+    click.echo(keep(words, rows, out))
 
 
 @main.command()
@@ -98,45 +140,58 @@ def memory(folder: Path, every: int, budget: float, on: str | None) -> None:
 @click.option("--improve", is_flag=True)
 @click.option("--budget", type=float, default=None, help="CPU seconds of each diagnosis.")
 @click.option("--after", type=int, default=20, show_default=True, help="Devices after which a worker is killed.")
-def killed(folder: Path, improve: bool, budget: float | None, after: int) -> None:
-    """The lot in FOLDER on two workers on TCP, of which one is killed and replaced; what is found, beside the truth."""
-    cluster, start = TCP(workers=2), time.perf_counter()
+@KEPT
+def killed(folder: Path, improve: bool, budget: float | None, after: int, out: Path) -> None:
+    """The lot in FOLDER on two workers on TCP, of which one is killed and replaced; what is found, beside the truth,
+    and whether it is what a fleet finds that nobody disturbs."""
+    asked = {"improve": improve, "budget": budget}
+    with TCP(workers=2) as cluster:
 
-    def listen(event: dict) -> None:
-        if event["event"] == "devices" and event["done"] == after and cluster.workers[0].poll() is None:
-            cluster.workers[0].kill()
-            cluster.workers.append(cluster.worker())
+        def listen(event: dict) -> None:
+            if event["event"] == "devices" and event["done"] == after and cluster.workers[0].poll() is None:
+                cluster.workers[0].kill()
+                cluster.workers.append(cluster.worker())
 
-    try:
-        out = fleet(
-            load_job(folder / "job.yaml"),
-            [str(folder / "lot.csv")],
-            folder / "out",
-            improve=improve,
-            budget=budget,
-            place=place_of(cluster.address),
-            listen=listen,
-        )
-    finally:
-        cluster.end()
-    click.echo(f"{time.perf_counter() - start:.0f} s")
-    score(folder, out)
+        start = time.perf_counter()
+        disturbed = identified(folder, "out", place_of(cluster.address), listen, **asked)
+        seconds = time.perf_counter() - start
+    whole = identified(folder, "undisturbed", Local(2), **asked)
+    other = differences(essence(whole), essence(disturbed))
+    click.echo("\n".join([f"{seconds:.0f} s; {len(other)} files differ from those of an undisturbed fleet", *other]))
+    words = "killed-improve" if improve else "killed"
+    files = {"seconds": seconds, "files compared": len(essence(whole)), "files that differ": len(other)}
+    keep(f"{words}-against-undisturbed", [files], out)
+    click.echo(keep(words, list(score(folder, disturbed)), out))
 
 
-def score(folder: Path, out: Path) -> None:
+def score(folder: Path, out: Path) -> list[dict[str, Any]]:
     """What was found of each kind of device."""
     truth, lot = json.loads((folder / "truth.json").read_text()), read_lot(out)
     odd, ill, states = set(lot.odd), set(lot.ill_fitted), {row["device"]: row for row in lot.rows}
+    rows = []
     for kind in sorted({facts["kind"] for facts in truth.values()}):
         names = [name for name, facts in truth.items() if facts["kind"] == kind]
         counts = {
+            "devices": len(names),
             "done": sum(states[name]["state"] == "done" for name in names),
             "fits worse": sum(name in ill for name in names),
             "parameters out of line": sum(name in odd for name in names),
             "named right": sum(states[name].get("effects") == [kind] for name in names),
             "named": sum(bool(states[name].get("effects")) for name in names),
         }
-        click.echo(f"{kind}: {len(names)}; " + ", ".join(f"{count} {what}" for what, count in counts.items() if count))
+        rows.append({"kind": kind, **counts})
+    return rows
+
+
+@main.command()
+@FOLDER
+@click.option("--devices", type=int, multiple=True, default=(1, 2, 4, 8), show_default=True)
+@click.option("--evaluations", type=int, default=2000, show_default=True)
+@KEPT
+def shared(folder: Path, devices: tuple[int, ...], evaluations: int, out: Path) -> None:
+    """Time and memory of one job on the first devices of the lot in FOLDER, of which each has a gain of its own and
+    all share the rest."""
+    click.echo(keep("shared", [grown(folder, count, evaluations) for count in devices], out))
 
 
 if __name__ == "__main__":

@@ -25,6 +25,12 @@ class TCP:
             assert self.scheduler.poll() is None
             time.sleep(0.05)
 
+    def __enter__(self) -> "TCP":
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.end()
+
     def worker(self) -> subprocess.Popen:
         return self.start("dask_worker", self.address, "--nthreads", "1", "--no-nanny", "--no-dashboard")
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import resource
 import time
-from pathlib import Path
 from statistics import median
 from typing import Any
 
@@ -68,8 +67,3 @@ class Memory:
 def peak() -> float:
     """The most memory that this process has had, MiB."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-
-
-def write_rows(path: Path, rows: list[dict[str, float]]) -> None:
-    lines = [",".join(rows[0]), *(",".join(f"{value:.6g}" for value in row.values()) for row in rows)]
-    path.write_text("\n".join(lines) + "\n")

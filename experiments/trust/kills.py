@@ -3,7 +3,6 @@ same result bit for bit."""
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
 import signal
@@ -18,11 +17,11 @@ from typing import Any
 import numpy as np
 
 from experiments.trust.bench import Case, InThisProcess
+from experiments.trust.essence import differences, essence
 from experiments.trust.good import write_good
 
 COMMANDS = ("run", "improve", "fleet")
 WRITES = ("open", "os.rename", "os.remove", "os.mkdir", "os.rmdir", "os.truncate", "os.link", "os.chmod")
-CLOCK = ("seconds", "created", "command", "digest", "history.csv", "environment.json")
 NOT_BEGUN = "holds no "
 Words = list[str]
 
@@ -40,31 +39,6 @@ def write_lot(folder: Path, seed: int) -> Path:
         write_good(folder / f"d{number}", seed + number)
     (folder / "d1" / "a.csv").write_text("broken\n")
     return job
-
-
-def essence(folder: Path) -> dict[str, Any]:
-    """What a folder of results says, less the clock."""
-    names = ("result.json", "improvement.json", "diagnosis.json", "device.json", "residuals.json")
-    files = sorted(path for path in folder.rglob("*") if path.name in names)
-    contents = {str(path.relative_to(folder)): timeless(json.loads(path.read_text())) for path in files}
-    for path in sorted(folder.rglob("signals.nc")):
-        contents[str(path.relative_to(folder))] = arrays(path)
-    return contents
-
-
-def timeless(content: Any) -> Any:
-    if isinstance(content, dict):
-        return {key: timeless(value) for key, value in content.items() if not any(c in key for c in CLOCK)}
-    return [timeless(value) for value in content] if isinstance(content, list) else content
-
-
-def arrays(path: Path) -> dict[str, bytes]:
-    import h5py
-
-    values: dict[str, bytes] = {}
-    with h5py.File(path) as file:
-        file.visititems(lambda name, item: values.update({name: item[()].tobytes()} if hasattr(item, "shape") else {}))
-    return values
 
 
 def in_fork(words: Words, prepare: Callable[[], None] = lambda: None) -> tuple[int, str]:
@@ -184,7 +158,7 @@ def cuts(numbers: range, seed: int, scratch: Path) -> Iterator[Case]:
         here(words_of(command, job, scratch / command / "warm"))  # what it imports and compiles, its forks have
         writes = writes_of(words_of(command, job, whole), whole)
         true = essence(whole)
-        for write in np.unique(np.linspace(0, writes - 1, len(numbers)).astype(int)):
+        for write in np.unique(((np.array(numbers) + 0.5) / len(numbers) * writes).astype(int)):
             rng = np.random.default_rng([seed, number])
             torn = rng if rng.random() < 0.5 else None
             out = scratch / command / f"cut{write}"
@@ -199,10 +173,6 @@ def cuts(numbers: range, seed: int, scratch: Path) -> Iterator[Case]:
             if not case.faults:
                 shutil.rmtree(out)
             number += 1
-
-
-def differences(true: dict[str, Any], other: dict[str, Any]) -> list[str]:
-    return [f"{file} differs" for file in sorted({*true, *other}) if true.get(file) != other.get(file)]
 
 
 VICTIMS: dict[str, Callable[[list[int]], list[int]]] = {

@@ -12,9 +12,10 @@ from itertools import chain
 from pathlib import Path
 
 from experiments.trust.bench import Case
+from experiments.trust.essence import differences, essence
 from experiments.trust.good import write_good
 from experiments.trust.judge import PYTHON
-from experiments.trust.kills import COMMANDS, PROGRAM, differences, essence, words_of, write_lot
+from experiments.trust.kills import COMMANDS, PROGRAM, words_of, write_lot
 
 CLOCK_BACK = """\
 import time, datetime

@@ -106,12 +106,17 @@ def resume(
     as_json: bool,
     quiet: bool,
 ) -> None:
-    """Go on with the run or the fleet in the folder DIR, with --from from another fit as well."""
+    """Go on with the run, improvement, diagnosis or fleet in the folder DIR.
+
+    With --from, a run polishes that fit as well, and an improvement or a diagnosis begins again from it.
+    """
     if (folder / "fleet.json").is_file():
+        if start is not None:
+            raise click.UsageError("--from is for a run, an improvement or a diagnosis: leave it out for a fleet")
         resume_fleet(folder, place, plugins, as_json, quiet)
         return
     if is_diagnosis(folder):
-        diagnose_again(folder, no_report, plugins, as_json, quiet)
+        diagnose_again(folder, start, place, no_report, plugins, as_json, quiet)
         return
 
     def begin(listen: Listener) -> Path:

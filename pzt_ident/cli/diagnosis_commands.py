@@ -83,8 +83,10 @@ def is_diagnosis(folder: Path) -> bool:
     return (folder / "environment.json").is_file() and task_of(folder) in ("improve", "diagnose")
 
 
-def diagnose_again(folder: Path, no_report: bool, plugins: bool, as_json: bool, quiet: bool) -> None:
-    """From its beginning, unless it came to its end."""
+def diagnose_again(
+    folder: Path, start: Path | None, place: Place, no_report: bool, plugins: bool, as_json: bool, quiet: bool
+) -> None:
+    """From its beginning, unless it came to its end and there is no other fit to start from."""
     from pzt_ident.cli import verdict_tables
     from pzt_ident.run.elsewhere import begin_again, task_of
 
@@ -92,4 +94,8 @@ def diagnose_again(folder: Path, no_report: bool, plugins: bool, as_json: bool, 
     name, show = (
         ("improvement", verdict_tables.show_improvement) if improves else ("diagnosis", verdict_tables.show_diagnosis)
     )
-    _show_diagnosis(lambda listen: begin_again(folder, listen, plugins), name, show, no_report, as_json, quiet)
+
+    def begin(listen: Listener) -> Path:
+        return begin_again(folder, listen, plugins, place, start)
+
+    _show_diagnosis(begin, name, show, no_report, as_json, quiet)

@@ -16,7 +16,7 @@ from pzt_ident.data.readers import read_records
 from pzt_ident.data.record import Record
 from pzt_ident.diagnosis.criteria import CLEAR, VALIDATION_FACTOR
 from pzt_ident.errors import InputError, RunError
-from pzt_ident.files import read_files, read_sealed, write_bytes, write_json, write_sealed, write_text
+from pzt_ident.files import digest_of, read_files, read_sealed, write_bytes, write_json, write_sealed, write_text
 from pzt_ident.job.files import Template, on_files
 from pzt_ident.job.schema import Job
 from pzt_ident.run.collect import collect
@@ -44,11 +44,13 @@ class Orders:
 
 @dataclass(frozen=True)
 class Given:
-    """A device as a worker gets it. key: of job and data. home: its folder of results. files: where each file of the
-    job is, as the user named it. contents: those of the files, where the worker does not share the disk."""
+    """A device as a worker gets it. key: of job and data. sha256: of the data. home: its folder of results. files:
+    where each file of the job is, as the user named it. contents: those of the files, where the worker does not share
+    the disk."""
 
     name: str
     key: str
+    sha256: str
     home: Path
     files: Mapping[str, Path]
     contents: Mapping[str, bytes] | None = None
@@ -75,8 +77,14 @@ def identify_device(tell: Any, orders: Orders, given: Given) -> dict[str, bytes]
         result = identified(job, records, orders, folder)
         improvement = improved(job, records, orders, given, folder / "improved") if orders.improve else {}
         row = row_of(given, result, improvement) | {"cpu_seconds": time.process_time() - start}
-        write_sealed(folder / "device.json", row)
+        write_sealed(folder / "device.json", row | {"written": written(folder)})
         return read_files(folder)
+
+
+def written(folder: Path) -> dict[str, str]:
+    """The digest of each file of a device, less what a report makes again."""
+    files = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.name != "residuals.json")
+    return {path.relative_to(folder).as_posix(): digest_of(path) for path in files}
 
 
 @lru_cache(maxsize=4)
@@ -158,17 +166,21 @@ def row_of(given: Given, result: dict[str, Any], improvement: dict[str, Any]) ->
         "rmse": best["rmse"],
         "rmse_improved": last["rmse"] if improvement else None,
         "noise_floor": floor,
-        "parameters": {name: _interval(parameter) for name, parameter in best["parameters"].items()},
+        "parameters": {
+            name: interval(parameter) | {"verdict": parameter["verdict"]}
+            for name, parameter in best["parameters"].items()
+        },
+        "improved": {name: interval(parameter) for name, parameter in last["parameters"].items() if improvement},
         "files": {file: str(path) for file, path in given.files.items()},
-        "sha256": result["records"][0]["sha256"],
+        "sha256": given.sha256,
     }
 
 
-def _interval(parameter: Mapping[str, Any]) -> dict[str, Any]:
+def interval(parameter: Mapping[str, Any]) -> dict[str, Any]:
     """A parameter with the ends of its interval of 95 %; none where the data do not determine it."""
     value, error = parameter["value"], parameter["standard_error"]
     ends = (None, None) if error is None else (value - WITHIN_95 * error, value + WITHIN_95 * error)
-    return {"value": value, "unit": parameter["unit"], "low": ends[0], "high": ends[1], "verdict": parameter["verdict"]}
+    return {"value": value, "unit": parameter["unit"], "low": ends[0], "high": ends[1]}
 
 
 def verdict_of(rmse: Mapping[str, float | None], floor: float | None) -> str:

@@ -7,7 +7,7 @@ import json
 import os
 import shutil
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,7 +19,18 @@ from pzt_ident.job.files import Template
 from pzt_ident.job.schema import Job
 from pzt_ident.lot.device import Given, Orders, identify_device
 from pzt_ident.lot.devices import Device, devices_of
-from pzt_ident.lot.table import folder_of, read_row, write_devices, write_table
+from pzt_ident.lot.table import (
+    FOR_PARQUET,
+    check_whole,
+    folder_of,
+    has_parquet,
+    read_devices,
+    read_row,
+    some,
+    write_devices,
+    write_table,
+)
+from pzt_ident.run.alone import alone_in
 from pzt_ident.run.events import Listen, nobody
 from pzt_ident.run.folder import make_empty, read_job
 from pzt_ident.run.place import HERE, Place
@@ -41,13 +52,21 @@ def fleet(
 
     A folder a device, `devices.parquet` and `devices.csv` of all. In a folder that holds a fleet, what was done with
     the same job on the same data stays. patterns: of folders, of files, or tables with a column `file` or `folder`.
-    Raises InputError where job or patterns are wrong, LostError where the place is gone.
+    Raises InputError where job or patterns are wrong, or another process is at work in the folder, LostError where the
+    place is gone.
     """
     folder = out or Path("results") / job.name / "fleet"
     devices = devices_of(patterns, job)
     if not (folder / "fleet.json").is_file():
         make_empty(folder, job.text)
-    stated: dict[str, Any] = {
+    with alone_in(folder):
+        orders = orders_of(job, patterns, improve, budget, folder)
+        return Identification(folder, devices, job, orders, listen).identify(place)
+
+
+def orders_of(job: Job, patterns: Sequence[str], improve: bool, budget: float | None, folder: Path) -> Orders:
+    """Write what a fleet is asked for into its folder; the same as orders to its workers."""
+    statement = {
         "job_name": job.name,
         "job_folder": str(job.folder.resolve()),
         "job_hash": job.hash,
@@ -58,9 +77,8 @@ def fleet(
         "command": " ".join(["pzt-ident", *sys.argv[1:]]),
     }
     write_text(folder / "job.yaml", job.text, lasting=True)
-    write_sealed(folder / "fleet.json", stated, lasting=True)
-    orders = Orders(Template(job), job.folder.resolve(), stated["command"], improve, budget)
-    return Identification(folder, devices, job, orders, listen).identify(place)
+    write_sealed(folder / "fleet.json", statement, lasting=True)
+    return Orders(Template(job), job.folder.resolve(), str(statement["command"]), improve, budget)
 
 
 def is_fleet(folder: Path) -> bool:
@@ -96,12 +114,14 @@ class Identification:
     orders: Orders
     listen: Listen
     by_name: dict[str, Device] = field(init=False)
+    sha256: dict[str, str] = field(default_factory=dict)  # of the data of devices that are at work
     done: int = 0
     broken: int = 0
 
     def identify(self, place: Place) -> Path:
         self.by_name = {device.name: device for device in self.devices}
         shutil.rmtree(self.folder / "devices" / ".new", ignore_errors=True)
+        self.tell_gone()
         write_devices(self.folder, self.devices)
         self.tell({})
         try:
@@ -112,7 +132,21 @@ class Identification:
             raise
         shutil.rmtree(self.folder / "devices" / ".new", ignore_errors=True)
         write_table(self.folder, self.devices)
+        if not has_parquet():
+            self.listen({"event": "table", "said": f"the table is not written as Parquet: that needs {FOR_PARQUET}"})
         return self.folder
+
+    def tell_gone(self) -> None:
+        """Name the devices of the fleet that are none any more."""
+        try:
+            gone = [name for name in read_devices(self.folder) if name not in self.by_name]
+        except DamagedError:
+            return
+        if gone:
+            verb = "is no device" if len(gone) == 1 else "are no devices"
+            where = f"is left in {self.folder / 'devices'}"
+            sentence = f"{some(gone)} {verb} any more: left out of the table; what was identified {where}"
+            self.listen({"event": "gone", "said": sentence})
 
     def tasks(self, place: Place) -> Iterator[tuple[str, tuple[Any, ...]]]:
         """The devices that are not done, read one by one as there is room for them."""
@@ -124,23 +158,46 @@ class Identification:
             except InputError as error:
                 self.break_(device.name, str(error))
                 continue
-            key = self.key(contents)
+            self.sha256[device.name] = sha256_of(contents.values())
+            key = self.key(self.sha256[device.name])
             home = folder_of(self.folder, device.name)
-            if (row := read_row(home)) and row["key"] == key and row["state"] == "done":
+            if self.is_done(home, key):
                 self.done += 1
+                del self.sha256[device.name]
                 continue
-            given = Given(device.name, key, home.absolute(), device.files, None if place.shares_disk else contents)
+            given = Given(
+                device.name,
+                key,
+                self.sha256[device.name],
+                home.absolute(),
+                device.files,
+                None if place.shares_disk else contents,
+            )
             yield device.name, (given,)
 
-    def key(self, contents: dict[str, bytes]) -> str:
-        """What the result of a device is a function of: what was asked, and its data."""
+    def is_done(self, home: Path, key: str) -> bool:
+        """Whether a device was identified with this key; where its results are damaged, that is told."""
+        if not home.exists():
+            return False
+        try:
+            row = read_row(home)
+            if row["key"] != key or row["state"] != "done":
+                return False
+            check_whole(home, row)
+        except DamagedError as error:
+            self.listen({"event": "damaged", "said": f"{error.where} {error.message}; the device is identified again"})
+            return False
+        return True
+
+    def key(self, data: str) -> str:
+        """What the result of a device is a function of: what was asked, and its data, by their hash."""
         asked = [self.job.hash, self.orders.improve, self.orders.budget if self.orders.improve else None]
-        hashes = [hashlib.sha256(content).hexdigest() for content in contents.values()]
-        return hashlib.sha256(json.dumps([asked, hashes]).encode()).hexdigest()
+        return hashlib.sha256(json.dumps([asked, data]).encode()).hexdigest()
 
     def keep(self, name: str, files: dict[str, bytes]) -> None:
         """Put a device's files into its folder, all of them or none."""
         self.done += 1
+        del self.sha256[name]
         home = folder_of(self.folder, name)
         new = self.folder / "devices" / ".new" / home.name
         for file, content in files.items():
@@ -153,11 +210,12 @@ class Identification:
 
     def break_(self, name: str, reason: str) -> None:
         """Write down why a device could not be identified."""
-        reason = printable(reason.replace("\n  ", "; "))
+        reason = printable(in_a_line(reason))
         self.broken += 1
         home = folder_of(self.folder, name)
         shutil.rmtree(home, ignore_errors=True)
-        write_sealed(home / "device.json", {"device": name, "key": "", "state": "broken", "reason": reason})
+        row = {"device": name, "key": "", "sha256": self.sha256.pop(name, ""), "state": "broken", "reason": reason}
+        write_sealed(home / "device.json", row)
         self.tell({"device": name, "failed": reason})
 
     def note(self, event: dict[str, Any]) -> None:
@@ -170,6 +228,16 @@ class Identification:
     def tell(self, more: dict[str, Any]) -> None:
         counts = {"of": len(self.devices), "done": self.done, "broken": self.broken, "folder": str(self.folder)}
         self.listen({"event": "devices", **counts, **more})
+
+
+def sha256_of(contents: Iterable[bytes]) -> str:
+    """That of the files of a device: of their own, one after the other in the order of the job."""
+    return hashlib.sha256(b"".join(hashlib.sha256(content).digest() for content in contents)).hexdigest()
+
+
+def in_a_line(reason: str) -> str:
+    """A message and its remedy."""
+    return reason.replace("\n  ", "; ")
 
 
 def read(path: Path) -> bytes:

@@ -11,10 +11,9 @@ from typing import Any
 import numpy as np
 
 from pzt_ident.errors import DamagedError, InputError
-from pzt_ident.files import read_sealed
 from pzt_ident.lot.identify import read_statement
 from pzt_ident.lot.statistics import Difference, Finding, Quantity, Trend, differences, out_of_line, trends
-from pzt_ident.lot.table import Row, in_unit, rows_of
+from pzt_ident.lot.table import Row, in_unit, read_devices, rows_of, some
 
 DETERMINED = "determined"
 
@@ -139,13 +138,13 @@ class Lot:
                 "Verdicts: " + ", ".join(f"{count} {verdict}" for verdict, count in self.verdicts.items()) + "."
             )
         for effect, names in self.effects.items():
-            lines.append(f"Missing in {len(names)}: {effect} ({_some(names)}).")
+            lines.append(f"Missing in {len(names)}: {effect} ({some(names)}).")
         for reason, names in (
             ("The model fits worse than usual", self.ill_fitted),
             ("Parameters out of line", self.odd),
         ):
             if names:
-                lines.append(f"{reason}: {len(names)} ({_some(names)}).")
+                lines.append(f"{reason}: {len(names)} ({some(names)}).")
         return lines
 
 
@@ -160,17 +159,12 @@ def _number(value: Any) -> float:
     return float("nan") if value is None else float(value)
 
 
-def _some(names: list[str], most: int = 5) -> str:
-    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
-
-
 def read_lot(folder: Path) -> Lot:
     """The fleet in a folder, finished or not. Raises InputError where there is none."""
     statement = read_statement(folder)
     try:
-        content = read_sealed(folder / "devices.json")
-        known = {device["device"]: dict(device["columns"]) for device in content["devices"]}
-    except (DamagedError, KeyError, TypeError, ValueError):
+        known = read_devices(folder)
+    except DamagedError:
         remedy = f"`pzt-ident resume {folder}` goes on with it"
         raise InputError(
             "the fleet has not been begun, or its devices.json is damaged", where=str(folder), remedy=remedy

@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -17,9 +17,10 @@ from pzt_ident.errors import InputError
 from pzt_ident.files import write_text
 from pzt_ident.lot.devices import Device
 from pzt_ident.lot.figures import plates
+from pzt_ident.lot.identify import in_a_line
 from pzt_ident.lot.outcome import Lot, read_lot
 from pzt_ident.lot.statistics import Quantity
-from pzt_ident.lot.table import Row, folder_of, write_table
+from pzt_ident.lot.table import FOR_PARQUET, Row, folder_of, tables_in, write_table
 from pzt_ident.report.figures import Plate, write_plate
 from pzt_ident.report.inline import inline
 from pzt_ident.report.page import environment as page_environment
@@ -32,6 +33,8 @@ from pzt_ident.run.place import HERE, Place
 if TYPE_CHECKING:
     from jinja2 import Environment
     from markupsafe import Markup
+
+    Figures = Mapping[str | None, list[tuple[Plate, Markup]]]  # by their sections
 
 MOST_PAGES = 500
 MOST_LINES = 2000
@@ -56,15 +59,15 @@ def write_fleet_report(folder: Path, *, place: Place = HERE, listen: Listen = no
         raise InputError("draws on this machine", where="fleet report", remedy="write --on local:N")
     lot = read_lot(folder)
     write_table(folder, [Device(row["device"], {}, row["columns"]) for row in lot.rows])
-    draw_pages(lot, place, listen)
+    undrawn = draw_pages(lot, place, listen)
     for plate in plates(lot):
         write_plate(plate, COLUMN, ("svg", "pdf"), folder / "figures")
     drawn = figures(lot, lambda plate: write_plate(plate, PAGE, ("svg", "pdf"), folder / "figures")["svg"])
-    write_text(folder / "report.html", page(lot, drawn))
+    write_text(folder / "report.html", page(lot, drawn, undrawn=undrawn))
     return folder / "report.html"
 
 
-def figures(lot: Lot, draw: Callable[[Plate], bytes]) -> dict[str | None, list[tuple[Plate, Markup]]]:
+def figures(lot: Lot, draw: Callable[[Plate], bytes]) -> Figures:
     """The figures of the page by their sections. draw: a plate as SVG."""
     sections: dict[str | None, list[tuple[Plate, Markup]]] = {}
     for plate in plates(lot):
@@ -72,15 +75,14 @@ def figures(lot: Lot, draw: Callable[[Plate], bytes]) -> dict[str | None, list[t
     return sections
 
 
-def draw_pages(lot: Lot, place: Place, listen: Listen) -> None:
-    """The page of each device that needs one; a device whose results cannot be drawn has none."""
+def draw_pages(lot: Lot, place: Place, listen: Listen) -> list[str]:
+    """Draw the page of each device that needs one; returns a sentence for each that cannot be drawn, which is told."""
     shown = [row["device"] for row in lot.done]
     if len(shown) > MOST_PAGES:
         outside = {finding.device for finding in lot.findings}
         shown = [row["device"] for row in lot.done if row["device"] in outside or row["verdict"] != "adequate"]
         shown = shown[:MOST_PAGES]
-    folders = [folder_of(lot.folder, name) for name in shown]
-    stale = [path for path in folders if not is_drawn(path)]
+    stale = {name: path for name in shown if not is_drawn(path := folder_of(lot.folder, name))}
     drawn = 0
 
     def tell(done: int) -> None:
@@ -91,8 +93,12 @@ def draw_pages(lot: Lot, place: Place, listen: Listen) -> None:
         drawn += 1
         tell(drawn)
 
-    if stale:
-        place.run_all(draw_page, (), ((str(path), (path,)) for path in stale), nobody, note)
+    tasks = ((name, (path,)) for name, path in stale.items())
+    failed = place.run_all(draw_page, (), tasks, nobody, note) if stale else {}
+    sentences = [f"{name} has no page: {in_a_line(failed[name])}" for name in stale if name in failed]
+    for sentence in sentences:
+        listen({"event": "undrawn", "said": sentence})
+    return sentences
 
 
 def is_drawn(folder: Path) -> bool:
@@ -112,11 +118,12 @@ def draw_page(tell: Any, folder: Path) -> None:
             write_report(results, static=False)
 
 
-def page(lot: Lot, figures: Mapping[str | None, list[tuple[Plate, Markup]]], served: Served | None = None) -> str:
-    """The report, or, where it is `served`, the same with the devices on one screen with what is said of them."""
+def page(lot: Lot, figures: Figures, served: Served | None = None, undrawn: Sequence[str] = ()) -> str:
+    """The report, or, where it is `served`, the same with the devices on one screen with what is said of them. undrawn:
+    why devices have no page."""
     from markupsafe import Markup
 
-    said = [*map(served.worded, findings(lot))] if served else [*unfinished(lot), *findings(lot)]
+    said = [*map(served.worded, findings(lot))] if served else [*unfinished(lot), *undrawn, *findings(lot)]
     outside, quantities = far(lot), [quantity_line(lot, item) for item in lot.quantities]
     names = [name for row in lot.done for name in row["effects"]] + [line[0] for line in quantities]
     script = files("pzt_ident.lot").joinpath("lot.js").read_text(encoding="utf-8")
@@ -141,6 +148,8 @@ def page(lot: Lot, figures: Mapping[str | None, list[tuple[Plate, Markup]]], ser
             figures=figures,
             quantities=quantities,
             header=header(lot),
+            tables=tables_in(lot.folder),
+            for_parquet=FOR_PARQUET,
             lines=list(device_lines(lot)),
             page_of={row["device"]: page_of(lot, row["device"]) for row in lot.rows},
         )

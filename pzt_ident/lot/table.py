@@ -12,13 +12,15 @@ from urllib.parse import quote
 
 from pzt_ident.data.units import factor, same_kind
 from pzt_ident.errors import DamagedError
-from pzt_ident.files import read_sealed, replaced, write_sealed
+from pzt_ident.files import check_digest, damaged, read_sealed, replaced, write_sealed
 from pzt_ident.lot.devices import Device, Value
 
 if TYPE_CHECKING:
     import pandas as pd
 
 Row = dict[str, Any]
+CSV, PARQUET = "devices.csv", "devices.parquet"
+FOR_PARQUET = "pip install 'pzt-ident[parquet]'"
 LONGEST = 120  # characters of a folder's name
 RMSE = {"rmse": "{} RMSE", "rmse_improved": "improved {} RMSE"}
 
@@ -32,13 +34,27 @@ def folder_of(fleet: Path, name: str) -> Path:
     return fleet / "devices" / (f"%2E{safe[1:]}" if safe.startswith(".") else safe)
 
 
-def read_row(folder: Path) -> Row | None:
-    """The row of a device; None where its folder holds none that is whole."""
-    try:
-        row = read_sealed(folder / "device.json")
-    except DamagedError:
-        return None
-    return row if {"device", "key", "state", "reason"} <= set(row) else None
+def read_row(folder: Path) -> Row:
+    """The row of a device. Raises DamagedError where its folder holds none that is whole."""
+    return read_sealed(folder / "device.json", "device", "key", "state", "reason")
+
+
+def check_whole(folder: Path, row: Row) -> None:
+    """Raises DamagedError where a file of a device that was done is not as it was written."""
+    for name, digest in row.get("written", {}).items():
+        check_digest(folder / name, digest)
+
+
+def has_parquet() -> bool:
+    """Whether a table is written as Parquet, too."""
+    return find_spec("pyarrow") is not None
+
+
+def tables_in(folder: Path) -> list[str]:
+    """The files of the table of a fleet; of one that has none yet those that it will have."""
+    if (folder / CSV).exists():
+        return [name for name in (CSV, PARQUET) if (folder / name).exists()]
+    return [CSV, *[PARQUET] * has_parquet()]
 
 
 def write_devices(folder: Path, devices: Sequence[Device]) -> None:
@@ -47,21 +63,40 @@ def write_devices(folder: Path, devices: Sequence[Device]) -> None:
     write_sealed(folder / "devices.json", {"devices": listed})
 
 
+def read_devices(folder: Path) -> dict[str, dict[str, Value]]:
+    """What is known of each device, by its name. Raises DamagedError where `devices.json` does not say."""
+    devices = read_sealed(folder / "devices.json", "devices")["devices"]
+    try:
+        return {device["device"]: dict(device["columns"]) for device in devices}
+    except (KeyError, TypeError, ValueError):
+        raise damaged(folder / "devices.json", "lists no devices") from None
+
+
+def some(names: Sequence[str], most: int = 5) -> str:
+    """Names in a sentence, the first of them where there are many."""
+    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")
+
+
 def write_table(folder: Path, devices: Sequence[Device]) -> None:
     """Write the devices, and the table as it is by now."""
     write_devices(folder, devices)
     frame = frame_of(rows_of(folder, {device.name: device.columns for device in devices}))
-    with replaced(folder / "devices.csv") as path:
-        frame.to_csv(path, index=False, lineterminator="\n")
-    if find_spec("pyarrow"):
-        with replaced(folder / "devices.parquet") as path:
+    if has_parquet():
+        with replaced(folder / PARQUET) as path:
             frame.to_parquet(path, index=False, engine="pyarrow")
+    else:
+        (folder / PARQUET).unlink(missing_ok=True)  # an older one would say otherwise than the CSV
+    with replaced(folder / CSV) as path:
+        frame.to_csv(path, index=False, lineterminator="\n")
 
 
 def rows_of(folder: Path, known: dict[str, Any]) -> Iterator[Row]:
     """The row of each device with its columns; one that was not begun is `not done`."""
     for name, columns in known.items():
-        row = read_row(folder_of(folder, name)) or {"device": name, "state": "not done", "reason": ""}
+        try:
+            row = read_row(folder_of(folder, name))
+        except DamagedError:
+            row = {"device": name, "state": "not done", "reason": ""}
         yield row | {"columns": columns}
 
 
@@ -118,18 +153,26 @@ def line_of(row: Row, units: dict[str, str]) -> dict[str, Value]:
     """What was found, under its headings. units: that of each quantity so far, which the row adds to."""
     line: dict[str, Value] = {"device": row["device"], "state": row["state"]}
     if row["state"] != "done":
-        return line | {"reason": row["reason"]}
+        return line | {"sha256": row.get("sha256") or None, "reason": row["reason"]}
     line |= {"verdict": row["verdict"], "effects": ", ".join(row["effects"]), "suspects": ", ".join(row["suspects"])}
     for key, heading in RMSE.items():
         for use, value in (row[key] or {}).items():
             line |= _cell(heading.format(use), "", value, row["unit"], units)
     line |= _cell("noise floor", "", row["noise_floor"], row["unit"], units)
     for name, parameter in row["parameters"].items():
-        for end in ("value", "low", "high"):
-            line |= _cell(name, "" if end == "value" else f" {end}", parameter[end], parameter["unit"], units)
-        line[f"{name} verdict"] = parameter["verdict"]
+        line |= _interval(name, parameter, units) | {f"{name} verdict": parameter["verdict"]}
+    for name, parameter in row.get("improved", {}).items():
+        line |= _interval(f"improved {name}", parameter, units)
     folder = folder_of(Path(), row["device"]).as_posix()
     return line | {"cpu [s]": row["cpu_seconds"], "sha256": row["sha256"], "folder": folder, "reason": row["reason"]}
+
+
+def _interval(name: str, parameter: Row, units: dict[str, str]) -> dict[str, Value]:
+    """The cells of a parameter: its value and the ends of its interval."""
+    line: dict[str, Value] = {}
+    for end in ("value", "low", "high"):
+        line |= _cell(name, "" if end == "value" else f" {end}", parameter[end], parameter["unit"], units)
+    return line
 
 
 def _cell(name: str, end: str, value: float | None, unit: str, units: dict[str, str]) -> dict[str, Value]:

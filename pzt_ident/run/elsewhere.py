@@ -17,7 +17,7 @@ from pzt_ident.job.schema import Job
 from pzt_ident.run.events import Listen, nobody
 from pzt_ident.run.folder import read_environment, read_job
 from pzt_ident.run.improve import begin_task, diagnose, improve
-from pzt_ident.run.place import Place
+from pzt_ident.run.place import HERE, Place
 from pzt_ident.run.pool import Tell
 from pzt_ident.run.start import file_of, read_start
 
@@ -99,11 +99,14 @@ def is_whole(folder: Path) -> bool:
         return False
 
 
-def begin_again(folder: Path, listen: Listen = nobody, plugins: bool = False) -> Path:
+def begin_again(
+    folder: Path, listen: Listen = nobody, plugins: bool = False, place: Place = HERE, start: Path | None = None
+) -> Path:
     """An improvement or a diagnosis that did not come to its end, from its beginning, beside what is there until it is
-    done. Raises InputError where the folder holds none."""
+    done. start: a fit to go on from instead of the one that it began with; from that it is sought anew where it came to
+    its end, too. Raises InputError where the folder holds none."""
     task = read_environment(folder)["task"]
-    if is_whole(folder):
+    if start is None and is_whole(folder):
         listen({"event": "finished"})
         return folder
     job = Job.from_text(read_job(folder), folder, str(folder / "job.yaml"), plugins)
@@ -111,8 +114,8 @@ def begin_again(folder: Path, listen: Listen = nobody, plugins: bool = False) ->
     shutil.rmtree(new, ignore_errors=True)
     if task["name"] not in TASKS:
         raise InputError(f"was begun with {task['name']!r}", where=str(folder), remedy="start it anew")
-    start = task.get("start")
-    TASKS[task["name"]](job, new, listen, task.get("budget"), start and Path(start))
+    before = task.get("start")
+    sought_at(place, task["name"], job, new, listen, task.get("budget"), start or (before and Path(before)))
     names = (path.relative_to(new).as_posix() for path in new.rglob("*") if path.is_file())
     for name in sorted(names, key=end_last):
         (folder / name).parent.mkdir(exist_ok=True)

@@ -15,6 +15,7 @@ from pzt_ident.data.record import Record
 from pzt_ident.errors import InputError
 from pzt_ident.files import damaged, read_sealed, write_json, write_text
 from pzt_ident.job.schema import Job
+from pzt_ident.run.alone import LOCK
 
 PACKAGES = ("pzt-ident", "numpy", "scipy", "numba", "pandas", "pyswarms", "deap", "cma")
 
@@ -50,9 +51,11 @@ def make_empty(folder: Path, text: str) -> None:
 
 
 def _is_left(path: Path, text: str) -> bool:
-    """Whether a file is of a beginning that was killed: the job, or what was to become a file."""
+    """Whether a file is of a beginning that was killed: the job, its lock, or what was to become a file."""
     if path.name == "job.yaml":
         return path.is_file() and path.read_bytes() == text.encode("utf-8", "backslashreplace")
+    if path.name == LOCK:
+        return True
     return path.name.startswith((".job.yaml.", ".environment.json.", ".fleet.json.")) and path.suffix == ".tmp"
 
 

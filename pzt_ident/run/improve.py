@@ -65,7 +65,7 @@ def begin_task(
 ) -> tuple[Statement, Path]:
     """What the job states, and its folder, with the job and with what it takes to begin again."""
     statement, folder = Statement(job, records), results_folder(job, out)
-    settings = {"name": task, "budget": budget, "start": start and str(start)}
+    settings = {"name": task, "budget": budget, "start": start and str(start.resolve())}
     begin(folder, job, edited(job, job.effects, folder), statement.records, settings)
     return statement, folder
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.signals import Trace, read_traces
 from pzt_ident.errors import DamagedError, InputError
-from pzt_ident.files import damaged, digest_of, read_sealed
+from pzt_ident.files import check_digest, read_sealed
 
 History = dict[str, NDArray[Any]]
 
@@ -165,7 +165,7 @@ class Files:
         """The losses generation by generation; none where the file is damaged."""
         path = self.path("history.csv")
         try:
-            _check_digest(path, digests)
+            _check(path, digests)
             return read_history(path)
         except ValueError as error:
             self.damages.append(
@@ -184,7 +184,7 @@ class Files:
     def signals(self, digests: Mapping[str, str]) -> Path:
         """Raises InputError where there are none, DamagedError where they are not as they were written."""
         path = self.path("signals.nc")
-        _check_digest(path, digests)
+        _check(path, digests)
         return path
 
 
@@ -195,9 +195,9 @@ def read_history(path: Path) -> History:
     return {name: values if name == "optimizer" else values.astype(float) for name, values in columns.items()}
 
 
-def _check_digest(path: Path, digests: Mapping[str, str]) -> None:
-    if digests and digest_of(path) != digests.get(path.name):
-        raise damaged(path, "is not as it was written")
+def _check(path: Path, digests: Mapping[str, str]) -> None:
+    if digests:
+        check_digest(path, digests.get(path.name))
 
 
 def read_results(folder: Path) -> Results:

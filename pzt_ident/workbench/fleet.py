@@ -17,14 +17,14 @@ from pzt_ident.files import write_text
 from pzt_ident.job.edit import edited
 from pzt_ident.job.schema import load_job
 from pzt_ident.lot.outcome import Lot, read_lot
-from pzt_ident.lot.table import folder_of
+from pzt_ident.lot.table import CSV, PARQUET, folder_of
 from pzt_ident.workbench.session import Session
 from pzt_ident.workbench.wording import in_page_words
 
 SEEN = ("fleet.json", "devices.json", "devices")  # what changes in the folder of a fleet as it goes on
 DRAWN_ANEW = 20  # times what a drawing took, after which the figures of a running fleet are drawn again
 STYLES = {"report": ("plots.css",), "workbench": ("fleet.css",)}
-GIVEN = ("devices.csv", "devices.parquet", "job.yaml")
+GIVEN = (CSV, PARQUET, "job.yaml")
 NOT_OF_THE_RUN = ignore_patterns("improved", "device.json", "report.html", "figures", "tables")
 
 

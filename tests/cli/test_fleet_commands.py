@@ -44,6 +44,11 @@ def test_resume_goes_on_with_a_fleet(out, tmp_path):
     assert json.loads(ended.stdout)["done"] == 2
 
 
+def test_a_fleet_starts_from_no_other_fit(out):
+    ended = call("resume", out, "--from", out)
+    assert ended.exit_code == 2 and "--from is for a run" in ended.stderr
+
+
 def test_report_of_a_fleet(out):
     ended = call("fleet", "report", out, "--json", "--workers", "1")
     assert json.loads(ended.stdout)["report"] == str(out / "report.html")

@@ -25,7 +25,9 @@ def test_malformed_files(tmp_path):
 
 
 def test_power_cuts(tmp_path):
-    assert not wrong(kills.cuts(range(1), 77, tmp_path))
+    cases = list(kills.cuts(range(1), 77, tmp_path))
+    assert not wrong(cases)
+    assert [case.came for case in cases] == ["resumed"] * len(kills.COMMANDS)
 
 
 def test_the_same_measurement_in_other_words(tmp_path):

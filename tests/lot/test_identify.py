@@ -2,27 +2,36 @@
 
 import json
 import os
+import platform
 import shutil
 import signal
 import subprocess
 import sys
 import time
+from html import unescape
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
 from experiments.fleet.lot import BROKEN, write_lot
+from experiments.trust.essence import differences, essence
 from lot.conftest import DEVICES
-from pzt_ident.errors import InputError
+from pzt_ident.errors import InputError, LostError
 from pzt_ident.files import read_sealed, write_sealed
 from pzt_ident.job.schema import load_job
 from pzt_ident.lot.identify import fleet, resume
 from pzt_ident.lot.outcome import read_lot
+from pzt_ident.lot.report import page
 from pzt_ident.model.registry import blocks
+from pzt_ident.run.alone import LOCK
 from pzt_ident.run.identify import run
 from pzt_ident.run.place import Local, place_of
 
+DAMAGES = {
+    "emptied": lambda path: path.write_bytes(b""),
+    "garbled": lambda path: path.write_bytes(path.read_bytes()[:-9] + b"x" + path.read_bytes()[-8:]),
+}
 CLOCK = ["cpu [s]"]
 SAID = {
     "empty": "the file is empty",
@@ -66,10 +75,50 @@ def test_the_table_has_what_is_known_and_what_was_found(lot, identified):
     assert first["noise floor [um]"] > 0
     assert len(first["sha256"]) == 64
     assert (identified[0] / first["folder"] / "result.json").is_file()
+    broken = frame[frame.state == "broken"].set_index("device")
+    has_hash = {kinds(lot)[name]: isinstance(value, str) for name, value in broken["sha256"].items()}
+    assert has_hash == dict.fromkeys(BROKEN, True) | {"missing": False}
+    assert frame["sha256"].nunique() == DEVICES - 1
     parquet = pd.read_parquet(identified[0] / "devices.parquet")
     assert list(parquet.columns) == list(pd.read_csv(identified[0] / "devices.csv").columns)
     assert set(frame.columns) >= {"serial", "temperature [K]", "date", "batch"}
     assert parquet["temperature [K]"].tolist() == pd.read_csv(lot / "lot.csv")["temperature [K]"].tolist()
+
+
+def test_the_hash_is_that_of_all_files_of_a_device(lot, identified, tmp_path):
+    copy, out = copied(lot, identified, tmp_path)
+    before = table(out).set_index("device")["sha256"]
+    broken = next(name for name, kind in kinds(lot).items() if kind == "gap")
+    whole = next(name for name, kind in kinds(lot).items() if kind not in BROKEN)
+    for name in (broken, whole):
+        with (copy / "lot" / name / "tones.csv").open("a") as file:
+            file.write("\n")
+    resume(out, place=Local(1))
+    after = table(out).set_index("device")["sha256"]
+    assert set(after.index[after.ne(before) & after.notna()]) == {broken, whole}
+
+
+def test_a_table_keeps_types_for_whoever_reads_parquet(identified):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    types = {field.name: str(field.type) for field in parquet.read_schema(identified[0] / "devices.parquet")}
+    assert types["temperature [K]"] == types["bouc_wen.gain low [um/V]"] == "double"
+    assert types["device"].endswith("string") and types["verdict"].endswith("string")
+
+
+def test_without_pyarrow_the_table_is_csv_and_how_to_get_the_other_is_said_once(lot, identified, tmp_path, monkeypatch):
+    _, out = copied(lot, identified, tmp_path)
+    monkeypatch.setattr("pzt_ident.lot.table.find_spec", lambda name: None)
+    events = []
+    resume(out, place=Local(1), listen=events.append)
+    (said,) = [event["said"] for event in events if event["event"] == "table"]
+    assert said.endswith("pip install 'pzt-ident[parquet]'")
+    assert not (out / "devices.parquet").exists()
+    text = page(read_lot(out), {})
+    assert (
+        "devices.parquet" not in text
+        and said.rpartition(" that needs ")[2] in unescape(text)
+        and 'href="devices.csv"' in text
+    )
 
 
 def test_a_device_is_as_if_identified_alone(identified, tmp_path):
@@ -117,7 +166,40 @@ def test_what_was_done_is_not_done_again_unless_data_or_job_changed(lot, identif
     assert again == {*done, mended}
 
 
-def test_a_fleet_killed_hard_goes_on_to_the_same_table(lot, identified, tmp_path):
+FILES = ("device.json", "result.json", "signals.nc", "history.csv", "job.yaml")
+"""Of a device."""
+
+
+@pytest.mark.parametrize("damage", ["emptied", "garbled", "gone"])
+def test_a_damaged_device_is_identified_again_and_that_is_said(lot, identified, tmp_path, damage):
+    out, events = shutil.copytree(identified[0], tmp_path / "out"), []
+    done = [row["device"] for row in read_lot(out).done]
+    hurt = {out / "devices" / name / file: name for name, file in zip(done, FILES, strict=False)}
+    for path in hurt:
+        DAMAGES.get(damage, lambda path: path.unlink())(path)
+    again = done_again(out, lambda: resume(out, place=Local(1), listen=events.append))
+    assert again == set(hurt.values())
+    said = [event["said"] for event in events if event["event"] == "damaged"]
+    assert [sentence.partition(" is damaged: it ")[0] for sentence in said] == [str(path) for path in hurt]
+    assert all(sentence.endswith("; the device is identified again") for sentence in said)
+    assert differences(essence(identified[0]), essence(out)) == []
+    assert done_again(out, lambda: resume(out, place=Local(1))) == set()
+
+
+def test_a_device_that_is_gone_is_left_out_and_that_is_said(lot, identified, tmp_path):
+    copy, out = copied(lot, identified, tmp_path)
+    events, stated = [], read_sealed(out / "fleet.json")
+    write_sealed(out / "fleet.json", stated | {"patterns": [f"{copy}/lot/*/"]})
+    names = [row["device"] for row in read_lot(out).rows]
+    for name in names[:2]:
+        shutil.rmtree(copy / "lot" / name)
+    resume(out, place=Local(1), listen=events.append)
+    (said,) = [event["said"] for event in events if event["event"] == "gone"]
+    assert said.startswith(f"{names[0]}, {names[1]} are no devices any more") and str(out / "devices") in said
+    assert sorted(table(out)["device"]) == names[2:]
+
+
+def test_a_fleet_killed_hard_goes_on_to_the_same_results_bit_for_bit(lot, identified, tmp_path):
     out = tmp_path / "out"
     command = ["fleet", str(lot / "job.yaml"), str(lot / "lot.csv"), "--out", str(out), "--on", "local:1", "--quiet"]
     process = subprocess.Popen([sys.executable, "-m", "pzt_ident", *command], start_new_session=True)
@@ -127,27 +209,58 @@ def test_a_fleet_killed_hard_goes_on_to_the_same_table(lot, identified, tmp_path
     os.killpg(process.pid, signal.SIGKILL)
     process.wait()
     assert not (out / "devices.csv").exists()
+    assert f"process {process.pid} on" in (out / LOCK).read_text()
     resume(out, place=Local(2))
-    pd.testing.assert_frame_equal(table(out), table(identified[0]))
+    assert differences(essence(identified[0]), essence(out)) == []
     assert not list(out.rglob(".new"))
 
 
-def test_the_same_table_on_a_cluster_of_which_a_worker_is_killed(lot, identified, tmp_path):
+def test_the_same_results_bit_for_bit_on_a_cluster_of_which_a_worker_or_the_scheduler_is_lost(
+    lot, identified, tmp_path
+):
     pytest.importorskip("distributed")
     from experiments.fleet.cluster import TCP
 
     cluster = TCP(workers=2)
+
+    def on_cluster(out, lost, after):
+        def listen(event):
+            if event["event"] == "devices" and event["done"] == after:
+                lost.kill()
+
+        fleet(job, [str(lot / "lot.csv")], out, place=place_of(cluster.address), listen=listen)
+
+    job, whole, broken_off = load_job(lot / "job.yaml"), tmp_path / "out", tmp_path / "lost"
     try:
-
-        def kill_one(event):
-            if event["event"] == "devices" and event["done"] == 2:
-                cluster.workers[0].kill()
-
-        job, out = load_job(lot / "job.yaml"), tmp_path / "out"
-        fleet(job, [str(lot / "lot.csv")], out, place=place_of(cluster.address), listen=kill_one)
+        on_cluster(whole, cluster.workers[0], 2)
+        with pytest.raises(LostError, match="scheduler"):
+            on_cluster(broken_off, cluster.scheduler, 3)
     finally:
         cluster.end()
-    pd.testing.assert_frame_equal(table(out), table(identified[0]))
+    assert differences(essence(identified[0]), essence(whole)) == []
+    states = pd.read_csv(broken_off / "devices.csv").set_index("device")["state"]
+    assert 3 <= list(states).count("done") < DEVICES - len(BROKEN)
+    resume(broken_off, place=Local(1))
+    assert differences(essence(identified[0]), essence(broken_off)) == []
+
+
+def test_a_second_fleet_in_one_folder_is_refused_while_the_first_is_at_work(lot, tmp_path):
+    command = [sys.executable, "-m", "pzt_ident", "fleet", str(lot / "job.yaml"), str(lot / "lot.csv"), "--quiet"]
+    refused = []
+
+    def listen(event):
+        if event["event"] == "devices" and event["done"] == 1 and not refused:
+            refused.append(subprocess.run([*command, "--out", str(out)], capture_output=True, text=True))
+            with pytest.raises(InputError) as second:
+                resume(out)
+            refused.append(second)
+
+    job, out = load_job(lot / "job.yaml"), tmp_path / "out"
+    fleet(job, [str(lot / "lot.csv")], out, place=Local(1), listen=listen)
+    said = f"{out}: process {os.getpid()} on {platform.node()} is at work in this folder\n  wait until"
+    assert refused[0].returncode == 2 and refused[0].stderr.startswith(f"Error: {said}")
+    assert str(refused[1].value).startswith(said)
+    assert list(table(out)["state"]).count("done") == DEVICES - len(BROKEN)
 
 
 def test_names_that_no_file_system_takes(lot, tmp_path):
@@ -208,3 +321,16 @@ def test_each_device_is_diagnosed_where_that_is_asked(tmp_path):
         improved = load_job(out / row["folder"] / "improved" / "improved.yaml")
         assert all((improved.folder / source.file).is_file() for source in improved.records)
         assert row["improved identify RMSE [um]"] <= row["identify RMSE [um]"] * 1.01
+        steps = read_sealed(out / row["folder"] / "improved" / "improvement.json")["steps"]
+        for parameter, found in steps[-1]["parameters"].items():
+            at = f"improved {parameter}{{}} [{found['unit']}]"
+            half, middle = found["standard_error"], row[at.format("")]
+            if half is None:
+                assert pd.isna(row[at.format(" low")]) and pd.isna(row[at.format(" high")])
+            else:
+                assert row[at.format(" low")] == pytest.approx(middle - 1.96 * half, rel=1e-9, abs=1e-12)
+                assert row[at.format(" high")] == pytest.approx(middle + 1.96 * half, rel=1e-9, abs=1e-12)
+            assert middle == pytest.approx(found["value"], rel=1e-9)
+        known = {heading.split(" [")[0] for heading in row.dropna().index if heading.startswith("improved ")}
+        assert {f"improved {parameter}" for parameter in steps[-1]["parameters"]} <= known
+        assert any(heading.startswith("improved quadratic_gain.") for heading in known) == (kind == "quadratic_gain")

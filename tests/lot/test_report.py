@@ -87,6 +87,19 @@ def test_pages_are_drawn_once(page):
     assert {path: path.stat().st_mtime_ns for path in times} == times
 
 
+def test_a_device_whose_page_cannot_be_drawn_is_named_with_the_reason_and_the_others_are_drawn(page, tmp_path):
+    out, events = shutil.copytree(page.parent, tmp_path / "out"), []
+    first, second, *_ = (row["device"] for row in read_lot(out).done)
+    for name in (first, second):
+        (out / "devices" / name / "report.html").unlink()
+    (out / "devices" / first / "signals.nc").write_bytes(b"")
+    text = write_fleet_report(out, place=Local(1), listen=events.append).read_text(encoding="utf-8")
+    (said,) = [event["said"] for event in events if event["event"] == "undrawn"]
+    assert said.startswith(f"{first} has no page: ") and "signals.nc: is damaged" in said and "\n" not in said
+    assert f"<li>{first} has no page: " in text and f'href="devices/{first}/report.html"' not in text
+    assert (out / "devices" / second / "report.html").exists()
+
+
 def test_an_unfinished_fleet_has_a_report(identified, tmp_path):
     out = shutil.copytree(identified[0], tmp_path / "out")
     lot = read_lot(out)

@@ -2,16 +2,21 @@
 
 import json
 import shutil
+from pathlib import Path
 
 import pytest
+from click.testing import CliRunner
 
 from experiments.fleet.lot import write_lot
+from pzt_ident.cli.commands import main
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import load_job
 from pzt_ident.model.registry import blocks
+from pzt_ident.run import elsewhere
 from pzt_ident.run.elsewhere import begin_again, end_last, is_whole, sought_at, task_of
-from pzt_ident.run.folder import make_empty
-from pzt_ident.run.place import HERE, place_of
+from pzt_ident.run.folder import make_empty, read_environment
+from pzt_ident.run.improve import begin_task
+from pzt_ident.run.place import HERE, Local, place_of
 
 
 @pytest.fixture(scope="module")
@@ -52,17 +57,66 @@ def test_the_same_improvement_and_diagnosis_on_a_cluster(job, here, tmp_path):
     assert (diagnosed / "diagnosis.json").read_bytes() == found.read_bytes()
 
 
-def test_an_improvement_that_was_killed_is_begun_again(here, tmp_path):
-    out = shutil.copytree(here, here.with_name("killed"))
+class Away:
+    """A place that shares no disk with this process, in this process."""
+
+    shares_disk = False
+
+    def __init__(self):
+        self.tasks = []
+
+    def run_all(self, entry, common, tasks, tell, done):
+        for name, arguments in tasks:
+            self.tasks.append(arguments)
+            done(name, entry(tell, *common, *arguments))
+        return {}
+
+
+def killed(whole, tmp_path):
+    """The folder of an improvement, as a kill ahead of its end leaves it."""
+    out = shutil.copytree(whole, whole.with_name(tmp_path.name))
     for name in ("diagnosis.json", "residuals.json", "signals.nc"):
         (out / name).unlink()
     content = json.loads((out / "improvement.json").read_text()) | {"verdict": "unfinished"}
     (out / "improvement.json").write_text(json.dumps(content))
-    begin_again(out)
+    return out
+
+
+def test_an_improvement_that_was_killed_is_begun_again_at_any_place(here, tmp_path):
+    out, place = killed(here, tmp_path), Away()
+    begin_again(out, place=place)
     assert (out / "improvement.json").read_bytes() == (here / "improvement.json").read_bytes()
+    assert [arguments[0] for arguments in place.tasks] == ["improve"]
+    for source in load_job(out / "improved.yaml").records:
+        assert (out / source.file).is_file()
     events = []
-    begin_again(out, events.append)
+    begin_again(out, events.append, place=place)
     assert events == [{"event": "finished"}]
+
+
+@pytest.mark.parametrize("task", ["improve", "diagnose"])
+@pytest.mark.parametrize("ended", [False, True])
+def test_resume_heeds_where_and_from_what(here, tmp_path, monkeypatch, task, ended):
+    out, asked = shutil.copytree(here, tmp_path / "out") if ended else killed(here, tmp_path), []
+    environment = json.loads((out / "environment.json").read_text())
+    environment["task"] |= {"name": task}
+    (out / "environment.json").write_text(json.dumps(environment))
+
+    def sought_at(place, task, job, new, listen, budget, start):
+        asked.append((place, task, start))
+        return shutil.copytree(here, new)
+
+    monkeypatch.setattr(elsewhere, "sought_at", sought_at)
+    words = ["resume", str(out), "--on", "local:3", "--from", str(here), "--no-report", "--quiet"]
+    ran = CliRunner().invoke(main, words)
+    assert ran.exit_code == 0, ran.output
+    assert asked == [(Local(3), task, here)]
+
+
+def test_what_it_began_from_is_found_from_any_working_folder(job, here, tmp_path, monkeypatch):
+    monkeypatch.chdir(here.parent)
+    begin_task(job, tmp_path / "out", 1.0, Path(here.name))
+    assert read_environment(tmp_path / "out")["task"]["start"] == str(here)
 
 
 def test_an_improvement_is_whole_only_with_all_of_its_files_as_written(here, tmp_path):

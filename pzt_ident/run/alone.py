@@ -1,0 +1,53 @@
+"""A folder of results is written by one process at a time."""
+
+from __future__ import annotations
+
+import errno
+import os
+import platform
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO
+
+from pzt_ident.errors import InputError
+
+LOCK = ".lock"
+HELD = (errno.EAGAIN, errno.EACCES, errno.EDEADLK)
+FAR = 2**30  # beyond the text of the file, which others read
+
+
+@contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """No other process that asks for it works in the folder meanwhile. The system frees it where this one is killed.
+
+    Raises InputError where another one does, and names it.
+    """
+    with (folder / LOCK).open("a+", encoding="utf-8") as file:
+        if not taken(file):
+            file.seek(0)
+            holder = file.read().strip() or "another process"
+            remedy = "wait until it has ended, or give another folder with --out"
+            raise InputError(f"{holder} is at work in this folder", where=str(folder), remedy=remedy)
+        file.truncate(0)
+        file.write(f"process {os.getpid()} on {platform.node()}\n")
+        file.flush()
+        yield
+
+
+def taken(file: IO[str]) -> bool:
+    """Whether this process has the file for itself; it is not asked for where the file system has no locks."""
+    try:
+        if sys.platform == "win32":
+            import msvcrt
+
+            file.seek(FAR)
+            msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
+        else:
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        return error.errno not in HELD
+    return True
