@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from pzt_ident.data.notation import listed
 from pzt_ident.diagnosis.candidates import TIE, strangers
 from pzt_ident.diagnosis.criteria import DECISIVE, beyond_form, form_of_others, near_noise, reaches_noise, removed_rms
@@ -73,8 +75,8 @@ def unproven(
     Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may stand
     in for what is not in the catalogue: they must also remove together as much of the misfit as given as if the first
     removed ENOUGH of all records, or DECISIVE where the identification records are at the noise, and EACH of either
-    kind of them, and each of the others half of the rest, and each the share ALONE beside the others; or each of
-    several the share BESIDE. None may have rivals that fit as well and are not its look-alikes: what any effect takes
+    kind of them, and each of the others half of the rest, and each the share ALONE beside the others; of several that
+    leave more than that each must remove more in proportion, up to BESIDE. None may have rivals that fit as well and are not its look-alikes: what any effect takes
     up is not that of one. And none may have a shape that ended on a bound, as a cyclic error whose pitch is as long as
     the stroke: it stands for what it is like there.
     """
@@ -82,8 +84,7 @@ def unproven(
     while added := now.effects[len(first.effects) :]:
         suspected = [suspect(case, first, now, effect, rivals.get(effect, ()), known) for effect in added]
         least = least_of(case, suspected)
-        together = remove_enough_together(case, first, now, len(added))
-        enough = least.share >= (ALONE if together else BESIDE) and (together or len(added) > 1)
+        enough = least.share >= least_share(left_of_allowed(case, first, now, len(added)), len(added))
         decisive = enough and not least.strangers and not least.limits
         if least.beyond_form and (decisive or near_noise(case, first, now)):
             break
@@ -104,14 +105,22 @@ def least_of(case: Case, suspected: Sequence[Suspect]) -> Suspect:
     return min(equal, key=lambda item: (item.without.freedom, item.rank))
 
 
-def remove_enough_together(case: Case, first: Fit, now: Fit, effects: int) -> bool:
-    """Whether a fit removes as much of the misfit as given as so many effects must: of all records together, and of
-    the identification and of the validation records."""
+def left_of_allowed(case: Case, first: Fit, now: Fit, effects: int) -> float:
+    """What a fit leaves of the misfit as given, in multiples of what so many effects may leave: of all records
+    together, or of the identification or of the validation records, whichever is more."""
     one, rest = DECISIVE if reaches_noise(case, first, now) else ENOUGH, (1 - DECISIVE) ** (effects - 1)
     of_all = share_explained(first.total, now.total, case.floor)
     both = [(first.identify, now.identify), (first.validate, now.validate)]
     least = min(share_explained(before, after, case.floor) for before, after in both if before and after)
-    return of_all >= 1 - (1 - one) * rest and least >= 1 - (1 - EACH) * rest
+    return max((1 - of_all) / (1 - one), (1 - least) / (1 - EACH)) / rest
+
+
+def least_share(left: float, effects: int) -> float:
+    """The share that each of so many effects must remove beside the others: ALONE where no more is left than allowed,
+    in proportion more of several that leave more, and no more than BESIDE. None suffices of a single one."""
+    if effects == 1 and left > 1:
+        return np.inf
+    return min(ALONE * max(left, 1.0), BESIDE)
 
 
 def suspect(

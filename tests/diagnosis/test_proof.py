@@ -67,8 +67,8 @@ def test_what_takes_up_less_than_a_third_of_a_rest_is_a_suspect(taken_out):
 def test_one_removes_three_quarters_of_what_there_was_and_two_together_seven_eighths(taken_out):
     assert taken_out(of(a=15.0, none=30.0)) == []
     assert taken_out(of(a=15.1, none=30.0)) == ["a"]
-    assert taken_out(of(ab=10.6, a=15.2, b=15.5, none=30.0)) == []
-    assert taken_out(of(ab=10.7, a=15.2, b=15.5, none=30.0)) == ["b", "a"]
+    assert taken_out(of(ab=10.6, a=13.0, b=13.5, none=30.0)) == []
+    assert taken_out(of(ab=10.7, a=13.0, b=13.5, none=30.0)) == ["b"]
 
 
 @pytest.mark.parametrize(
@@ -101,9 +101,17 @@ def test_above_the_noise_what_has_the_shape_of_its_limit_on_all_axes_is_a_suspec
     assert taken_out(seen, first=300.0, shapes={"a": places, "b": [0.5]}) == suspects
 
 
-def test_two_thirds_beside_the_others_are_enough_however_much_all_remove_together(taken_out):
-    assert taken_out(of(ab=20.0, a=34.6, b=35.0, none=40.0), first=40.0) == ["b", "a"]
-    assert taken_out(of(ab=20.0, a=34.7, b=35.0, none=40.0), first=40.0) == []
+@pytest.mark.parametrize(("left", "share"), [(0.125, 1 / 3), (0.15, 0.4), (0.2, 8 / 15), (0.25, 2 / 3), (0.35, 2 / 3)])
+def test_of_two_that_leave_more_each_must_remove_more_beside_the_other_up_to_two_thirds(taken_out, left, share):
+    given = 400.0
+
+    def errors(removed):
+        both = given * left**0.5
+        alone = both / (1 - removed) ** 0.5
+        return of(ab=both, a=alone, b=1.02 * alone, none=given)
+
+    assert taken_out(errors(share + 0.01), first=given) == []
+    assert taken_out(errors(share - 0.01), first=given)[:1] == ["b"]
 
 
 def test_what_a_model_at_the_noise_has_is_needed_if_the_form_of_the_others_would_not_leave_as_much(taken_out):
