@@ -19,6 +19,7 @@ STRETCH = 64  # samples: shorter windows are quiet together, since one alone is 
 MOST = 200  # windows of a length: more are not looked at
 ROUGHER = 2.0  # times its signals a remainder may be, since not all noise has a memory of first order
 LEAST = 8  # quiet stretches or windows: fewer are chance
+DEPENDENT = 1e-6  # of the largest singular value: columns of less are one
 TYPICAL = 8  # windows whose bases stand for all
 
 
@@ -71,7 +72,7 @@ def remainder(signals: list[Signal], length: int, with_drives: bool) -> Remainde
         basis = np.concatenate([np.broadcast_to(basis, (len(courses), *basis.shape[1:])), courses], axis=2)
     if not len(responses) or basis.shape[2] >= length:
         return None
-    basis = np.linalg.qr(basis)[0]
+    basis = directions_of(basis)
     noise = (responses - basis @ (basis.swapaxes(1, 2) @ responses))[..., 0]
     powers = np.square(noise).sum(axis=1)
     stretch = max(1, STRETCH // length)
@@ -87,6 +88,14 @@ def remainder(signals: list[Signal], length: int, with_drives: bool) -> Remainde
     memory = memory_of(alike / power, typical)
     left = expected_products(typical, memory)[0] / len(typical)
     return Remainder(float(np.sqrt(power / left)), memory, left / length)
+
+
+def directions_of(columns: Array) -> Array:
+    """Orthonormal directions of columns, (windows, samples, columns), with zeros in the place of those that rounding
+    alone would make: where a drive only rises, its path is the drive."""
+    norms = np.linalg.norm(columns, axis=1, keepdims=True)
+    directions, sizes, _ = np.linalg.svd(columns / np.where(norms, norms, 1.0), full_matrices=False)
+    return np.where((sizes > DEPENDENT * sizes[:, :1])[:, None, :], directions, 0.0)
 
 
 def windows(signals: list[Signal], length: int, rows: list[Array]) -> tuple[Array, Array]:

@@ -36,6 +36,16 @@ def test_any_quantiser_adds_its_own(step, seed):
     assert found(readings, SINE, floor) == pytest.approx(np.hypot(1, floor), rel=0.15)
 
 
+@given(seed=st.integers(0, 1000), unit=st.sampled_from([1e-3, 1e3, 0.3]))
+@settings(deadline=None, max_examples=20)
+def test_a_unit_of_the_drive_changes_no_digit(seed, unit):
+    """While a drive rises, its path is the drive: what is left of one without the other is rounding."""
+    response = 20 * lagging(TRIANGLE) + white(6000, seed=seed)
+    for length in (16, 32, 64):
+        left, told = (remainder([Signal(u * TRIANGLE[None], response, 1e-3)], length, True) for u in (1, unit))
+        assert told == pytest.approx(left, rel=1e-9)
+
+
 @given(memory=st.floats(0, 0.7), seed=st.integers(0, 1000))
 @settings(deadline=None, max_examples=30)
 def test_noise_with_any_memory_counts_as_a_whole(memory, seed):
