@@ -8,6 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.data.record import Record
+from pzt_ident.model.chain import Entry
+
 if TYPE_CHECKING:
     from pzt_ident.engine.simulator import Simulator
 
@@ -32,13 +35,12 @@ class Amounts:
     def __init__(self, simulator: Simulator, settled: float = SETTLED, near: Array | float = 0.0) -> None:
         self.simulator, self.settled, self.near = simulator, settled, near
         model, record = simulator.model, simulator.record
-        signals = [record.drive if entry.parameter.unit == "drive" else record.response for entry in model.amounts]
-        axes = [entry.axis for entry in model.amounts]
-        sizes = [max(np.ptp(signal[axis]), abs(signal[axis]).max()) for signal, axis in zip(signals, axes, strict=True)]
+        sizes = [size_of(record, entry) for entry in model.amounts]
         bounds = np.array([entry.parameter.bounds for entry in model.amounts]).reshape(-1, 2)
         self._low, self._high = bounds.T * np.array(sizes)
         self._widths = WIDTH * (self._high - self._low)
-        self._scales = 1 / np.maximum(np.ptp(record.response[list(model.measured)], axis=1), 1e-300)
+        spans = np.ptp(record.response[list(model.measured), record.settle :], axis=1)
+        self._scales = 1 / np.where(spans > 0, spans, 1)
         self._known: dict[bytes, Array] = {}  # amounts of the candidates that were asked for last
 
     def beside(self, simulator: Simulator, held: Held) -> Amounts:
@@ -116,6 +118,15 @@ class Amounts:
         rows = {axis: [k for k, entry in enumerate(model.amounts) if entry.axis == axis] for axis in model.measured}
         directions = {axis: changes[rows[axis], i] for i, axis in enumerate(model.measured)}
         return Held(complete[0, theta.shape[1] :], directions)
+
+
+def size_of(record: Record, entry: Entry) -> float:
+    """What the bounds of an amount are multiples of: the drive's span or largest value, or the span of the response
+    that is scored, the zero of which means nothing."""
+    if entry.parameter.unit == "drive":
+        drive = record.drive[entry.axis]
+        return float(max(np.ptp(drive), np.abs(drive).max()))
+    return float(np.ptp(record.response[entry.axis, record.settle :]))
 
 
 class Held(NamedTuple):
