@@ -27,6 +27,7 @@ HELPERS = {
     for word, sign in (("min", "<"), ("max", ">"))
     for end, kind in (("", "real"), ("_exact", "double"), ("_long", "long"))
 }
+NOTHING = "(void)t;"  # the body of a function that no block is in
 
 
 def files(identified: Identified, precision: str = "double", inverse: bool = True) -> dict[str, str]:
@@ -109,7 +110,7 @@ class CModel:
             "functions": functions,
             "kernels": kernels,
             "init": [line for step in exported.steps for line in self.init(step)],
-            "advance": [self.call(step) for step in exported.steps],
+            "advance": [self.call(step) for step in exported.steps] or [NOTHING],
             "uses_dt": any(given.is_dt for step in exported.steps for given in exported.givens(step)),
             "delays": self.delays(),
             **self.signals(),
@@ -126,7 +127,7 @@ class CModel:
         material = [self.call(step) for step in self.exported.steps if step.operation in chosen]
         sizes = [identified.scale(axis) for axis in range(self.exported.axes)]
         return {
-            "inverse": facts | {"material": material or ["(void)t;"]},
+            "inverse": facts | {"material": material or [NOTHING]},
             "references": [
                 f"asked[{a}] = reference[{i}] * {self.number(sizes[a][1])};" for i, a in enumerate(identified.outputs)
             ],
