@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
@@ -63,17 +63,17 @@ def score_all(case: Case, first: Fit, before: Fit, scorer: Scorer, in_every_form
         scored = before is first or case.budget.allows("the scores of all effects", share)
         return scorer.scores(word, in_every_form) if scored else []
 
-    def score(some: Sequence[str], in_every_form: bool) -> None:
-        scored = side_by_side(partial(scores_of, in_every_form=in_every_form), some)
-        for word, scores in zip(some, scored, strict=True):
+    def scored(some: Sequence[str], in_every_form: bool) -> Iterator[str]:
+        for scores in side_by_side(partial(scores_of, in_every_form=in_every_form), some):
             if scores:
-                candidates[word] = Candidate.of(scores)
-                facts = {"effect": word, "explained": candidates[word].score.explained}
-                case.on_event({"event": "scored", **facts, "done": len(candidates), "of": len(words)})
+                candidates[word_of(scores[0].effect)] = Candidate.of(scores)
+                yield word_of(scores[0].effect)
 
-    score(words, False)
-    if in_every_form and not (before is not first and adequate(case, first, before)):
-        score(worth_other_forms(candidates), True)
+    for done, word in enumerate(scored(words, False), 1):
+        facts = {"effect": word, "explained": candidates[word].score.explained}
+        case.on_event({"event": "scored", **facts, "done": done, "of": len(words)})
+    if in_every_form and (before is first or not adequate(case, first, before)):
+        list(scored(worth_other_forms(candidates), True))
     return list(candidates.values())
 
 
