@@ -72,13 +72,13 @@ def unproven(
 ) -> list[Suspect]:
     """The effects to be taken out again, the least first. known: other fits of the case.
 
-    Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may stand
-    in for what is not in the catalogue: they must also remove together as much of the misfit as given as if the first
-    removed ENOUGH of all records, or DECISIVE where the identification records are at the noise, and EACH of either
-    kind of them, and each of the others half of the rest, and each the share ALONE beside the others; of several that
-    leave more than that each must remove more in proportion, up to BESIDE. None may have rivals that fit as well and are not its look-alikes: what any effect takes
-    up is not that of one. And none may have a shape that ended on a bound, as a cyclic error whose pitch is as long as
-    the stroke: it stands for what it is like there.
+    Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may
+    stand in for what is not in the catalogue: they must also remove together as much of the misfit as given as if the
+    first removed ENOUGH of all records, or DECISIVE where the identification records are at the noise, and EACH of
+    either kind of them, and each of the others half of the rest, and each the share ALONE beside the others; of
+    several that leave more than that each must remove more in proportion, up to BESIDE. None may have rivals that fit
+    as well and are not its look-alikes: what any effect takes up is not that of one. And none may have a shape that
+    ended on a bound, as a cyclic error whose pitch is as long as the stroke: it stands for what it is like there.
     """
     suspects: list[Suspect] = []
     while added := now.effects[len(first.effects) :]:
