@@ -57,12 +57,12 @@ class Simulator:
         near.amounts, near.additions = held, Additions(self._program, held.directions)
         return near
 
-    def beginning(self, held: Held) -> Simulator:
+    def begun_at(self, held: Held) -> Simulator:
         """The simulator whose amounts are sought from those that are held."""
-        beginning = copy(self)
+        begun = copy(self)
         if isinstance(self.amounts, Amounts):
-            beginning.amounts = self.amounts.beside(beginning, held)
-        return beginning
+            begun.amounts = self.amounts.beside(begun, held)
+        return begun
 
     def rough(self) -> Simulator:
         """The simulator whose amounts end as soon as they tell points from each other; those that are held do."""
@@ -125,20 +125,20 @@ class Simulator:
 
     def squares(self, theta: Array) -> Array:
         """Sum of squared errors over the scored samples, without the free offset: (candidates, measured axes)."""
-        return self._squares(np.atleast_2d(theta))[0]
+        return self.sure_squares(theta) if self.model.additions else self._sums_of_squares(np.atleast_2d(theta))[0]
 
     def sure_squares(self, theta: Array) -> Array:
         """The same; where the sums of the samples have less than half of their digits, from the errors themselves."""
         theta = np.atleast_2d(theta)
-        if self.additions.follow:
+        if self.substeps > 1 or self.additions.follow:
             return squares(self, theta)
-        squared, sure = self._squares(theta)
+        squared, sure = self._sums_of_squares(theta)
         if not sure.all():
             squared[~sure] = squares(self, theta[~sure])
         return squared
 
-    def _squares(self, theta: Array) -> tuple[Array, NDArray[np.bool_]]:
-        """Those of `squares`, and of which candidates rounding leaves enough digits."""
+    def _sums_of_squares(self, theta: Array) -> tuple[Array, NDArray[np.bool_]]:
+        """Those of `squares` as the kernel sums them up, and of which candidates rounding leaves enough digits."""
         from pzt_ident.engine.kernel import WIDTH
 
         if self.substeps > 1:
@@ -153,10 +153,7 @@ class Simulator:
         table = sums.reshape(-1, len(self.model.measured), self._each, WIDTH).transpose(0, 3, 1, 2)
         table = fewer.of_candidates(table.reshape(-1, *table.shape[2:])[: len(fewer.theta)])
         if self.model.additions:
-            squared, sure = self.additions.squares(table, self.scored)
-            if not sure.all():
-                squared[~sure] = squares(self, theta[~sure])
-            return squared, np.ones_like(sure)
+            return self.additions.squares(table, self.scored)
         with np.errstate(invalid="ignore", over="ignore"):  # overflows only where the sum of squares does
             squared = table[:, :, 1] - (table[:, :, 0] / np.sqrt(self.scored)) ** 2
             sure = ~(squared < SURE * table[:, :, 1]).any(axis=1)

@@ -97,7 +97,7 @@ def steps(
     loss = problem.best(point[None], point, squares)[1]
     movable = np.arange(point.size) != held
     while 0 < loss < np.inf and going():
-        problem = problem.beginning(point)
+        problem = problem.begun_at(point)
         jacobian, residual = (part / loss for part in problem.equations(point, central=False))
         gradient, curvature = jacobian.T @ residual, jacobian.T @ jacobian
         moves = np.clip(bounded_steps(point, gradient, curvature, DAMPINGS, movable), -FARTHEST, FARTHEST)

@@ -177,10 +177,10 @@ class Problem(Cube):
         """The problem whose amounts of the records follow to first order; itself without any."""
         return self._with_amounts(Simulator.near, held)
 
-    def beginning(self, point: Array) -> Problem:
+    def begun_at(self, point: Array) -> Problem:
         """The problem whose amounts of the records are sought from those of a point, which takes fewer steps beside it;
         itself without any."""
-        return self._with_amounts(Simulator.beginning, self.held(point)) if self.model.amounts else self
+        return self._with_amounts(Simulator.begun_at, self.held(point)) if self.model.amounts else self
 
     def _with_amounts(self, changed: Callable[[Simulator, Held], Simulator], held: tuple[Held, ...]) -> Problem:
         if not held:

@@ -142,20 +142,20 @@ def test_points_are_ranked_with_amounts_that_follow_to_first_order():
 def test_beside_a_candidate_they_are_sought_from_its_own_and_are_those_from_zero():
     made, measured = made_up(noise=1e-8)
     simulator, theta = Simulator(made, measured), TRUTH + 0.02 * (near_truth(5) - TRUTH)
-    beginning = simulator.beginning(simulator.held(TRUTH))
-    np.testing.assert_allclose(beginning.amounts.near, settled(made, measured)[0], rtol=1e-12)
-    np.testing.assert_allclose(beginning.squares(theta), simulator.squares(theta), rtol=1e-4)
+    begun = simulator.begun_at(simulator.held(TRUTH))
+    np.testing.assert_allclose(begun.amounts.near, settled(made, measured)[0], rtol=1e-12)
+    np.testing.assert_allclose(begun.squares(theta), simulator.squares(theta), rtol=1e-4)
 
 
 def test_what_was_settled_last_is_not_settled_again(monkeypatch):
     made, measured = made_up(noise=1e-8)
     simulator, theta = Simulator(made, measured), near_truth(2)
     complete = simulator.amounts.complete(theta)
-    beginning = simulator.beginning(simulator.held(theta[:1]))
+    begun = simulator.begun_at(simulator.held(theta[:1]))
     monkeypatch.setattr(Amounts, "_solved", None)
-    np.testing.assert_array_equal(beginning.amounts.complete(theta[1:]), complete[1:])
+    np.testing.assert_array_equal(begun.amounts.complete(theta[1:]), complete[1:])
 
 
 def test_without_any_a_problem_begins_as_it_is():
     problem = Problem(model("bouc_wen"), [record(50 * np.abs(np.sin(2 * t)), response=1e-6 * np.sin(2 * t)[None])])
-    assert problem.beginning(np.full(problem.dimensions, 0.5)) is problem
+    assert problem.begun_at(np.full(problem.dimensions, 0.5)) is problem

@@ -35,7 +35,7 @@ class Linear:
     def equations(self, point, central=True):
         return self.matrix, self.residual(point)
 
-    def beginning(self, point):
+    def begun_at(self, point):
         return self
 
     def best(self, points, near, squares=None):

@@ -19,7 +19,7 @@ class Toy:
     def loss(self, points):
         return np.linalg.norm(self.residuals(points), axis=1)
 
-    def beginning(self, point):
+    def begun_at(self, point):
         return self
 
     def best(self, points, near, squares=None):
