@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from pzt_ident.diagnosis import misfit
 from pzt_ident.diagnosis.projection import Projection, Sets, Split
 from pzt_ident.diagnosis.refit import Case, Fit
-from pzt_ident.diagnosis.trials import ShapesByAxis, Trial, parameter_grid
+from pzt_ident.diagnosis.trials import MOST_SHAPES, ShapesByAxis, Trial, parameter_grid, planned_trials, trials_beside
 from pzt_ident.model.block import Block, Coupling, Term
 from pzt_ident.model.registry import blocks, word_of
 from pzt_ident.search.problem import Problem
@@ -30,7 +30,6 @@ LEAST_TRACE = 1e-9  # of the residual: less is rounding
 LEAST_SCORE = 0.02  # of the misfit: an effect that scores less is not refitted
 KEPT = 4  # scorers
 MANY_TRIALS = 50  # values of the shape parameters
-MOST_SHAPES = 12  # beside which others are tried
 AS_GOOD, MOST_GUESSES = 0.9, 4  # of the share explained by the best guess of a disturbance; guesses that are kept
 
 
@@ -141,10 +140,12 @@ class Scorer:
         clearest: Split | None = None
         guesses, tried = list[dict[str, float]](), list[tuple[float, Trial]]()
         by_axis, counts = ShapesByAxis(self.projection, problem, self.left), blocks[effect].trials
-        plans: list[Iterable[Trial]] = [self._planned_trials(effect, problem, counts, near)]
+        known = self.fit.values
+        plans: list[Iterable[Trial]] = [planned_trials(effect, problem, known, counts, near)]
         if has_many_trials(blocks[effect]) and not near:
             one_by_one = {word: count if count == max(counts.values()) else 1 for word, count in counts.items()}
-            plans = [self._planned_trials(effect, problem, one_by_one), self._beside(effect, problem, tried)]
+            first = planned_trials(effect, problem, known, one_by_one)
+            plans = [first, trials_beside(effect, problem, known, tried)]
         for trials, sets in chain.from_iterable(self._trials(problem, plan) for plan in (*plans, by_axis)):
             for number, trial in enumerate(trials):
                 traces = sets.traces[number]
@@ -211,33 +212,6 @@ class Scorer:
                 traces -= self.residual
                 sets = self.projection.split_sets(self.split, traces, count)
                 yield [trial for trial, kept in zip(batch, whole, strict=True) if kept], sets
-
-    def _beside(self, effect: str, problem: Problem, tried: list[tuple[float, Trial]]) -> Iterator[Trial]:
-        """Trials beside the best of those that were tried with one value of all shape parameters but one."""
-        best = sorted(tried, key=itemgetter(0))[:MOST_SHAPES]
-        known = {trial.start.tobytes() for _, trial in tried}
-        shapes = [trial.shape(problem) for _, trial in best]
-        trials = self._planned_trials(effect, problem, blocks[effect].trials, shapes) if best else iter(())
-        return (trial for trial in trials if trial.start.tobytes() not in known)
-
-    def _planned_trials(
-        self, effect: str, problem: Problem, tried: Mapping[str, int], near: Sequence[Mapping[str, float]] = ()
-    ) -> Iterator[Trial]:
-        """A trial for each value of the shape parameters, see `parameter_grid`, and each size. tried: how many values
-        of each."""
-        new = [i for i, name in enumerate(problem.names) if name not in self.fit.problem.names]
-        nulls = {i: problem.model.entries[problem.free[i]].parameter.null for i in new}
-        words = {i: problem.model.entries[problem.free[i]].word for i in new}
-        amplitudes = [i for i in new if nulls[i] is not None and words[i] not in tried]
-        shapes = [i for i in new if i not in amplitudes]
-        known = self.fit.values
-        start = np.array([known.get(name, nulls.get(i) or 0) for i, name in enumerate(problem.names)], float)
-        bounds = np.where(problem.upper != start, problem.upper, problem.lower)[amplitudes]
-        full_steps = bounds - start[amplitudes]
-        for values in parameter_grid(problem, shapes, tried, near):
-            start[shapes] = values
-            for size in blocks[effect].sizes:
-                yield Trial(size, start.copy(), amplitudes, shapes, size * full_steps)
 
     def _residuals(self, problem: Problem, physical: Array) -> Array:
         """(candidates, samples) at points (candidates, free) in the user's units."""

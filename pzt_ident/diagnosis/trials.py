@@ -5,16 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
+from operator import itemgetter
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.diagnosis.projection import Projection, Split
+from pzt_ident.model.registry import blocks
 from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
 
 ROUNDING = 1e-9  # of a step
+MOST_SHAPES = 12  # beside which others are tried
 TRIALS = 5  # values over the range of a parameter that means nothing at the null
 
 
@@ -88,6 +91,42 @@ class ShapesByAxis:
             start[columns] = trial.start[columns]
         for size in sorted({trial.size for trial in trials}):
             yield replace(trials[0], size=size, start=start, steps=trials[0].steps * size / trials[0].size)
+
+
+def planned_trials(
+    effect: str,
+    problem: Problem,
+    known: Mapping[str, float],
+    counts: Mapping[str, int],
+    near: Sequence[Mapping[str, float]] = (),
+) -> Iterator[Trial]:
+    """A trial for each value of the shape parameters of an effect, see `parameter_grid`, and each size. known: the
+    values of the other parameters, by name. counts: how many values of a parameter are tried, by its word."""
+    new = [i for i, name in enumerate(problem.names) if name not in known]
+    entries = {i: problem.model.entries[problem.free[i]] for i in new}
+    nulls = {i: entry.parameter.null for i, entry in entries.items()}
+    amplitudes = [i for i in new if nulls[i] is not None and entries[i].word not in counts]
+    shapes = [i for i in new if i not in amplitudes]
+    start = np.array([known.get(name, nulls.get(i) or 0) for i, name in enumerate(problem.names)], float)
+    bounds = np.where(problem.upper != start, problem.upper, problem.lower)[amplitudes]
+    full_steps = bounds - start[amplitudes]
+    for values in parameter_grid(problem, shapes, counts, near):
+        start[shapes] = values
+        for size in blocks[effect].sizes:
+            yield Trial(size, start.copy(), amplitudes, shapes, size * full_steps)
+
+
+def trials_beside(
+    effect: str, problem: Problem, known: Mapping[str, float], tried: Sequence[tuple[float, Trial]]
+) -> Iterator[Trial]:
+    """The planned trials beside the best of those that were tried when the first is asked for, less these. tried: what
+    each leaves, and the trial."""
+    best = sorted(tried, key=itemgetter(0))[:MOST_SHAPES]
+    starts = {trial.start.tobytes() for _, trial in tried}
+    shapes = [trial.shape(problem) for _, trial in best]
+    if shapes:
+        trials = planned_trials(effect, problem, known, blocks[effect].trials, shapes)
+        yield from (trial for trial in trials if trial.start.tobytes() not in starts)
 
 
 def parameter_grid(

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 import stage
+from pzt_ident.diagnosis import score as scoring
 from pzt_ident.diagnosis.refit import Case, refit, refit_from
 from pzt_ident.diagnosis.score import KEPT, Scorer, applicable, fitting_forms, scorer_of, squared_misfit
 from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.diagnosis.trials import planned_trials
 from pzt_ident.job.sections import Setting
 from pzt_ident.model.registry import blocks
 
@@ -156,7 +158,7 @@ def test_every_axis_has_its_own_amounts_and_its_own_line():
     case = stage.beside(stage.case(stage.EFFECTS["creep"]), stage.case(stage.EFFECTS["creep"]))
     scorer = Scorer(case, first_fit(case, 0))
     assert scorer.score("creep").explained > 0.9
-    assert len(list(scorer._planned_trials("creep", case.problem(("creep",)), blocks["creep"].trials))) <= 36
+    assert len(list(planned_trials("creep", case.problem(("creep",)), scorer.fit.values, blocks["creep"].trials))) <= 36
 
 
 @pytest.mark.parametrize("dt", [1e-6, 1e-3, 1.0])
@@ -175,7 +177,9 @@ def test_other_forms_of_an_effect_with_many_shapes_are_tried_where_the_first_exp
     scorer = Scorer(case, first_fit(case, 0))
     first, other, _ = scorer.scores("encoder_cyclic_error")
     problem, tried = case.problem((other.effect,)), blocks[other.effect].trials
-    counts = [len(list(scorer._planned_trials(other.effect, problem, tried, near))) for near in ((), first.shapes)]
+    counts = [
+        len(list(planned_trials(other.effect, problem, scorer.fit.values, tried, near))) for near in ((), first.shapes)
+    ]
     assert 0 < counts[1] < counts[0] / 4
     assert other.explained == pytest.approx(scorer.score(other.effect).explained, rel=1e-9)
 
@@ -188,11 +192,27 @@ def test_no_mode_is_tried_above_all_sampling_rates():
         problem = case.problem(("resonance",))
         column = problem.names.index("resonance.frequency")
         frequencies = [
-            trial.start[column] for trial in scorer._planned_trials("resonance", problem, blocks["resonance"].trials)
+            trial.start[column]
+            for trial in planned_trials("resonance", problem, scorer.fit.values, blocks["resonance"].trials)
         ]
         assert bool(frequencies) == tried
         assert max(frequencies, default=0) <= 1 / dt
         assert (scorer.score("resonance").power > 0) == tried
+
+
+@pytest.mark.parametrize("frequency", [31.0, 63.0, 140.0])
+@pytest.mark.parametrize("damping", [0.004, 0.03, 0.2])
+def test_a_mode_scores_as_if_all_its_shapes_were_tried(frequency, damping, monkeypatch):
+    """Frequencies are tried with one damping first, and beside the best of them with all."""
+    mode = {"resonance.share": 0.1, "resonance.frequency": frequency, "resonance.damping": damping}
+    random = np.random.default_rng(4).uniform(0, 60, (2, 1500))
+    drives = [np.convolve(np.repeat(steps, 4)[:1500], np.ones(3) / 3, "same") for steps in random]
+    records = stage.records(mode, drives, dt=1e-3, effects=("resonance",))
+    case = Case(("bouc_wen",), (), records, {})
+    fit = first_fit(case, 0)
+    found = Scorer(case, fit).score("resonance")
+    monkeypatch.setattr(scoring, "MANY_TRIALS", 1000)
+    assert found.explained > 0.99 * Scorer(case, fit).score("resonance").explained > 0
 
 
 @pytest.mark.parametrize("pitches", [(2.0, 5.0), (4.1, 1.7)])

@@ -303,6 +303,17 @@ def test_a_rival_of_another_kind_is_one_as_long_as_it_fits_as_well_beside_what_w
     assert steps[1].tied == left
 
 
+def test_what_scores_far_less_than_an_effect_is_not_refitted_in_its_place(monkeypatch):
+    """The effect explains 80 % by its score, so what explains less than 24 % cannot take its place."""
+    explained = {"creep": 0.8, "drift": 0.25, "sensor_lag": 0.23, "delay": 0.0}
+    scorer = SimpleNamespace(score=lambda item: Score(item, explained[item]))
+    now, without = SimpleNamespace(effects=("creep",), identify=2.0), SimpleNamespace(effects=())
+    monkeypatch.setattr(exchange, "refit", lambda case, before, effects, guess: without)
+    monkeypatch.setattr(exchange, "scorer_of", lambda case, fit: scorer)
+    monkeypatch.setattr(exchange, "refit_beside", lambda case, fits, effects, guess, rival: effects)
+    assert exchange.fits_in_place(None, now, "creep", ["drift", "sensor_lag", "delay"]) == [("drift",)]
+
+
 def ending(identify, total, parameters=3):
     return SimpleNamespace(identify=identify, total=total, freedom=parameters)
 
