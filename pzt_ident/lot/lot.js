@@ -41,11 +41,24 @@ function rowsOf({ quantity, low, below }) {
 function choose(bar) {
   const rows = rowsOf(bar.dataset), link = rows[0]?.querySelector("a");
   if (bar.dataset.count === "1" && link) return link.click();
-  chosen = { ...bar.dataset, said: bar.getAttribute("aria-label") };
+  chosen = saidBy(bar);
   arrange();
   const button = document.querySelector("#chosen");
   button.scrollIntoView({ block: "nearest" });
   button.focus();
+}
+
+function saidBy(bar) {
+  return { ...bar.dataset, said: bar.getAttribute("aria-label") };
+}
+
+/** Where the bars were drawn anew with other ends, choose the one that is where the chosen one was. */
+function follow() {
+  const bars = [...document.querySelectorAll(BAR)];
+  if (!chosen || bars.some(isChosen)) return;
+  const holds = ({ dataset: { quantity, low, below } }) => quantity === chosen.quantity && Number(low) <= Number(chosen.low) && Number(chosen.low) < Number(below);
+  const successor = bars.find(holds);
+  if (successor) chosen = saidBy(successor);
 }
 
 function isChosen({ dataset }) {
@@ -113,5 +126,8 @@ document.addEventListener("input", ({ target }) => {
   typed = target.value;
   arrange();
 });
-document.addEventListener("redrawn", arrange);
+document.addEventListener("redrawn", () => {
+  follow();
+  arrange();
+});
 arrange();

@@ -9,6 +9,10 @@ from browser.conftest import faults_of, workbenches
 from experiments.fleet.lot import write_lot
 
 DEVICES = 6
+ALL_IN_BARS = """(devices) => {
+  const bars = [...document.querySelectorAll("[aria-label='Devices by bouc_wen.gain'] [data-below]")];
+  return bars.reduce((sum, { dataset }) => sum + Number(dataset.count), 0) === devices;
+}"""
 
 
 @pytest.fixture(scope="module")
@@ -31,6 +35,7 @@ def lot(browsing, folder):
         page.click("#identify-lot")
         expect(page.locator("#table-devices tbody tr")).to_have_count(DEVICES - 1)
         expect(page.locator("#live progress")).to_be_hidden()
+        page.wait_for_function(ALL_IN_BARS, arg=DEVICES - 1, timeout=120_000)  # drawn after the table
         yield page
 
 
@@ -77,6 +82,22 @@ def test_a_bar_shows_its_devices_in_the_table_by_key(lot):
     expect(lot.locator("#chosen")).to_be_focused()
     lot.keyboard.press("Enter")
     expect(rows).to_have_count(DEVICES - 1)
+    expect(bar).to_be_focused()
+
+
+def test_a_bar_that_is_drawn_with_other_ends_stays_chosen(lot):
+    """As where a device more moves the ends of all bars."""
+    bar = lot.locator("[aria-label='Devices by bouc_wen.gain'] [data-below]:not([data-count='1'])").first
+    bar.focus()
+    lot.keyboard.press("Enter")
+    expect(lot.locator("#chosen")).to_be_focused()
+    lot.evaluate("""() => {
+      for (const bar of document.querySelectorAll("[data-below]"))
+        for (const end of ["low", "below"]) bar.dataset[end] *= 1 - 1e-6;
+      document.dispatchEvent(new Event("redrawn"));
+    }""")
+    expect(bar).to_have_attribute("aria-pressed", "true")
+    lot.keyboard.press("Enter")
     expect(bar).to_be_focused()
 
 
