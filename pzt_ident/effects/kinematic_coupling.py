@@ -1,7 +1,7 @@
 """Displacement of another axis that the sensor of one axis sees."""
 
 from pzt_ident.model.block import Coupling, Place
-from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
 
@@ -13,6 +13,7 @@ class KinematicCoupling(Coupling):
     """
 
     place = Place.OUTPUT
+    form = Form("displacement", ("displacement", "voltage"), "What moves the other axis as the sensor sees it.")
     ratio = Parameter("1", (-5, 5), "Share of the other axis' displacement in this axis' reading.", null=0)
     look_alikes = ("cross_coupling",)
     separate_by = (
@@ -26,3 +27,18 @@ class KinematicCoupling(Coupling):
 
     def step(y, other, ratio):
         return y + ratio * other
+
+
+class OfVoltage(KinematicCoupling):
+    """The other axis follows its voltage without hysteresis, as under charge control or in closed loop, and is as fast
+    as this one: y1 <- M1 (f1 + d1 ratio u2) with the mechanics M1 of axis 1.
+
+    Yong, Moheimani, Kenton & Leang (2012), Rev. Sci. Instrum. 83, 121101. It is the equation of a coupling by voltage
+    (`cross_coupling.voltage`).
+    """
+
+    place = Place.READOUT
+    ratio = Parameter("1", (-5, 5), "Share of the other axis, moving by its voltage, in this axis' reading.", null=0)
+
+
+KinematicCoupling.forms = {"voltage": OfVoltage}

@@ -56,7 +56,7 @@ class Chain:
         given: Collection[str] = (),
     ) -> None:
         chain = [block for block in blocks if not issubclass(block, Term | Addition)]
-        self.blocks = tuple(sorted(chain, key=lambda block: block.place))
+        self.blocks = tuple(sorted(chain, key=lambda block: (block.place, issubclass(block, Coupling))))
         self.additions = tuple(block for block in blocks if issubclass(block, Addition))
         self.listed_terms = tuple(block for block in blocks if issubclass(block, Term))
         self._listed = {item for block in self.listed_terms for item in (block.name, block.item())}

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import lin_lin
-from rig import response, triangle
+from pzt_ident.engine.simulator import simulate
+from rig import candidates, model, record, response, triangle
 
 CHAIN = ("bouc_wen", "cross_coupling", "lumped")
 RATIOS = {"x.cross_coupling.ratio": -0.046, "y.cross_coupling.ratio": 0.054}
@@ -27,6 +28,25 @@ def test_displacement_of_another_axis_comes_with_its_hysteresis():
     both, one = response(CHAIN, known, x, y), response(CHAIN, known, x, 0 * y)
     other = response(CHAIN, known | {"y.cross_coupling.ratio": 0.0}, 0 * x, y)[1]
     np.testing.assert_allclose(both[0] - one[0], known["x.cross_coupling.ratio"] * other, rtol=0, atol=3e-5)
+
+
+@pytest.mark.parametrize("word", ["amplitude_gain.running", "creep.voltage", "quadratic_gain", "saturation"])
+def test_voltage_of_another_axis_is_no_voltage_of_this_one(word):
+    """What acts on an axis' own voltage leaves the other's alone, whichever the job lists first."""
+    x, y = triangle(130), triangle(90)
+    chain = ["cross_coupling.voltage", word]
+    made, other_way = model(*chain), model(*chain[::-1])
+    theta = candidates(made, np.array([x, y]), 1, seed=3)
+    for entry, value in zip(made.entries, theta.T, strict=True):
+        value[:] = entry.parameter.null if entry.axis == 1 and entry.parameter.null is not None else value
+    theta[:, made.names.index("x.cross_coupling.ratio")] = 0.05
+    alone = theta.copy()
+    alone[:, made.names.index("x.cross_coupling.ratio")] = 0
+    drives = record(x, y)
+    both, without = simulate(made, drives, theta)[0, 0], simulate(made, drives, alone)[0, 0]
+    order = [made.names.index(name) for name in other_way.names]
+    np.testing.assert_array_equal(simulate(other_way, drives, theta[:, order])[0, 0], both)
+    np.testing.assert_allclose(both - without, 0.05 * y, rtol=0, atol=1e-9 * np.ptp(both))
 
 
 def test_the_axis_that_is_pushed_rings_at_its_own_frequency():

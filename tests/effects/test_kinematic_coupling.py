@@ -31,3 +31,13 @@ def test_an_axis_at_rest_shows_the_ringing_of_the_other():
     spectrum = np.abs(np.fft.rfft((x - x[-1]) * np.hanning(x.size)))
     natural = np.sqrt(9e7 / 0.1) / (2 * np.pi)
     assert np.argmax(spectrum) / (1e-5 * x.size) == pytest.approx(natural, rel=0.01)
+
+
+def test_an_axis_without_hysteresis_is_read_as_its_voltage_would_push():
+    """The equations are one: with the same mechanics, what moves with a voltage cannot be told from what it pushes."""
+    known = {"kinematic_coupling.ratio": 0.03, "cross_coupling.ratio": 0.03}
+    known = {f"{axis}.{word}": value for axis in "xy" for word, value in (known | MECHANICS).items()}
+    drives = triangle(10), triangle(8, cycles=2, points=750)
+    read = response(["lumped", "kinematic_coupling.voltage"], known, *drives)
+    np.testing.assert_array_equal(read, response(["lumped", "cross_coupling.voltage"], known, *drives))
+    assert np.ptp(read[0] - response(["lumped"], known, *drives)[0]) == pytest.approx(0.03 * 8, rel=1e-3)

@@ -29,6 +29,8 @@ optimizers:
   - {name: least_squares, budget: 60}
 """
 
+EVERY_WORD = [*blocks, *optimizers]  # is loaded before any is taken back
+
 
 @pytest.fixture
 def folder(tmp_path):
