@@ -9,8 +9,8 @@ from pzt_ident.engine.native import compiling_time
 
 LEAST = 60.0  # s, of CPU
 PER_SAMPLE = 1e-3  # s
-BEHIND = 0.1  # of the budget: a descent that is then still far above a rival is given up
-BESIDE = 0.35  # of the budget: other effects beside one that explains nearly all, but for a second one, get no more
+BEHIND = 0.05  # of the budget: a descent that is then still behind a rival is given up
+BESIDE = 0.35  # of the budget: other effects beside one that explains most, but for a second one, get no more
 EXPLORING = 0.7  # of the budget: the rest is for proving what was found
 PROVING = 0.9  # of the budget: ties, intervals and what promises to explain most of what is left get no more
 WHOLE = 1.0  # of the budget: fits end there, settled or not

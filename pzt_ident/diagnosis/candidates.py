@@ -20,6 +20,7 @@ TIE = 0.2  # noise floors between two refits: less does not distinguish them; of
 TWIN = 1e-3  # noise floors: two models that fit as closely are one on these data
 LOOK_ALIKE_TIE = 0.01  # of the total RMSE: less does not distinguish refits of look-alikes far above the noise
 FORM_GAIN = 0.02  # of the misfit, by which another form of an effect explains more than the first one
+PROMISING = 0.75  # of the misfit: what an effect explains by its score, so that it is tried ahead of anything else
 NEARLY_ALL = 0.9  # of the misfit: what explains as much may be a look-alike of what is missing, in another form
 LIMIT_TIE = 0.1  # of the total RMSE, by which a look-alike may be worse than an effect that rests on its own bounds
 LOOK_ALIKE_STARTS = 8  # starts of a look-alike's own parameters
@@ -85,10 +86,10 @@ def worth_other_forms(candidates: Mapping[str, Candidate]) -> list[str]:
     return [word for word in candidates if word == best or are_look_alikes(best, word)]
 
 
-def promises_nearly_all(case: Case, first: Fit, fit: Fit) -> bool:
-    """Whether the score of an effect, in its first form, is nearly all that a fit leaves."""
+def promises_most(case: Case, first: Fit, fit: Fit) -> bool:
+    """Whether the score of an effect, in its first form, is most of what a fit leaves."""
     candidates = score_all(case, first, fit, scorer_of(case, fit), in_every_form=False)
-    return max((item.score.explained_in_bounds for item in candidates), default=0.0) >= NEARLY_ALL
+    return max((item.score.explained_in_bounds for item in candidates), default=0.0) >= PROMISING
 
 
 def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
@@ -125,11 +126,11 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
 
 
 def second_missing(case: Case, first: Fit, before: Fit, fits: Sequence[Fit]) -> bool:
-    """Whether one of the fits explains nearly all, and what it leaves is above the noise: time is for a second effect
-    rather than for others in the place of this one."""
+    """Whether one of the fits explains most of the misfit, and what it leaves is above the noise: time is for a second
+    effect rather than for others in the place of this one."""
     best = min(fits, key=lambda fit: fit.total, default=before)
-    nearly_all = share_explained(before.identify, best.identify, case.floor) >= NEARLY_ALL
-    return nearly_all and not adequate(case, first, best)
+    most = share_explained(before.identify, best.identify, case.floor) >= DECISIVE
+    return most and not adequate(case, first, best)
 
 
 def choose_forms(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:

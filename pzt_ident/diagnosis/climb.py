@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pzt_ident.diagnosis.bounds import are_decisive, beyond_bounds, stands_in
-from pzt_ident.diagnosis.candidates import Candidate, promises_nearly_all
+from pzt_ident.diagnosis.candidates import Candidate, promises_most
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, clears_an_axis, removes_enough
 from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, remove_unneeded
 from pzt_ident.diagnosis.misfit import share_explained
@@ -43,7 +43,8 @@ def climb(
     case: Case, base: Sequence[Step], diagnosis: Diagnosis, candidate: Candidate | None, on_step: StepListener
 ) -> Staircase:
     """One path: the candidate is added first, then always the best one, within wider bounds where these are a cheaper
-    account."""
+    account. Where another effect promises most of what a step leaves, it comes first; what the step would be without
+    it, from elsewhere or in another form, is asked where it does not keep that."""
     steps, first = [*base], base[-1].fit
     for step in base:
         on_step(step)
@@ -53,9 +54,8 @@ def climb(
         new = next_steps(case, first, steps, diagnosis, candidate)
         if not new:
             break
-        restart_if_inadequate(case, first, (*steps, *new)[-2].fit, new[-1])
-        new += remove_unneeded(case, first, new[-1].fit)
-        new += exchange_accounts(case, first, new[-1].fit)
+        hurried = not adequate(case, first, new[-1].fit) and promises_most(case, first, new[-1].fit)
+        new += [] if hurried else settle(case, first, (*steps, *new)[-2].fit, new[-1])
         if frozenset(new[-1].fit.effects) in {frozenset(step.fit.effects) for step in steps}:
             break
         for step in new:
@@ -66,6 +66,11 @@ def climb(
             on_step(wider)
             steps.append(wider)
         diagnosis = diagnose(case, steps[-1].fit, first)
+        if hurried and diagnosis.best is None:
+            for step in settle(case, first, steps[-2].fit, steps[-1]):
+                on_step(step)
+                steps.append(step)
+            diagnosis = diagnose(case, steps[-1].fit, first)
         candidate = diagnosis.best
     changed = next((step.case for step in reversed(steps) if step.case), None)
     return Staircase(steps, diagnosis, case=changed)
@@ -89,14 +94,14 @@ def stuck(steps: list[Step]) -> bool:
     return len(latest) == PATIENCE and max(latest) < DECISIVE
 
 
-def restart_if_inadequate(case: Case, first: Fit, before: Fit, step: Step) -> None:
-    """Where a step does not reach the noise, restart its fit before anything else is blamed, but for what explains
-    nearly all of the rest."""
-    if adequate(case, first, step.fit) or promises_nearly_all(case, first, step.fit):
-        return
-    if case.budget.allows("other starts"):
+def settle(case: Case, first: Fit, before: Fit, step: Step) -> list[Step]:
+    """Restart the fit of a step that does not reach the noise before anything else is blamed; the steps that remove
+    what is not needed any more, and exchange what fits better in another form."""
+    if not adequate(case, first, step.fit) and case.budget.allows("other starts"):
         step.fit = restart(case, step.fit)
         step.explained = explained_share(case, before, step.fit)
+    unneeded = remove_unneeded(case, first, step.fit)
+    return [*unneeded, *exchange_accounts(case, first, (unneeded or [step])[-1].fit)]
 
 
 def next_steps(

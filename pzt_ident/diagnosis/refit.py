@@ -120,8 +120,8 @@ class Case:
         return self._resampled.setdefault((number, steps), replace(self.records[number], steps=steps))
 
     def descend(self, problem: Problem, point: Array, rival: float = np.inf) -> Array:
-        """The point that few steps reach while the budget lasts, of which a descent far above a rival gets no more than
-        a part, see `search.descent`."""
+        """The point that few steps reach while the budget lasts, of which a descent behind a rival gets no more than a
+        part, see `search.descent`."""
         part = self.budget.part(BEHIND)
         return descend(problem, point, going=self.budget.lasts, rival=rival, patient=lambda: not part.spent(WHOLE))
 
@@ -237,8 +237,11 @@ def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, fl
 def refit_from(
     case: Case, before: Fit, effects: tuple[str, ...], guesses: Sequence[dict[str, float]], rival: float = np.inf
 ) -> Fit:
-    """The best of the refits from each guess."""
-    return min((refit(case, before, effects, guess, rival) for guess in guesses or [{}]), key=lambda fit: fit.total)
+    """The best of the refits from each guess, one after the other."""
+    fits: list[Fit] = []
+    for guess in guesses or [{}]:
+        fits.append(refit(case, before, effects, guess, min([rival, *(fit.identify for fit in fits)])))
+    return min(fits, key=lambda fit: fit.total)
 
 
 def refit_beside(

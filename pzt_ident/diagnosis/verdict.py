@@ -28,6 +28,7 @@ from pzt_ident.diagnosis.candidates import (
 )
 from pzt_ident.diagnosis.criteria import (
     CLEAR,
+    DECISIVE,
     LEAST_SHARE,
     VALIDATION_FACTOR,
     adequate,
@@ -260,8 +261,10 @@ def best_pair(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) 
     """Of the pairs of effects of the short list, which may hide each other, the refit that is best and removes
     enough."""
     shortlist = [item for item in candidates if item.score.explained > LEAST_SCORE][:3]
+    alone = min((item.fit for item in shortlist if item.fit), key=lambda fit: fit.total, default=None)
+    least = (1 - DECISIVE) ** 0.5 * alone.identify if alone else np.inf  # of a pair that is worth its time
     fits = [
-        refit(case, before, (*before.effects, a.score.effect, b.score.effect), a.score.guess | b.score.guess)
+        refit(case, before, (*before.effects, a.score.effect, b.score.effect), a.score.guess | b.score.guess, least)
         for a, b in combinations(shortlist, 2)
     ]
     passing = [fit for fit in fits if removes_enough(case, first, before, fit)]

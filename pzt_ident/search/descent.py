@@ -20,6 +20,7 @@ REFINED, PATIENCE = 1e-4, 3  # of the loss: so many steps in a row that take les
 PROMISED = 1e-8  # of the loss: a step that would take less off ends it, too
 FAR = 2.0  # times the loss of a rival
 CRAWLING = 1e-3  # of the loss: so many steps in a row that take less off end a descent that is far above a rival
+BEHIND, FEW = 1.1, 5  # times the loss of a rival: what is above it after so many steps ends where there is no patience
 SETTLED = 1e-11  # of the loss: a step that takes less off, or would, ends a polish
 NEXT = 1e-3  # of a parameter's range: twice the longest step that still leads to the minimum next to it
 ROUNDING = 1e-10  # of the loss: it rises by less where only its digits end
@@ -35,14 +36,14 @@ def descend(
     patient: Callable[[], bool] = lambda: True,
 ) -> Array:
     """The point that few steps reach. held: a parameter that stays where it is. going: whether there is time for
-    another step. rival: the loss of another model; a descent far above it is given up where it crawls, or where
-    `patient` says that it took long."""
+    another step. rival: the loss of another model; a descent is given up far above it where it crawls, and behind it
+    where `patient` says that it took long."""
     best, falls = np.clip(point, 0, 1), [1.0]
     for step, loss, fall in islice(steps(problem, best, PROMISED, held, going, Simulator.sure_squares), most):
         best = step
         falls.append(fall)
-        behind = loss > FAR * rival
-        if max(falls[-PATIENCE:]) < (CRAWLING if behind else REFINED) or (behind and not patient()):
+        crawls = max(falls[-PATIENCE:]) < (CRAWLING if loss > FAR * rival else REFINED)
+        if crawls or (loss > BEHIND * rival and len(falls) > FEW and not patient()):
             break
     return best
 

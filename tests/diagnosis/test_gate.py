@@ -295,7 +295,7 @@ def test_of_pairs_that_earn_the_best_on_both_uses_is_taken(monkeypatch):
         ("creep", "delay"): fit(2.0, 9.0),
         ("drift", "delay"): fit(5.0, 5.0),
     }
-    monkeypatch.setattr(verdict, "refit", lambda case, before, effects, guess: fits[effects])
+    monkeypatch.setattr(verdict, "refit", lambda case, before, effects, guess, rival: fits[effects])
     items = [Candidate(Score(word, explained=0.5)) for word in ("creep", "drift", "delay")]
     before = fit(30.0, 30.0)
     assert best_pair(CASE, before, before, items) is fits["drift", "delay"]

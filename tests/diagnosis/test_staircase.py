@@ -183,14 +183,19 @@ def test_two_effects_that_explain_half_each_are_added_together(monkeypatch):
     assert {step.added for step in steps} == {"quadratic_gain", "creep"}
 
 
-@pytest.mark.parametrize(("words", "restarted"), [(["quadratic_gain"], False), (["delay"], True)])
-def test_a_fit_is_not_restarted_where_another_effect_promises_nearly_all_that_is_left(monkeypatch, words, restarted):
-    case, tried = stage.case(stage.EFFECTS["quadratic_gain"]), []
-    case.ruled_out = tuple({*blocks.effects()} - {*words})
-    monkeypatch.setattr(climb, "restart", lambda case, fit: tried.append(fit) or fit)
+@pytest.mark.parametrize("kept", [True, False])
+def test_a_step_is_settled_first_where_no_other_effect_promises_most_of_what_it_leaves(monkeypatch, kept):
+    """A promise that is not kept is asked for afterwards."""
+    case, settled = stage.case(stage.EFFECTS["creep"] | stage.EFFECTS["quadratic_gain"]), []
+    if not kept:
+        monkeypatch.setattr(climb, "promises_most", lambda case, first, fit: True)
+        case.ruled_out = tuple({*blocks.effects()} - {"quadratic_gain"})
+    monkeypatch.setattr(climb, "settle", lambda case, first, before, step: settled.append(step.added) or [])
     first = first_fit(case, 0)
-    climb.restart_if_inadequate(case, first, first, Step(first))
-    assert bool(tried) == restarted
+    diagnosis = diagnose(case, first)
+    found = climb.climb(case, [Step(first)], diagnosis, diagnosis.best, lambda step: None)
+    added = [step.added for step in found.steps if step.added]
+    assert (added[0] in settled) != kept and added[-1] in settled
 
 
 @pytest.mark.parametrize("restarted", [False, True])

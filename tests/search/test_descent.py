@@ -10,7 +10,7 @@ from pzt_ident.engine import simulator
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks
 from pzt_ident.search import descent
-from pzt_ident.search.descent import CRAWLING, FAR, PATIENCE, REFINED, descend, polish
+from pzt_ident.search.descent import BEHIND, CRAWLING, FAR, FEW, PATIENCE, REFINED, descend, polish
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.stencil import DIFFERENCE, NARROW, forward, half_widths, stencil
 from pzt_ident.search.uncertainty import covariance
@@ -73,13 +73,13 @@ def test_a_descent_that_crawls_far_above_a_rival_is_given_up(monkeypatch, fall, 
     assert descend(None, np.zeros(1), most=30, rival=1.0)[0] + 1 == taken
 
 
-@pytest.mark.parametrize(("above", "taken"), [(10.0, 3), (1.5, 10)])
-def test_a_descent_that_took_long_is_given_up_far_above_a_rival(monkeypatch, above, taken):
-    """After three steps that each took a tenth off, there is no more patience; a loss of 1.5 is not far above 1."""
-    losses = above * 0.9 ** np.arange(10)
+@pytest.mark.parametrize(("above", "patience", "taken"), [(10.0, 7, 7), (10.0, 2, FEW), (BEHIND / 0.9**6, 7, 10)])
+def test_a_descent_that_took_long_is_given_up_behind_a_rival(monkeypatch, above, patience, taken):
+    """After steps that each took a tenth off there is no more patience; what is hardly above 1 by then goes on."""
+    losses = above * 0.9 ** np.arange(1, 11)
     monkeypatch.setattr(descent, "steps", lambda *args: ((np.array([i]), loss, 0.1) for i, loss in enumerate(losses)))
-    patience = iter([True] * 2 + [False] * 10)
-    assert descend(None, np.zeros(1), most=10, rival=1.0, patient=lambda: next(patience))[0] + 1 == taken
+    asked = iter([True] * (patience - FEW) + [False] * 10)
+    assert descend(None, np.zeros(1), most=10, rival=1.0, patient=lambda: next(asked))[0] + 1 == taken
 
 
 @pytest.fixture(scope="module")
