@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+import psutil
 
 from experiments.fleet.cluster import TCP
 from experiments.fleet.lot import write_lot
@@ -80,24 +81,30 @@ def workers(folder: Path, out: Path) -> None:
     """How much sooner two workers than one have identified the lot in FOLDER, by the clock: the devices compute."""
     rows: list[dict[str, Any]] = []
     for place in ("local", "tcp"):
-        one, two = clocked(folder, place, 1), clocked(folder, place, 2)
+        (one, _), (two, beside) = clocked(folder, place, 1), clocked(folder, place, 2)
         times = {"one worker [s a device]": one, "two workers [s a device]": two}
         devices = len(read_lot(folder / "workers").done)
-        rows.append({"place": place, "devices": devices, **times, "efficiency": one / (2 * two)})
+        more = {"efficiency": one / (2 * two), "client and scheduler [s of CPU a device]": beside}
+        rows.append({"place": place, "devices": devices, **times, **more})
     click.echo(keep("workers", rows, out))
 
 
-def clocked(folder: Path, place: str, count: int) -> float:
-    """Seconds a device, from the first that each worker has done to the last: what starting takes is not counted."""
-    ends: list[float] = []
+def clocked(folder: Path, place: str, count: int) -> tuple[float, float]:
+    """Seconds a device, from the first that each worker has done to the last: what starting takes is not counted. And
+    seconds of CPU that client and scheduler, which are on the same cores, took of them."""
+    ends: list[tuple[float, float]] = []
+    beside = [psutil.Process()]
 
     def listen(event: dict) -> None:
         if event["event"] == "devices" and event["done"]:
-            ends.append(time.perf_counter())
+            ends.append((time.perf_counter(), sum(sum(process.cpu_times()[:2]) for process in beside)))
 
     with TCP(workers=count) if place == "tcp" else nullcontext() as cluster:
+        beside += [psutil.Process(cluster.scheduler.pid)] if cluster else []
         identified(folder, "workers", place_of(cluster.address) if cluster else Local(count), listen)
-    return (ends[-1] - ends[count - 1]) / (len(ends) - count)
+    (begun, before), (over, after) = ends[count - 1], ends[-1]
+    devices = len(ends) - count
+    return (over - begun) / devices, (after - before) / devices
 
 
 @main.command()

@@ -87,9 +87,13 @@ def worth_other_forms(candidates: Mapping[str, Candidate]) -> list[str]:
 
 
 def promises_most(case: Case, first: Fit, fit: Fit) -> bool:
-    """Whether the score of an effect, in its first form, is most of what a fit leaves."""
+    """Whether an effect, in its first form, explains most of what a fit leaves by its score. It is not a look-alike of
+    one that was added, in the place of which it may belong."""
     candidates = score_all(case, first, fit, scorer_of(case, fit), in_every_form=False)
-    return max((item.score.explained_in_bounds for item in candidates), default=0.0) >= PROMISING
+    scores = [item.score for item in candidates if item.score.explained_in_bounds >= PROMISING]
+    best = max(scores, key=lambda score: score.explained_in_bounds, default=None)
+    added = fit.effects[len(first.effects) :]
+    return best is not None and not any(are_look_alikes(effect, best.effect) for effect in added)
 
 
 def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from pzt_ident.diagnosis.budget import PROVING
 from pzt_ident.diagnosis.candidates import TIE, is_equal, is_tied, is_twin, strangers
@@ -46,9 +46,18 @@ def exchange_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
             break
         best = min(fits_in_place(case, now, effect, items), key=lambda fit: fit.total, default=now)
         if fits_better(case, now, best) and (best.effects[-1] in rivals or clears_up(case, now, best)):
+            best = under_own_name(case, now, effect, best)
             steps += [exchange_step(case, now, best, effect), *remove_unneeded(case, first, best)]
             now = steps[-1].fit
     return steps
+
+
+def under_own_name(case: Case, now: Fit, effect: str, best: Fit) -> Fit:
+    """The fit of a look-alike in the place of an effect, or that with a form of the effect which is the same model."""
+    if word_of(best.effects[-1]) == word_of(effect):
+        return best
+    forms = fits_in_place(case, now, effect, other_forms(case, now, effect))
+    return next((fit for fit in forms if is_twin(case, effect, [fit], best)), best)
 
 
 def clears_up(case: Case, now: Fit, other: Fit) -> bool:
@@ -61,12 +70,15 @@ def other_forms(case: Case, now: Fit, effect: str) -> list[str]:
     return [item for item in possible if blocks[item].item() != blocks[effect].item()]
 
 
-def look_alikes(case: Case, now: Fit, effect: str, in_every_form: bool = False) -> list[str]:
-    """The look-alikes that could be in the place of an effect, each in the first form that fits or in all that do."""
+def look_alikes(
+    case: Case, now: Fit, effect: str, tied: Collection[str] = (), in_every_form: bool = False
+) -> list[str]:
+    """The look-alikes that could be in the place of an effect, each in the first form that fits and in those that were
+    tied with it, or in all that fit."""
     effects = effects_without(now, effect)
     possible = applicable(case, effects)
     forms = [fitting_forms(case, effects, word) for word in blocks[effect].look_alikes if word in possible]
-    return [item for items in forms for item in (items if in_every_form else items[:1])]
+    return [item for items in forms for item in items if in_every_form or item == items[0] or item in tied]
 
 
 def at_noise(case: Case, fit: Fit) -> bool:
@@ -96,15 +108,14 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
     added = now.effects[len(first.effects) :]
     known = added == (last.added,) and last.removed is None
     for effect in added if not known and case.budget.allows("ties", PROVING) else ():
-        fits = fits_in_place(case, now, effect, look_alikes(case, now, effect))
+        step = next(step for step in reversed(steps) if step.added == effect)
+        fits = fits_in_place(case, now, effect, look_alikes(case, now, effect, step.tied))
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
         rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
         taken = min(rivals, key=lambda item: rivals[item].freedom)
         forms = fits_in_place(case, now, effect, other_forms(case, now, effect) if len(tied) < len(fits) else [])
         rivals |= {fit.effects[-1]: fit for fit in fits if is_twin(case, effect, forms, fit)}
-        if taken == effect:
-            step = next(step for step in reversed(steps) if step.added == effect)
-        else:
+        if taken != effect:
             on_step(step := exchange_step(case, now, rivals[taken], effect))
             steps.append(step)
         step.rivals = {taken: rivals[taken]} | rivals

@@ -31,7 +31,7 @@ Result = TypeVar("Result")
 Listener = Callable[[dict[str, Any]], None]
 
 THREADS = max(2, min(6, os.cpu_count() or 2))  # that fit and score effects side by side
-EDGE = 1e-4  # of a parameter's range: as near to its end it is on the bound
+EDGE, ALIKE = 1e-4, 1e-3  # of a parameter's range: as near to a bound it is on it where the loss is as much alike there
 STEP_TOLERANCE = 0.05  # noise floors: where halving the step changes more of a record, the step is halved
 FINEST = 8  # steps per sample
 
@@ -176,14 +176,24 @@ class Fit:
         """RMSE of both uses together of each measured axis, in units of the loss: (measured axes,)."""
         return np.asarray(np.sqrt(np.mean(np.square(self.by_use), axis=0)))
 
-    @property
+    @cached_property
     def on_bounds(self) -> tuple[str, ...]:
         """Names of the parameters that ended on a bound, but for those whose range ends there of itself."""
         problem, values = self.problem, self.problem.physical(self.point)[0]
         parameters = [problem.model.entries[column].parameter for column in problem.free]
-        edges = (self.point <= EDGE) | (self.point >= 1 - EDGE)
-        rows = zip(problem.names, edges, values, parameters, strict=True)
+        rows = zip(problem.names, self._at_edges, values, parameters, strict=True)
         return tuple(name for name, edge, value, parameter in rows if edge and not parameter.ends_at(value))
+
+    @property
+    def _at_edges(self) -> NDArray[np.bool_]:
+        """Which parameters are on a bound or so near that the model is no worse there: (free,)."""
+        bounds = np.round(self.point)
+        edges = np.abs(self.point - bounds) <= EDGE
+        if (near := np.flatnonzero(edges & (self.point != bounds))).size:
+            there = np.tile(self.point, (near.size, 1))
+            there[range(near.size), near] = bounds[near]
+            edges[near] = self.problem.loss(there) <= (1 + ALIKE) * self.identify
+        return edges
 
     @property
     def steps(self) -> tuple[int, ...]:

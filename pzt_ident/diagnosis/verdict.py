@@ -11,6 +11,7 @@ from pzt_ident.data.notation import listed
 from pzt_ident.diagnosis.candidates import (
     LIMIT_TIE,
     TIE,
+    TWIN,
     Candidate,
     are_look_alikes,
     choose_forms,
@@ -105,8 +106,9 @@ def with_effects(
     """The diagnosis where candidates remove enough: the best of them, of tied ones the simplest, and its ties."""
     fits = {item.score.effect: item.fit for item in passing if item.fit}
 
-    def simplicity(item: Candidate) -> tuple[int, float]:
-        return fits[item.score.effect].freedom, fits[item.score.effect].total
+    def simplicity(item: Candidate) -> tuple[int, float, str]:
+        fit = fits[item.score.effect]
+        return fit.freedom, round(fit.total / (TWIN * case.floor)), item.score.effect  # of two names of one model
 
     total = min(fit.total for fit in fits.values())
     close = [item for item in passing if removed_rms(fits[item.score.effect].total, total) < TIE * case.floor]

@@ -42,11 +42,12 @@ class Amounts:
         spans = np.ptp(record.response[list(model.measured), record.settle :], axis=1)
         self._scales = 1 / np.where(spans > 0, spans, 1)
         self._known: dict[bytes, Array] = {}  # amounts of the candidates that were asked for last
+        self._held: dict[bytes, Held] = {}  # of the candidate that was asked for last
 
     def beside(self, simulator: Simulator, held: Held) -> Amounts:
         """Those of a simulator, sought from amounts that are held, less exactly: what is known stays known."""
         beside = Amounts(simulator, NEAR, held.values)
-        beside._known = self._known
+        beside._known, beside._held = self._known, self._held
         return beside
 
     def complete(self, theta: Array) -> Array:
@@ -112,6 +113,12 @@ class Amounts:
 
     def held(self, theta: Array) -> Held:
         """Those of one candidate."""
+        key, known = theta.tobytes(), self._held  # which another thread may replace
+        if key not in known:
+            known = self._held = {key: self._held_at(theta)}
+        return known[key]
+
+    def _held_at(self, theta: Array) -> Held:
         complete, model = self.complete(theta), self.simulator.model
         response, *moved = self.simulator.simulate(self._moved(complete))
         changes = np.array(moved) - response

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 LOOSE = 0.2  # of the search range: with a larger standard error a parameter is not determined
 FLAT = 0.01  # of the RMSE: a smaller change of the RMSE is negligible
 WIDE = 0.5  # of the search range: with a negligible change over more, a parameter is not determined
-EDGE = 1e-4  # of the search range: a parameter this close to a bound is on it
+EDGE, SURELY = 1e-4, 2.0  # of the search range, and standard errors: a parameter this close to a bound is on it
 SAME = 1 + FLAT  # times the best RMSE: what runs with less reach is the same
 SCATTER = 0.01  # of the search range, by which such runs may put a parameter beyond its interval
 TIED = 0.995  # correlation above which two parameters are known only together
@@ -186,8 +186,9 @@ def verdict_of(place: float, error: float, flat: float) -> tuple[str, str]:
         )
     if flat > WIDE:
         return "not determined", f"over {flat:.0%} of its search range it changes the RMSE by less than 1 %"
-    for side, reached in (("lower", place < EDGE), ("upper", place > 1 - EDGE)):
-        if reached:
+    near = min(EDGE, SURELY * error)
+    for side, distance in (("lower", place), ("upper", 1 - place)):
+        if distance <= near:
             return f"on its {side} bound", "the best value may lie beyond it: widen the bounds, or doubt the model"
     return "determined", ""
 

@@ -1,6 +1,7 @@
 """Fits that are good enough to blame what is left on the model, and the steps of which they consist."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -20,6 +21,7 @@ from pzt_ident.model.chain import Chain
 from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks
 from pzt_ident.search.descent import descend
+from pzt_ident.search.problem import Problem
 
 
 @pytest.fixture(scope="module")
@@ -207,6 +209,21 @@ def test_a_shape_whose_range_ends_of_itself_is_not_on_a_bound(creeping):
     places = np.where([name == "creep.decades" for name in fit.problem.names], 1.0, 0.5)
     assert replace(fit, point=places).on_bounds == ("creep.decades",)
     assert replace(fit, point=places * (places < 1)).on_bounds == ()
+
+
+def test_a_parameter_that_is_worse_on_its_bound_is_not_on_it():
+    """A damping of 0.4 N s/m within [0, 5000] is as near to zero as the digits of a search, and determined."""
+    ringing = np.where(np.arange(2000) % 1000 < 20, 0.0, 10.0)
+    made, theta = rig.model("lumped"), np.array([[0.2, 0.4, 8e4]])
+    response = simulate(made, rig.record(ringing, dt=2e-4), theta)[0]
+    bounds = SimpleNamespace(bounds=(0.0, 5000.0), value=None)
+    problem = Problem(made, [rig.record(ringing, dt=2e-4, response=response)], {"lumped.damping": bounds})
+    point = problem.unit_point(dict(zip(made.names, theta[0], strict=True)))
+    fit = refit.fit_at((), problem, point)
+    assert 0 < point[problem.names.index("lumped.damping")] < refit.EDGE
+    assert "lumped.damping" not in fit.on_bounds
+    nearer = np.where(np.array(problem.names) == "lumped.damping", 1e-9, point)
+    assert "lumped.damping" in refit.fit_at((), problem, nearer).on_bounds
 
 
 def test_a_parameter_on_a_bound_is_told_unless_it_is_its_null(creeping):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import stage
-from pzt_ident.diagnosis import climb, exchange
+from pzt_ident.diagnosis import candidates, climb, exchange
 from pzt_ident.diagnosis import staircase as improving
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.climb import Staircase, add_pair, add_restarted
@@ -198,6 +198,18 @@ def test_a_step_is_settled_first_where_no_other_effect_promises_most_of_what_it_
     assert (added[0] in settled) != kept and added[-1] in settled
 
 
+@pytest.mark.parametrize(
+    ("explained", "added", "promised"),
+    [(0.8, ("quadratic_gain",), True), (0.7, (), False), (0.8, ("quadratic_gain", "delay"), False), (0.8, (), True)],
+)
+def test_a_look_alike_of_what_was_added_promises_nothing_beside_it(monkeypatch, explained, added, promised):
+    scored = [Candidate(Score("sensor_lag", explained_in_bounds=explained)), Candidate(Score("drift"))]
+    monkeypatch.setattr(candidates, "score_all", lambda *arguments, **more: scored)
+    monkeypatch.setattr(candidates, "scorer_of", lambda case, fit: None)
+    first, fit = SimpleNamespace(effects=()), SimpleNamespace(effects=added)
+    assert candidates.promises_most(None, first, fit) is promised
+
+
 @pytest.mark.parametrize("restarted", [False, True])
 def test_an_effect_that_only_led_out_of_a_side_minimum_is_removed(monkeypatch, restarted):
     monkeypatch.setattr(exchange, "refit", lambda case, now, effects, guess: with_errors(2.0))
@@ -266,7 +278,7 @@ def test_beside_other_effects_too_the_simpler_of_tied_look_alikes_is_taken(monke
         fitted("delay", 2, 1),
     )
     others = {"creep": [], "friction.coulomb": [rival, worse], "forms": [fitted("friction", 2 if twin else 2.1, 3)]}
-    monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect: [effect])
+    monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect, tied: [effect])
     monkeypatch.setattr(exchange, "other_forms", lambda case, now, effect: ["forms"])
     monkeypatch.setattr(exchange, "fits_in_place", lambda case, now, effect, items: others[items[0]] if items else [])
     steps, told = [Step(now, "creep"), Step(now, "friction.coulomb")], []
@@ -284,7 +296,7 @@ def test_the_rivals_of_an_effect_that_is_alone_again_are_asked_for_anew(monkeypa
         return SimpleNamespace(effects=effects, total=1.1, identify=1.1, freedom=3)
 
     alone, rival = fitted("sensor_lag"), fitted("delay")
-    monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect: ["delay"])
+    monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect, tied: ["delay"])
     monkeypatch.setattr(exchange, "fits_in_place", lambda case, now, effect, items: [rival])
     case = SimpleNamespace(floor=1.0, budget=Budget())
     lone = [Step(alone, "sensor_lag", rivals={"sensor_lag": alone})]
@@ -294,6 +306,25 @@ def test_the_rivals_of_an_effect_that_is_alone_again_are_asked_for_anew(monkeypa
     for steps in (exchanged, [*lone, Step(fitted("sensor_lag", "creep"), "creep"), Step(alone, None, "creep")]):
         exchange.find_rivals(case, SimpleNamespace(effects=()), steps, None)
         assert steps[-1].fit is alone and {"sensor_lag", "delay"} in [set(step.tied) for step in steps]
+
+
+@pytest.mark.parametrize(("total", "taken"), [(1.5, "cross_coupling.voltage"), (1.6, "kinematic_coupling.voltage")])
+def test_what_fits_as_a_form_of_the_effect_itself_does_keeps_its_name(monkeypatch, total, taken):
+    own, other = (
+        SimpleNamespace(effects=(word,), total=level)
+        for word, level in (("cross_coupling.voltage", total), ("kinematic_coupling.voltage", 1.5))
+    )
+    monkeypatch.setattr(exchange, "other_forms", lambda case, now, effect: ["cross_coupling.voltage"])
+    monkeypatch.setattr(exchange, "fits_in_place", lambda case, now, effect, items: [own])
+    named = exchange.under_own_name(SimpleNamespace(floor=1.0), None, "cross_coupling", other)
+    assert named.effects == (taken,)
+
+
+@pytest.mark.parametrize("tied", [(), ("cross_coupling.voltage",)])
+def test_the_form_in_which_a_look_alike_was_tied_is_asked_for_again(tied):
+    case = SimpleNamespace(words=("bouc_wen",), effects=(), ruled_out=(), records=[SimpleNamespace(axes="xy")])
+    now = SimpleNamespace(effects=("kinematic_coupling.voltage",))
+    assert exchange.look_alikes(case, now, now.effects[0], tied) == ["cross_coupling", *tied]
 
 
 @pytest.mark.parametrize(("total", "left"), [(5.02, ("creep", "friction", "drift")), (9.0, ("creep", "drift"))])

@@ -154,6 +154,8 @@ def test_what_was_settled_last_is_not_settled_again(monkeypatch):
     begun = simulator.begun_at(simulator.held(theta[:1]))
     monkeypatch.setattr(Amounts, "_solved", None)
     np.testing.assert_array_equal(begun.amounts.complete(theta[1:]), complete[1:])
+    monkeypatch.setattr(Simulator, "simulate", None)
+    assert begun.held(theta[:1]) is simulator.held(theta[:1])
 
 
 def test_without_any_a_problem_begins_as_it_is():

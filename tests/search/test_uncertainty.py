@@ -12,7 +12,7 @@ from pzt_ident.search.cube import FixedValue
 from pzt_ident.search.descent import polish
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.sandwich import Lags, Sandwich, autoregression
-from pzt_ident.search.uncertainty import caution, estimates
+from pzt_ident.search.uncertainty import caution, estimates, verdict_of
 from rig import record
 
 BLOCKS, LENGTH = 40, 10
@@ -125,3 +125,12 @@ def test_the_error_of_a_gain_is_that_of_the_slope_of_a_straight_line():
 def test_a_doubtful_sign_and_a_tie_are_told(value, correlation, note):
     named = SimpleNamespace(names=("a", "b", "c"))
     assert caution(named, 0, value, 1.0, np.array([1.0, correlation, 0.5])) == note
+
+
+@pytest.mark.parametrize(
+    ("place", "error", "said"),
+    [(0.0, 1e-6, "on its lower bound"), (7e-5, 1e-4, "on its lower bound"), (7e-5, 1e-7, "determined")],
+)
+def test_a_value_that_is_surely_off_a_bound_is_not_on_it(place, error, said):
+    assert verdict_of(place, error, 0.0)[0] == said
+    assert verdict_of(1 - place, error, 0.0)[0] == said.replace("lower", "upper")
