@@ -87,8 +87,8 @@ def worth_other_forms(candidates: Mapping[str, Candidate]) -> list[str]:
 
 
 def promises_most(case: Case, first: Fit, fit: Fit) -> bool:
-    """Whether an effect, in its first form, explains most of what a fit leaves by its score. It is not a look-alike of
-    one that was added, in the place of which it may belong."""
+    """Whether an effect, in its first form, explains most of what a fit leaves by its score, and is no look-alike of
+    one that was added: it may belong in the place of that."""
     candidates = score_all(case, first, fit, scorer_of(case, fit), in_every_form=False)
     scores = [item.score for item in candidates if item.score.explained_in_bounds >= PROMISING]
     best = max(scores, key=lambda score: score.explained_in_bounds, default=None)

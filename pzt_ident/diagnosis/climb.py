@@ -43,8 +43,8 @@ def climb(
     case: Case, base: Sequence[Step], diagnosis: Diagnosis, candidate: Candidate | None, on_step: StepListener
 ) -> Staircase:
     """One path: the candidate is added first, then always the best one, within wider bounds where these are a cheaper
-    account. Where another effect promises most of what a step leaves, it comes first; what the step would be without
-    it, from elsewhere or in another form, is asked where it does not keep that."""
+    account. Where another effect promises most of what a step leaves, that is tried first, and the step is settled only
+    if the promise is not kept."""
     steps, first = [*base], base[-1].fit
     for step in base:
         on_step(step)

@@ -31,7 +31,8 @@ Result = TypeVar("Result")
 Listener = Callable[[dict[str, Any]], None]
 
 THREADS = max(2, min(6, os.cpu_count() or 2))  # that fit and score effects side by side
-EDGE, ALIKE = 1e-4, 1e-3  # of a parameter's range: as near to a bound it is on it where the loss is as much alike there
+EDGE = 1e-4  # of a parameter's range: nearer to a bound it is on it, if the model is no worse there
+NO_WORSE = 1e-3  # of the loss
 STEP_TOLERANCE = 0.05  # noise floors: where halving the step changes more of a record, the step is halved
 FINEST = 8  # steps per sample
 
@@ -192,7 +193,7 @@ class Fit:
         if (near := np.flatnonzero(edges & (self.point != bounds))).size:
             there = np.tile(self.point, (near.size, 1))
             there[range(near.size), near] = bounds[near]
-            edges[near] = self.problem.loss(there) <= (1 + ALIKE) * self.identify
+            edges[near] = self.problem.loss(there) <= (1 + NO_WORSE) * self.identify
         return edges
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ from pzt_ident.data.units import factor
 from pzt_ident.diagnosis import staircase as stairs
 from pzt_ident.diagnosis.bounds import bounds_that_changed, narrow_bounds_sentence
 from pzt_ident.diagnosis.budget import Budget
-from pzt_ident.diagnosis.candidates import Candidate
+from pzt_ident.diagnosis.candidates import TWIN, Candidate
 from pzt_ident.diagnosis.caveats import broken_conditions, caveats, misfit_sentences
 from pzt_ident.diagnosis.criteria import DECISIVE
 from pzt_ident.diagnosis.misfit import share_explained
@@ -44,7 +44,7 @@ def improvement_of(
     reason += prediction_sentence(case, steps)
     undecided = dict.fromkeys(step.tied for step in ties(steps))
     reason += "".join(f" These data cannot tell {' from '.join(map(phrase_of, tied))}." for tied in undecided)
-    reason += no_drive_sentence(job, case) if undecided and not proposed else ""
+    reason += no_drive_sentence(job, case, [step.rivals for step in ties(steps)]) if undecided and not proposed else ""
     reason += narrow_bounds_sentence(case, end)
     of_end = caveats(case, end)
     reason += "" if of_end in reason else of_end  # the last diagnosis may be of this fit
@@ -152,7 +152,7 @@ def diagnosis_of(job: Job, case: Case, diagnosis: Diagnosis, folder: Path) -> di
     if diagnosis.verdict == "unexplained":
         reason += f" {misfit_sentences(case, before)}"
     if len(rivals) > 1 and not proposed:
-        reason += no_drive_sentence(job, case)
+        reason += no_drive_sentence(job, case, [rivals])
     return {
         "verdict": diagnosis.verdict,
         "reason": reason
@@ -169,9 +169,12 @@ def diagnosis_of(job: Job, case: Case, diagnosis: Diagnosis, folder: Path) -> di
     }
 
 
-def no_drive_sentence(job: Job, case: Case) -> str:
-    """That no drive tells tied effects apart."""
-    return f" No drive within {limits_of(job, case)} tells them apart: allow more under `limits`."
+def no_drive_sentence(job: Job, case: Case, ties: Iterable[Mapping[str, Fit]]) -> str:
+    """That no drive tells tied effects apart. ties: the fits with each of them, by effect."""
+    totals = [[fit.total for fit in fits.values()] for fits in ties]
+    one = all(max(each) - min(each) < TWIN * case.floor for each in totals)
+    why = "these names are one model in this job." if one else "allow more under `limits`."
+    return f" No drive within {limits_of(job, case)} tells them apart: {why}"
 
 
 def candidate_of(case: Case, candidate: Candidate, tied: Sequence[str]) -> dict[str, Any]:

@@ -22,9 +22,12 @@ def test_an_improvement_says_what_it_added_and_what_it_suspects(verdict, monkeyp
     silent = {"stair": {}, "caveats": "", "narrow_bounds_sentence": "", "units_and_floors": {}, "limits_of": "10 V"}
     for name, nothing in silent.items():
         monkeypatch.setattr(findings, name, lambda *arguments, nothing=nothing: nothing)
-    before, after = (SimpleNamespace(effects=effects, validate=None) for effects in (("drift",), ("drift", "creep")))
-    steps = [stairs.Step(before), stairs.Step(after, "creep", None, {"creep": after, "thermal_relaxation": after})]
-    job, case = SimpleNamespace(name="job", effects=("drift",)), SimpleNamespace(records=(), budget=Budget())
+    before, after = (
+        SimpleNamespace(effects=effects, validate=None, total=1.0) for effects in (("drift",), ("drift", "creep"))
+    )
+    rival = SimpleNamespace(total=1.1)
+    steps = [stairs.Step(before), stairs.Step(after, "creep", None, {"creep": after, "thermal_relaxation": rival})]
+    job, case = SimpleNamespace(name="job", effects=("drift",)), SimpleNamespace(records=(), budget=Budget(), floor=1.0)
     doubted = Suspect("asymmetry.constant", 0.4, -0.02, before)
     staircase = stairs.Staircase(steps, after, [doubted])
     content = findings.improvement_of(job, case, staircase, {"verdict": verdict, "reason": "Nothing is missing."})
@@ -36,7 +39,13 @@ def test_an_improvement_says_what_it_added_and_what_it_suspects(verdict, monkeyp
     assert suspect["why not"].startswith(
         "asymmetry (constant) takes up 40 % of the misfit on the identification records and 0 % on the validation"
     )
-    assert "cannot tell creep from thermal_relaxation. No drive within 10 V tells them apart" in content["reason"]
+    assert (
+        "cannot tell creep from thermal_relaxation. No drive within 10 V tells them apart: allow more"
+        in content["reason"]
+    )
+    rival.total = 1.0
+    content = findings.improvement_of(job, case, staircase, {"verdict": verdict, "reason": ""})
+    assert "No drive within 10 V tells them apart: these names are one model" in content["reason"]
     proposed = {"splits": ["creep", "thermal_relaxation"]}
     content = findings.improvement_of(job, case, staircase, {"verdict": verdict, "reason": ""}, proposed)
     assert "No drive" not in content["reason"] and content["next_experiment"] is proposed
