@@ -33,7 +33,7 @@ Listener = Callable[[dict[str, Any]], None]
 THREADS = max(2, min(6, os.cpu_count() or 2))  # that fit and score effects side by side
 EDGE = 1e-4  # of a parameter's range: nearer to a bound it is on it, if the model is no worse there
 NO_WORSE = 1e-3  # of the loss
-STEP_TOLERANCE = 0.05  # noise floors: where halving the step changes more of a record, the step is halved
+STEP_TOLERANCE = 0.05  # of the noise floor, or of what a fit leaves if that is more: a step is halved that changes more
 FINEST = 8  # steps per sample
 
 
@@ -295,26 +295,34 @@ def residuals_differ(case: Case, one: Array, other: Array) -> bool:
     return bool(np.linalg.norm(one - other) > STEP_TOLERANCE * case.floor)
 
 
-def refine_steps(case: Case, fit: Fit, rival: float = np.inf) -> Fit:
-    """The fit, continued with finer simulation steps for the records where halving the step changes the response.
+def refine_steps(
+    case: Case, fit: Fit, rival: float = np.inf, fine: bool = False, checked: Sequence[int] | None = None
+) -> Fit:
+    """The fit, continued with finer simulation steps for the records where halving the step changes the response by
+    more than a part of what the fit leaves, or of the noise; `fine`: of the noise even where the fit leaves more.
+    checked: the numbers of the records in question, by default of all.
 
     Where the drive is linear between samples, the signals between blocks are taken as linear too.
     """
-    coarse = (step_errors(case, fit) > STEP_TOLERANCE * case.floor) & (np.array(fit.steps) < FINEST)
-    if not coarse.any():
+    most = STEP_TOLERANCE * (case.floor if fine else max(case.floor, fit.identify))
+    numbers = [n for n in (range(len(fit.steps)) if checked is None else checked) if fit.steps[n] < FINEST]
+    coarse = [n for n, error in zip(numbers, step_errors(case, fit, numbers), strict=True) if error > most]
+    if not coarse:
         return fit
-    steps = [count * (2 if halve else 1) for count, halve in zip(fit.steps, coarse, strict=True)]
+    steps = [count * (2 if n in coarse else 1) for n, count in enumerate(fit.steps)]
     problem = case.problem(fit.effects, steps, fit.measured_only)
     point = case.descend(problem, fit.point, rival)
-    return refine_steps(case, fit_at(fit.effects, problem, point, fit.converged, fit.measured_only), rival)
+    finer = fit_at(fit.effects, problem, point, fit.converged, fit.measured_only)
+    return refine_steps(case, finer, rival, fine, coarse)
 
 
-def step_errors(case: Case, fit: Fit) -> Array:
-    """Change of each record's response when the simulation step is halved, root mean square, in units of the loss:
-    (records,)."""
+def step_errors(case: Case, fit: Fit, numbers: Iterable[int] | None = None) -> Array:
+    """Change of the response of records, by default of all, when the simulation step is halved, root mean square, in
+    units of the loss: (records,)."""
     problem, errors = fit.problem, []
     theta = problem.parameters(fit.point)
-    for number, record in enumerate(problem.records):
+    for number in range(len(problem.records)) if numbers is None else numbers:
+        record = problem.records[number]
         halved = case.record_with_steps(number, 2 * record.steps)
         coarse, fine = (Simulator(problem.model, stepped).simulate(theta)[0] for stepped in (record, halved))
         change = (fine - coarse)[:, record.settle :] / problem.sizes[:, None]

@@ -55,7 +55,7 @@ def first_fit(
             break
     point = min((minima[np.argmin(losses)], best_of_each_axis(case, problem, minima)), key=lambda p: problem.loss(p)[0])
     fit = fit_at(effects, problem, point, agreed or known is not None)
-    return refine_steps(case, fit if fit.converged else settled(case, fit))
+    return refine_steps(case, fit if fit.converged else settled(case, fit), fine=True)
 
 
 def settled(case: Case, fit: Fit) -> Fit:

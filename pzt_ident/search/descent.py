@@ -95,11 +95,14 @@ def steps(
     """Steps of Levenberg and Marquardt: points of lower and lower loss in the unit cube, their losses, and by which
     share each fell, until none is lower or the residuals, if they were linear, would promise none that falls by the
     least. squares: by which losses are told from each other."""
-    loss = problem.best(point[None], point, squares)[1]
-    movable = np.arange(point.size) != held
-    while 0 < loss < np.inf and going():
+    movable, loss = np.arange(point.size) != held, np.nan
+    while going():
         problem = problem.begun_at(point)
-        jacobian, residual = (part / loss for part in problem.equations(point, central=False))
+        jacobian, residual = problem.equations(point, central=False)
+        loss = float(np.linalg.norm(residual)) if np.isnan(loss) else loss
+        if not 0 < loss < np.inf:
+            break
+        jacobian, residual = jacobian / loss, residual / loss
         gradient, curvature = jacobian.T @ residual, jacobian.T @ jacobian
         moves = np.clip(bounded_steps(point, gradient, curvature, DAMPINGS, movable), -FARTHEST, FARTHEST)
         if 1 - np.linalg.norm(residual[:, None] + jacobian @ moves.T, axis=0).min() < least:

@@ -188,6 +188,21 @@ def test_a_solver_too_coarse_for_what_is_left_is_blamed_on_no_effect(plain, monk
     assert refit.step_errors(case, fit)[0] == pytest.approx(np.std(half_a_step), rel=0.1)
 
 
+def test_a_step_that_is_short_for_what_a_fit_leaves_is_kept_until_it_leaves_less(creeping, monkeypatch):
+    """The second record would change by a 25th of what the fit leaves, several times as much as of the noise."""
+    fit, asked = first_fit(creeping, 0), []
+
+    def errors(case, fit, numbers):
+        asked.append(tuple(numbers))
+        return np.array([0.04 * fit.identify if number == 1 else 0.0 for number in asked[-1]])
+
+    monkeypatch.setattr(refit, "step_errors", errors)
+    assert 0.04 * fit.identify > refit.STEP_TOLERANCE * creeping.floor
+    assert refit.refine_steps(creeping, fit) is fit
+    assert refit.refine_steps(creeping, fit, fine=True).steps == (1, refit.FINEST)
+    assert asked == [(0, 1), (0, 1), (1,), (1,), ()]  # what has been short enough is not asked about again
+
+
 def test_a_lag_within_the_sample_is_told_from_a_delay_by_finer_steps():
     """The voltage between samples, which the mechanics ring with: a lag rounds it, a delay does not."""
     time = 1e-4 * np.arange(2500)
