@@ -6,7 +6,7 @@ import numpy as np
 
 import measured
 import rig
-from pzt_ident.diagnosis.refit import Case
+from pzt_ident.diagnosis.case import Case
 from pzt_ident.search.cube import FixedValue
 
 NOISE = 5e-9  # m

@@ -17,9 +17,10 @@ from pzt_ident.api.fit import Fit
 from pzt_ident.api.printed import html, table_text
 from pzt_ident.api.refit import as_given, from_refit
 from pzt_ident.data.notation import number, percent, quantity, unit
-from pzt_ident.diagnosis import refit as fits
 from pzt_ident.diagnosis import thinning
 from pzt_ident.diagnosis.budget import Budget
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.fit import Fit as Fitted
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.run.computing import computing
 from pzt_ident.run.events import step_name, verdict_line
@@ -158,13 +159,13 @@ def improve(fit: Fit, budget: float | None = None) -> Improvement:
 
 
 @contextmanager
-def _case(fit: Fit) -> Iterator[tuple[fits.Case, thinning.First, Path]]:
+def _case(fit: Fit) -> Iterator[tuple[Case, thinning.First, Path]]:
     """The case of a fit, how to come to the better of it and of a fit from other starts, and a folder for what is
     written."""
     of_kind(fit, Fit, "fit", "give what pzt_ident.identify or pzt_ident.load returned")
     with computing(), TemporaryDirectory() as folder:
 
-        def first(case: fits.Case) -> fits.Fit:
+        def first(case: Case) -> Fitted:
             other, given = first_fit(case, fit.statement.job.seed), as_given(case, fit)
             return other if other.identify <= given.identify else given
 

@@ -11,9 +11,10 @@ from pzt_ident.api.fitted import Fitted, Parts
 from pzt_ident.api.model import Model
 from pzt_ident.api.record import Record
 from pzt_ident.api.statement import job_text, statement_of
-from pzt_ident.diagnosis import refit as diagnosis
 from pzt_ident.diagnosis.bounds import bounds_that_changed
-from pzt_ident.diagnosis.refit import Case
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.fit import Fit, fit_at
+from pzt_ident.diagnosis.refit import refit as refitted
 from pzt_ident.diagnosis.score import Scorer
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.model.registry import blocks, word_of
@@ -40,15 +41,15 @@ def with_effect(fit: Fitted, effect: str) -> Parts:
         case = case_of(fit.statement)
         before = as_given(case, fit)
         score = Scorer(case, before).score(effect)
-        return from_refit(fit, case, diagnosis.refit(case, before, effects, score.guess))
+        return from_refit(fit, case, refitted(case, before, effects, score.guess))
 
 
-def as_given(case: Case, fit: Fitted) -> diagnosis.Fit:
+def as_given(case: Case, fit: Fitted) -> Fit:
     """A fit as the diagnosis goes on from it."""
-    return diagnosis.fit_at(case.effects, case.problem(case.effects), fit.point)
+    return fit_at(case.effects, case.problem(case.effects), fit.point)
 
 
-def from_refit(fit: Fitted, case: Case, refit: diagnosis.Fit) -> Parts:
+def from_refit(fit: Fitted, case: Case, refit: Fit) -> Parts:
     """What the diagnosis fitted to the records of a fit, as the parts of a fit."""
     start = time.perf_counter()
     silent = case.unmeasured_nulls(refit.effects) if refit.measured_only else {}

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, removes_enough
+from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.refit import Case, Fit, fit_at, refine_steps
+from pzt_ident.diagnosis.refit import refine_steps
 from pzt_ident.diagnosis.undetermined import undetermined_mechanics
 
 SLIP = 0.15  # of a bound, by which a data sheet may be beside the truth

@@ -9,9 +9,11 @@ from functools import partial
 import numpy as np
 
 from pzt_ident.diagnosis.budget import BESIDE, EXPLORING, PROVING, WHOLE
+from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, reaches_noise, removed_rms, removes_enough, threshold
+from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.refit import Case, Fit, refit_from, side_by_side
+from pzt_ident.diagnosis.refit import refit_from, side_by_side
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, applicable, scorer_of, squared_misfit
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.model.registry import blocks, form_of, word_of

@@ -7,8 +7,9 @@ from itertools import product
 from pzt_ident.data.noise import noise_floor
 from pzt_ident.data.notation import listed
 from pzt_ident.data.units import factor
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.locate import locate
-from pzt_ident.diagnosis.refit import Case, Fit
 
 
 def caveats(case: Case, fit: Fit) -> str:

@@ -9,11 +9,13 @@ import numpy as np
 
 from pzt_ident.diagnosis.bounds import are_decisive, beyond_bounds, stands_in
 from pzt_ident.diagnosis.candidates import Candidate, promises_most
+from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, clears_an_axis, removes_enough
 from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, remove_unneeded
+from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.proof import Suspect
-from pzt_ident.diagnosis.refit import Case, Fit, refit
+from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.starts import first_fit, restart
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share

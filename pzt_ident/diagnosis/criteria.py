@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from pzt_ident.diagnosis import misfit
-from pzt_ident.diagnosis.refit import Case, Fit
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.score import squared_misfit
 
 CLEAR = 0.6  # noise floors: an effect removes at least this much, root mean square

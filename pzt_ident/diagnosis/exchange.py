@@ -6,9 +6,11 @@ from collections.abc import Collection, Sequence
 
 from pzt_ident.diagnosis.budget import PROVING
 from pzt_ident.diagnosis.candidates import TIE, is_equal, is_tied, is_twin, strangers
+from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
+from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.refit import Case, Fit, refit, refit_beside
+from pzt_ident.diagnosis.refit import refit, refit_beside
 from pzt_ident.diagnosis.score import applicable, fitting_forms, scorer_of
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explained_share

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.record import Record
-from pzt_ident.diagnosis.refit import Case, Fit
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.engine.simulator import Simulator
 
 Array = NDArray[np.float64]

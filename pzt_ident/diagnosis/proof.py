@@ -9,9 +9,11 @@ import numpy as np
 
 from pzt_ident.data.notation import listed
 from pzt_ident.diagnosis.candidates import TIE, strangers
+from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, beyond_form, form_of_others, near_noise, reaches_noise, removed_rms
+from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.refit import Case, Fit, refit
+from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.step import effects_without
 from pzt_ident.model.registry import blocks, phrase_of, word_of
 

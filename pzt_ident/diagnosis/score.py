@@ -16,8 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.diagnosis import misfit
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.projection import Projection, Sets, Split
-from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.diagnosis.trials import MOST_SHAPES, ShapesByAxis, Trial, parameter_grid, planned_trials, trials_beside
 from pzt_ident.model.block import Block, Coupling, Term
 from pzt_ident.model.registry import blocks, word_of

@@ -11,12 +11,13 @@ import numpy as np
 from pzt_ident.diagnosis.bounds import are_decisive, beyond_bounds, brought_back, continued, stands_in
 from pzt_ident.diagnosis.budget import WHOLE
 from pzt_ident.diagnosis.candidates import TIE, Candidate
+from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, climb
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms, removes_enough
 from pzt_ident.diagnosis.exchange import drop_outdone_rivals, find_rivals, remove_unneeded
+from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.proof import unproven
-from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
 from pzt_ident.diagnosis.undetermined import Undetermined, undetermined_mechanics, without_mechanics
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained

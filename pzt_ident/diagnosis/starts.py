@@ -8,8 +8,10 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import adequate
-from pzt_ident.diagnosis.refit import Case, Fit, fit_at, refine_steps, side_by_side
+from pzt_ident.diagnosis.fit import Fit, fit_at
+from pzt_ident.diagnosis.refit import refine_steps, side_by_side
 from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]

@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 from pzt_ident.data.noise import noise_floor
 from pzt_ident.data.record import Record
 from pzt_ident.diagnosis import staircase as stairs
+from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import adequate
+from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.proof import Suspect, unproven
-from pzt_ident.diagnosis.refit import Case, Fit, fit_at, refine_steps
+from pzt_ident.diagnosis.refit import refine_steps
 from pzt_ident.diagnosis.staircase import Staircase, StepListener
 from pzt_ident.diagnosis.step import explained_share
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose

@@ -6,8 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import CLEAR, removed_rms
-from pzt_ident.diagnosis.refit import Case, Fit, refit
+from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.score import fits
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.model.block import Place

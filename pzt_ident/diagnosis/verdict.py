@@ -27,6 +27,7 @@ from pzt_ident.diagnosis.candidates import (
     rests_on_own_bounds,
     score_all,
 )
+from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import (
     CLEAR,
     DECISIVE,
@@ -40,7 +41,8 @@ from pzt_ident.diagnosis.criteria import (
     removes_enough,
     threshold,
 )
-from pzt_ident.diagnosis.refit import Case, Fit, refit, step_errors
+from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.refit import refit, step_errors
 from pzt_ident.diagnosis.score import LEAST_SCORE, scorer_of, squared_misfit
 from pzt_ident.diagnosis.wording import percent
 from pzt_ident.model.registry import phrase_of

@@ -15,7 +15,8 @@ from pzt_ident.diagnosis import staircase as stairs
 from pzt_ident.diagnosis import thinning
 from pzt_ident.diagnosis.bounds import bounds_that_changed
 from pzt_ident.diagnosis.budget import Budget, sensible
-from pzt_ident.diagnosis.refit import Case, Fit
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.thinning import diagnosed
 from pzt_ident.diagnosis.verdict import Diagnosis

@@ -9,8 +9,9 @@ import numpy as np
 
 from pzt_ident.data.notation import listed
 from pzt_ident.data.units import factor
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.next_experiment import SEPARATED, WELL_SEPARATED, DriveLimits, Proposal, propose
-from pzt_ident.diagnosis.refit import Case, Fit
 from pzt_ident.files import write_text
 from pzt_ident.job.schema import Job
 from pzt_ident.model.registry import blocks

@@ -8,7 +8,7 @@ from pzt_ident.api import diagnosis as diagnosing
 from pzt_ident.api.diagnosis import _proposed
 from pzt_ident.api.fit import Fit
 from pzt_ident.api.refit import from_refit, restated
-from pzt_ident.diagnosis import refit
+from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.job.demo import hidden
 from pzt_ident.run.events import verdict_line
 from pzt_ident.run.improve import case_of
@@ -58,7 +58,7 @@ def test_a_fit_that_other_starts_do_not_reach_is_diagnosed_itself(improvement, m
     monkeypatch.setattr(
         diagnosing,
         "first_fit",
-        lambda case, seed: refit.fit_at(case.effects, case.problem(case.effects), np.full(fit.point.size, 0.5)),
+        lambda case, seed: fit_at(case.effects, case.problem(case.effects), np.full(fit.point.size, 0.5)),
     )
     found = pzt.diagnose(fit)
     assert found.content["rmse"] == pytest.approx(fit.rmse, rel=1e-9)
@@ -84,7 +84,7 @@ def test_a_step_without_mechanics_is_a_fit_without_them(quick):
     fit = quick(model=pzt.Model("bouc_wen", "lumped"))
     case = case_of(fit.statement)
     problem = case.with_words(["bouc_wen"]).problem(())
-    step = refit.fit_at((), problem, np.full(problem.dimensions, 0.5))
+    step = fit_at((), problem, np.full(problem.dimensions, 0.5))
     lean = Fit(*from_refit(fit, case, step))
     assert [*lean.model.blocks] == ["bouc_wen"]
     assert lean.rmse["identify"] == pytest.approx(step.identify * 1e6, rel=1e-9)

@@ -19,8 +19,8 @@ from pzt_ident.diagnosis.bounds import (
 )
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.climb import Staircase
+from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.refit import fit_at
 from pzt_ident.diagnosis.staircase import bounds_beside, improve
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step

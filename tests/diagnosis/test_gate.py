@@ -17,7 +17,7 @@ from pzt_ident.diagnosis.criteria import (
     removes_enough,
     threshold,
 )
-from pzt_ident.diagnosis.refit import Fit
+from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.score import Score, squared_misfit
 from pzt_ident.diagnosis.verdict import best_pair, diagnose
 from pzt_ident.model.parameter import Parameter

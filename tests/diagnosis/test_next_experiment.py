@@ -11,8 +11,10 @@ from hypothesis import strategies as st
 import rig
 import stage
 from pzt_ident.diagnosis import next_experiment
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.next_experiment import DriveLimits, chirp, propose, protocols, respond
-from pzt_ident.diagnosis.refit import Case, fit_at, refit
+from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.starts import first_fit
 
 LINEAR = {"bouc_wen.alpha": 0.0, "bouc_wen.beta": 0.01, "bouc_wen.gamma": 0.0}

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from pzt_ident.diagnosis import proof
+from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.proof import unproven
-from pzt_ident.diagnosis.refit import Fit
 from pzt_ident.model.parameter import Parameter
 
 CASE = SimpleNamespace(floor=1.0)

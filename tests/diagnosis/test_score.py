@@ -7,7 +7,8 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis import score as scoring
-from pzt_ident.diagnosis.refit import Case, refit, refit_from
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.refit import refit, refit_from
 from pzt_ident.diagnosis.score import KEPT, Scorer, applicable, fitting_forms, scorer_of, squared_misfit
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.trials import planned_trials

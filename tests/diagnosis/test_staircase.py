@@ -12,7 +12,8 @@ from pzt_ident.diagnosis import staircase as improving
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.climb import Staircase, add_pair, add_restarted
 from pzt_ident.diagnosis.exchange import exchange_any, remove_unneeded
-from pzt_ident.diagnosis.refit import Fit, fit_at, refit
+from pzt_ident.diagnosis.fit import Fit, fit_at
+from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.staircase import improve, improve_within
 from pzt_ident.diagnosis.starts import first_fit

@@ -8,7 +8,7 @@ import pytest
 import stage
 from pzt_ident.diagnosis import proof, thinning
 from pzt_ident.diagnosis.budget import Budget
-from pzt_ident.diagnosis.refit import Case
+from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.thinning import enough, keeps_all, most_of, situations, thin_record, thinned
 from rig import record

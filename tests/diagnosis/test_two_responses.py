@@ -6,8 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.next_experiment import DriveLimits, drives_of, propose
-from pzt_ident.diagnosis.refit import Case, refit
+from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.verdict import diagnose
 from pzt_ident.engine.simulator import Simulator

@@ -19,8 +19,9 @@ from pzt_ident.diagnosis.candidates import (
     restart_look_alikes,
     score_all,
 )
+from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import removed_rms, removes_enough
-from pzt_ident.diagnosis.refit import Case
+from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.verdict import diagnose, missing_sentence
@@ -221,9 +222,9 @@ def test_an_effect_that_helps_only_the_records_that_were_fitted_earns_nothing():
     before, after = diagnosis.before, diagnosis.best.fit
     assert removes_enough(case, before, before, after)
     assert not removes_enough(case, before, after, before)
-    worse = refit.Fit(after.effects, after.problem, after.point, after.identify, 1.01 * before.validate)
+    worse = Fit(after.effects, after.problem, after.point, after.identify, 1.01 * before.validate)
     assert not removes_enough(case, before, before, worse)
-    alone = refit.Fit(after.effects, after.problem, after.point, after.identify, None)
+    alone = Fit(after.effects, after.problem, after.point, after.identify, None)
     assert removes_enough(case, before, before, alone)
 
 
@@ -257,13 +258,13 @@ def test_a_look_alike_of_the_best_is_fitted_again_from_elsewhere():
     loops = [np.concatenate([np.zeros(100), rig.path(0, top, 0, top, 0), np.zeros(150)]) for top in (100, 60)]
     hidden = {"friction.force": 0.25e-6, "friction.reach": 0.5e-6, "friction.stiction": 0.0, "friction.stribeck": 1e-6}
     simulated = stage.case(hidden, model=("bouc_wen", "friction"), drives=loops)
-    case = refit.Case(("bouc_wen",), (), simulated.records, {})
+    case = Case(("bouc_wen",), (), simulated.records, {})
     first = first_fit(case, 0)
     fits = {word: refit.refit(case, first, (word,), {}) for word in ("friction", "distributed_memory", "creep")}
     for word in ("friction", "creep"):
         resting = fits[word].problem
         null = resting.unit_point(first.values | {name: 0.0 for name in resting.names if name.startswith(word)})
-        aside = refit.fit_at((word,), resting, null)
+        aside = fit_at((word,), resting, null)
         fits[word] = replace(aside, identify=fits["distributed_memory"].identify)
     items = [Candidate(Score(word, guesses=[dict.fromkeys(("one", "two"), 0.0)]), fit) for word, fit in fits.items()]
     restart_look_alikes(case, first, first, items)

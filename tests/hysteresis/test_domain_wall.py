@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import smith
+from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.caveats import broken_conditions
-from pzt_ident.diagnosis.refit import Case
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.errors import InputError

@@ -12,9 +12,9 @@ from click.testing import CliRunner
 
 import stage
 from pzt_ident.cli.commands import main
-from pzt_ident.diagnosis import refit
 from pzt_ident.diagnosis import staircase as stairs
 from pzt_ident.diagnosis.budget import sensible
+from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.job.schema import load_job
 from pzt_ident.run import improve as improvement
@@ -287,13 +287,13 @@ def test_the_improved_job_is_the_model_that_was_told_of(coupled, tmp_path, monke
     def climbed(case, first, tell):
         problem = case.problem(effects, steps, alone)
         point = np.random.default_rng(5).uniform(0.3, 0.9, problem.dimensions)
-        end = refit.fit_at(effects, problem, point, measured_only=alone)
+        end = fit_at(effects, problem, point, measured_only=alone)
         climbed = [stairs.Step(first), stairs.Step(end, "amplifier_lag")]
         return stairs.Staircase(climbed, Diagnosis("adequate", "Said.", end, [], []))
 
     def as_given(case, seed):
         problem = case.problem(case.effects)
-        return refit.fit_at(case.effects, problem, np.full(problem.dimensions, 0.5))
+        return fit_at(case.effects, problem, np.full(problem.dimensions, 0.5))
 
     monkeypatch.setattr(improvement, "first_fit", as_given)
     monkeypatch.setattr(improvement.stairs, "improve", climbed)
@@ -363,7 +363,7 @@ def test_mechanics_that_the_last_model_does_without_are_not_in_the_improved_job(
     case = improvement.case_of(Statement(job))
     lean = case.with_words(("bouc_wen",))
     problem = lean.problem(())
-    end = refit.fit_at((), problem, np.full(problem.dimensions, 0.5))
+    end = fit_at((), problem, np.full(problem.dimensions, 0.5))
     text = improvement.improved(job, case, end, tmp_path)
     (tmp_path / "improved.yaml").write_text(text, encoding="utf-8")
     better = load_job(tmp_path / "improved.yaml")

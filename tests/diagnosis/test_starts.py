@@ -1,0 +1,92 @@
+"""Fits from random points, and of one block anew."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stage
+from pzt_ident.diagnosis import starts
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.fit import fit_at
+from pzt_ident.diagnosis.starts import first_fit, restart
+from pzt_ident.search.descent import descend
+
+
+@pytest.fixture(scope="module")
+def plain():
+    return stage.case()
+
+
+@pytest.fixture(scope="module")
+def creeping():
+    return stage.case(stage.EFFECTS["creep"])
+
+
+def test_the_first_fit_finds_the_stage(plain):
+    fit = first_fit(plain, 0)
+    assert fit.converged
+    assert fit.identify == pytest.approx(stage.NOISE, rel=0.1)
+    assert fit.validate == pytest.approx(stage.NOISE, rel=0.1)
+    assert fit.values["bouc_wen.gain"] == pytest.approx(0.082, rel=0.01)
+    assert fit.values["bouc_wen.alpha"] == pytest.approx(0.55, rel=0.05)
+
+
+def test_the_first_fit_is_a_function_of_its_seed(creeping):
+    assert np.array_equal(first_fit(creeping, 3).point, first_fit(creeping, 3).point)
+
+
+def test_a_fit_whose_starts_end_apart_has_not_converged(plain, monkeypatch):
+    monkeypatch.setattr(Case, "descend", lambda case, problem, point, rival=np.inf: point)
+    assert first_fit(plain, 0).converged  # no restart leads lower
+    monkeypatch.setattr(starts, "restart", lambda case, fit: replace(fit, identify=0.9 * fit.identify))
+    assert not first_fit(plain, 0).converged
+
+
+def test_more_starts_are_refined_until_two_agree(plain, monkeypatch):
+    """Of each four of the first twenty all but the first get nowhere."""
+    points = []
+
+    def lame(case, problem, point, rival=np.inf):
+        points.append(point)
+        return descend(problem, point, rival=rival) if len(points) in (1, 21) else point
+
+    monkeypatch.setattr(Case, "descend", lame)
+    assert first_fit(plain, 0).converged
+    assert len(points) == 24
+
+
+def test_a_block_is_found_elsewhere_and_a_fit_at_the_noise_stays(plain):
+    soft = {"lumped.mass": 1.0, "lumped.stiffness": 1e5, "lumped.damping": 100.0}  # 50 Hz, 16 %
+    ringing = stage.case(soft, model=("bouc_wen", "lumped"), noise=1e-9)
+    problem = ringing.problem(())
+    stiff = stage.STAGE | {"bouc_wen.gain": 0.082, "lumped.mass": 0.01, "lumped.stiffness": 9e8, "lumped.damping": 50.0}
+    stuck = fit_at((), problem, problem.unit_point(stiff))
+    assert stuck.identify > 3e-9
+    assert restart(ringing, stuck).identify == pytest.approx(1e-9, rel=0.1)
+    fit = first_fit(plain, 0)
+    assert restart(plain, fit).identify == pytest.approx(fit.identify, rel=1e-3)
+
+
+def test_where_half_of_all_starts_agree_the_search_ends(plain, monkeypatch):
+    """By their number, whatever they took."""
+    fitted, astray = [], np.full(plain.problem(()).dimensions, 0.6)
+    monkeypatch.setattr(Case, "descend", lambda case, problem, point, rival=np.inf: astray)
+    monkeypatch.setattr(plain, "on_event", lambda event: fitted.append(event["done"]) if "done" in event else None)
+    first_fit(plain, 0)
+    assert fitted == list(range(1, 13))
+
+
+def test_two_starts_that_agree_far_from_the_noise_do_not_end_the_search(plain, monkeypatch):
+    """Of the first eight points all end in one side minimum."""
+    points = []
+    astray = descend(plain.problem(()), np.full(plain.problem(()).dimensions, 0.9), most=1)
+
+    def lame(case, problem, point, rival=np.inf):
+        points.append(point)
+        return descend(problem, point, rival=rival) if len(points) > 8 else astray
+
+    monkeypatch.setattr(Case, "descend", lame)
+    fit = first_fit(plain, 0)
+    assert fit.converged and fit.identify < 1.1 * plain.floor
+    assert len(points) == 12
