@@ -123,8 +123,9 @@ def step_errors(case: Case, fit: Fit, numbers: Iterable[int] | None = None) -> A
     theta = problem.parameters(fit.point)
     for number in range(len(problem.records)) if numbers is None else numbers:
         record = problem.records[number]
-        halved = case.record_with_steps(number, 2 * record.steps)
-        coarse, fine = (Simulator(problem.model, stepped).simulate(theta)[0] for stepped in (record, halved))
-        change = (fine - coarse)[:, record.settle :] / problem.sizes[:, None]
-        errors.append(np.sqrt(np.mean(np.var(change, axis=1))))
+        simulator = problem.simulator_of(record)
+        finer = Simulator(problem.model, case.record_with_steps(number, 2 * record.steps))
+        complete = simulator.amounts.complete(theta)
+        change = (finer.simulate(complete) - simulator.simulate(complete))[0, :, record.settle :]
+        errors.append(np.sqrt(np.mean(np.var(change / problem.sizes[:, None], axis=1))))
     return np.array(errors)

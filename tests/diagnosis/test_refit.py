@@ -1,5 +1,7 @@
 """Refits that are good enough to blame what is left on the model, and the steps of which they consist."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -126,6 +128,20 @@ def test_a_solver_too_coarse_for_what_is_left_is_blamed_on_no_effect(plain, monk
     half_a_step = np.gradient(response) / 2 / refit.FINEST  # by which Euler's lag is too short
     assert fit.steps == (refit.FINEST, refit.FINEST)
     assert refit.step_errors(case, fit)[0] == pytest.approx(np.std(half_a_step), rel=0.1)
+
+
+def test_a_ripple_between_samples_is_followed_by_finer_steps():
+    """43 Hz at 200 Hz: the hysteresis turns at peaks that no sample shows."""
+    clean, finer, turn = stage.loops(), 8, 2 * np.pi * 43 * 5e-3 / 8
+    between = [np.interp(np.arange(finer * (u.size - 1) + 1) / finer, np.arange(u.size), u) for u in clean]
+    drives = [u + 8 * np.sin(turn * np.arange(u.size) + phase) for phase, u in zip((1, 4), between, strict=True)]
+    made = zip(stage.records({}, drives, dt=5e-3 / finer), clean, strict=True)
+    records = [replace(one, dt=5e-3, drive=u[None], response=one.response[:, ::finer]) for one, u in made]
+    case = Case(("bouc_wen",), (), records, {})
+    ripple = "periodic_disturbance.ripple"
+    fit = refit.refit(case, first_fit(case, 0), (ripple,), {"periodic_disturbance.frequency": 43.0})
+    assert fit.identify < 1.05 * stage.NOISE
+    assert min(fit.steps) > 1
 
 
 def test_a_step_that_is_short_for_what_a_fit_leaves_is_kept_until_it_leaves_less(creeping, monkeypatch):
