@@ -9,9 +9,10 @@ import time
 from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
+import pandas as pd
 import psutil
 
 from experiments.fleet.cluster import TCP
@@ -81,17 +82,27 @@ def workers(folder: Path, out: Path) -> None:
     """How much sooner two workers than one have identified the lot in FOLDER, by the clock: the devices compute."""
     rows: list[dict[str, Any]] = []
     for place in ("local", "tcp"):
-        (one, _), (two, beside) = clocked(folder, place, 1), clocked(folder, place, 2)
-        times = {"one worker [s a device]": one, "two workers [s a device]": two}
+        one, two = (clocked(folder, place, count) for count in (1, 2))
+        seconds = {"one worker [s a device]": one.clock, "two workers [s a device]": two.clock}
+        cpu = {"CPU of a device, one worker [s]": one.device, "two workers [s]": two.device}
+        cpu |= {"client and scheduler [s of CPU a device]": two.beside}
+        idle = {"two cores idle": 1 - (two.device + two.beside) / (2 * two.clock)}
         devices = len(read_lot(folder / "workers").done)
-        more = {"efficiency": one / (2 * two), "client and scheduler [s of CPU a device]": beside}
-        rows.append({"place": place, "devices": devices, **times, **more})
+        efficiency = {"efficiency": one.clock / (2 * two.clock)}
+        rows.append({"place": place, "devices": devices, **seconds, **efficiency, **cpu, **idle})
     click.echo(keep("workers", rows, out))
 
 
-def clocked(folder: Path, place: str, count: int) -> tuple[float, float]:
-    """Seconds a device, from the first that each worker has done to the last: what starting takes is not counted. And
-    seconds of CPU that client and scheduler, which are on the same cores, took of them."""
+class Clocked(NamedTuple):
+    """Seconds a device: by the clock, from the first that each worker has done to the last, so that what starting takes
+    is not counted; of CPU in its worker; and of CPU that client and scheduler, which are on the same cores, took."""
+
+    clock: float
+    device: float
+    beside: float
+
+
+def clocked(folder: Path, place: str, count: int) -> Clocked:
     ends: list[tuple[float, float]] = []
     beside = [psutil.Process()]
 
@@ -104,7 +115,8 @@ def clocked(folder: Path, place: str, count: int) -> tuple[float, float]:
         identified(folder, "workers", place_of(cluster.address) if cluster else Local(count), listen)
     (begun, before), (over, after) = ends[count - 1], ends[-1]
     devices = len(ends) - count
-    return (over - begun) / devices, (after - before) / devices
+    cpu = pd.read_csv(folder / "workers" / "devices.csv")["cpu [s]"].mean()
+    return Clocked((over - begun) / devices, float(cpu), (after - before) / devices)
 
 
 @main.command()
