@@ -84,7 +84,7 @@ def workers(folder: Path, out: Path) -> None:
     for place in ("local", "tcp"):
         one, two = (clocked(folder, place, count) for count in (1, 2))
         seconds = {"one worker [s a device]": one.clock, "two workers [s a device]": two.clock}
-        cpu = {"CPU of a device, one worker [s]": one.device, "two workers [s]": two.device}
+        cpu = {"CPU of a device, one worker [s]": one.device, "CPU of a device, two workers [s]": two.device}
         cpu |= {"client and scheduler [s of CPU a device]": two.beside}
         idle = {"two cores idle": 1 - (two.device + two.beside) / (2 * two.clock)}
         devices = len(read_lot(folder / "workers").done)

@@ -21,7 +21,7 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 THREADS = max(2, min(6, os.cpu_count() or 2))  # that fit and score effects side by side
-STEP_TOLERANCE = 0.05  # of the noise floor, or of what a fit leaves if more: a step is halved where that changes more
+STEP_TOLERANCE = 0.05  # of what a fit leaves, but at least of the noise: a step is halved where that changes more
 FINEST = 8  # steps per sample
 
 

@@ -17,11 +17,6 @@ from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks
 
 
-@pytest.fixture(scope="module")
-def plain():
-    return stage.case()
-
-
 def test_the_floor_is_the_noise(plain):
     assert plain.floor == pytest.approx(stage.NOISE, rel=0.1)
 

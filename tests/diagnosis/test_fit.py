@@ -4,10 +4,8 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
-import pytest
 
 import rig
-import stage
 from pzt_ident.diagnosis import refit
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.caveats import bounds_sentence
@@ -15,16 +13,6 @@ from pzt_ident.diagnosis.fit import EDGE, fit_at
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.engine.simulator import simulate
 from pzt_ident.search.problem import Problem
-
-
-@pytest.fixture(scope="module")
-def plain():
-    return stage.case()
-
-
-@pytest.fixture(scope="module")
-def creeping():
-    return stage.case(stage.EFFECTS["creep"])
 
 
 def test_without_records_to_validate_there_is_no_error_of_them(plain):

@@ -20,16 +20,6 @@ from pzt_ident.model.registry import blocks
 from pzt_ident.search.descent import descend
 
 
-@pytest.fixture(scope="module")
-def plain():
-    return stage.case()
-
-
-@pytest.fixture(scope="module")
-def creeping():
-    return stage.case(stage.EFFECTS["creep"])
-
-
 def test_a_descent_ends_with_the_budget(plain):
     problem, budget = plain.problem(()), Budget(0.0)
     start = np.full(problem.dimensions, 0.5)

@@ -13,16 +13,6 @@ from pzt_ident.diagnosis.starts import first_fit, restart
 from pzt_ident.search.descent import descend
 
 
-@pytest.fixture(scope="module")
-def plain():
-    return stage.case()
-
-
-@pytest.fixture(scope="module")
-def creeping():
-    return stage.case(stage.EFFECTS["creep"])
-
-
 def test_the_first_fit_finds_the_stage(plain):
     fit = first_fit(plain, 0)
     assert fit.converged
