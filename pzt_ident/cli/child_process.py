@@ -12,7 +12,7 @@ from threading import Thread
 WARM = (
     *("pzt_ident.run.identify", "pzt_ident.run.improve", "pzt_ident.engine.kernel", "pzt_ident.engine.lanes"),
     *("pzt_ident.cli.progress", "pzt_ident.cli.result_tables", "pzt_ident.cli.verdict_tables"),
-    *("ruamel.yaml", "h5netcdf"),
+    *("ruamel.yaml", "h5py"),
 )
 
 

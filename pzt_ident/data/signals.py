@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import gc
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,41 +53,40 @@ def write_signals(path: Path, residuals: Iterable[tuple[Record, Array]]) -> None
     residuals: each record with model minus measurement, (measured axes, samples), SI units. The model includes the
     record's free offset and additions. Units in the file are the user's.
     """
-    import h5netcdf
+    import h5py
 
     content = BytesIO()  # HDF5 does not survive a full disk
-    # with HDF5's cache of chunks their order in the file is that in which threads let go of the variables
-    with uncollected(), h5netcdf.File(content, "w", rdcc_nbytes=0) as file:
-        for record, residual in residuals:
-            _write_group(file.create_group(record.name), record, residual)
+    with h5py.File(content, "w", track_order=True, rdcc_nbytes=0) as file:
+        # HDF5 puts a part of an object into the file as soon as nobody has it open: a thread that looks at this one's
+        # frames, as Dask's profiler does, would decide where
+        opened = [item for record, residual in residuals for item in _write_group(file, record, residual)]
+        file.flush()
+        del opened
     with replaced(path) as beside:
         beside.write_bytes(content.getbuffer())
 
 
-@contextmanager
-def uncollected() -> Iterator[None]:
-    """No garbage is collected: beside other threads a collection moves what HDF5 writes next."""
-    enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if enabled:
-            gc.enable()
-
-
-def _write_group(group: Any, record: Record, residuals: Array) -> None:
+def _write_group(file: h5py.File, record: Record, residuals: Array) -> list[h5py.Group | h5py.Dataset]:
+    """What was opened: the record's group and its variables, all along the dimension of time."""
+    group = file.create_group(record.name, track_order=True)
     group.attrs.update(use=record.use, name=record.name, settle=record.settle * record.dt, file=_readable(record.file))
-    group.dimensions = {"time": record.samples}
-    _put(group, "time", record.time, "s", "time")
+    time = _put(group, "time", record.time, "s", "time")
+    time.make_scale("time")
+    channels = []
     for axis, name in enumerate(record.axes):
         unit = record.drive_units[axis]
-        _put(group, f"drive_{name}", record.drive[axis] / factor(unit), unit, f"drive of {name}")
+        channels.append(_put(group, f"drive_{name}", record.drive[axis] / factor(unit), unit, f"drive of {name}"))
     for axis, residual in zip(record.measured, residuals, strict=True):
         name, unit, response = record.axes[axis], str(record.response_units[axis]), record.response[axis]
-        _put(group, f"response_{name}", response / factor(unit), unit, f"measured {name}")
-        _put(group, f"model_{name}", (response + residual) / factor(unit), unit, f"model of {name}")
-        _put(group, f"residual_{name}", residual / factor(unit), unit, f"model minus measured {name}")
+        for kind, values, meaning in (
+            ("response", response, f"measured {name}"),
+            ("model", response + residual, f"model of {name}"),
+            ("residual", residual, f"model minus measured {name}"),
+        ):
+            channels.append(_put(group, f"{kind}_{name}", values / factor(unit), unit, meaning))
+    for channel in channels:
+        channel.dims[0].attach_scale(time)
+    return [group, time, *channels]
 
 
 def _readable(path: str) -> str:
@@ -97,9 +94,10 @@ def _readable(path: str) -> str:
     return path.encode("utf-8", "backslashreplace").decode()
 
 
-def _put(group: Any, name: str, values: Array, unit: str, meaning: str) -> None:
-    variable = group.create_variable(name, ("time",), data=values, compression="gzip")
+def _put(group: h5py.Group, name: str, values: Array, unit: str, meaning: str) -> h5py.Dataset:
+    variable = group.create_dataset(name, data=values, compression="gzip", track_order=True)
     variable.attrs.update(units=unit, long_name=meaning)
+    return variable
 
 
 def read_signals(path: Path, order: Sequence[str]) -> tuple[list[Record], list[Array]]:

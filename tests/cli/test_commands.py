@@ -473,7 +473,7 @@ class TestProcess:
         ) as waiting:
             later = waiting.stdout.read().split()
         assert waiting.returncode == 0
-        needed = {"numpy.linalg", "pydantic", "llvmlite", "h5netcdf", "h5py", "ruamel.yaml", "pzt_ident.run.identify"}
+        needed = {"numpy.linalg", "pydantic", "llvmlite", "h5py", "ruamel.yaml", "pzt_ident.run.identify"}
         assert "pzt_ident.data.formats.text" in later
         assert not needed & set(later)
 

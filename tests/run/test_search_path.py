@@ -27,7 +27,7 @@ NOTEBOOK = """\
 import sys
 from pathlib import Path
 
-import h5netcdf, multiprocessing.popen_forkserver, multiprocessing.resource_tracker, pandas
+import h5py, multiprocessing.popen_forkserver, multiprocessing.resource_tracker, pandas
 from pzt_ident.job.schema import load_job
 from pzt_ident.run.identify import run
 from pzt_ident.run.summary import summary_of
