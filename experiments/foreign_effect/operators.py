@@ -144,6 +144,8 @@ def preisach(u, everett, reach, decay=0.985):
 def _pass(extremes, everett, new, now, f):
     """The output at the voltage `new`, coming from `now`; extremes that are passed are wiped out."""
     upwards = new > now
+    if extremes[-1][0] == now and (now > extremes[-2][0]) == upwards:
+        extremes.pop()  # it goes on where it came to rest
     if extremes[-1][0] != now and (extremes[-1][0] < now) != upwards:
         extremes.append((now, f))  # a turning point
     while len(extremes) > 2 and ((new >= extremes[-2][0]) if upwards else (new <= extremes[-2][0])):

@@ -92,6 +92,15 @@ def test_preisach_and_free_energy_of_one_density_agree():
     assert np.max(np.abs(operators.preisach_density(u, 0.1, table) - two)) < 3e-3 * 3.0
 
 
+@pytest.mark.parametrize("first", [0.3, 5.0, 40.0, -0.3, -40.0])
+def test_preisach_keeps_its_demagnetised_memory_whichever_way_the_drive_sets_out(first):
+    u = np.concatenate([[0.0], triangle(first, 60, -10, 45, 5, each=40)])
+    table = operators.everett_table(3.0, 12.0, 0.4, 60.0, "lognormal", 250.0)
+    two = operators.free_energy(u, 0.1, 3.0, 12.0, 0.4, 60.0)
+    assert np.max(np.abs(operators.preisach_density(u, 0.1, table) - two)) < 3e-3 * 3.0
+    assert np.max(np.abs(operators.rayleigh(u, 1e-3) + operators.rayleigh(-u, 1e-3))) < 0.02
+
+
 def test_thermal_activation_vanishes_with_its_temperature_and_creeps_with_it():
     u = np.concatenate([triangle(0, 60), np.full(400, 60.0)])
     cold = operators.free_energy(u, 0.1, 3.0, 12.0, 0.4, 60.0, dt=0.01, theta=1e-3, speed=40.0)
