@@ -9,6 +9,7 @@ from pzt_ident.model.registry import blocks
 class Bending:
     """What both forms declare."""
 
+    about_rest = True
     form = Form("motion", ("motion", "rest"), "Whether the spring is bent in the equation of motion, or at rest.")
     look_alikes = ("quadratic_gain", "saturation", "encoder_cyclic_error")
     separate_by = "Load the stage with a known force or change its preload, or measure the resonance at several biases."

@@ -39,6 +39,7 @@ class OfDisplacement(QuadraticGain):
     """
 
     place = Place.STATIC
+    about_rest = True
     curvature = Parameter("1/response", (-0.5, 0.5), "Growth of the gain by displacement, over twice it.", null=0)
 
 

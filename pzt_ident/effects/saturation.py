@@ -39,6 +39,7 @@ class OfDisplacement(Saturation):
     """
 
     place = Place.STATIC
+    about_rest = True
     knee = Parameter("1/response", (0, 2), "One over the displacement at which the response saturates.", null=0)
 
 

@@ -214,6 +214,7 @@ class Program:
         span, peak = float(np.ptp(drive)), float(np.abs(drive).max())
         duration = self.record.dt * (self.record.samples - 1)
         known = {"dt": self.record.dt / self.substeps, "span": span, "peak": peak, "duration": duration}
+        known["from_rest"] = float(self.model.from_rest)
         if issubclass(block, Addition):
             first = self.record.run_in * self.record.samples
             known |= {"_first": first, "_start": self.record.start, "_dt": self.record.dt}

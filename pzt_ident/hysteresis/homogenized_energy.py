@@ -26,6 +26,16 @@ def refuse_negative_spread(block):
     return refuse
 
 
+def rest(gain, remanence, coercive, spread, interaction, quadratic, poled, bias):
+    """y at zero drive, of a material that is virgin or was `poled`."""
+    per_width, total = 1 / (sqrt(2.0) * interaction), 0.0
+    for i in range(NODES):
+        half = coercive * exp(spread * QUANTILES[i]) * per_width
+        total += erf(play(play(0.0, (poled - bias) * per_width, half), -bias * per_width, half))
+    field = remanence * (total / NODES - 1) - bias
+    return (gain + quadratic * field) * field
+
+
 @blocks.register
 class HomogenizedEnergy(Bank):
     """y = a1 (P - P_R) + a2 (P - P_R)^2,  P = E / eta + P_R int nu1(Ec) (2 Phi2(F_Ec[E]) - 1) dEc.
@@ -38,6 +48,7 @@ class HomogenizedEnergy(Bank):
 
     E is the drive minus the bias. The history before the first sample is virgin, then `poled`, then the first sample.
     Responses of different kinds, such as P itself and a displacement, may share all parameters but gain and quadratic.
+    Ahead of what is nonlinear in the displacement y is counted from that at rest, in which a flexure is not bent.
     """
 
     place = Place.OPERATOR
@@ -66,25 +77,27 @@ class HomogenizedEnergy(Bank):
 
     refuse = refuse_negative_spread("homogenized_energy")
 
-    def prepare(gain, remanence, coercive, spread, interaction, quadratic, poled, bias, branch):
+    def prepare(gain, remanence, coercive, spread, interaction, quadratic, poled, bias, branch, from_rest):
+        counted = from_rest * (branch == 0)  # the first branch gives `output` its coefficients
+        zero = rest(gain, remanence, coercive, spread, interaction, quadratic, poled, bias) if counted else 0.0
         per_width = 1 / (sqrt(2.0) * interaction)
         half = coercive * exp(spread * QUANTILES[int(branch)]) * per_width
         before = play(0.0, (poled - bias) * per_width, half)
-        return gain, remanence, quadratic, bias, per_width, half, before
+        return gain, remanence, quadratic, bias, zero, per_width, half, before
 
-    def start(u, gain, remanence, quadratic, bias, per_width, half, before):
+    def start(u, gain, remanence, quadratic, bias, zero, per_width, half, before):
         return (play(before, (u - bias) * per_width, half),)
 
-    def step(p, u, gain, remanence, quadratic, bias, per_width, half, before):
+    def step(p, u, gain, remanence, quadratic, bias, zero, per_width, half, before):
         p = play(p, (u - bias) * per_width, half)
         return p, erf(p)
 
-    def rests(p, low, high, gain, remanence, quadratic, bias, per_width, half, before):
+    def rests(p, low, high, gain, remanence, quadratic, bias, zero, per_width, half, before):
         return (low - bias) * per_width >= p - half and (high - bias) * per_width <= p + half
 
-    def output(u, total, gain, remanence, quadratic, bias, per_width, half, before):
+    def output(u, total, gain, remanence, quadratic, bias, zero, per_width, half, before):
         field = u - bias + remanence * (total / NODES - 1)
-        return (gain + quadratic * field) * field
+        return (gain + quadratic * field) * field - zero
 
 
 class FreeDensity(Bank):
@@ -119,24 +132,25 @@ class FreeDensity(Bank):
     def threshold(reach, nodes, branch):
         return reach * (branch + 0.5) / nodes
 
-    def prepare(gain, weight, interaction, reach, nodes, poled, bias, branch):
+    def prepare(gain, weight, interaction, reach, nodes, poled, bias, branch, from_rest):
         per_width = 1 / (sqrt(2.0) * interaction)
         half = reach * (branch + 0.5) / nodes * per_width
         before = play(0.0, (poled - bias) * per_width, half)
-        return gain, weight, bias, per_width, half, before
+        zero = from_rest * erf(play(before, -bias * per_width, half))
+        return gain, weight, bias, (1 - from_rest) * gain * bias, zero, per_width, half, before
 
-    def start(u, gain, weight, bias, per_width, half, before):
+    def start(u, gain, weight, bias, below, zero, per_width, half, before):
         return (play(before, (u - bias) * per_width, half),)
 
-    def step(p, u, gain, weight, bias, per_width, half, before):
+    def step(p, u, gain, weight, bias, below, zero, per_width, half, before):
         p = play(p, (u - bias) * per_width, half)
-        return p, weight * erf(p)
+        return p, weight * (erf(p) - zero)
 
-    def rests(p, low, high, gain, weight, bias, per_width, half, before):
+    def rests(p, low, high, gain, weight, bias, below, zero, per_width, half, before):
         return (low - bias) * per_width >= p - half and (high - bias) * per_width <= p + half
 
-    def output(u, total, gain, weight, bias, per_width, half, before):
-        return gain * (u - bias) + total
+    def output(u, total, gain, weight, bias, below, zero, per_width, half, before):
+        return gain * u - below + total
 
 
 class SharedDensity(FreeDensity):
@@ -151,11 +165,12 @@ class SharedDensity(FreeDensity):
         "response/first", (-3, 3), "Response to the domains over that of the first axis.", null=1, per="later axis"
     )
 
-    def prepare(gain, weight, interaction, reach, nodes, poled, bias, ratio, branch):
+    def prepare(gain, weight, interaction, reach, nodes, poled, bias, ratio, branch, from_rest):
         per_width = 1 / (sqrt(2.0) * interaction)
         half = reach * (branch + 0.5) / nodes * per_width
         before = play(0.0, (poled - bias) * per_width, half)
-        return gain, ratio * weight, bias, per_width, half, before
+        zero = from_rest * erf(play(before, -bias * per_width, half))
+        return gain, ratio * weight, bias, (1 - from_rest) * gain * bias, zero, per_width, half, before
 
 
 class Relaxing(HomogenizedEnergy):
@@ -164,25 +179,29 @@ class Relaxing(HomogenizedEnergy):
 
     rests = None
 
-    def prepare(gain, remanence, coercive, spread, interaction, quadratic, poled, bias, fluctuation, branch, dt):
+    def prepare(
+        gain, remanence, coercive, spread, interaction, quadratic, poled, bias, fluctuation, branch, dt, from_rest
+    ):
+        counted = from_rest * (branch == 0)
+        zero = rest(gain, remanence, coercive, spread, interaction, quadratic, poled, bias) if counted else 0.0
         per_width = 1 / (sqrt(2.0) * interaction)
         half = coercive * exp(spread * QUANTILES[int(branch)]) * per_width
         before = play(0.0, (poled - bias) * per_width, half)
         heat = relaxation_coefficients(fluctuation * per_width, dt)
-        return gain, remanence, quadratic, bias, per_width, half, before, *heat
+        return gain, remanence, quadratic, bias, zero, per_width, half, before, *heat
 
-    def start(u, gain, remanence, quadratic, bias, per_width, half, before, width, width_log_dt):
+    def start(u, gain, remanence, quadratic, bias, zero, per_width, half, before, width, width_log_dt):
         field = (u - bias) * per_width
         return play(before, field, half), field
 
-    def step(p, last, u, gain, remanence, quadratic, bias, per_width, half, before, width, width_log_dt):
+    def step(p, last, u, gain, remanence, quadratic, bias, zero, per_width, half, before, width, width_log_dt):
         field = (u - bias) * per_width
         p = relaxed_play(p, last, field, half, width, width_log_dt)
         return p, field, erf(p)
 
-    def output(u, total, gain, remanence, quadratic, bias, per_width, half, before, width, width_log_dt):
+    def output(u, total, gain, remanence, quadratic, bias, zero, per_width, half, before, width, width_log_dt):
         field = u - bias + remanence * (total / NODES - 1)
-        return (gain + quadratic * field) * field
+        return (gain + quadratic * field) * field - zero
 
 
 HomogenizedEnergy.forms = {"free": FreeDensity, "shared": SharedDensity, "thermal_relaxation": Relaxing}

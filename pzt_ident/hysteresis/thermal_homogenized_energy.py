@@ -3,7 +3,7 @@
 from math import erf, erfc, exp, expm1, log, pi, sqrt
 
 from pzt_ident.hysteresis._play import play
-from pzt_ident.hysteresis.homogenized_energy import HomogenizedEnergy, refuse_negative_spread
+from pzt_ident.hysteresis.homogenized_energy import HomogenizedEnergy, refuse_negative_spread, rest
 from pzt_ident.model.block import Place, Relays
 from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks
@@ -23,10 +23,11 @@ class ThermalHomogenizedEnergy(Relays):
     is P_up = P_R + (E + EI) / eta + s g(a), and the rate at which it leaves r_down = (1 / T) N / (N + s / g(a)), N the
     integral of the Boltzmann density over a shell of 0.1 s behind the inflection point. The energy is approximated as
     linear over the shell, a relative error of r_down of (0.1)^2 / 6 Ec / (eta P_R - Ec). P_down and r_up are the mirror
-    images. There are 64 lognormal coercive fields of equal probability below eta P_R; beyond it a domain
-    has no inflection point, and its mass is left out. The spacing of the interaction fields is an eighth of their
-    standard deviation. For loops and for larger steps its error is small (4 % of the creep); creep after a step of a
-    thirtieth of the standard deviation is off by about 8 %, after a hundredth by 20 to 30 %.
+    images. There are 64 lognormal coercive fields of equal probability below eta P_R; beyond it a domain has no
+    inflection point, and its mass is left out. The spacing of the interaction fields is an eighth of their standard
+    deviation. Rest, where y is counted from it, is that without thermal activation. For loops and for larger steps its
+    error is small (4 % of the creep); creep after a step of a thirtieth of the standard deviation is off by about 8 %,
+    after a hundredth by 20 to 30 %.
     """
 
     place = Place.OPERATOR
@@ -41,12 +42,15 @@ class ThermalHomogenizedEnergy(Relays):
 
     refuse = refuse_negative_spread("thermal_homogenized_energy")
 
-    def prepare(gain, remanence, coercive, spread, interaction, thermal, dwell, quadratic, poled, bias, dt, peak):
+    def prepare(
+        gain, remanence, coercive, spread, interaction, thermal, dwell, quadratic, poled, bias, dt, peak, from_rest
+    ):
         least = 2 * (peak + abs(bias) + remanence) / (COLUMNS - INTERACTIONS)
         spacing = max(8 * interaction / INTERACTIONS, least)
         below = normal(log(remanence / coercive) / spread)
         shape = spacing, coercive, spread, below, interaction, poled - bias, bias
-        return shape, (remanence, thermal * remanence, dwell, dt), (gain, remanence, quadratic, bias)
+        zero = rest(gain, remanence, coercive, spread, interaction, quadratic, poled, bias) if from_rest else 0.0
+        return shape, (remanence, thermal * remanence, dwell, dt), (gain, remanence, quadratic, bias, zero)
 
     def field(u, spacing, coercive, spread, below, interaction, poled, bias):
         return u - bias
@@ -68,9 +72,9 @@ class ThermalHomogenizedEnergy(Relays):
         rate = max(odds / (1 + odds) / dwell, 1e-300)
         return rate, exp(-rate * dt), remanence + width * hazard
 
-    def output(u, total, gain, remanence, quadratic, bias):
+    def output(u, total, gain, remanence, quadratic, bias, zero):
         field = u - bias + total - remanence
-        return (gain + quadratic * field) * field
+        return (gain + quadratic * field) * field - zero
 
 
 def normal(z):

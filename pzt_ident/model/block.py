@@ -50,8 +50,10 @@ class Place(IntEnum):
 class Block:
     """One box of the signal chain, acting on each axis with that axis' own parameters.
 
-    prepare(*parameters[, dt][, span][, peak][, duration][, settings]) -> coefficients; dt: sample time in s; span,
-    peak: the peak-to-peak drive of the axis and its largest magnitude; duration: of the record in s. Parameters that
+    prepare(*parameters[, dt][, span][, peak][, duration][, from_rest][, settings]) -> coefficients; dt: sample time in
+    s; span, peak: the peak-to-peak drive of the axis and its largest magnitude; duration: of the record in s;
+    from_rest: 1 in a chain with a block that is `about_rest`, such as a spring that is not bent at rest, else 0: an
+    operator then counts its response from that at rest, at zero drive. Parameters that
     are `per_record` follow from least squares on each record, and are at their null where nothing was measured.
     start(u, *coefficients) -> states.
     step(*states, u, *coefficients) -> (*states, y).
@@ -76,6 +78,7 @@ class Block:
     chosen_settings: ClassVar[dict[str, Any]] = {}
     forms: ClassVar[Mapping[str, type[Block]]] = {}  # variants, by the word of a `Form` or of an effect in their step
     wrong_way: ClassVar[str] = ""  # the condition under which the output first moves against its input
+    about_rest: ClassVar[bool] = False  # whether it is nonlinear in the displacement from rest
     solvable: ClassVar[bool] = True  # whether `step` has a stable inverse, sample by sample (see control.inverse)
     margin: ClassVar[type[Block] | None] = None  # variant whose output must stay above zero for the equation to hold
     violation: ClassVar[str] = ""  # the sentence for a margin of zero or less

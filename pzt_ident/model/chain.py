@@ -80,6 +80,11 @@ class Chain:
         """Whether the prompt response of the operator has another input than its memory."""
         return {Place.READOUT, Place.OPERATOR} <= {block.place for block in self.blocks}
 
+    @property
+    def from_rest(self) -> bool:
+        """Whether a block or an effect in its equation needs the response counted from that at rest."""
+        return any(block.about_rest for block in (*self.blocks, *self.listed_terms))
+
     def _entries(self, block: type[Block], given: Collection[str]) -> list[Entry]:
         entries = []
         for axis in range(len(self.axes)):

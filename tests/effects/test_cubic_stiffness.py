@@ -4,10 +4,16 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from rig import response
+from pzt_ident.engine.simulator import simulate
+from pzt_ident.model.block import Place, Relays
+from pzt_ident.model.registry import blocks
+from rig import candidates, model, path, record, response
 
 MASS, DAMPING, STIFFNESS = 0.16, 60.0, 7e7
 STAGE = {"lumped.mass": MASS, "lumped.damping": DAMPING, "lumped.stiffness": STIFFNESS}
+MATERIAL = {"gain": 0.1, "remanence": 60.0, "coercive": 20.0, "spread": 0.4, "interaction": 40.0, "quadratic": 0.0}
+STACK = {f"homogenized_energy.{word}": value for word, value in (MATERIAL | {"poled": 0.0, "bias": 0.0}).items()}
+CUBIC = 2e-3
 
 
 def bent(force, cubic, dt=1e-3):
@@ -72,3 +78,39 @@ def test_at_rest_it_is_the_equilibrium(cubic):
     x = response(["cubic_stiffness.rest"], {"cubic_stiffness.cubic": cubic}, force)
     np.testing.assert_allclose(x + cubic * x**3, force, rtol=3e-14, atol=1e-14)
     np.testing.assert_allclose(bent(np.full(3, 9.0), cubic)[-1], np.interp(9.0, force, x), rtol=1e-4)
+
+
+def operators():
+    for word in blocks.words():
+        if getattr(blocks[word], "place", None) == Place.OPERATOR:
+            settings = blocks[word].settings().values()
+            yield from [f"{word}:{form}" for item in settings for form in getattr(item, "words", ())] or [word]
+
+
+@pytest.mark.parametrize("operator", [*operators()])
+def test_behind_every_operator_it_is_not_bent_at_rest(operator):
+    """Its displacement is zero at zero drive, whatever the material was poled at; only the zero has moved. Relays go on
+    relaxing at rest, unless they are virgin."""
+    drive = path(0, 80, -40, 60, 0, points=40)
+    plain, bending = model(operator), model(operator, "cubic_stiffness:rest")
+    theta = candidates(plain, drive, 20, seed=3)
+    if issubclass(plain.blocks[0], Relays):
+        theta[:, [plain.names.index(f"{operator}.{word}") for word in ("poled", "bias")]] = 0
+    straight = np.hstack([theta, np.zeros((20, 1))])
+    moved = simulate(bending, record(drive), straight) - simulate(plain, record(drive), theta)
+    size = 1e-12 * np.abs(simulate(plain, record(drive), theta)).max(axis=(1, 2))
+    assert (np.ptp(moved, axis=(1, 2)) <= size).all()
+    assert (np.abs(simulate(bending, record(np.zeros(4)), straight)).max(axis=(1, 2)) <= size).all()
+
+
+@pytest.mark.parametrize("chain", [["lumped"], []])
+def test_ahead_of_mechanics_and_at_rest_it_bends_about_the_same_zero(chain):
+    """On a slow drive the equation of motion comes to the equilibrium."""
+    drive = path(0, 80, -40, 60, 0, points=4000)
+    item = "lumped.cubic" if chain else "cubic_stiffness.cubic"
+    known = STACK | (STAGE if chain else {})
+    force = response(["homogenized_energy", *chain], known, drive)
+    x = response(
+        ["homogenized_energy", *chain, *([] if chain else ["cubic_stiffness.rest"])], known | {item: CUBIC}, drive
+    )
+    np.testing.assert_allclose(x + CUBIC * x**3, force - force[0], atol=2e-3)

@@ -89,6 +89,7 @@ def parameters(model, block, record, axis, other, theta):
     """Values by name; an axis that is not measured takes nothing from another axis, and the values of the first that is
     where it is not given its own."""
     found = {"dt": [record.dt / model.oversample / record.steps], "span": [np.ptp(record.drive[axis])]}
+    found["from_rest"] = [float(any(item.about_rest for item in (*model.blocks, *model.listed_terms)))]
     found |= {"peak": [np.abs(record.drive[axis]).max()]} | {word: [n] for word, n in block.numbers().items()}
     found |= {name: [each.null] for name, each in block.parameters().items() if each.null is not None}
     if axis not in model.measured:
