@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 from scipy.signal import lsim, lti
 
-from rig import path, response
+from pzt_ident.engine.simulator import simulate
+from pzt_ident.model.block import Place, Term
+from pzt_ident.model.registry import blocks
+from rig import candidates, model, path, record, response
 
 DRIVE = path(0, 80, 10, 60, 0, points=70)
 T = np.arange(DRIVE.size) * 1e-3
@@ -150,3 +153,22 @@ def test_a_loop_that_leans_one_way():
     memory = (0.08 * drive - response(["bouc_wen"], known, drive)) / (0.4 * 0.08)
     expected = np.append(1.2 * drive[:8], 1.2 * 80 - 0.8 * (80 - drive[8:]))
     np.testing.assert_allclose(memory, expected, rtol=1e-12, atol=1e-12)
+
+
+def behind_the_hysteresis():
+    """Items of effects with what they act in: nothing, or the equation of motion."""
+    for item in (item for word in blocks.effects() for item in blocks.forms(word)):
+        if issubclass(blocks[item], Term):
+            yield from [[item, "lumped"]] * blocks["lumped"].holds(blocks[item])
+        elif Place.OPERATOR < blocks[item].place < Place.OUTPUT:
+            yield [item]
+
+
+@pytest.mark.parametrize("items", [*behind_the_hysteresis()], ids="-".join)
+def test_what_depends_on_its_zero_is_about_rest(items):
+    """A force that is larger all the time moves the rest alone, unless the effect is nonlinear in the displacement."""
+    chain = model(*(blocks[item] for item in items))
+    theta = candidates(chain, DRIVE, 10, seed=4)
+    less, more = (simulate(chain, record(*[DRIVE + shift] * len(chain.axes)), theta) for shift in (0, 20))
+    moved = np.ptp(more - less, axis=2).max(axis=1) / np.abs(less).max(axis=(1, 2))
+    assert chain.from_rest == (moved.max() > 1e-9)
