@@ -67,11 +67,11 @@ def motion(f, dt, frequency, damping, *, cubic=0.0, friction=None):
             pull += limit * math.tanh(v / speed)
         return v, w2 * (force - x - cubic * x**3 - pull) - c * v, dz
 
-    x = v = z = 0.0
-    out, forces = [0.0], f.tolist()
-    start = forces[0]
+    forces = f.tolist()
+    x, v, z = float(static_cubic(forces[0], cubic)), 0.0, 0.0
+    out = [x]
     for old, new in pairwise(forces):
-        old, new, half = old - start, new - start, (old + new) / 2 - start
+        half = (old + new) / 2
         a1, b1, c1 = rates(x, v, z, old)
         a2, b2, c2 = rates(x + dt / 2 * a1, v + dt / 2 * b1, z + dt / 2 * c1, half)
         a3, b3, c3 = rates(x + dt / 2 * a2, v + dt / 2 * b2, z + dt / 2 * c2, half)
@@ -80,7 +80,7 @@ def motion(f, dt, frequency, damping, *, cubic=0.0, friction=None):
         v += dt / 6 * (b1 + 2 * b2 + 2 * b3 + b4)
         z += dt / 6 * (c1 + 2 * c2 + 2 * c3 + c4)
         out.append(x)
-    return np.array(out) + start
+    return np.array(out)
 
 
 def static_cubic(f, cubic):

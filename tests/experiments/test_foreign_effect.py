@@ -164,6 +164,13 @@ def test_dahl_ahead_levels_off_at_its_level_and_static_cubic_solves_its_equation
     assert np.max(np.abs(x + 1e-3 * x**3 - f)) < 1e-12
 
 
+@pytest.mark.parametrize("start", [0.0, 3.0, -4.0])
+def test_a_flexure_bends_about_the_same_zero_wherever_a_record_starts(start):
+    f = start + 4 * np.sin(2 * np.pi * np.arange(16000) / 16000)
+    x = mechanics.motion(f, 1e-3, 60.0, 0.3, cubic=2e-3)
+    assert np.max(np.abs(x - mechanics.static_cubic(f, 2e-3))) < 5e-3
+
+
 def _identity_cases():
     for effect, forms in FORMS.items():
         for form in forms:
