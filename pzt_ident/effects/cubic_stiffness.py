@@ -23,7 +23,7 @@ class CubicStiffness(Bending, Term):
     Awtar & Slocum (2007), J. Mech. Des. 129, 625. The resonance goes up with the bias: df / f = (3/2) c x0^2.
     """
 
-    sizes = tuple(0.005 * 1.5**k for k in range(12))
+    sizes = tuple(0.00125 * 1.5**k for k in range(15))
 
 
 class AtRest(Bending, Block):
@@ -33,8 +33,8 @@ class AtRest(Bending, Block):
     """
 
     place = Place.STATIC
-    sizes = (0.02, 0.1, 0.4)
-    cubic = Parameter("1/response^2", (-0.1, 0.5), "Cubic over linear stiffness, k3 / k.", null=0)
+    sizes = (0.005, 0.025, 0.1, 0.4)
+    cubic = Parameter("1/response^2", (-0.4, 2), "Cubic over linear stiffness, k3 / k.", null=0)
 
     def prepare(cubic):
         return (cubic,)

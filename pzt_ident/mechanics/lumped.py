@@ -23,7 +23,7 @@ class Lumped(Oscillator):
     load = Parameter("kg", (0, 1), "Mass of a payload, added to the moving mass.", null=0, effect="load_mass")
     extra_damping = Parameter("N*s/m", (0, 3e4), "Added to the damping.", null=0, effect="viscous_damping")
     cubic = Parameter(
-        "1/response^2", (-0.1, 0.5), "Cubic over linear stiffness, k3 / k.", null=0, effect="cubic_stiffness"
+        "1/response^2", (-0.4, 2), "Cubic over linear stiffness, k3 / k.", null=0, effect="cubic_stiffness"
     )
     friction = Parameter("response", (0, 0.1), "Sliding friction over the stiffness.", null=0, effect="friction.motion")
     reach = Parameter(
