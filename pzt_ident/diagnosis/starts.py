@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.refit import refine_steps, side_by_side
+from pzt_ident.model.block import Modes
 from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
@@ -57,7 +59,35 @@ def first_fit(
             break
     point = min((minima[np.argmin(losses)], best_of_each_axis(case, problem, minima)), key=lambda p: problem.loss(p)[0])
     fit = fit_at(effects, problem, point, agreed or known is not None)
-    return refine_steps(case, fit if fit.converged else settled(case, fit), fine=True)
+    return refine_steps(case, best_exchange(case, fit if fit.converged else settled(case, fit)), fine=True)
+
+
+def best_exchange(case: Case, fit: Fit) -> Fit:
+    """The best of the fit and of those with two modes the other way round. Modes whose bounds overlap are alike but for
+    their order, and in the wrong one a mode may end on a bound short of where it is: many starts then agree on it."""
+    fits = [fit]
+    for start in exchanged(fit.problem, fit.point) if fit.on_bounds else ():
+        fits.append(
+            replace(fit_at(fit.effects, fit.problem, case.descend(fit.problem, start)), converged=fit.converged)
+        )
+    return min(fits, key=lambda candidate: candidate.identify)
+
+
+def exchanged(problem: Problem, point: Array) -> Array:
+    """(pairs of modes, dimensions): the point with all free parameters of two modes exchanged, within their bounds."""
+    values, places = problem.physical(point)[0], dict[int, dict[tuple[int, str], int]]()
+    for place, column in enumerate(problem.free):
+        entry = problem.model.entries[column]
+        if issubclass(entry.block, Modes):
+            word, number = entry.word.rsplit("_", 1)
+            places.setdefault(int(number), {})[entry.axis, word] = place
+    points = []
+    for one, other in combinations(places.values(), 2):
+        both, swapped = one.keys() & other.keys(), values.copy()
+        swapped[[one[key] for key in both]] = values[[other[key] for key in both]]
+        swapped[[other[key] for key in both]] = values[[one[key] for key in both]]
+        points.append(problem.unit_point(dict(zip(problem.names, swapped, strict=True))))
+    return np.array(points)
 
 
 def settled(case: Case, fit: Fit) -> Fit:

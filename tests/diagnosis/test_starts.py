@@ -7,9 +7,10 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis import starts
+from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import fit_at
-from pzt_ident.diagnosis.starts import first_fit, restart
+from pzt_ident.diagnosis.starts import best_exchange, first_fit, restart
 from pzt_ident.search.descent import descend
 
 
@@ -80,3 +81,24 @@ def test_two_starts_that_agree_far_from_the_noise_do_not_end_the_search(plain, m
     fit = first_fit(plain, 0)
     assert fit.converged and fit.identify < 1.1 * plain.floor
     assert len(points) == 12
+
+
+def test_modes_the_wrong_way_round_are_exchanged():
+    """Their bounds overlap, and the first ends short of its place in that of the second."""
+    t = np.arange(2000) * 1e-3
+    chirps = [50 + 20 * np.sin(2 * np.pi * (10 + rate * t) * t) for rate in (80, 60)]
+    true = {"frequency_1": 88.0, "frequency_2": 143.0, "damping_1": 0.02, "damping_2": 0.01, "shape_1": 0.8}
+    modes = {f"modal.{word}": value for word, value in (true | {"shape_2": 0.2}).items()}
+    made = stage.records(modes, chirps, dt=1e-3, model=("bouc_wen", "modal"), steps=1)
+    overlapping = {"modal.frequency_1": Widened((50.0, 140.0)), "modal.frequency_2": Widened((80.0, 230.0))}
+    known = {name: value for name, value in stage.STAGE.items() if name.startswith("bouc_wen")}
+    known["bouc_wen.gain"] *= 1e6
+    case = Case(("bouc_wen", "modal"), (), made, stage.specs(known) | overlapping)
+    problem = case.problem(())
+    swapped = modes | {"modal.frequency_1": 140.0, "modal.frequency_2": 88.0, "modal.damping_1": 0.01}
+    swapped |= {"modal.damping_2": 0.02, "modal.shape_1": 0.2, "modal.shape_2": 0.8}
+    wrong = fit_at((), problem, case.descend(problem, problem.unit_point(swapped)))
+    assert wrong.identify > 2 * stage.NOISE and "modal.frequency_1" in wrong.on_bounds
+    found = best_exchange(case, wrong)
+    assert found.identify == pytest.approx(stage.NOISE, rel=0.05)
+    assert found.values["modal.frequency_1"] == pytest.approx(88.0, rel=1e-3)
