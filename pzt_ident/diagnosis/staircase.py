@@ -19,7 +19,12 @@ from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.proof import unproven
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
-from pzt_ident.diagnosis.undetermined import Undetermined, undetermined_mechanics, without_mechanics
+from pzt_ident.diagnosis.undetermined import (
+    Undetermined,
+    enough_without_mechanics,
+    undetermined_mechanics,
+    without_mechanics,
+)
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
 
 FIRST_EFFECTS = 2  # effects that are tried as the first to be added
@@ -28,8 +33,13 @@ FIRST_EFFECTS = 2  # effects that are tried as the first to be added
 def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
     """The staircase from the model as given to the one with all effects that are proven. Wider bounds, where those of
     the job are too narrow, are tried first where they remove most of the misfit of an axis; mechanics that the data do
-    not determine are left out first where no effect beside them reaches the noise."""
-    beyond = None if adequate(case, first, first) else beyond_bounds(case, first, first)
+    not determine are left out first where no effect beside them reaches the noise, and any where nothing is missing
+    without them."""
+    good = adequate(case, first, first)
+    enough = None if good else enough_without_mechanics(case, first)
+    if enough:
+        return improve_within(enough[1], without_step(case, first, *enough), on_step)
+    beyond = None if good else beyond_bounds(case, first, first)
     wide = None
     if beyond and are_decisive(case, first, beyond[1]):
         wide = improve_beyond(case, first, *beyond, on_step)
@@ -84,11 +94,18 @@ def improve_lean(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepList
     if alternative is None:
         return None
     word, lean, start = alternative
-    step = Step(start, explained=explained_share(case, first, start), change=f"without {word}", case=lean)
-    staircase = improve_within(lean, [Step(first), step], on_step)
+    staircase = improve_within(lean, without_step(case, first, *alternative), on_step)
     share = explained_share(case, start, first)
     staircase.suspects.append(Undetermined(word, share, end_of(staircase).total / case.floor))
     return staircase
+
+
+def without_step(case: Case, first: Fit, word: str, lean: Case, start: Fit) -> list[Step]:
+    """The steps from the model as given to the one without its mechanics."""
+    return [
+        Step(first),
+        Step(start, explained=explained_share(case, first, start), change=f"without {word}", case=lean),
+    ]
 
 
 def accounts(wide: Staircase, case: Case, first: Fit) -> bool:

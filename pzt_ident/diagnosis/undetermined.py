@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.criteria import CLEAR, removed_rms
+from pzt_ident.diagnosis.criteria import CLEAR, adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.score import fits
@@ -42,13 +42,29 @@ def without_mechanics(case: Case, first: Fit) -> tuple[str, Case, Fit] | None:
     """The word of the mechanics, the case without them and its fit, where the data do not determine the mechanics and
     the model is clearly worse without them; None elsewhere."""
     word = undetermined_mechanics(first)
-    if word is None:
-        return None
-    lean = case.with_words([item for item in case.words if word_of(item) != word])
-    if not has_operator(lean) or not all(fits(lean, (), effect) for effect in case.effects):
+    lean = without(case, word) if word else None
+    if word is None or lean is None:
         return None
     fit = restart(lean, refit(lean, first, first.effects, {}))
     return (word, lean, fit) if removed_rms(fit.total, first.total) > CLEAR * case.floor else None
+
+
+def enough_without_mechanics(case: Case, first: Fit) -> tuple[str, Case, Fit] | None:
+    """The word of the mechanics, all of them free, the case without them and its fit, where that is at the noise and
+    the model with them is not: their bounds do not reach to mechanics as stiff as these."""
+    entries = mechanics_of(first)
+    word = next((entry.block.name for entry in entries.values()), "")
+    lean = without(case, word) if entries.keys() <= {*first.problem.free} else None
+    if lean is None:
+        return None
+    fit = refit(lean, first, first.effects, {})
+    return (word, lean, fit) if adequate(lean, fit, fit) else None
+
+
+def without(case: Case, word: str) -> Case | None:
+    """The case without a block; None where nothing makes a response of the drive then, or an effect acts in it."""
+    lean = case.with_words([item for item in case.words if word_of(item) != word])
+    return lean if has_operator(lean) and all(fits(lean, (), effect) for effect in case.effects) else None
 
 
 def undetermined_mechanics(fit: Fit) -> str | None:

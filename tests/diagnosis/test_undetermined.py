@@ -5,8 +5,14 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis import staircase, verdict
+from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.starts import first_fit
-from pzt_ident.diagnosis.undetermined import undetermined_axes, undetermined_mechanics, without_mechanics
+from pzt_ident.diagnosis.undetermined import (
+    enough_without_mechanics,
+    undetermined_axes,
+    undetermined_mechanics,
+    without_mechanics,
+)
 from pzt_ident.model.registry import blocks
 
 SEVERAL = stage.EFFECTS["creep"] | stage.EFFECTS["sensor_lag"] | stage.EFFECTS["quadratic_gain"]
@@ -75,6 +81,24 @@ def test_mechanics_that_are_determined_beside_the_best_effect_are_kept(monkeypat
     monkeypatch.setattr(staircase, "without_mechanics", lambda case, first: tried.append(case))
     assert staircase.improve_lean(case, first, diagnosis, lambda step: None) is None
     assert bool(tried) == (beside is not None)
+
+
+SOFT = {"lumped.mass": Widened((1e3, 1e4)), "lumped.stiffness": Widened((1e5, 1e6))}
+
+
+def test_where_nothing_is_missing_without_mechanics_nothing_is_named():
+    """The bounds of the job have no mechanics as stiff as those of the stage."""
+    case = slow({}).with_specs(SOFT)
+    first = first_fit(case, 0)
+    assert first.total > 2 * case.floor
+    found = staircase.improve(case, first)
+    assert [step.change for step in found.steps] == ["", "without lumped"]
+    assert found.last.verdict == "adequate" and found.case.words == ("bouc_wen",)
+
+
+@pytest.mark.parametrize("case", [slow(stage.EFFECTS["creep"]), slow({}, {"lumped.mass": 5.0})], ids=["creep", "known"])
+def test_where_something_is_missing_without_them_or_they_are_known_they_are_kept(case):
+    assert enough_without_mechanics(case.with_specs(SOFT | case.specs), first_fit(case, 0)) is None
 
 
 @pytest.mark.parametrize("effects", [("cubic_stiffness",), ("load_mass",)])
