@@ -11,7 +11,7 @@ class LoadMass(Term):
     The resonance falls to w = w0 / sqrt(1 + load / m); slow records do not show it.
     """
 
-    sizes = tuple(0.003 * 1.03**k for k in range(197))
+    sizes = tuple(0.0003 * 1.04**k for k in range(207))
     look_alikes = ("resonance",)
     separate_by = "Chirp with small amplitude through the resonance, with and without a known mass on the stage."
     remedy = "Take the load off or fix it firmly, and lower the bandwidth or the notch to the resonance with the load."
