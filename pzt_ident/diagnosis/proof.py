@@ -17,7 +17,8 @@ from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.step import effects_without
 from pzt_ident.model.registry import blocks, phrase_of, word_of
 
-ENOUGH = 3 / 4  # of the misfit as given, of all records together: what one effect must remove
+ENOUGH = 3 / 4  # of the misfit as given, of all records together: what the first of several effects must remove
+SINGLE = 0.85  # of it, which one effect must remove that is alone
 EACH = 1 / 2  # of that of the identification and of the validation records
 BESIDE = 2 / 3  # of the misfit beside the others: what each must remove of those that do not remove most of it together
 ALONE = 1 / 3  # what each must remove of those that do
@@ -76,8 +77,9 @@ def unproven(
 
     Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may
     stand in for what is not in the catalogue: they must also remove together as much of the misfit as given as if the
-    first removed ENOUGH of all records, or DECISIVE where the identification records are at the noise, and EACH of
-    either kind of them, and each of the others half of the rest, and each the share ALONE beside the others; of
+    first removed ENOUGH of all records (SINGLE, if it is alone), or DECISIVE where the identification records are at
+    the noise, and EACH of either kind of them, and each of the others half of the rest, and each the share ALONE beside
+    the others; of
     several that leave more than that each must remove more in proportion, up to BESIDE. None may have rivals that fit
     as well and are not its look-alikes: what any effect takes up is not that of one. And none may have a shape that
     ended on a bound, as a cyclic error whose pitch is as long as the stroke: it stands for what it is like there.
@@ -110,7 +112,8 @@ def least_of(case: Case, suspected: Sequence[Suspect]) -> Suspect:
 def left_of_allowed(case: Case, first: Fit, now: Fit, effects: int) -> float:
     """What a fit leaves of the misfit as given, in multiples of what so many effects may leave: of all records
     together, or of the identification or of the validation records, whichever is more."""
-    one, rest = DECISIVE if reaches_noise(case, first, now) else ENOUGH, (1 - DECISIVE) ** (effects - 1)
+    above = SINGLE if effects == 1 else ENOUGH
+    one, rest = DECISIVE if reaches_noise(case, first, now) else above, (1 - DECISIVE) ** (effects - 1)
     of_all = share_explained(first.total, now.total, case.floor)
     both = [(first.identify, now.identify), (first.validate, now.validate)]
     least = min(share_explained(before, after, case.floor) for before, after in both if before and after)

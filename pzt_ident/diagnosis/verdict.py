@@ -34,6 +34,7 @@ from pzt_ident.diagnosis.criteria import (
     LEAST_SHARE,
     VALIDATION_FACTOR,
     adequate,
+    beyond_form,
     clears_an_axis,
     not_in_validation,
     reaches_noise,
@@ -114,7 +115,9 @@ def with_effects(
 
     total = min(fit.total for fit in fits.values())
     close = [item for item in passing if removed_rms(fits[item.score.effect].total, total) < TIE * case.floor]
-    least = min(close, key=simplicity)
+    lowest = min(close, key=simplicity)
+    least = needed(case, first, lowest, passing)
+    close = close if least is lowest else [least]
     word = least.score.effect
     alike = [item for item in passing if item in close or is_tied(case, word, fits[word], fits[item.score.effect])]
     tied = [item for item in alike if item is least or not generalises(fits[item.score.effect], fits[word])]
@@ -131,6 +134,18 @@ def with_effects(
     others = sorted((item for item in passing if item not in tied), key=lambda item: fits[item.score.effect].total)
     reason = missing_sentence(case, first, before, fits[word], words)
     return Diagnosis(verdict, reason, before, candidates, words, [best, *others])
+
+
+def needed(case: Case, first: Fit, best: Candidate, passing: list[Candidate]) -> Candidate:
+    """The best, or the lowest of the look-alikes of fewer parameters that it may contain, and beside which it adds no
+    more than their form may leave: friction with a viscous part is a lag where nothing rubs."""
+    others = [
+        (item.fit.total, number)
+        for number, item in enumerate(passing)
+        if best.fit and item.fit and are_look_alikes(best.score.effect, item.score.effect)
+        if generalises(best.fit, item.fit) and not beyond_form(case, first, item.fit, best.fit)
+    ]
+    return passing[min(others)[1]] if others else best
 
 
 def within_bounds(before: Fit, best: Candidate, passing: list[Candidate]) -> Candidate:

@@ -74,7 +74,10 @@ def test_a_term_is_searched_for_where_its_effect_is_listed():
     model, records = made(["bouc_wen", "lumped", "load_mass"], TRUTH | MECHANICS)
     problem = Problem(model, records)
     column = problem.names.index("lumped.load")
-    assert (problem.lower[column], problem.upper[column], problem.units[column]) == (*blocks["lumped"].load.bounds, "kg")
+    assert (problem.lower[column], problem.upper[column], problem.units[column]) == (
+        *blocks["lumped"].load.bounds,
+        "kg",
+    )
     assert "lumped.extra_damping" not in problem.names
     without, records = made(["bouc_wen", "lumped"], TRUTH | MECHANICS)
     assert "lumped.load" not in Problem(without, records).names
