@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from pzt_ident.diagnosis.budget import PROVING
-from pzt_ident.diagnosis.candidates import TIE, is_equal, is_tied, is_twin, strangers
+from pzt_ident.diagnosis.candidates import (
+    LIMIT_TIE,
+    TIE,
+    is_equal,
+    is_tied,
+    is_twin,
+    rests_on_own_bounds,
+    strangers,
+)
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.fit import Fit
@@ -46,12 +54,19 @@ def exchange_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
         items = rivals if adequate(case, first, now) else [*rivals, *other_forms(case, now, effect)]
         if items and not case.budget.allows("other forms and look-alikes"):
             break
-        best = min(fits_in_place(case, now, effect, items), key=lambda fit: fit.total, default=now)
+        fits = [fit for fit in fits_in_place(case, now, effect, items) if not in_its_limit(now, fit)]
+        best = min(fits, key=lambda fit: fit.total, default=now)
         if fits_better(case, now, best) and (best.effects[-1] in rivals or clears_up(case, now, best)):
             best = under_own_name(case, now, effect, best)
             steps += [exchange_step(case, now, best, effect), *remove_unneeded(case, first, best)]
             now = steps[-1].fit
     return steps
+
+
+def in_its_limit(now: Fit, other: Fit) -> bool:
+    """Whether an effect in the place of another is hardly better and rests on a bound of its own: it may be the limit
+    in which it is that other one."""
+    return now.total < (1 + LIMIT_TIE) * other.total and rests_on_own_bounds(now, other)
 
 
 def under_own_name(case: Case, now: Fit, effect: str, best: Fit) -> Fit:

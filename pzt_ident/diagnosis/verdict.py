@@ -10,6 +10,7 @@ import numpy as np
 from pzt_ident.data.notation import listed
 from pzt_ident.diagnosis.candidates import (
     LIMIT_TIE,
+    LOOK_ALIKE_TIE,
     TIE,
     TWIN,
     Candidate,
@@ -49,6 +50,7 @@ from pzt_ident.diagnosis.wording import percent
 from pzt_ident.model.registry import phrase_of
 
 SHORTLIST = 6  # effects that are refitted
+FAR = 5.0  # noise floors, above which it is not the noise that tells fits from each other
 STEP_FAULT = 0.6  # of the misfit: where halving the simulation step changes more, the step is to blame
 
 
@@ -137,15 +139,17 @@ def with_effects(
 
 
 def needed(case: Case, first: Fit, best: Candidate, passing: list[Candidate]) -> Candidate:
-    """The best, or the lowest of the look-alikes of fewer parameters that it may contain, and beside which it adds no
-    more than their form may leave: friction with a viscous part is a lag where nothing rubs."""
-    others = [
-        (item.fit.total, number)
-        for number, item in enumerate(passing)
-        if best.fit and item.fit and are_look_alikes(best.score.effect, item.score.effect)
-        if generalises(best.fit, item.fit) and not beyond_form(case, first, item.fit, best.fit)
-    ]
-    return passing[min(others)[1]] if others else best
+    """The best, or the lowest of those of fewer parameters that, FAR from the noise, fit as well to one percent, or are
+    look-alikes that it may contain and beside which it adds no more than their form may leave: friction with a viscous
+    part is a lag where nothing rubs."""
+
+    def suffices(fit: Fit, than: Fit) -> bool:
+        contained = are_look_alikes(than.effects[-1], fit.effects[-1]) and generalises(than, fit)
+        as_well = fit.total < (1 + LOOK_ALIKE_TIE) * than.total and fit.freedom < than.freedom
+        return (as_well and than.total > FAR * case.floor) or (contained and not beyond_form(case, first, fit, than))
+
+    others = [item for item in passing if best.fit and item.fit and suffices(item.fit, best.fit)]
+    return min(others, key=lambda item: item.fit.total if item.fit else np.inf, default=best)
 
 
 def within_bounds(before: Fit, best: Candidate, passing: list[Candidate]) -> Candidate:

@@ -17,6 +17,7 @@ from pzt_ident.diagnosis.criteria import (
     removes_enough,
     threshold,
 )
+from pzt_ident.diagnosis.exchange import in_its_limit
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.score import Score, squared_misfit
 from pzt_ident.diagnosis.verdict import best_pair, diagnose
@@ -276,6 +277,23 @@ def test_a_form_of_more_parameters_gives_way_to_a_look_alike_beside_which_it_add
     fits = {form: fit(3.0, 3.0, [form], 7), "delay": fit(left, left, ["delay"], 4)}
     best, rival = (Candidate(Score(word), made) for word, made in fits.items())
     assert verdict.needed(CASE, fit(30.0, 30.0), best, [best, rival]).score.effect == taken
+
+
+@pytest.mark.parametrize(("worse", "taken"), [(1.009, "delay"), (1.011, "distributed_memory")])
+def test_far_above_the_noise_what_has_fewer_parameters_is_taken_if_it_fits_as_well_to_one_percent(judged, worse, taken):
+    memory, delay = fit(20.0, 20.0, ["distributed_memory"], 14), fit(20.0 * worse, 20.0 * worse, ["delay"], 5)
+    diagnosis = judged({"distributed_memory": memory, "delay": delay})
+    assert (diagnosis.verdict, diagnosis.tied) == ("missing", [taken])
+
+
+@pytest.mark.parametrize(("place", "worse", "in_limit"), [(1.0, 1.09, True), (1.0, 1.11, False), (0.5, 1.09, False)])
+def test_nothing_is_exchanged_for_an_effect_on_its_own_bound_that_is_hardly_better(place, worse, in_limit):
+    """A cyclic error whose pitch is the stroke is a bend."""
+    bend, encoder = (
+        fit(4.0 * worse, 4.0 * worse, ["quadratic_gain"]),
+        fit(4.0, 4.0, ["encoder_cyclic_error"], own=[place]),
+    )
+    assert in_its_limit(bend, encoder) == in_limit
 
 
 @pytest.mark.parametrize(("dimensions", "taken"), [(5, "delay"), (4, "amplifier_lag"), (3, "amplifier_lag")])
