@@ -47,7 +47,7 @@ from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.refit import refit, step_errors
 from pzt_ident.diagnosis.score import LEAST_SCORE, scorer_of, squared_misfit
 from pzt_ident.diagnosis.wording import percent
-from pzt_ident.model.registry import phrase_of
+from pzt_ident.model.registry import blocks, phrase_of, word_of
 
 SHORTLIST = 6  # effects that are refitted
 FAR = 5.0  # noise floors, above which it is not the noise that tells fits from each other
@@ -139,12 +139,12 @@ def with_effects(
 
 
 def needed(case: Case, first: Fit, best: Candidate, passing: list[Candidate]) -> Candidate:
-    """The best, or the lowest of those of fewer parameters that, FAR from the noise, fit as well to one percent, or are
-    look-alikes that it may contain and beside which it adds no more than their form may leave: friction with a viscous
-    part is a lag where nothing rubs."""
+    """The best, or the lowest of those of fewer parameters that, FAR from the noise, fit as well to one percent, or
+    that it contains and beside which it adds no more than their form may leave: friction with a viscous part is a lag
+    where nothing rubs."""
 
     def suffices(fit: Fit, than: Fit) -> bool:
-        contained = are_look_alikes(than.effects[-1], fit.effects[-1]) and generalises(than, fit)
+        contained = word_of(fit.effects[-1]) in blocks[than.effects[-1]].contains
         as_well = fit.total < (1 + LOOK_ALIKE_TIE) * than.total and fit.freedom < than.freedom
         return (as_well and than.total > FAR * case.floor) or (contained and not beyond_form(case, first, fit, than))
 

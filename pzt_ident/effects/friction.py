@@ -74,6 +74,7 @@ class LuGreViscous(Friction):
     """
 
     viscous = Parameter("s", (0, 0.05), "Viscous friction over the stiffness.", null=0)
+    contains = ("sensor_lag", "amplifier_lag")
 
     def prepare(force, reach, stiction, stribeck, viscous, dt):
         return force, reach, stiction, 1 / (stribeck * dt), *decay(viscous, dt)
@@ -96,6 +97,7 @@ class Coulomb(Ahead, Block):
 
     speed = Parameter("response/s", (1e-3, 100), "Velocity over which dry friction builds up.", scale="log")
     viscous = Parameter("s", (0, 0.05), "Viscous friction over the stiffness.", null=0)
+    contains = ("sensor_lag", "amplifier_lag")
 
     def prepare(force, speed, viscous, dt):
         return force, 2 / (speed * dt), *decay(viscous, dt)

@@ -47,6 +47,7 @@ class SaturatingLag(SlewLimit):
     """
 
     tau = Parameter("s", (0, 0.05), "Time constant below the limit.", null=0)
+    contains = ("amplifier_lag",)
 
     def prepare(slowness, tau, dt):
         return dt / slowness if slowness != 0 else inf, *decay(tau, dt)

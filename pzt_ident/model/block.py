@@ -62,7 +62,8 @@ class Block:
     most are namespaces of parameters in SI units.
 
     An effect, a block that may be missing from a model, also declares which effects leave the same trace
-    (look_alikes), the experiment that tells them apart (separate_by), and the remedy on the rig.
+    (look_alikes), the experiment that tells them apart (separate_by), and the remedy on the rig; a form of it which
+    look-alikes it is at the null of its own size (contains).
     """
 
     kind: ClassVar[str] = "block"  # key of its functions in contract.kinds.KINDS
@@ -70,6 +71,7 @@ class Block:
     place: ClassVar[Place]
     oversample: ClassVar[int] = 1
     look_alikes: ClassVar[tuple[str, ...]] = ()
+    contains: ClassVar[tuple[str, ...]] = ()
     separate_by: ClassVar[str] = ""
     remedy: ClassVar[str] = ""
     sizes: ClassVar[tuple[float, ...]] = (0.05,)  # shares of its range at which an effect is scored; one if linear

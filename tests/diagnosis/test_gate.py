@@ -270,11 +270,15 @@ def test_an_effect_on_its_own_bound_gives_way_to_what_it_is_like_there(judged, p
 
 @pytest.mark.parametrize(
     ("left", "form", "taken"),
-    [(3.2, "friction.coulomb", "delay"), (4.0, "friction.coulomb", "friction.coulomb"), (3.2, "friction", "friction")],
+    [
+        (3.2, "friction.coulomb", "sensor_lag"),
+        (4.0, "friction.coulomb", "friction.coulomb"),
+        (3.2, "friction", "friction"),
+    ],
 )
-def test_a_form_of_more_parameters_gives_way_to_a_look_alike_beside_which_it_adds_little(left, form, taken):
+def test_an_effect_gives_way_to_one_that_it_contains_and_beside_which_it_adds_little(left, form, taken):
     """Friction with a viscous part contains a lag; its first form does not."""
-    fits = {form: fit(3.0, 3.0, [form], 7), "delay": fit(left, left, ["delay"], 4)}
+    fits = {form: fit(3.0, 3.0, [form], 7), "sensor_lag": fit(left, left, ["sensor_lag"], 4)}
     best, rival = (Candidate(Score(word), made) for word, made in fits.items())
     assert verdict.needed(CASE, fit(30.0, 30.0), best, [best, rival]).score.effect == taken
 

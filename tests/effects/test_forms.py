@@ -155,6 +155,19 @@ def test_a_loop_that_leans_one_way():
     np.testing.assert_allclose(memory, expected, rtol=1e-12, atol=1e-12)
 
 
+CONTAINED = [
+    (item, word) for effect in blocks.effects() for item in blocks.forms(effect) for word in blocks[item].contains
+]
+
+
+@pytest.mark.parametrize(("item", "word"), CONTAINED)
+def test_what_contains_a_lag_is_that_lag_at_the_null_of_its_own_size(item, word):
+    declared = blocks[item].parameters()
+    middle = {name: each.null if each.null is not None else sum(each.bounds) / 2 for name, each in declared.items()}
+    (seconds,) = (name for name, each in declared.items() if each.unit == "s")
+    np.testing.assert_allclose(alone(item, **middle | {seconds: 2e-3}), alone(word, tau=2e-3), atol=1e-9)
+
+
 def behind_the_hysteresis():
     """Items of effects with what they act in: nothing, or the equation of motion."""
     for item in (item for word in blocks.effects() for item in blocks.forms(word)):

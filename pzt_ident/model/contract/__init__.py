@@ -72,6 +72,7 @@ def check_loaded(block: Any, known: Any) -> None:
     try_functions(block)
     check_identity(block)
     references = [("look_alikes", word) for word in block.look_alikes]
+    references += [("contains", word) for form in (block, *block.forms.values()) for word in form.contains]
     references += [(word, item.effect) for word, item in parameters(block).items() if item.effect]
     for where, word in references:
         word = word.partition(".")[0]
