@@ -38,7 +38,7 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
     good = adequate(case, first, first)
     enough = None if good else enough_without_mechanics(case, first)
     if enough:
-        return improve_within(enough[1], without_step(case, first, *enough), on_step)
+        return improve_within(enough[1], steps_without(case, first, *enough), on_step)
     beyond = None if good else beyond_bounds(case, first, first)
     wide = None
     if beyond and are_decisive(case, first, beyond[1]):
@@ -94,13 +94,13 @@ def improve_lean(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepList
     if alternative is None:
         return None
     word, lean, start = alternative
-    staircase = improve_within(lean, without_step(case, first, *alternative), on_step)
+    staircase = improve_within(lean, steps_without(case, first, *alternative), on_step)
     share = explained_share(case, start, first)
     staircase.suspects.append(Undetermined(word, share, end_of(staircase).total / case.floor))
     return staircase
 
 
-def without_step(case: Case, first: Fit, word: str, lean: Case, start: Fit) -> list[Step]:
+def steps_without(case: Case, first: Fit, word: str, lean: Case, start: Fit) -> list[Step]:
     """The steps from the model as given to the one without its mechanics."""
     return [
         Step(first),

@@ -65,6 +65,7 @@ class OfVoltage(Series):
 
     place = Place.READOUT
     solvable = False
+    frequency = Parameter("Hz", (100, 2e4), "Natural frequency of the stack or the amplifier.", scale="log")
 
 
 Resonance.forms = {"series": Series, "voltage": OfVoltage}

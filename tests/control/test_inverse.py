@@ -66,9 +66,8 @@ def test_stage_without_dynamics_follows_to_rounding(words):
 
 @pytest.mark.parametrize("words", [words for words in INVERTED if dynamic(words)])
 def test_stage_with_dynamics_follows_as_far_as_the_noise_gain_allows(words):
-    """A slow mode that the voltage drives is left to the passes, which end before it is made up for to rounding."""
     loose, tight = (np.median(errors_of(words, gain)) for gain in (10.0, 1e4))
-    assert loose < 1e-3 and tight < (1e-6 if all(block_of(word).solvable for word in words.split()) else 1e-4)
+    assert loose < 1e-3 and tight < 1e-6
 
 
 def stage(values, words, drive, dt=1e-4, **more):
