@@ -14,11 +14,11 @@ from run_folders import WEIRD, make_run
 def pytest_collection_finish():
     """What 6,000 tests are made of is no garbage, and need not be looked through again and again; and who works on them
     has one core, on which threads wait for each other."""
-    from pzt_ident.diagnosis import refit
+    from pzt_ident.diagnosis import threads
 
     gc.freeze()
     gc.set_threshold(20_000)
-    refit.THREADS = 1
+    threads.THREADS = 1
 
 
 @pytest.fixture(scope="session")

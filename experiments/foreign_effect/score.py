@@ -41,6 +41,7 @@ def score(truth, solved):
     """Row of a table: exact, in class, extra effects, verdict, floors left on records kept back, CPU seconds."""
     improvement = solved["improvement"]
     row = {"kind": truth["kind"], "seed": truth["seed"], "truth": truth["truth"], "cpu": solved["cpu"]}
+    row["work"] = (improvement or {}).get("work") or float("nan")
     row |= {"seconds": solved["seconds"], "base": truth["base"]["kind"], "bounds": truth["bounds"]}
     row |= {"mechanics": truth["mechanics"], "y": _other(truth), "coloured": bool(truth["sensor"]["memory"])}
     row["forms"] = [truth["base"]["kind"]] * (truth["kind"] == "family")

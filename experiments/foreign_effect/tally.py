@@ -15,6 +15,7 @@ def _quantile(values, share):
 
 def _line(name, rows):
     floors, cpu = [r["floors"] for r in rows], [r["cpu"] for r in rows]
+    work = [r["work"] / r["cpu"] for r in rows]
     verdicts = defaultdict(int)
     for row in rows:
         verdicts[row["verdict"]] += 1
@@ -23,15 +24,15 @@ def _line(name, rows):
     return (
         f"| {name} | {len(rows)} | {_share(rows, 'exact')} | {_share(rows, 'in_class')} | {wrong} | "
         f"{_quantile(floors, 0.5):.2f} / {_quantile(floors, 0.9):.2f} | {_quantile(cpu, 0.5):.0f} / "
-        f"{_quantile(cpu, 0.95):.0f} | {said} |"
+        f"{_quantile(cpu, 0.95):.0f} | {_quantile(work, 0.5):.2f} / {_quantile(work, 0.05):.2f} | {said} |"
     )
 
 
 def _head(name):
     return (
         f"| {name} | cases | exact | in class | with a wrong name | floors left, median / 90 % | "
-        "CPU s, median / 95 % | verdicts |\n"
-        "|---|---|---|---|---|---|---|---|"
+        "CPU s, median / 95 % | work / CPU, median, 5 % | verdicts |\n"
+        "|---|---|---|---|---|---|---|---|---|"
     )
 
 
@@ -49,8 +50,8 @@ def _family(rows):
         return []
     lines = [
         "| Bouc-Wen fitted to another family | cases | memory named | in class | effect named | in class | "
-        "with a wrong name | floors left, median / 90 % | CPU s, median / 95 % | verdicts |",
-        "|---|---|---|---|---|---|---|---|---|---|",
+        "with a wrong name | floors left, median / 90 % | CPU s, median / 95 % | work / CPU, median, 5 % | verdicts |",
+        "|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for name, length in (("without an effect", 1), ("with one effect", 2)):
         if some := [r for r in rows if len(r["truth"]) == length]:

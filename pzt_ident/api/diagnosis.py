@@ -145,8 +145,8 @@ def diagnose(fit: Fit) -> Diagnosis:
 
 
 def improve(fit: Fit, budget: float | None = None) -> Improvement:
-    """Add what is missing and diagnose again, until nothing is missing or nothing more is known; budget: CPU seconds,
-    after which the verdict is on what was found by then. Without end if None."""
+    """Add what is missing and diagnose again, until nothing is missing or nothing more is known; budget: seconds of
+    work, after which the verdict is on what was found by then. Without end if None."""
     with _case(fit) as (case, first, folder):
         case.budget = Budget(budget)
         job, stairs = fit.statement.job, thinning.improve(case, first)

@@ -76,7 +76,7 @@ def fleet(
 
     devices: patterns of folders (`lot/*/`) or files (`lot/*.csv`), or tables with a column `file` or `folder` and what
     else is known of a device. out: the folder of results; what was done in it is not done again. improve: diagnose
-    each, in `budget` CPU seconds. on: where to run, such as `local:4` or `tcp://scheduler:8786`.
+    each, in `budget` seconds of work. on: where to run, such as `local:4` or `tcp://scheduler:8786`.
 
     Raises InputError where the job, a table or a pattern is wrong; devices with faults are `broken`.
     """

@@ -5,6 +5,7 @@ from __future__ import annotations
 from time import process_time
 
 from pzt_ident.data.notation import listed
+from pzt_ident.engine import work
 from pzt_ident.engine.native import compiling_time
 
 LEAST = 60.0  # s, of CPU
@@ -13,17 +14,25 @@ BEHIND = 0.05  # of the budget: a descent that is then still behind a rival is g
 BESIDE = 0.35  # of the budget: other effects beside one that explains most, but for a second one, get no more
 EXPLORING = 0.7  # of the budget: the rest is for proving what was found
 PROVING = 0.9  # of the budget: ties, intervals and what promises to explain most of what is left get no more
+SLOWER = 1.25  # times the budget: the CPU time that it takes at most, where a machine is slow
 WHOLE = 1.0  # of the budget: fits end there, settled or not
 
 
 class Budget:
-    """CPU seconds from now on, of all threads, but for compiling; infinite where None are given. `untried` names what
-    they did not suffice for."""
+    """Seconds of work from now on (`engine.work`), so that an answer is the same on any machine but one that is much
+    slower: there they end a quarter later in CPU seconds of all threads, but for compiling. Infinite where None are
+    given. `untried` names what they did not suffice for."""
 
     def __init__(self, seconds: float | None = None) -> None:
         self.seconds = float("inf") if seconds is None else seconds
         self.untried: list[str] = []
-        self._begun = computing_time()
+        self._first = work.done()
+        self._begun, self._since = self._first, computing_time()
+
+    @property
+    def worked(self) -> float:
+        """Seconds of work since it was given."""
+        return work.done() - self._first
 
     def part(self, share: float) -> Budget:
         """A share of the seconds, from now on; what they do not suffice for is named here."""
@@ -34,7 +43,7 @@ class Budget:
     def begin_again(self) -> None:
         """All seconds are there, and nothing is untried."""
         self.untried.clear()
-        self._begun = computing_time()
+        self._begun, self._since = work.done(), computing_time()
 
     def allows(self, what: str, share: float = EXPLORING) -> bool:
         """Whether less than a share of the budget is spent; if not, `what` is untried."""
@@ -45,7 +54,8 @@ class Budget:
 
     def spent(self, share: float) -> bool:
         """Whether a share of the budget is spent."""
-        return computing_time() - self._begun >= share * self.seconds
+        seconds = share * self.seconds
+        return work.done() - self._begun >= seconds or computing_time() - self._since >= SLOWER * seconds
 
     def lasts(self) -> bool:
         """Whether a fit may go on."""

@@ -13,9 +13,10 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, reaches_noise, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.refit import refit_from, side_by_side
+from pzt_ident.diagnosis.refit import refit_from
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, applicable, scorer_of, squared_misfit
 from pzt_ident.diagnosis.starts import restart
+from pzt_ident.diagnosis.threads import side_by_side
 from pzt_ident.model.registry import blocks, form_of, word_of
 
 TIE = 0.2  # noise floors between two refits: less does not distinguish them; of look-alikes twice that
@@ -62,15 +63,14 @@ def score_all(case: Case, first: Fit, before: Fit, scorer: Scorer, in_every_form
     share = PROVING if adequate(case, first, before) else WHOLE
     words, candidates = applicable(case, before.effects), dict[str, Candidate]()
 
-    def scores_of(word: str, in_every_form: bool) -> list[Score]:
-        scored = before is first or case.budget.allows("the scores of all effects", share)
-        return scorer.scores(word, in_every_form) if scored else []
+    def allowed(word: str) -> bool:
+        return before is first or case.budget.allows("the scores of all effects", share)
 
     def scored(some: Sequence[str], in_every_form: bool) -> Iterator[str]:
-        for scores in side_by_side(partial(scores_of, in_every_form=in_every_form), some):
-            if scores:
-                candidates[word_of(scores[0].effect)] = Candidate.of(scores)
-                yield word_of(scores[0].effect)
+        scores_of = partial(scorer.scores, in_every_form=in_every_form)
+        for scores in side_by_side(scores_of, filter(allowed, some)):
+            candidates[word_of(scores[0].effect)] = Candidate.of(scores)
+            yield word_of(scores[0].effect)
 
     for done, word in enumerate(scored(words, False), 1):
         facts = {"effect": word, "explained": candidates[word].score.explained}
@@ -110,25 +110,25 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
             return PROVING
         return BESIDE if second_missing(case, first, before, fits) else EXPLORING
 
-    def refits(candidate: Candidate) -> dict[str, Fit]:
+    def allowed(candidate: Candidate) -> bool:
         needed = before is first and candidate is candidates[0]
-        if not needed and not case.budget.allows("the refits of all candidates", share_allowed(candidate)):
-            return {}
+        return needed or case.budget.allows("the refits of all candidates", share_allowed(candidate))
+
+    def refitted(candidate: Candidate) -> Candidate:
         forms = {score.effect: score for score in (candidate.forms[0], candidate.score)}
-        made = {
+        candidate.refits = {
             item: refit_from(case, before, (*before.effects, item), score.guesses, rival)
             for item, score in forms.items()
         }
-        fits.extend(made.values())
-        return made
+        return candidate
 
-    for candidate in candidates[:1]:
-        candidate.refits = refits(candidate)
-        rival = min((fit.identify for fit in candidate.refits.values()), default=np.inf)
-    others = candidates[1:]
-    for candidate, made in zip(others, side_by_side(refits, others), strict=True):
-        candidate.refits = made
-    return [candidate for candidate in candidates if candidate.refits]
+    made: list[Candidate] = []
+    for some in (candidates[:1], candidates[1:]):
+        for candidate in side_by_side(refitted, filter(allowed, some)):
+            made.append(candidate)
+            fits.extend(candidate.refits.values())
+        rival = min((fit.identify for fit in fits), default=np.inf)
+    return made
 
 
 def second_missing(case: Case, first: Fit, before: Fit, fits: Sequence[Fit]) -> bool:

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.noise import error_scales, noise_floor, pooled_floor
 from pzt_ident.data.record import Record
-from pzt_ident.diagnosis.budget import BEHIND, WHOLE, Budget
+from pzt_ident.diagnosis.budget import BEHIND, Budget
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.engine import work
 from pzt_ident.model.block import Coupling
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import Choice, blocks, word_of
@@ -112,8 +113,8 @@ class Case:
     def descend(self, problem: Problem, point: Array, rival: float = np.inf) -> Array:
         """The point that few steps reach while the budget lasts, of which a descent behind a rival gets no more than a
         part, see `search.descent`."""
-        part = self.budget.part(BEHIND)
-        return descend(problem, point, going=self.budget.lasts, rival=rival, patient=lambda: not part.spent(WHOLE))
+        begun, part = work.done(), BEHIND * self.budget.seconds
+        return descend(problem, point, going=self.budget.lasts, rival=rival, patient=lambda: work.done() < begun + part)
 
     @cached_property
     def floor(self) -> float:

@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from functools import partial
-from typing import TypeVar
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,18 +13,9 @@ from pzt_ident.engine.simulator import Simulator
 from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
-Item = TypeVar("Item")
-Result = TypeVar("Result")
 
-THREADS = max(2, min(6, os.cpu_count() or 2))  # that fit and score effects side by side
 STEP_TOLERANCE = 0.05  # of what a fit leaves, but at least of the noise: a step is halved where that changes more
 FINEST = 8  # steps per sample
-
-
-def side_by_side(function: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:
-    """The function of each item, in order, from threads that are as silent about floating point as the caller's."""
-    with ThreadPoolExecutor(THREADS, initializer=partial(np.seterr, **np.geterr())) as pool:
-        yield from pool.map(function, items)
 
 
 def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, float], rival: float = np.inf) -> Fit:

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.fit import Fit, fit_at
-from pzt_ident.diagnosis.refit import refine_steps, side_by_side
+from pzt_ident.diagnosis.refit import refine_steps
+from pzt_ident.diagnosis.threads import side_by_side
 from pzt_ident.model.block import Modes
 from pzt_ident.search.problem import Problem
 

@@ -21,11 +21,10 @@ MOST_SAMPLES = 2**20  # steps of a record: of a longer one nothing is kept
 SIGNALS: WeakKeyDictionary[Record, dict[Any, Array | None]] = WeakKeyDictionary()
 
 
-def shared_prefix(program: Program, scratch: Array, steps: Steps, signals: Array) -> tuple[Steps, Array]:
-    """The steps with the first of them, as far as all candidates share their numbers, in place of fills with what they
-    make, and the signals with that as further rows; as they are where no operator is shared, which is what is worth
-    sparing, or where it is asked for the first time of few candidates. scratch: before it is run."""
-    count = shared_operations(program, scratch)
+def shared_prefix(program: Program, scratch: Array, steps: Steps, signals: Array, count: int) -> tuple[Steps, Array]:
+    """The steps with the first of them, the count that all candidates share, in place of fills with what they make, and
+    the signals with that as further rows; as they are where nothing is shared, or where it is asked for the first time
+    of few candidates. scratch: before it is run."""
     if not count or signals.shape[1] > MOST_SAMPLES:
         return steps, signals
     alone = scratch.reshape(len(scratch), -1, WIDTH)[0, : program.ends[count - 1], 0]
@@ -47,7 +46,7 @@ def shared_prefix(program: Program, scratch: Array, steps: Steps, signals: Array
 
 def shared_operations(program: Program, scratch: Array) -> int:
     """How many operations, from the first on, have the same numbers for all candidates; 0 if no operator is among
-    them, or nothing is behind."""
+    them, which is what is worth sparing, or nothing is behind."""
     lanes, needed = scratch.reshape(len(scratch), -1, WIDTH)[:, : program.chain_rows], program.operator_end
     if needed is None or (lanes[0, :needed, 0] != lanes[0, :needed, 1]).any():
         return 0

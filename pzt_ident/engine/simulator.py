@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.record import Record, interpolated
+from pzt_ident.engine import work
 from pzt_ident.engine.additions import SURE, Additions
 from pzt_ident.engine.amounts import ROUGH, Amounts, Held
 from pzt_ident.engine.distinct import Distinct, columns_of_axes, distinct
@@ -112,14 +113,14 @@ class Simulator:
 
         fewer = distinct(theta, self._columns)
         scratch = self._program.scratch(fewer.theta, self._rows)
-        steps, signals = self._shared(scratch, np.array(self._program.steps, dtype=np.int64).reshape(-1, 5))
+        shared = self._shared(scratch, np.array(self._program.steps, dtype=np.int64).reshape(-1, 5))
         length = -(-most // TILE) * TILE
         lead, samples = self.record.run_in * self.record.samples, self.record.samples
         for first in range(0, lead + samples, length):
             last = min(first + length, lead + samples)
             at = slice(max(first - lead, 0), last - lead)
             output = np.empty((len(fewer.theta), len(self.model.measured), max(at.stop - at.start, 0)))
-            self._run(scratch, steps, signals, output, first, last)
+            self._run(scratch, *shared, output, first, last)
             if output.size:
                 yield at, fewer.of_candidates(output)
 
@@ -147,9 +148,9 @@ class Simulator:
         scratch = self._program.scratch(fewer.theta, self._rows)
         sums = scratch.reshape(scratch.shape[0], self._rows, WIDTH)[:, self._sums :]
         self.additions.begin(sums)
-        steps, signals = self._shared(scratch, self._scoring)
+        shared = self._shared(scratch, self._scoring)
         last = self.record.samples * (self.record.run_in + 1)
-        self._run(scratch, steps, signals, np.empty((0, 0, 0)), 0, last)
+        self._run(scratch, *shared, np.empty((0, 0, 0)), 0, last)
         table = sums.reshape(-1, len(self.model.measured), self._each, WIDTH).transpose(0, 3, 1, 2)
         table = fewer.of_candidates(table.reshape(-1, *table.shape[2:])[: len(fewer.theta)])
         if self.model.additions:
@@ -205,22 +206,26 @@ class Simulator:
             added.append((sums, self._sums + self._each * i, responses + i, TILES * a, since))
         return np.array(self._program.steps + added, dtype=np.int64)
 
-    def _shared(self, scratch: Array, steps: NDArray[np.int64]) -> tuple[NDArray[np.int64], Array]:
-        """The steps and the signals, without those that all candidates share where they are known."""
-        from pzt_ident.engine.prefix import shared_prefix
+    def _shared(self, scratch: Array, steps: NDArray[np.int64]) -> tuple[NDArray[np.int64], Array, int]:
+        """The steps and the signals, without those that all candidates share where they are known; and how many rows of
+        the scratch those that they do not share have."""
+        from pzt_ident.engine.prefix import shared_operations, shared_prefix
 
-        return shared_prefix(self._program, scratch, steps, self._signals)
+        count = shared_operations(self._program, scratch)
+        steps, signals = shared_prefix(self._program, scratch, steps, self._signals, count)
+        return steps, signals, self._rows - (self._program.ends[count - 1] if count else 0)
 
     def _run(
-        self, scratch: Array, steps: NDArray[np.int64], signals: Array, output: Array, first: int, last: int
+        self, scratch: Array, steps: NDArray[np.int64], signals: Array, rows: int, output: Array, first: int, last: int
     ) -> None:
-        """Step from sample `first` to sample `last`, counted from the start of the run-in."""
-        from pzt_ident.engine.kernel import run
+        """Step from sample `first` to sample `last`, counted from the start of the run-in. rows: that are run."""
+        from pzt_ident.engine.kernel import WIDTH, run
 
         fine = self.substeps
         since = self.record.run_in * self.record.samples * fine
         tiles = self._program.tiles + self.additions.tiles
         run(steps, signals, scratch, tiles, first * fine, last * fine, since, fine, output, self._measured)
+        work.add(work.of_run(len(scratch) * WIDTH, (last - first) * fine, rows))
 
     @cached_property
     def _signals(self) -> Array:

@@ -37,7 +37,7 @@ def improvement_of(
     budget: Budget | None = None,
 ) -> dict[str, Any]:
     """The content of `improvement.json`. proposed: the next experiment, None where there is none. budget: for the
-    intervals of the last model."""
+    intervals of the last model, and what was worked of it."""
     steps, suspects = staircase.steps, staircase.suspects
     reason, end = last["reason"], steps[-1].fit
     added = [effect for effect in end.effects if effect not in job.effects]
@@ -62,6 +62,7 @@ def improvement_of(
         ],
         **units_and_floors(list(case.records)),
         "next_experiment": proposed,
+        "work": round(budget.worked, 3) if budget else None,
     }
 
 

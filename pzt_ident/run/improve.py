@@ -140,8 +140,8 @@ def improve(
 ) -> Path:
     """Diagnose, add what is missing and diagnose again, until nothing is missing or nothing more is known.
 
-    budget: CPU seconds, by default 60 or 1 ms a sample. After them the verdict is on what was found by then, and says
-    what was not tried. start: a folder of results, or a file of values, whose fit is gone on from where it is the
+    budget: seconds of work, by default 60 or 1 ms a sample. After them the verdict is on what was found by then, and
+    says what was not tried. start: a folder of results, or a file of values, whose fit is gone on from where it is the
     better one. records: those of the job where they were read already.
 
     Writes `improved.yaml`, `diagnosis.json` and `residuals.json` of the last model, `improvement.json`, and the signals

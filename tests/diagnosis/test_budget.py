@@ -3,9 +3,11 @@
 from types import SimpleNamespace
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from pzt_ident.diagnosis import budget
-from pzt_ident.engine import native
+from pzt_ident.engine import native, work
 
 
 @pytest.fixture
@@ -32,18 +34,33 @@ def compiled(clock, seconds, *others):
 
 def test_work_spends_it(clock):
     spent = budget.Budget(10)
-    clock.now += 9
+    work.add(9)
     assert spent.allows("this", 1.0)
-    clock.now += 2
+    work.add(2)
     assert not spent.allows("that", 1.0)
     assert spent.untried == ["that"]
+
+
+@given(st.floats(0, 1), st.floats(0, 100), st.floats(0, 100))
+def test_time_changes_nothing_but_on_a_machine_that_is_slower(share, worked, taken):
+    now = 1.0
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(budget, "process_time", lambda: now)
+        work.begin(0.0)
+        spent = budget.Budget(60)
+        work.add(worked)
+        now += taken
+        if taken < share * 60 * budget.SLOWER - 1e-9:
+            assert spent.spent(share) == (worked >= share * 60)
+        elif taken > share * 60 * budget.SLOWER + 1e-9:
+            assert spent.spent(share)
 
 
 def test_kernels_that_are_compiled_do_not(clock):
     """A first use on a machine has as much for its verdict as any later one."""
     spent = budget.Budget(10)
     native.address_of("one", compiled(clock, 100, compiled(clock, 50), compiled(clock, 25)))
-    clock.now += 9
+    clock.now += 12
     assert spent.allows("this", 1.0)
-    clock.now += 2
+    clock.now += 1
     assert spent.spent(1.0)

@@ -11,7 +11,6 @@ import stage
 from pzt_ident.diagnosis import refit
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.refit import side_by_side
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.engine.simulator import simulate
 from pzt_ident.model.block import Block, Place
@@ -162,10 +161,3 @@ def test_a_lag_within_the_sample_is_told_from_a_delay_by_finer_steps():
     assert lag.identify == pytest.approx(2e-9, rel=0.1)
     assert lag.values["amplifier_lag.tau"] == pytest.approx(2e-5, rel=0.02)
     assert delay.total > 1.5 * lag.total
-
-
-def test_threads_are_as_silent_about_floating_point_as_the_caller(recwarn):
-    with np.errstate(all="ignore"):
-        quotients = list(side_by_side(lambda divisor: np.ones(1) / divisor, [0.0, 2.0]))
-    assert quotients == [np.inf, 0.5]
-    assert not recwarn.list

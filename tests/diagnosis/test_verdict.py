@@ -8,7 +8,7 @@ import pytest
 
 import rig
 import stage
-from pzt_ident.diagnosis import candidates, refit, starts
+from pzt_ident.diagnosis import budget, refit, starts, threads
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.candidates import (
     Candidate,
@@ -25,6 +25,7 @@ from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.verdict import diagnose, missing_sentence
+from pzt_ident.engine import work
 from pzt_ident.model.registry import blocks, word_of
 
 
@@ -63,11 +64,28 @@ def test_what_is_missing_is_named_and_its_refit_is_at_the_noise_on_records_that_
 
 def test_what_is_found_is_the_same_from_one_thread_and_from_three(monkeypatch):
     _, expected = missing("quadratic_gain")
-    monkeypatch.setattr(refit, "THREADS", 3)
+    monkeypatch.setattr(threads, "THREADS", 3)
     found = judged(stage.case(stage.EFFECTS["quadratic_gain"]))
     assert np.array_equal(found.before.point, expected.before.point)
     assert [item.score for item in found.candidates] == [item.score for item in expected.candidates]
     assert np.array_equal(found.best.fit.point, expected.best.fit.point)
+
+
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.8])
+def test_what_a_budget_suffices_for_is_the_same_from_one_thread_and_from_three(share, monkeypatch):
+    monkeypatch.setattr(budget, "computing_time", lambda: 0.0)
+    answers, before = [], work.done()
+    judged(stage.case(stage.EFFECTS["creep"]))
+    seconds = share * (work.done() - before)
+    for number in (1, 3):
+        monkeypatch.setattr(threads, "THREADS", number)
+        case = stage.case(stage.EFFECTS["creep"])
+        case.budget = Budget(seconds)
+        diagnosis = judged(case)
+        fits = {item: fit.point.tolist() for entry in diagnosis.candidates for item, fit in entry.refits.items()}
+        answers.append((diagnosis.verdict, case.budget.untried, fits))
+    assert answers[0] == answers[1]
+    assert answers[0][1]
 
 
 def test_look_alikes_of_what_explains_nearly_all_are_compared_in_every_form():
@@ -310,7 +328,6 @@ def test_what_promises_most_of_the_rest_is_refitted_while_effects_are_proven(sha
 def test_beside_what_explains_nearly_all_but_not_the_noise_time_is_kept_for_a_second_effect(monkeypatch):
     case = stage.case({"quadratic_gain.curvature": 3e-3, "amplifier_lag.tau": 2e-4}, noise=5e-10)
     first = first_fit(case, 0)
-    monkeypatch.setattr(candidates, "side_by_side", map)
     assert refitted_words(case, first, first, 0.2) == {"quadratic_gain", "saturation"}
     assert refitted_words(case, first, first, 0.5) == {"quadratic_gain"}
     alone = stage.case({"quadratic_gain.curvature": 3e-3})
