@@ -40,13 +40,16 @@ def tolerance(case: Case, first: Fit) -> float:
 
 def beyond_form(case: Case, first: Fit, without: Fit, now: Fit) -> bool:
     """Whether an effect beside others takes up more than the form of these may leave, on the identification and on the
-    validation records; the latter need not show it where they are at the noise with it and without, or would be if the
-    noise floor were half as much again."""
-    shown = removed_rms(without.identify, now.identify) > form_of_others(case, first.identify)
+    validation records. The latter need not show it where they are at the noise with it and without, or would be if the
+    noise floor were half as much again. The former need not show as much where the model with it is at the noise of
+    both: what predicts records that nothing was fitted to is not bent to them."""
+    removed = removed_rms(without.identify, now.identify)
+    shown = removed > form_of_others(case, first.identify)
     near = max(without.validate or 0.0, now.validate or 0.0, now.identify) <= NEAR * case.floor
     if first.validate is None or near or not_in_validation(case, first, without, now):
         return shown
-    return shown and removed_rms(without.validate, now.validate) > form_of_others(case, first.validate)
+    predicted = removed > CLEAR * case.floor and adequate(case, first, now)
+    return (shown or predicted) and removed_rms(without.validate, now.validate) > form_of_others(case, first.validate)
 
 
 def form_of_others(case: Case, given: float) -> float:

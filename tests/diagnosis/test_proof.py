@@ -130,6 +130,14 @@ def test_the_form_of_the_others_is_held_against_each_kind_of_record(taken_out):
     assert taken_out(of(ab=1.2, a=6.0, b=6.0, none=30.0), of(ab=1.6, a=1.6, b=6.0, none=30.0)) == ["b"]
 
 
+def test_what_brings_unseen_records_to_the_noise_need_not_show_as_much_on_those_it_was_fitted_to(taken_out):
+    """A slew limit that one record drives into, which was kept back."""
+    unseen = of(ab=1.0, a=7.0, b=6.0, none=30.0)
+    assert taken_out(of(ab=1.0, a=1.3, b=6.0, none=30.0), unseen) == []
+    assert taken_out(of(ab=1.0, a=1.1, b=6.0, none=30.0), unseen) == ["b"]
+    assert taken_out(of(ab=3.0, a=3.1, b=6.0, none=30.0), of(ab=3.0, a=7.0, b=6.0, none=30.0)) == ["b"]
+
+
 def test_what_an_effect_of_another_kind_would_take_up_as_well_is_a_suspect_above_the_noise(taken_out):
     lag, creep, delay = "amplifier_lag", "creep", "delay"
     high = {frozenset(): 300.0, frozenset([lag]): 8.0, frozenset([creep]): 29.0, frozenset([lag, creep]): 5.0}
