@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from pzt_ident.diagnosis.bounds import are_decisive, beyond_bounds, brought_back, continued, stands_in
-from pzt_ident.diagnosis.budget import WHOLE
+from pzt_ident.diagnosis.budget import PROVING, WHOLE
 from pzt_ident.diagnosis.candidates import TIE, Candidate
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, climb
@@ -17,7 +17,7 @@ from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed
 from pzt_ident.diagnosis.exchange import drop_outdone_rivals, find_rivals, remove_unneeded
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.proof import unproven
+from pzt_ident.diagnosis.proof import Suspect, unproven
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
 from pzt_ident.diagnosis.undetermined import (
     Undetermined,
@@ -28,6 +28,7 @@ from pzt_ident.diagnosis.undetermined import (
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
 
 FIRST_EFFECTS = 2  # effects that are tried as the first to be added
+PROVEN = "back to what is proven"  # the step that goes back to an earlier one
 
 
 def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
@@ -191,22 +192,51 @@ def first_candidates(case: Case, first: Fit, diagnosis: Diagnosis) -> list[Candi
 
 def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListener) -> None:
     """Steps that take effects out again: those that the last model can do without, which may only have led the fit out
-    of a side minimum, such as that to which the bounds of the job had led it, and the unproven ones."""
+    of a side minimum, such as that to which the bounds of the job had led it, and the unproven ones; or back to a
+    model whose effects are all proven, where that is better than what is then left."""
     now, wider = staircase.steps[-1].fit, any(step.change == WIDER for step in staircase.steps)
     steps = remove_unneeded(case, first, now, newest=0, restarted=wider) if near_noise(case, first, now) else []
     now = steps[-1].fit if steps else now
     if not near_noise(case, first, now):
         drop_outdone_rivals(case, now, staircase.steps)
-    rivals = {step.added: step.tied for step in staircase.steps if step.added}
-    suspects = unproven(case, first, now, rivals, [first, *(step.fit for step in staircase.steps)])
-    for suspect in suspects:
+    suspects = unproven_of(case, first, now, staircase.steps)
+    end = suspects[-1].without if suspects else now
+    proven = proven_before(case, first, end, staircase.steps)
+    staircase.suspects = [item for item in suspects if proven is None or item.effect not in proven.effects]
+    if proven:
+        steps.append(Step(proven, explained=explained_share(case, now, proven), change=PROVEN))
+    for suspect in suspects if proven is None else []:
         share = explained_share(case, now, suspect.without)
         steps.append(Step(suspect.without, None, suspect.effect, {}, share))
         now = suspect.without
     for step in steps:
         on_step(step)
-    staircase.suspects = [*suspects]
     staircase.steps += steps
+
+
+def unproven_of(case: Case, first: Fit, fit: Fit, steps: Sequence[Step]) -> list[Suspect]:
+    """The effects of a fit that are to be taken out again. steps: all of the staircase."""
+    rivals = {step.added: step.tied for step in steps if step.added}
+    return unproven(case, first, fit, rivals, [first, *(step.fit for step in steps)])
+
+
+def proven_before(case: Case, first: Fit, end: Fit, steps: Sequence[Step]) -> Fit | None:
+    """The lowest fit of the case short of the last one whose effects are all proven and which leaves clearly less than
+    the model that is left at the end; None where there is none."""
+    since = max(number for number, step in enumerate(steps) if number == 0 or step.case)
+    lower = [
+        number
+        for number, step in enumerate(steps[:-1])
+        if number > since
+        and len(step.fit.effects) > len(end.effects)
+        and removed_rms(end.total, step.fit.total) > TIE * case.floor
+    ]
+    for number in sorted(lower, key=lambda number: steps[number].fit.total):
+        if not case.budget.allows("proof of fewer effects", PROVING):
+            return None
+        if not unproven_of(case, first, steps[number].fit, steps[: number + 1]):
+            return steps[number].fit
+    return None
 
 
 def conclude(case: Case, first: Fit, staircase: Staircase) -> None:

@@ -372,3 +372,39 @@ def test_an_effect_that_only_led_out_of_a_side_minimum_is_taken_out_again():
     improving.take_back(case, resting, found, lambda step: None)
     assert [(step.added, step.removed) for step in found.steps] == [(None, None), ("drift", None), (None, "drift")]
     assert (found.steps[-1].fit.effects, found.last.verdict, found.suspects) == ((), "adequate", [])
+
+
+@pytest.mark.parametrize(
+    ("proven", "left", "since", "end"),
+    [
+        ({"ab"}, 20.0, 0, "ab"),
+        ({"a", "ab"}, 20.0, 0, "ab"),
+        ({"a"}, 20.0, 0, "a"),
+        ({"abc", "ab"}, 20.0, 0, "abc"),
+        ({"ab"}, 2.9, 0, ""),
+        (set(), 20.0, 0, ""),
+        ({"a", "ab"}, 20.0, 2, ""),
+    ],
+    ids=["fewer", "the lowest", "one", "all", "no better", "none", "within other bounds"],
+)
+def test_where_little_is_left_of_the_last_model_the_lowest_one_before_it_that_is_proven_is(
+    monkeypatch, proven, left, since, end
+):
+    """since: the step from which on bounds are wider."""
+    totals = {"": 20.0, "a": 5.0, "ab": 3.0, "abc": 2.0}
+    fits = [Fit(tuple(word), None, np.zeros(1), total, total) for word, total in totals.items()]
+    case, nothing = SimpleNamespace(floor=1.0, budget=Budget()), replace(fits[0], identify=left, validate=left)
+
+    def suspects(case, first, fit, steps):
+        return [] if "".join(fit.effects) in proven else [SimpleNamespace(effect="c", without=nothing)]
+
+    monkeypatch.setattr(improving, "unproven_of", suspects)
+    monkeypatch.setattr(improving, "near_noise", lambda *arguments: False)
+    monkeypatch.setattr(improving, "drop_outdone_rivals", lambda *arguments: None)
+    steps = [Step(fit, *fit.effects[-1:], case=case if number == since else None) for number, fit in enumerate(fits)]
+    reported = []
+    found = Staircase(steps, None)
+    improving.take_back(case, fits[0], found, reported.append)
+    assert "".join(found.steps[-1].fit.effects) == end
+    assert [step.change for step in reported] == {"abc": [], "": [""]}.get(end, [improving.PROVEN])
+    assert len(found.steps) == len(fits) + len(reported)
