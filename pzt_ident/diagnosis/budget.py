@@ -11,7 +11,7 @@ from pzt_ident.engine.native import compiling_time
 LEAST = 60.0  # s, of CPU
 PER_SAMPLE = 1e-3  # s
 BEHIND = 0.05  # of the budget: a descent that is then still behind a rival is given up
-BESIDE = 0.35  # of the budget: other effects beside one that explains most, but for a second one, get no more
+BESIDE = 0.5  # of what a path has for exploring: other effects beside one that explains most, but for a second one
 EXPLORING = 0.7  # of the budget: the rest is for proving what was found
 PROVING = 0.9  # of the budget: ties, intervals and what promises to explain most of what is left get no more
 SLOWER = 1.25  # times the budget: the CPU time that it takes at most, where a machine is slow
@@ -27,7 +27,7 @@ class Budget:
         self.seconds = float("inf") if seconds is None else seconds
         self.untried: list[str] = []
         self._first = work.done()
-        self._begun, self._since = self._first, computing_time()
+        self.begin_again()
 
     @property
     def worked(self) -> float:
@@ -44,6 +44,12 @@ class Budget:
         """All seconds are there, and nothing is untried."""
         self.untried.clear()
         self._begun, self._since = work.done(), computing_time()
+        self.begin_path()
+
+    def begin_path(self) -> None:
+        """Other effects beside one that explains most get a part of what is left for exploring now."""
+        spent = (work.done() - self._begun) / self.seconds if self.seconds else 1.0
+        self.beside = spent + BESIDE * max(EXPLORING - spent, 0.0)
 
     def allows(self, what: str, share: float = EXPLORING) -> bool:
         """Whether less than a share of the budget is spent; if not, `what` is untried."""

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from pzt_ident.diagnosis.budget import BESIDE, EXPLORING, PROVING, WHOLE
+from pzt_ident.diagnosis.budget import EXPLORING, PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, reaches_noise, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.fit import Fit
@@ -108,7 +108,7 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
     def share_allowed(candidate: Candidate) -> float:
         if candidate is candidates[0] and candidate.score.explained >= DECISIVE:
             return PROVING
-        return BESIDE if second_missing(case, first, before, fits) else EXPLORING
+        return share_of_others(case, first, before, fits)
 
     def allowed(candidate: Candidate) -> bool:
         needed = before is first and candidate is candidates[0]
@@ -129,6 +129,11 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
             fits.extend(candidate.refits.values())
         rival = min((fit.identify for fit in fits), default=np.inf)
     return made
+
+
+def share_of_others(case: Case, first: Fit, before: Fit, fits: Sequence[Fit]) -> float:
+    """The share of the budget for other effects than the best of some fits."""
+    return case.budget.beside if second_missing(case, first, before, fits) else EXPLORING
 
 
 def second_missing(case: Case, first: Fit, before: Fit, fits: Sequence[Fit]) -> bool:
@@ -204,11 +209,10 @@ def refit_other_forms(
     else:
         others = [item for item in candidates if item not in shortlist and item.score.explained > LEAST_SCORE]
         wanted = [*shortlist, *others] if share < DECISIVE else []
-    allowed = BESIDE if second_missing(case, first, before, fits) else EXPLORING
     for candidate in wanted:
         candidate.forms = scorer_of(case, before).scores(word_of(candidate.score.effect))
         missing = [score for score in candidate.forms if score.effect not in candidate.refits]
-        if missing and not case.budget.allows("other forms", allowed):
+        if missing and not case.budget.allows("other forms", share_of_others(case, first, before, fits)):
             break
         new = {
             score.effect: refit_from(case, before, (*before.effects, score.effect), score.guesses, best.identify)

@@ -48,6 +48,7 @@ def climb(
     account. Where another effect promises most of what a step leaves, that is tried first, and the step is settled only
     if the promise is not kept."""
     steps, first = [*base], base[-1].fit
+    case.budget.begin_path()
     for step in base:
         on_step(step)
     while (

@@ -64,3 +64,23 @@ def test_kernels_that_are_compiled_do_not(clock):
     assert spent.allows("this", 1.0)
     clock.now += 1
     assert spent.spent(1.0)
+
+
+@given(st.floats(0, 1), st.floats(0, 1))
+def test_each_path_has_a_part_of_what_is_left_for_exploring(first, second):
+    spent = budget.Budget(60)
+    assert spent.beside == pytest.approx(budget.BESIDE * budget.EXPLORING)
+    work.add(60 * first)
+    spent.begin_path()
+    assert spent.beside == pytest.approx(first + budget.BESIDE * max(budget.EXPLORING - first, 0))
+    work.add(60 * second)
+    spent.begin_again()
+    assert spent.beside == pytest.approx(budget.BESIDE * budget.EXPLORING)
+
+
+@pytest.mark.parametrize("seconds", [None, 0.0])
+def test_a_budget_without_end_or_seconds_has_paths_too(seconds):
+    spent = budget.Budget(seconds)
+    work.add(1)
+    spent.begin_path()
+    assert spent.allows("this", spent.beside) == (seconds is None)
