@@ -24,6 +24,7 @@ GAIN = 10.0  # noise gain of a preview
 RANGE = 10.0  # over the largest drive of the identification, within which the material is solved
 PASSES = 16
 MEMORY = 4  # passes that the next one learns from
+WIDEST = 0.1  # of the reference: a step that must be smoother than that to do no harm is none
 CLOSE = 1e-12  # of the largest value, below which a difference is rounding
 SMALL = 1e-4  # of the largest drive, the size of a pulse
 
@@ -97,6 +98,8 @@ class Inverse:
             trial = self.once(targets[-1], reference)
             if self.left(trial) > self.left(best):
                 width = 2 * width or 1.0
+                if width > WIDEST * reference.shape[1]:
+                    break
                 targets, steps = [targets[-2]], [self.step(best, width)]
                 continue
             best = trial

@@ -13,7 +13,7 @@ class SecondMode:
 
     form = Form("parallel", ("parallel", "series", "voltage"), "Where the second mode is, and what drives it.")
     trials = {"frequency": 160, "damping": 3}
-    share = Parameter("1", (-0.4, 0.4), "Part of the static response that the second mode carries.", null=0)
+    share = Parameter("1", (-0.8, 0.8), "Part of the static response that the second mode carries.", null=0)
     frequency = Parameter("Hz", (20, 2e4), "Natural frequency of the second mode.", scale="log")
     damping = Parameter("1", (1e-3, 0.3), "Damping ratio of the second mode, zeta.", scale="log")
     look_alikes = ("load_mass", "viscous_damping")
@@ -65,6 +65,7 @@ class OfVoltage(Series):
 
     place = Place.READOUT
     solvable = False
+    share = Parameter("1", (-0.4, 0.4), SecondMode.share.doc, null=0)
     frequency = Parameter("Hz", (100, 2e4), "Natural frequency of the stack or the amplifier.", scale="log")
 
 

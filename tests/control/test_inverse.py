@@ -8,6 +8,7 @@ from scipy.optimize import brentq
 
 from contracts.test_blocks import CHAINS, made
 from lin_lin import COUPLED_Y
+from pzt_ident.control import inverse
 from pzt_ident.control.inverse import Inverse
 from pzt_ident.control.limits import Limits
 from pzt_ident.control.stage import ACTUATION, MECHANICS
@@ -90,6 +91,22 @@ def test_first_step_of_bouc_wen_is_the_root_of_its_closed_form():
     assert np.isclose(found.drive[0, 1], brentq(lambda u: displacement(u) - 1.0, 0, 100, xtol=1e-12), rtol=1e-12)
 
 
+def test_where_no_pass_helps_steps_get_no_smoother_than_a_part_of_the_reference(monkeypatch):
+    """Twice as wide each time, they had taken all memory."""
+    first, widths = [], []
+    monkeypatch.setattr(inverse, "PASSES", 64)
+
+    def left(self, found):
+        first.append(found)
+        return 1.0 if found is first[0] else 2.0
+
+    monkeypatch.setattr(Inverse, "left", left)
+    monkeypatch.setattr(Inverse, "step", lambda self, found, width: widths.append(width) or 0.0 * found.reference)
+    Inverse(stage(BOUC_WEN, ["bouc_wen"], [np.zeros(200)]), 100.0)(swept(200, 1.0)[None])
+    assert widths[:3] == [0, 1, 2]
+    assert max(widths) <= inverse.WIDEST * 200 < 2 * max(widths)
+
+
 def plays(u, widths):
     """p <- max(u - r, min(u + r, p)) of each half-width r: (widths, samples)."""
     p, moved = np.zeros(len(widths)), []
@@ -124,8 +141,7 @@ def test_plays_are_inverted_as_by_the_closed_form(gain, weights, levels):
 @pytest.mark.parametrize("late", [0.01, 0.05, 0.1])
 def test_a_delay_of_many_samples_is_seen_ahead(late):
     late_stage = stage(BOUC_WEN | {"delay.time": late}, ["delay", "bouc_wen"], [[0.0, 100.0]])
-    inverse = Inverse(late_stage, 10.0)
-    assert inverse.actuation.ahead == pytest.approx(late / 1e-4, abs=1)
+    assert Inverse(late_stage, 10.0).actuation.ahead == pytest.approx(late / 1e-4, abs=1)
 
 
 def test_stiffening_spring_is_bent_further():
