@@ -27,13 +27,17 @@ def alone_in(folder: Path) -> Iterator[None]:
     with (folder / LOCK).open("a+", encoding="utf-8") as file:
         if not taken(file):
             file.seek(0)
-            holder = file.read().strip() or "another process"
-            remedy = "wait until it has ended, or give another folder with --out"
-            raise InputError(f"{holder} is at work in this folder", where=str(folder), remedy=remedy)
+            raise occupied(folder, file.read().strip())
         file.truncate(0)
         file.write(f"process {os.getpid()} on {platform.node()}\n")
         file.flush()
         yield
+
+
+def occupied(folder: Path, holder: str = "") -> InputError:
+    """What is said where another process works in a folder."""
+    remedy = "wait until it has ended, or give another folder with --out"
+    return InputError(f"{holder or 'another process'} is at work in this folder", where=str(folder), remedy=remedy)
 
 
 def taken(file: IO[str]) -> bool:

@@ -14,7 +14,7 @@ from pzt_ident.errors import DamagedError, InputError, RunError
 from pzt_ident.files import read_files, read_sealed, write_files, write_json, write_text
 from pzt_ident.job.files import moved
 from pzt_ident.job.schema import Job
-from pzt_ident.run.events import Listen, nobody
+from pzt_ident.run.events import Listen, event_log, nobody
 from pzt_ident.run.folder import read_environment, read_job
 from pzt_ident.run.improve import begin_task, diagnose, improve
 from pzt_ident.run.place import HERE, Place
@@ -22,6 +22,7 @@ from pzt_ident.run.pool import Tell
 from pzt_ident.run.start import file_of, read_start
 
 OF_THIS_PROCESS = ("job.yaml", "environment.json")
+LAST = ("diagnosis.json", "events.jsonl")
 TASKS = {"improve": improve, "diagnose": diagnose}
 
 
@@ -74,9 +75,10 @@ def sought_there(
         return read_files(results)
 
 
-def end_last(name: str) -> tuple[bool, str]:
-    """A key to sort files by: `diagnosis.json`, which says that all are there, comes last."""
-    return name == "diagnosis.json", name
+def end_last(name: str) -> tuple[int, str]:
+    """A key to sort files by: after the others come `diagnosis.json`, which says that all are there, and the log, which
+    is held until then."""
+    return LAST.index(name) + 1 if name in LAST else 0, name
 
 
 def move(results: Path, folder: Path) -> None:
@@ -111,14 +113,15 @@ def begin_again(
         return folder
     job = Job.from_text(read_job(folder), folder, str(folder / "job.yaml"), plugins)
     new = folder.with_name(f".{folder.name}.again")
-    shutil.rmtree(new, ignore_errors=True)
     if task["name"] not in TASKS:
         raise InputError(f"was begun with {task['name']!r}", where=str(folder), remedy="start it anew")
-    before = task.get("start")
-    sought_at(place, task["name"], job, new, listen, task.get("budget"), start or (before and Path(before)))
-    names = (path.relative_to(new).as_posix() for path in new.rglob("*") if path.is_file())
-    for name in sorted(names, key=end_last):
-        (folder / name).parent.mkdir(exist_ok=True)
-        (new / name).replace(folder / name)
-    shutil.rmtree(new)
+    with event_log(folder, listen):
+        shutil.rmtree(new, ignore_errors=True)
+        before = task.get("start")
+        sought_at(place, task["name"], job, new, listen, task.get("budget"), start or (before and Path(before)))
+        names = (path.relative_to(new).as_posix() for path in new.rglob("*") if path.is_file())
+        for name in sorted(names, key=end_last):
+            (folder / name).parent.mkdir(exist_ok=True)
+            (new / name).replace(folder / name)
+        shutil.rmtree(new)
     return folder

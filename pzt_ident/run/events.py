@@ -14,6 +14,7 @@ from pzt_ident.data.notation import listed, percent, quantity
 from pzt_ident.data.over_axes import together
 from pzt_ident.data.units import common_unit
 from pzt_ident.files import plain
+from pzt_ident.run.alone import occupied, taken
 
 Event = dict[str, Any]
 Listen = Callable[[Event], None]
@@ -25,9 +26,12 @@ def nobody(event: Event) -> None:
 
 @contextmanager
 def event_log(folder: Path, listen: Listen) -> Iterator[Listen]:
-    """A listener that keeps each event as a line of `events.jsonl` and tells it on; any thread may call it."""
+    """A listener that keeps each event as a line of `events.jsonl` and tells it on; any thread may call it. No other
+    process has the log meanwhile; raises InputError where one does."""
     one_at_a_time = Lock()
     with (folder / "events.jsonl").open("a", encoding="utf-8") as log:
+        if not taken(log):
+            raise occupied(folder)
 
         def tell(event: Event) -> None:
             with one_at_a_time:

@@ -1,0 +1,60 @@
+"""Two processes do not work in one folder."""
+
+import numpy as np
+import pytest
+
+import measured
+from pzt_ident.errors import InputError
+from pzt_ident.job.schema import load_job
+from pzt_ident.run.alone import taken
+from pzt_ident.run.elsewhere import begin_again
+from pzt_ident.run.events import event_log, nobody
+from pzt_ident.run.identify import resume, run
+from pzt_ident.run.improve import begin_task
+
+JOB = """\
+name: small
+records: [{file: identify.csv, use: identify}]
+channels:
+  time: "time [s]"
+  axes:
+    x: {drive: "u_x [V]", response: "x [um]"}
+model: [bouc_wen]
+effects: []
+optimizers: [{name: pso, population: 8, generations: 4}]
+"""
+
+
+@pytest.fixture
+def job(tmp_path):
+    t = np.arange(400) / 400
+    u = 50 * (1 - np.cos(6 * np.pi * t))
+    measured.write(tmp_path / "identify.csv", t, u, measured.lagging(u, np.random.default_rng(0)))
+    (tmp_path / "job.yaml").write_text(JOB)
+    return load_job(tmp_path / "job.yaml")
+
+
+@pytest.fixture(params=[resume, begin_again], ids=["a run", "an improvement"])
+def begun(request, job, tmp_path):
+    """A folder that was begun, and what goes on with it."""
+    if request.param is resume:
+        return run(job, tmp_path / "out"), resume
+    return begin_task(job, tmp_path / "out", 1.0, None)[1], begin_again
+
+
+def test_who_goes_on_with_a_folder_in_which_another_one_works_is_told_so(begun):
+    folder, go_on = begun
+    before = sorted(folder.iterdir())
+    with (folder / "events.jsonl").open("a") as log:
+        assert taken(log)
+        with pytest.raises(InputError, match="another process is at work in this folder"):
+            go_on(folder)
+    assert {*before} <= {*folder.iterdir()} and not list(folder.parent.glob(".*again"))
+    assert go_on(folder) == folder
+
+
+def test_a_log_is_free_when_its_run_is_over(tmp_path):
+    for _ in range(2):
+        with event_log(tmp_path, nobody) as tell:
+            tell({"event": "done"})
+    assert len((tmp_path / "events.jsonl").read_text().splitlines()) == 2
