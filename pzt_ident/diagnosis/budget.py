@@ -14,14 +14,14 @@ BEHIND = 0.05  # of the budget: a descent that is then still behind a rival is g
 BESIDE = 0.5  # of what a path has for exploring: other effects beside one that explains most, but for a second one
 EXPLORING = 0.7  # of the budget: the rest is for proving what was found
 PROVING = 0.9  # of the budget: ties, intervals and what promises to explain most of what is left get no more
-SLOWER = 1.25  # times the budget: the CPU time that it takes at most, where a machine is slow
+SLOWER = 1.25  # times a share that CPU time may take of it, where a machine is slow or a model costs more than counted
 WHOLE = 1.0  # of the budget: fits end there, settled or not
 
 
 class Budget:
-    """Seconds of work from now on (`engine.work`), so that an answer is the same on any machine but one that is much
-    slower: there they end a quarter later in CPU seconds of all threads, but for compiling. Infinite where None are
-    given. `untried` names what they did not suffice for."""
+    """Seconds of work from now on (`engine.work`), so that an answer is the same on any machine. CPU seconds of all
+    threads, but for compiling, end it as well, its shares a quarter later. Infinite where None are given. `untried`
+    names what they did not suffice for."""
 
     def __init__(self, seconds: float | None = None) -> None:
         self.seconds = float("inf") if seconds is None else seconds
@@ -60,8 +60,8 @@ class Budget:
 
     def spent(self, share: float) -> bool:
         """Whether a share of the budget is spent."""
-        seconds = share * self.seconds
-        return work.done() - self._begun >= seconds or computing_time() - self._since >= SLOWER * seconds
+        worked, taken = work.done() - self._begun, computing_time() - self._since
+        return worked >= share * self.seconds or taken >= min(SLOWER * share, WHOLE) * self.seconds
 
     def lasts(self) -> bool:
         """Whether a fit may go on."""
