@@ -73,6 +73,7 @@ class Record:
     run_in: how often the drive is simulated before the first sample (a periodic record in steady state).
     steps: simulation steps per sample.
     sha256: of the file as read. rows: the first row of the file that the record holds, and the first after it.
+    judges: whether a model is judged by it; a record kept back may show what the others leave open.
     """
 
     name: str
@@ -91,6 +92,7 @@ class Record:
     drive_units: tuple[str, ...] = ("V",)
     response_units: tuple[str | None, ...] = ("m",)
     notes: tuple[str, ...] = field(default=())
+    judges: bool = True
 
     @property
     def samples(self) -> int:

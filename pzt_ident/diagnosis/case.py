@@ -32,7 +32,7 @@ class Case:
 
     `on_event` is called, from any thread, with every fitted start, scored effect and refitted model; errors are in
     units of the loss. `base_problem` is the problem of the model without further effects, if it exists already.
-    `budget` has no end unless it is set.
+    `budget` has no end unless it is set. `caveat`: a sentence on the records that stands beside every verdict.
     """
 
     def __init__(
@@ -49,6 +49,7 @@ class Case:
         self.on_event, self._base_problem, self.budget = on_event, base_problem, Budget()
         self.words, self.effects = tuple(words), tuple(effects)
         self.ruled_out, self.shared = tuple(ruled_out), tuple(shared)
+        self.caveat = ""
         self._resampled: dict[tuple[int, int], Record] = {}
         self.refits: dict[Any, Fit] = {}  # by effects, steps and start
         self.scorers: list[Any] = []  # of the fits that were diagnosed last
@@ -62,9 +63,15 @@ class Case:
         """The same case with other blocks."""
         return self._altered(words, self.specs)
 
-    def _altered(self, words: Sequence[str | Choice], specs: Any) -> Case:
-        other = Case(words, self.effects, self.records, specs, self.ruled_out, self.shared, self.on_event)
-        other._resampled, other.budget = self._resampled, self.budget
+    def with_records(self, records: Sequence[Record]) -> Case:
+        """The same case, of which other records judge."""
+        return self._altered(self.words, self.specs, records)
+
+    def _altered(self, words: Sequence[str | Choice], specs: Any, records: Sequence[Record] | None = None) -> Case:
+        other = Case(words, self.effects, records or self.records, specs, self.ruled_out, self.shared, self.on_event)
+        if records is None:
+            other._resampled = self._resampled
+        other.budget, other.caveat = self.budget, self.caveat
         other.error_scales, other.floor = self.error_scales, self.floor
         return other
 

@@ -13,8 +13,8 @@ from pzt_ident.diagnosis.locate import locate
 
 
 def caveats(case: Case, fit: Fit) -> str:
-    """The sentences about additions, effects on measured axes only and bounds."""
-    return addition_sentences(fit) + measured_only_sentence(case, fit) + bounds_sentence(fit)
+    """The sentences about additions, effects on measured axes only, bounds, and records."""
+    return addition_sentences(fit) + measured_only_sentence(case, fit) + bounds_sentence(fit) + case.caveat
 
 
 def addition_sentences(fit: Fit) -> str:

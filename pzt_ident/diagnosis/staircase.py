@@ -16,6 +16,7 @@ from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, climb
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms, removes_enough
 from pzt_ident.diagnosis.exchange import drop_outdone_rivals, find_rivals, remove_unneeded
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.judges import judged
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.proof import Suspect, unproven
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
@@ -32,10 +33,19 @@ PROVEN = "back to what is proven"  # the step that goes back to an earlier one
 
 
 def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
-    """The staircase from the model as given to the one with all effects that are proven. Wider bounds, where those of
-    the job are too narrow, are tried first where they remove most of the misfit of an axis; mechanics that the data do
-    not determine are left out first where no effect beside them reaches the noise, and any where nothing is missing
-    without them."""
+    """The staircase from the model as given to the one with all effects that are proven, judged by the records that can
+    judge it."""
+    judging, fit = judged(case, first)
+    staircase = improve_judged(judging, fit, on_step)
+    if judging is not case:
+        staircase.case = staircase.case or judging
+    return staircase
+
+
+def improve_judged(case: Case, first: Fit, on_step: StepListener) -> Staircase:
+    """The same, judged by all records that are left to judge it. Wider bounds, where those of the job are too narrow,
+    are tried first where they remove most of the misfit of an axis; mechanics that the data do not determine are left
+    out first where no effect beside them reaches the noise, and any where nothing is missing without them."""
     good = adequate(case, first, first)
     enough = None if good else enough_without_mechanics(case, first)
     if enough:

@@ -15,6 +15,7 @@ from pzt_ident.diagnosis import staircase as stairs
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.fit import Fit, fit_at
+from pzt_ident.diagnosis.judges import judged
 from pzt_ident.diagnosis.proof import Suspect, unproven
 from pzt_ident.diagnosis.refit import refine_steps
 from pzt_ident.diagnosis.staircase import Staircase, StepListener
@@ -53,7 +54,7 @@ def diagnosed(case: Case, first: First) -> Diagnosis:
     """The diagnosis of the model as given; where the records are long, that of fewer samples, if it holds on all."""
     thin = thinned(case)
     if thin is not None:
-        diagnosis = diagnose(thin, first(thin))
+        diagnosis = diagnose(*judged(thin, first(thin)))
         kept = on_all_samples(case, thin, Staircase([stairs.Step(diagnosis.before)], diagnosis))
         missing = [item for item in diagnosis.candidates if item.fit and item.decision == "missing"]
         fits = [on_all(case, item.fit) for item in missing if item.fit]
@@ -64,7 +65,7 @@ def diagnosed(case: Case, first: First) -> Diagnosis:
                 item.fit = item.refits[item.score.effect] = fit
             return kept.last
         case.budget.begin_again()
-    return diagnose(case, first(case))
+    return diagnose(*judged(case, first(case)))
 
 
 def thinned(case: Case) -> Case | None:

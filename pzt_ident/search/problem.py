@@ -51,9 +51,9 @@ class Problem(Cube):
         identify = [record for record in records if record.use == "identify"]
         if not identify:
             raise InputError("no record to identify from", where="records", remedy="give one of them `use: identify`")
-        self.simulators = {
-            use: [Simulator(model, r) for r in records if r.use == use] for use in ("identify", "validate")
-        }
+        judging = {"identify": identify, "validate": [r for r in records if r.use == "validate" and r.judges]}
+        judging["neither"] = [record for record in records if not record.judges]
+        self.simulators = {use: [Simulator(model, record) for record in some] for use, some in judging.items()}
         super().__init__(model, identify, specs or {})
         self._set_linear(self.linear_columns, identify)
         check_feasible(self, identify)
@@ -323,7 +323,7 @@ class Problem(Cube):
 
     @property
     def every_simulator(self) -> list[Simulator]:
-        """The simulators of the identification records, then of the validation records."""
+        """The simulators of the identification records, then of the validation records, those that judge first."""
         return [simulator for simulators in self.simulators.values() for simulator in simulators]
 
     def simulator_of(self, record: Record) -> Simulator:
