@@ -52,8 +52,8 @@ class Problem(Cube):
         if not identify:
             raise InputError("no record to identify from", where="records", remedy="give one of them `use: identify`")
         judging = {"identify": identify, "validate": [r for r in records if r.use == "validate" and r.judges]}
-        judging["neither"] = [record for record in records if not record.judges]
         self.simulators = {use: [Simulator(model, record) for record in some] for use, some in judging.items()}
+        self._not_judging = [Simulator(model, record) for record in records if not record.judges]
         super().__init__(model, identify, specs or {})
         self._set_linear(self.linear_columns, identify)
         check_feasible(self, identify)
@@ -324,7 +324,7 @@ class Problem(Cube):
     @property
     def every_simulator(self) -> list[Simulator]:
         """The simulators of the identification records, then of the validation records, those that judge first."""
-        return [simulator for simulators in self.simulators.values() for simulator in simulators]
+        return [simulator for simulators in self.simulators.values() for simulator in simulators] + self._not_judging
 
     def simulator_of(self, record: Record) -> Simulator:
         return next(simulator for simulator in self.every_simulator if simulator.record is record)
