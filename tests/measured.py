@@ -19,3 +19,10 @@ def creeping(u, dt, ratio, tau, width, height):
 def write(path, t, u, x):
     header = "time [s],u_x [V],x [um]"
     np.savetxt(path, np.column_stack([t, u, x]), delimiter=",", header=header, comments="", fmt="%.9g")
+
+
+def write_raised(path, samples):
+    """Three raised cosines of 100 V in a second through a lag."""
+    t = np.arange(samples) / samples
+    u = 50 * (1 - np.cos(6 * np.pi * t))
+    write(path, t, u, lagging(u, np.random.default_rng(0)))

@@ -135,7 +135,7 @@ def diagnosis_options(command: Command) -> Command:
     command = start_option(no_report_flag(plugins_flag(output_options(command))))
     more = (
         "CPU time to spend, such as 60s or 5 min; 60 s or 1 ms a sample if not given. It is counted in simulations, so "
-        "that the answer does not depend on the machine."
+        "that the answer does not depend on the machine unless that is much slower."
     )
     command = click.option("--budget", type=Seconds(), help=more)(command)
     return click.argument("job", type=EXISTING)(click.option("--out", type=EXISTING, help=text)(command))

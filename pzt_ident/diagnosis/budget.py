@@ -19,9 +19,9 @@ WHOLE = 1.0  # of the budget: fits end there, settled or not
 
 
 class Budget:
-    """Seconds of work from now on (`engine.work`), so that an answer is the same on any machine. CPU seconds of all
-    threads, but for compiling, end it as well, its shares a quarter later. Infinite where None are given. `untried`
-    names what they did not suffice for."""
+    """Seconds of work from now on (`engine.work`), so that an answer is the same on any machine that is fast enough.
+    CPU seconds of all threads, but for compiling, end it as well, its shares a quarter later. Infinite where None are
+    given. `untried` names what they did not suffice for."""
 
     def __init__(self, seconds: float | None = None) -> None:
         self.seconds = float("inf") if seconds is None else seconds

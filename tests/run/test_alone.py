@@ -1,6 +1,5 @@
 """Two processes do not work in one folder."""
 
-import numpy as np
 import pytest
 
 import measured
@@ -27,9 +26,7 @@ optimizers: [{name: pso, population: 8, generations: 4}]
 
 @pytest.fixture
 def job(tmp_path):
-    t = np.arange(400) / 400
-    u = 50 * (1 - np.cos(6 * np.pi * t))
-    measured.write(tmp_path / "identify.csv", t, u, measured.lagging(u, np.random.default_rng(0)))
+    measured.write_raised(tmp_path / "identify.csv", 400)
     (tmp_path / "job.yaml").write_text(JOB)
     return load_job(tmp_path / "job.yaml")
 

@@ -2,7 +2,6 @@
 
 import json
 
-import numpy as np
 import pytest
 
 import measured
@@ -22,9 +21,7 @@ repeats: 2
 
 @pytest.fixture
 def job(tmp_path):
-    t = np.arange(300) / 300
-    u = 50 * (1 - np.cos(6 * np.pi * t))
-    measured.write(tmp_path / "data.csv", t, u, measured.lagging(u, np.random.default_rng(0)))
+    measured.write_raised(tmp_path / "data.csv", 300)
     (tmp_path / "job.yaml").write_text(JOB)
     return load_job(tmp_path / "job.yaml")
 
