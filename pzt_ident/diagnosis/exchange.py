@@ -103,19 +103,24 @@ def at_noise(case: Case, fit: Fit) -> bool:
     return removed_rms(fit.total, case.floor) < 2 * TIE * case.floor
 
 
-def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str]) -> list[Fit]:
+def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str], as_rivals: bool = False) -> list[Fit]:
     """The model refitted with each of the items in the place of an effect, but for those that explain little of what
-    that explains."""
+    that explains. as_rivals: whether one of several parameters that explains as much by its score, and is not tied, is
+    started elsewhere, too: it rests in a side minimum."""
     if not items:
         return []
     without = refit(case, now, effects_without(now, effect), {})
-    scorer = scorer_of(case, without)
+    scorer, fits = scorer_of(case, without), list[Fit]()
     scores, own = [scorer.score(item) for item in items], scorer.score(effect).explained
-    return [
-        refit_beside(case, (without, now), (*without.effects, score.effect), score.guess, now.identify)
-        for score in scores
-        if score.explained >= COMPARABLE * own
-    ]
+    for score in scores:
+        if score.explained < COMPARABLE * own:
+            continue
+        fit = refit_beside(case, (without, now), (*without.effects, score.effect), score.guess, now.identify)
+        promised = as_rivals and score.explained >= own and len(score.guess) > 1
+        if promised and not is_tied(case, effect, now, fit) and case.budget.allows("ties", PROVING):
+            fit = restart(case, fit)
+        fits.append(fit)
+    return fits
 
 
 def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener) -> None:
@@ -126,7 +131,7 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
     known = added == (last.added,) and last.removed is None
     for effect in added if not known and case.budget.allows("ties", PROVING) else ():
         step = next(step for step in reversed(steps) if step.added == effect)
-        fits = fits_in_place(case, now, effect, look_alikes(case, now, effect, step.tied))
+        fits = fits_in_place(case, now, effect, look_alikes(case, now, effect, step.tied), as_rivals=True)
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
         rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
         taken = min(rivals, key=lambda item: rivals[item].freedom)
@@ -137,6 +142,21 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
             steps.append(step)
         step.rivals = {taken: rivals[taken]} | rivals
         now = rivals[taken]
+
+
+def add_rivals_beside(case: Case, first: Fit, steps: Sequence[Step], doubted: Fit) -> None:
+    """Add the look-alikes that are tied with an effect of the last model in a fit that has unproven effects beside it:
+    if one of these is there after all, the data cannot tell them apart."""
+    added = steps[-1].fit.effects[len(first.effects) :]
+    for effect in added if case.budget.allows("ties", PROVING) else ():
+        step = next((step for step in reversed(steps) if step.added == effect), None)
+        if step is None or effect not in doubted.effects:
+            continue
+        fits = fits_in_place(case, doubted, effect, look_alikes(case, doubted, effect, step.tied), as_rivals=True)
+        tied = [fit for fit in fits if is_tied(case, effect, doubted, fit)]
+        if any(fit.effects[-1] not in step.rivals for fit in tied):
+            known = [fit for fit in fits if fit.effects[-1] in step.rivals and fit not in tied]
+            step.rivals = {effect: doubted} | {fit.effects[-1]: fit for fit in (*known, *tied)}
 
 
 def drop_outdone_rivals(case: Case, now: Fit, steps: Sequence[Step]) -> None:

@@ -14,7 +14,7 @@ from pzt_ident.diagnosis.candidates import TIE, Candidate
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, climb
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms, removes_enough
-from pzt_ident.diagnosis.exchange import drop_outdone_rivals, find_rivals, remove_unneeded
+from pzt_ident.diagnosis.exchange import add_rivals_beside, drop_outdone_rivals, find_rivals, remove_unneeded
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.judges import judged
 from pzt_ident.diagnosis.misfit import share_explained
@@ -171,8 +171,10 @@ def improve_within(
         if not case.budget.allows("another effect first"):
             break
     best = best_path(case, paths)
-    take_back(best.case or case, first, best, on_step)
+    doubted = take_back(best.case or case, first, best, on_step)
     find_rivals(best.case or case, first, best.steps, on_step)
+    if doubted:
+        add_rivals_beside(best.case or case, first, best.steps, doubted)
     conclude(best.case or case, first, best)
     return best
 
@@ -200,16 +202,17 @@ def first_candidates(case: Case, first: Fit, diagnosis: Diagnosis) -> list[Candi
     return [best, *sorted(others, key=lambda item: item.fit.total if item.fit else np.inf)[: FIRST_EFFECTS - 1]]
 
 
-def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListener) -> None:
+def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListener) -> Fit | None:
     """Steps that take effects out again: those that the last model can do without, which may only have led the fit out
     of a side minimum, such as that to which the bounds of the job had led it, and the unproven ones; or back to a
-    model whose effects are all proven, where that is better than what is then left."""
+    model whose effects are all proven, where that is better than what is then left. Returns the fit with the unproven
+    ones, None where there are none beside those of the last model."""
     now, wider = staircase.steps[-1].fit, any(step.change == WIDER for step in staircase.steps)
     steps = remove_unneeded(case, first, now, newest=0, restarted=wider) if near_noise(case, first, now) else []
     now = steps[-1].fit if steps else now
     if not near_noise(case, first, now):
         drop_outdone_rivals(case, now, staircase.steps)
-    suspects = unproven_of(case, first, now, staircase.steps)
+    doubted, suspects = now, unproven_of(case, first, now, staircase.steps)
     end = suspects[-1].without if suspects else now
     proven = proven_before(case, first, end, staircase.steps)
     staircase.suspects = [item for item in suspects if proven is None or item.effect not in proven.effects]
@@ -222,6 +225,7 @@ def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListene
     for step in steps:
         on_step(step)
     staircase.steps += steps
+    return doubted if suspects and proven is None else None
 
 
 def unproven_of(case: Case, first: Fit, fit: Fit, steps: Sequence[Step]) -> list[Suspect]:

@@ -281,7 +281,9 @@ def test_beside_other_effects_too_the_simpler_of_tied_look_alikes_is_taken(monke
     others = {"creep": [], "friction.coulomb": [rival, worse], "forms": [fitted("friction", 2 if twin else 2.1, 3)]}
     monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect, tied: [effect])
     monkeypatch.setattr(exchange, "other_forms", lambda case, now, effect: ["forms"])
-    monkeypatch.setattr(exchange, "fits_in_place", lambda case, now, effect, items: others[items[0]] if items else [])
+    monkeypatch.setattr(
+        exchange, "fits_in_place", lambda case, now, effect, items, **_: others[items[0]] if items else []
+    )
     steps, told = [Step(now, "creep"), Step(now, "friction.coulomb")], []
     case = SimpleNamespace(floor=1.0, budget=Budget())
     exchange.find_rivals(case, SimpleNamespace(effects=()), steps, told.append)
@@ -298,7 +300,7 @@ def test_the_rivals_of_an_effect_that_is_alone_again_are_asked_for_anew(monkeypa
 
     alone, rival = fitted("sensor_lag"), fitted("delay")
     monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect, tied: ["delay"])
-    monkeypatch.setattr(exchange, "fits_in_place", lambda case, now, effect, items: [rival])
+    monkeypatch.setattr(exchange, "fits_in_place", lambda case, now, effect, items, **_: [rival])
     case = SimpleNamespace(floor=1.0, budget=Budget())
     lone = [Step(alone, "sensor_lag", rivals={"sensor_lag": alone})]
     exchange.find_rivals(case, SimpleNamespace(effects=()), lone, None)
@@ -316,7 +318,7 @@ def test_what_fits_as_a_form_of_the_effect_itself_does_keeps_its_name(monkeypatc
         for word, level in (("cross_coupling.voltage", total), ("kinematic_coupling.voltage", 1.5))
     )
     monkeypatch.setattr(exchange, "other_forms", lambda case, now, effect: ["cross_coupling.voltage"])
-    monkeypatch.setattr(exchange, "fits_in_place", lambda case, now, effect, items: [own])
+    monkeypatch.setattr(exchange, "fits_in_place", lambda case, now, effect, items, **_: [own])
     named = exchange.under_own_name(SimpleNamespace(floor=1.0), None, "cross_coupling", other)
     assert named.effects == (taken,)
 
@@ -334,7 +336,7 @@ def test_a_rival_of_another_kind_is_one_as_long_as_it_fits_as_well_beside_what_w
 ):
     now = SimpleNamespace(effects=("creep", "quadratic_gain"), total=5.0)
     rival = SimpleNamespace(effects=("quadratic_gain", "friction"), total=total)
-    monkeypatch.setattr(exchange, "fits_in_place", lambda case, now, effect, items: [rival] if items else [])
+    monkeypatch.setattr(exchange, "fits_in_place", lambda case, now, effect, items, **_: [rival] if items else [])
     steps = [Step(now), Step(now, "creep", rivals=dict.fromkeys(("creep", "friction", "drift"), now))]
     exchange.drop_outdone_rivals(SimpleNamespace(floor=1.0, budget=Budget()), now, steps)
     assert steps[1].tied == left
@@ -408,3 +410,41 @@ def test_where_little_is_left_of_the_last_model_the_lowest_one_before_it_that_is
     assert "".join(found.steps[-1].fit.effects) == end
     assert [step.change for step in reported] == {"abc": [], "": [""]}.get(end, [improving.PROVEN])
     assert len(found.steps) == len(fits) + len(reported)
+
+
+@pytest.mark.parametrize("beside", ["creep", ""], ids=["tied beside the memory", "tied nowhere"])
+def test_what_is_tied_beside_an_unproven_effect_is_a_rival_too(monkeypatch, beside):
+    """Without the memory, creep fits worse than the lag in its place; with the memory as well."""
+
+    def fitted(*effects, total):
+        return SimpleNamespace(effects=effects, total=total, identify=total)
+
+    alone, doubted = fitted("sensor_lag", total=1.3), fitted("memory", "sensor_lag", total=1.1)
+    delay = fitted("memory", "delay", total=1.2)
+    creep = fitted("memory", "creep", total=1.15 if beside else 1.3)
+    monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect, tied: ["delay", "creep"])
+    monkeypatch.setattr(exchange, "fits_in_place", lambda case, now, effect, items, **_: [delay, creep])
+    known = {"sensor_lag": alone, "delay": fitted("delay", total=1.4)}
+    steps = [Step(alone), Step(doubted, "sensor_lag", rivals=known), Step(alone, None, "memory")]
+    case = SimpleNamespace(floor=1.0, budget=Budget())
+    exchange.add_rivals_beside(case, SimpleNamespace(effects=()), steps, doubted)
+    together = {"sensor_lag": doubted, "delay": delay, "creep": creep}
+    assert steps[1].rivals == (together if beside else known)
+
+
+@pytest.mark.parametrize(("as_rivals", "guess", "total"), [(True, 3, 1.1), (True, 1, 2.0), (False, 3, 2.0)])
+def test_a_rival_that_explains_as_much_by_its_score_is_started_elsewhere(monkeypatch, as_rivals, guess, total):
+    def fitted(effects, total):
+        return SimpleNamespace(effects=effects, total=total, identify=total)
+
+    score = {
+        "sensor_lag": Score("sensor_lag", 0.8),
+        "creep": Score("creep", 0.8, guesses=[dict.fromkeys(map(str, range(guess)), 0.0)]),
+    }
+    monkeypatch.setattr(exchange, "refit", lambda case, now, effects, guess: fitted(effects, 5.0))
+    monkeypatch.setattr(exchange, "scorer_of", lambda case, fit: SimpleNamespace(score=score.get))
+    monkeypatch.setattr(exchange, "refit_beside", lambda case, fits, effects, guess, rival: fitted(effects, 2.0))
+    monkeypatch.setattr(exchange, "restart", lambda case, fit: fitted(fit.effects, 1.1))
+    case, now = SimpleNamespace(floor=1.0, budget=Budget()), fitted(("sensor_lag",), 1.0)
+    [fit] = exchange.fits_in_place(case, now, "sensor_lag", ["creep"], as_rivals)
+    assert (fit.effects, fit.total) == (("creep",), total)
