@@ -170,7 +170,8 @@ def on_all_samples(case: Case, thin: Case, staircase: Staircase) -> Staircase | 
     few_first, few_last = staircase.steps[0].fit, staircase.steps[-1].fit
     if not holds(case, few_last, last) or adequate(case, first, last) != adequate(thin, few_first, few_last):
         return None
-    doubted = [suspect.effect for suspect in staircase.suspects if isinstance(suspect, Suspect)]
+    back = staircase.steps[-1].change == stairs.PROVEN  # at once, not from suspect to suspect
+    doubted = [] if back else [suspect.effect for suspect in staircase.suspects if isinstance(suspect, Suspect)]
     fullest = steps[-1 - len(doubted)].fit
     if [suspect.effect for suspect in unproven(home, first, fullest, rivals)] != doubted:
         return None

@@ -7,9 +7,11 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis import proof, thinning
+from pzt_ident.diagnosis import staircase as stairs
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.diagnosis.step import Step
 from pzt_ident.diagnosis.thinning import enough, keeps_all, most_of, situations, thin_record, thinned
 from rig import record
 
@@ -106,6 +108,26 @@ def test_what_is_doubted_on_fewer_samples_and_proven_on_all_is_sought_on_all(mon
     staircase = thinning.improve(case, lambda case: first_fit(case, 0))
     assert (staircase.last.verdict, staircase.steps[-1].added) == ("adequate", "quadratic_gain")
     assert "Effects were sought on" not in staircase.last.reason
+
+
+def test_an_earlier_model_that_is_proven_on_fewer_samples_is_carried_to_all(monkeypatch):
+    """What was added after it is a suspect, and no step takes it out."""
+    case = long_case(stage.EFFECTS["quadratic_gain"])
+    monkeypatch.setattr(thinning, "LONG", 700)
+
+    def back(*given):
+        found = improve(*given)
+        proven = found.steps[-1].fit
+        suspect = proof.Suspect("drift", 0.1, 0.1, proven)
+        steps = [*found.steps, Step(proven, "drift"), Step(proven, change=stairs.PROVEN)]
+        return replace(found, steps=steps, suspects=[suspect])
+
+    improve = stairs.improve
+    monkeypatch.setattr(stairs, "improve", back)
+    staircase = thinning.improve(case, lambda case: first_fit(case, 0))
+    assert staircase.steps[-1].change == stairs.PROVEN
+    assert [suspect.effect for suspect in staircase.suspects] == ["drift"]
+    assert "what was found holds on all" in staircase.last.reason
 
 
 def test_what_is_sought_on_all_samples_has_all_of_the_budget(monkeypatch):
