@@ -78,7 +78,7 @@ def estimates(problem: Problem, point: Array, going: Callable[[], bool] = lambda
 
 def interval_of(problem: Problem, point: Array, i: int, ends: Array) -> tuple[float, float]:
     """The ends of an interval in the user's units. Of a logarithmic parameter they are not symmetric; beyond the cube,
-    where it has none, they are as far from the value as its slope says."""
+    where it has none, they are as far from the value as its slope says, but not below 0 of what is never negative."""
     slope = (problem.physical(point + 1e-6) - problem.physical(point - 1e-6))[0, i] / 2e-6
     value, in_units = problem.physical(point)[0, i], []
     for end in ends:
@@ -87,7 +87,9 @@ def interval_of(problem: Problem, point: Array, i: int, ends: Array) -> tuple[fl
         in_units.append(
             float(problem.physical(moved)[0, i]) if 0 <= end <= 1 else float(value + slope * (end - point[i]))
         )
-    return min(in_units), max(in_units)
+    declared = problem.model.entries[problem.free[i]].parameter.bounds[0]
+    least = 0.0 if min(declared, problem.lower[i]) >= 0 else -np.inf
+    return max(min(in_units), least), max(in_units)
 
 
 def covariance(problem: Problem, point: Array) -> Array:

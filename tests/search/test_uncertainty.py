@@ -12,7 +12,7 @@ from pzt_ident.search.cube import FixedValue
 from pzt_ident.search.descent import polish
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.sandwich import Lags, Sandwich, autoregression
-from pzt_ident.search.uncertainty import caution, estimates, verdict_of
+from pzt_ident.search.uncertainty import caution, estimates, interval_of, verdict_of
 from rig import record
 
 BLOCKS, LENGTH = 40, 10
@@ -111,6 +111,21 @@ def test_the_error_of_a_gain_is_that_of_the_slope_of_a_straight_line():
     assert gain.standard_error == pytest.approx(expected, rel=0.35)
     assert abs(gain.value - 1e-7) < 4 * expected
     assert gain.note == ""
+
+
+@pytest.mark.parametrize(("bounds", "least"), [(None, 0.0), ((0.0, 1.0), 0.0), ((-1.0, 1.0), -np.inf)])
+def test_an_interval_goes_below_zero_only_where_the_parameter_may(bounds, least):
+    """alpha is a share: at 0.01 +- 0.1 its interval begins at 0, unless the job lets it be negative."""
+    specs = {"bouc_wen.alpha": SimpleNamespace(bounds=bounds, value=None)} if bounds else {}
+    drive = np.sin(np.arange(200) / 10)
+    problem = Problem(Chain([blocks["bouc_wen"]], "x", [0]), [record(drive, response=[drive])], specs)
+    place = problem.names.index("bouc_wen.alpha")
+    width = problem.upper[place] - problem.lower[place]
+    value = (0.01 - problem.lower[place]) / width
+    ends = value + np.array([-0.1, 0.1]) / width
+    point = np.full(problem.dimensions, 0.5)
+    point[place] = value
+    assert interval_of(problem, point, place, ends) == pytest.approx((max(-0.09, least), 0.11))
 
 
 @pytest.mark.parametrize(
