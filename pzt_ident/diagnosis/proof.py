@@ -15,6 +15,7 @@ from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.step import effects_without
+from pzt_ident.model.chain import Entry
 from pzt_ident.model.registry import blocks, phrase_of, word_of
 
 ENOUGH = 3 / 4  # of the misfit as given, of all records together: what the first of several effects must remove
@@ -28,9 +29,9 @@ ALONE = 1 / 3  # what each must remove of those that do
 class Suspect:
     """What an effect takes up beside the others: the shares of the misfit on the identification and on the validation
     records (None without any), the fit without it, whether that is more than the form of the others may leave, the
-    effects of another kind that fitted as well when it was added, its parameters that ended on a bound and have no
-    null, and the share of all records together where each has its own amount of it: one that has little says nothing
-    against it."""
+    effects of another kind that fitted as well when it was added, its shapes or all its amounts that ended on a bound,
+    what it is there if that is declared, and the share of all records together where each has its own amount of it: one
+    that has little says nothing against it."""
 
     effect: str
     identify: float
@@ -39,6 +40,7 @@ class Suspect:
     beyond_form: bool = True
     strangers: tuple[str, ...] = ()
     limits: tuple[str, ...] = ()
+    limit: str = ""
     of_all: float | None = None
 
     @property
@@ -61,6 +63,8 @@ class Suspect:
         if self.beyond_form and self.strangers:
             names = listed(map(phrase_of, self.strangers))
             rest = f" of a model that stays above the noise with it, and {names} fitted as well when it was added."
+        elif self.beyond_form and self.limit:
+            rest = f", but {listed(self.limits)} ended on a bound, where it is {self.limit}."
         elif self.beyond_form and self.limits:
             rest = f" of a model that stays above the noise with it, and {listed(self.limits)} ended on a bound."
         elif self.beyond_form:
@@ -81,16 +85,21 @@ def unproven(
     the noise, and EACH of either kind of them, and each of the others half of the rest, and each the share ALONE beside
     the others; of
     several that leave more than that each must remove more in proportion, up to BESIDE. None may have rivals that fit
-    as well and are not its look-alikes: what any effect takes up is not that of one. And none may have a shape that
-    ended on a bound, as a cyclic error whose pitch is as long as the stroke: it stands for what it is like there.
+    as well and are not its look-alikes: what any effect takes up is not that of one. And none may have a shape, or all
+    its amounts, on a bound, as a cyclic error whose pitch is as long as the stroke: it stands for what it is like
+    there. At the noise, too, none may be in a limit that is declared to be something else.
     """
     suspects: list[Suspect] = []
     while added := now.effects[len(first.effects) :]:
         suspected = [suspect(case, first, now, effect, rivals.get(effect, ()), known) for effect in added]
-        least = least_of(case, suspected)
+        near = near_noise(case, first, now)
+        doubtful = [item for item in suspected if item.limit or not item.beyond_form]
+        if near and not doubtful:
+            break
+        least = least_of(case, doubtful if near else suspected)
         enough = least.share >= least_share(left_of_allowed(case, first, now, len(added)), len(added))
         decisive = enough and not least.strangers and not least.limits
-        if least.beyond_form and (decisive or near_noise(case, first, now)):
+        if not near and least.beyond_form and decisive:
             break
         suspects.append(least)
         now = least.without
@@ -146,21 +155,35 @@ def suspect(
         clear = removed_rms(without.total, now.total) > form_of_others(case, first.total)
         return Suspect(effect, identify, validate, without, clear, others, of_all=of_all)
     clear = beyond_form(case, first, without, now)
-    return Suspect(effect, identify, validate, without, clear, others, limits_of(now, effect))
+    limits = limits_of(now, effect)
+    return Suspect(effect, identify, validate, without, clear, others, limits, limit_of(now, limits))
 
 
 def limits_of(fit: Fit, effect: str) -> tuple[str, ...]:
-    """The parameters of an effect that have no null and ended on a bound on every axis: a shape that one axis shows is
-    that of the effect."""
-    problem = fit.problem
-    entries = {name: problem.model.entries[column] for name, column in zip(problem.names, problem.free, strict=True)}
-    shapes = {
-        name: entry.word
-        for name, entry in entries.items()
-        if entry.parameter.null is None and word_of(effect) in (entry.block.name, word_of(entry.parameter.effect or ""))
+    """The shapes of an effect, its parameters without a null, that ended on a bound on every axis, and its amounts if
+    they all did: what one axis shows is that of the effect."""
+    own = {
+        name: entry
+        for name, entry in entries_of(fit).items()
+        if word_of(effect) in (entry.block.name, word_of(entry.parameter.effect or ""))
     }
-    shown = {word for name, word in shapes.items() if name not in fit.on_bounds}
-    return tuple(name for name, word in shapes.items() if word not in shown)
+    amounts = {name for name, entry in own.items() if entry.parameter.null is not None}
+    shown = {entry.word for name, entry in own.items() if name not in amounts and name not in fit.on_bounds}
+    shapes = [name for name, entry in own.items() if name not in amounts and entry.word not in shown]
+    return (*shapes, *(sorted(amounts) if amounts <= {*fit.on_bounds} else ()))
+
+
+def limit_of(fit: Fit, limits: Collection[str]) -> str:
+    """What an effect is whose shapes ended on these bounds, as it is declared; empty where nothing else."""
+    entries, places = entries_of(fit), dict(zip(fit.problem.names, fit.point, strict=True))
+    declared = [entries[name].parameter.limit for name in limits if places[name] < 0.5]
+    return next(filter(None, declared), "")
+
+
+def entries_of(fit: Fit) -> dict[str, Entry]:
+    """The free parameters of a fit, by name."""
+    problem = fit.problem
+    return {name: problem.model.entries[column] for name, column in zip(problem.names, problem.free, strict=True)}
 
 
 def differs_by_record(effect: str) -> bool:

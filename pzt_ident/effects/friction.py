@@ -45,7 +45,13 @@ class Friction(Ahead, Block):
     """
 
     trials = {"stribeck": 1}
-    reach = Parameter("response", (1e-3, 0.5), "Displacement over which friction builds up.", scale="log")
+    reach = Parameter(
+        "response",
+        (1e-3, 0.5),
+        "Displacement over which friction builds up.",
+        scale="log",
+        limit="a play, as a backlash between stage and sensor is",
+    )
     stiction = Parameter(
         "1", (0, 0.5), "Excess of the break-away force over sliding friction, as a share of it.", null=0
     )

@@ -19,6 +19,7 @@ class Parameter:
 
     `null` is the value at which the block is exactly the identity; None if there is none.
     `end` is the value at which the range of a shape ends of itself, such as 0 for a spread; None if there is none.
+    `limit` tells what else an effect is whose shape is on its lower bound, if that is not in the catalogue: "a play".
     `effect` names the effect that the parameter belongs to; unless the job lists it, the parameter stays at its null.
     `count` makes one parameter for each branch of the block, `weight_1`, `weight_2`, ...; a number, or the name of the
     setting that holds it. `per` tells what has a value of its own: every axis, the whole stage, or every axis after the
@@ -43,6 +44,7 @@ class Parameter:
     linear: bool = False
     smooth: str | None = None
     end: float | None = None
+    limit: str | None = None
     name: str = ""
 
     def __set_name__(self, owner: type, name: str) -> None:

@@ -13,11 +13,12 @@ from pzt_ident.model.parameter import Parameter
 CASE = SimpleNamespace(floor=1.0)
 
 
-def fit(identify, validate, effects=(), shapes=None, dimensions=4):
-    """shapes: the places in its range, one an axis, of a parameter of some effects that has no null."""
+def fit(identify, validate, effects=(), shapes=None, dimensions=4, **declared):
+    """shapes: the places in its range, one an axis, of a parameter of some effects, which has no null unless one is
+    declared."""
     places = {(axis, effect): place for effect, own in (shapes or {}).items() for axis, place in enumerate(own)}
     entries = [
-        SimpleNamespace(parameter=Parameter("1", (0, 1), ""), block=SimpleNamespace(name=effect), word="shape")
+        SimpleNamespace(parameter=Parameter("1", (0, 1), "", **declared), block=SimpleNamespace(name=effect), word="s")
         for _, effect in places
     ]
     problem = SimpleNamespace(
@@ -34,8 +35,8 @@ def fit(identify, validate, effects=(), shapes=None, dimensions=4):
 def taken_out(monkeypatch):
     """The suspects among some effects, given the error of a model without each set of them."""
 
-    def of(errors, validation=None, first=30.0, rivals=None, known=(), shapes=None, sizes=None):
-        """sizes: the parameters of a model without each effect."""
+    def of(errors, validation=None, first=30.0, rivals=None, known=(), shapes=None, sizes=None, **declared):
+        """sizes: the parameters of a model without each effect. declared: of the parameters with shapes."""
         validation = validation or errors
 
         def refitted(case, before, effects, guess):
@@ -47,7 +48,7 @@ def taken_out(monkeypatch):
         by_record = proof.differs_by_record
         monkeypatch.setattr(proof, "differs_by_record", lambda effect: len(effect) > 1 and by_record(effect))
         every = max(errors, key=len)
-        now = fit(errors[every], validation[every], sorted(every), shapes)
+        now = fit(errors[every], validation[every], sorted(every), shapes, **declared)
         given = fit(*first) if isinstance(first, tuple) else fit(first, first)
         return [item.effect for item in unproven(CASE, given, now, rivals or {}, known)]
 
@@ -99,6 +100,38 @@ def test_a_refit_that_ended_with_the_budget_proves_nothing_beside_a_known_fit(ta
 def test_above_the_noise_what_has_the_shape_of_its_limit_on_all_axes_is_a_suspect(taken_out, places, left, suspects):
     seen = of(ab=left, a=20.0, b=25.0, none=300.0)
     assert taken_out(seen, first=300.0, shapes={"a": places, "b": [0.5]}) == suspects
+
+
+@pytest.mark.parametrize(
+    ("places", "left", "suspects"),
+    [
+        ([1.0, 1.0], 10.0, ["a"]),
+        ([1.0, 0.9], 10.0, []),
+        ([1.0, 0.0], 10.0, []),
+        ([0.0, 0.0], 10.0, []),
+        ([1.0, 1.0], 1.2, []),
+    ],
+    ids=["above the noise", "one axis shows it", "one axis has none", "at its null", "at the noise"],
+)
+def test_above_the_noise_what_is_as_large_as_the_bounds_allow_on_all_axes_is_a_suspect(
+    taken_out, places, left, suspects
+):
+    assert taken_out(of(none=30, a=left), shapes={"a": places}, null=0) == suspects
+
+
+@pytest.mark.parametrize(("left", "place", "suspects"), [(1.2, 0.0, ["a"]), (1.2, 1.0, []), (1.2, 0.1, [])])
+def test_at_the_noise_too_what_is_in_a_limit_that_is_something_else_is_a_suspect(taken_out, left, place, suspects):
+    """Friction whose reach ends on its lower bound is a play, as a backlash is."""
+    assert taken_out(of(none=30, a=left), shapes={"a": [place]}, limit="a play") == suspects
+    assert taken_out(of(none=30, a=left), shapes={"a": [place]}) == []
+
+
+def test_the_limit_is_told():
+    now = fit(1.0, 1.0, ["friction"])
+    item = proof.Suspect("friction", 0.99, 0.98, now, limits=("friction.reach",), limit="a play")
+    assert item.why_not.endswith(
+        "98 % on the validation records, but friction.reach ended on a bound, where it is a play."
+    )
 
 
 @pytest.mark.parametrize(("left", "share"), [(0.125, 1 / 3), (0.15, 0.4), (0.2, 8 / 15), (0.25, 2 / 3), (0.35, 2 / 3)])

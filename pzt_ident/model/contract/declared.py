@@ -13,7 +13,14 @@ from pzt_ident.errors import InputError, nearest
 from pzt_ident.model.parameter import Form, Parameter, Setting
 
 UNIT_EXAMPLES = {"drive": "V", "response": "m", "first": "m"}
-FIELD_TYPES = {"unit": str, "doc": str, "effect": str | None, "count": int | str | None, "smooth": str | None}
+FIELD_TYPES = {
+    "unit": str,
+    "doc": str,
+    "effect": str | None,
+    "count": int | str | None,
+    "smooth": str | None,
+    "limit": str | None,
+}
 FIELD_WORDS = {"scale": ("linear", "log"), "per": ("axis", "stage", "later axis")}
 TEXT, COUNT = "a text", "a whole number from 1 on"
 TUPLE = 'a tuple of words, such as `("creep",)`'
