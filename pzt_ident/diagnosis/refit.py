@@ -53,10 +53,21 @@ def refit_beside(
 
 def start_of(problem: Problem, before: Fit, guess: dict[str, float]) -> Array:
     """The point of the guess, of the fit `before` for other parameters, and of the middle of the range of the rest."""
-    known, middle = before.values, problem.physical(np.full(problem.dimensions, 0.5))[0]
+    known, middle = values_in(problem, before), problem.physical(np.full(problem.dimensions, 0.5))[0]
     return problem.unit_point(
         {name: guess.get(name, known.get(name, middle[i])) for i, name in enumerate(problem.names)}
     )
+
+
+def values_in(problem: Problem, before: Fit) -> dict[str, float]:
+    """The parameters of a fit; what one of them that the problem does not have is added to has the sum."""
+    values, entries = before.values, before.problem.model.entries
+    for name, column in zip(before.problem.names, before.problem.free, strict=True):
+        parameter = entries[column].parameter
+        whole = name.removesuffix(parameter.name) + (parameter.adds_to or "")
+        if parameter.adds_to and whole in values and name not in problem.names:
+            values[whole] += values[name]
+    return values
 
 
 def _best_of_axes(

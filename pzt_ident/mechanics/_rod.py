@@ -19,7 +19,14 @@ class RodData(Solid):
     area = Parameter("m^2", (1e-8, 1e-2), "Area of the cross section.", scale="log")
     end_damping = Parameter("N*s/m", (0, 1e6), "Damper at the end.", value=0)
     end_stiffness = Parameter("N/m", (0, 1e9), "Spring at the end.", value=0)
-    extra_damping = Parameter("N*s/m", (0, 3e4), "Added to the damper at the end.", null=0, effect="viscous_damping")
+    extra_damping = Parameter(
+        "N*s/m",
+        (0, 3e4),
+        "Added to the damper at the end.",
+        null=0,
+        effect="viscous_damping",
+        adds_to="end_damping",
+    )
 
 
 class RodElements(RodData, Linear):

@@ -20,8 +20,12 @@ class Lumped(Oscillator):
     mass = Parameter("kg", (0.01, 10), "Moving mass, m.", scale="log")
     damping = Parameter("N*s/m", (0, 1e4), "Viscous damping, b.")
     stiffness = Parameter("N/m", (1e5, 1e9), "Stiffness of flexure and actuator together, k.", scale="log")
-    load = Parameter("kg", (0, 10), "Mass of a payload, added to the moving mass.", null=0, effect="load_mass")
-    extra_damping = Parameter("N*s/m", (0, 3e4), "Added to the damping.", null=0, effect="viscous_damping")
+    load = Parameter(
+        "kg", (0, 10), "Mass of a payload, added to the moving mass.", null=0, effect="load_mass", adds_to="mass"
+    )
+    extra_damping = Parameter(
+        "N*s/m", (0, 3e4), "Added to the damping.", null=0, effect="viscous_damping", adds_to="damping"
+    )
     cubic = Parameter(
         "1/response^2", (-0.4, 2), "Cubic over linear stiffness, k3 / k.", null=0, effect="cubic_stiffness"
     )

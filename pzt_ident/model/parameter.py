@@ -28,6 +28,7 @@ class Parameter:
     `value` is the fixed value, unless the job frees the parameter with bounds.
     `linear` has it solved for inside the search, unless the job gives it bounds or a value: the response must be linear
     in all such parameters together; they are not negative, or not positive where the response falls with the drive.
+    `adds_to` names the parameter of the block that it is added to, as a payload to the moving mass.
     `smooth` names the parameter that weighs the squared second differences of a counted linear parameter.
     """
 
@@ -42,6 +43,7 @@ class Parameter:
     per_record: bool = False
     value: float | None = None
     linear: bool = False
+    adds_to: str | None = None
     smooth: str | None = None
     end: float | None = None
     limit: str | None = None

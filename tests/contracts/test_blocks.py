@@ -317,3 +317,25 @@ def test_kinds_are_all_there():
     assert [word for word in WORDS if blocks.folder(word) == "effects"] == EFFECTS
     kinds = {Operator, Bank, Relays, Coupling, Modes, Shift, Beside, Term, Addition}
     assert {kind for kind in kinds if any(issubclass(blocks[word], kind) for word in WORDS)} == kinds
+
+
+SUMMED = [
+    (word, name, parameter.adds_to)
+    for word in IN_CHAIN
+    for name, parameter in block_of(word).parameters().items()
+    if parameter.adds_to
+]
+
+
+@pytest.mark.parametrize(("word", "part", "whole"), SUMMED)
+def test_what_adds_to_another_parameter_is_one_with_it(word, part, whole):
+    """A payload is a larger moving mass."""
+    made = model(word, block_of(word).parameters()[part].effect)
+    names = [entry.name for entry in made.entries]
+    apart = candidates(made, SPAN, 5, seed=3)
+    together = apart.copy()
+    columns = [names.index(f"{word}.{each}") for each in (whole, part)]
+    together[:, columns[0]] += together[:, columns[1]]
+    together[:, columns[1]] = 0
+    blank = record(waves(1))
+    assert_close(simulate(made, blank, apart), simulate(made, blank, together), close=1e-9)

@@ -106,6 +106,7 @@ DECLARED = [
     (GAIN, 'scale="log"', "count=3", "Gain.tau: there are 3 of it for no branches"),
     (GAIN, 'scale="log"', 'count="branches"', "Gain.tau: is counted by the unknown setting 'branches'"),
     (GAIN, 'scale="log"', 'smooth="bent"', r"Gain.tau: unknown parameter 'bent'\n.*'bend'"),
+    (GAIN, 'scale="log"', 'adds_to="bent"', r"Gain.tau: unknown parameter 'bent'\n.*'bend'"),
     (GAIN, "tau = ", "trials = {'bent': 3}\n    tau = ", r"Gain.trials: unknown parameter 'bent'\n.*'bend'"),
     (GAIN, "tau = ", "place = ", "Gain.place: 'place' is a word of every block"),
     (GAIN, "tau = ", "tau = other = ", "Gain.tau: is the same object as the parameter 'other'"),

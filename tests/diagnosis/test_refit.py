@@ -11,6 +11,7 @@ import stage
 from pzt_ident.diagnosis import refit
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.engine.simulator import simulate
 from pzt_ident.model.block import Block, Place
@@ -35,6 +36,18 @@ def test_a_refit_goes_on_from_what_was_found(creeping):
     assert before.identify > 3 * after.identify
     back = refit.refit(creeping, after, (), {})
     assert back.identify == pytest.approx(before.identify, rel=1e-3)
+
+
+def test_a_refit_without_an_effect_starts_with_what_it_adds_to_another_parameter():
+    """Without the payload the moving mass has both, and the same resonance."""
+    loaded = stage.case(model=("bouc_wen", "lumped"))
+    problem = loaded.problem(("load_mass",))
+    names = dict.fromkeys(problem.names, 0.5)
+    point = problem.unit_point(names | {"lumped.mass": 0.2, "lumped.load": 1.5})
+    before = fit_at(("load_mass",), problem, point)
+    without = loaded.problem(())
+    start = without.physical(refit.start_of(without, before, {}))[0]
+    assert dict(zip(without.names, start, strict=True))["lumped.mass"] == pytest.approx(1.7)
 
 
 @settings(max_examples=30, deadline=None)

@@ -19,6 +19,7 @@ FIELD_TYPES = {
     "effect": str | None,
     "count": int | str | None,
     "smooth": str | None,
+    "adds_to": str | None,
     "limit": str | None,
 }
 FIELD_WORDS = {"scale": ("linear", "log"), "per": ("axis", "stage", "later axis")}
@@ -129,8 +130,9 @@ def check_parameters(block: Any) -> None:
             raise fault(
                 block, word, "belongs to an effect, but has no null", "give the value at which it has no effect"
             )
-        if item.smooth is not None and item.smooth not in parameters(block):
-            raise fault(block, word, f"unknown parameter {item.smooth!r}", nearest(item.smooth, parameters(block)))
+        for other in filter(None, (item.smooth, item.adds_to)):
+            if other not in parameters(block):
+                raise fault(block, word, f"unknown parameter {other!r}", nearest(other, parameters(block)))
 
 
 def _check_numbers(block: Any, word: str, item: Parameter) -> None:
