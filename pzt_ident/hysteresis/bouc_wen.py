@@ -31,7 +31,7 @@ class BoucWen(Operator):
     gamma = Parameter("1/drive", (-30, 60), "Decay of h per volt, with the sign of h along the motion.")
 
     asymmetry = Parameter(
-        "1/drive", (-1, 1), "Part of the drive term that grows with the voltage.", 0, effect="asymmetry.voltage"
+        "1/drive", (-2, 2), "Part of the drive term that grows with the voltage.", 0, effect="asymmetry.voltage"
     )
     lean = Parameter("1", (-0.9, 0.9), "Part of the drive term in one direction.", 0, effect="asymmetry.constant")
     rate = Parameter("1", (-0.3, 0.3), "Growth of alpha per decade of drive rate.", 0, effect="rate_dependence")
