@@ -61,8 +61,11 @@ class Fit:
         """Names of the parameters that ended on a bound, but for those whose range ends there of itself."""
         problem, values = self.problem, self.problem.physical(self.point)[0]
         parameters = [problem.model.entries[column].parameter for column in problem.free]
-        rows = zip(problem.names, self._at_edges, values, parameters, strict=True)
-        return tuple(name for name, edge, value, parameter in rows if edge and not parameter.ends_at(value))
+        bounds = np.where(self.point < 0.5, "lower", "upper").tolist()
+        rows = zip(problem.names, self._at_edges, values, bounds, parameters, strict=True)
+        return tuple(
+            name for name, edge, value, bound, parameter in rows if edge and not parameter.ends_at(value, bound)
+        )
 
     @property
     def _at_edges(self) -> NDArray[np.bool_]:

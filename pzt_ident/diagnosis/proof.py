@@ -11,7 +11,7 @@ from pzt_ident.data.notation import listed
 from pzt_ident.diagnosis.candidates import TIE, strangers
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, beyond_form, form_of_others, near_noise, reaches_noise, removed_rms
-from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.fit import NO_WORSE, Fit
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.step import effects_without
@@ -160,8 +160,8 @@ def suspect(
 
 
 def limits_of(fit: Fit, effect: str) -> tuple[str, ...]:
-    """The shapes of an effect, its parameters without a null, that ended on a bound on every axis, and its amounts if
-    they all did: what one axis shows is that of the effect."""
+    """The shapes of an effect, its parameters without a null, that ended on a bound on every axis and are felt there,
+    and its amounts if they all did: what one axis shows is that of the effect."""
     own = {
         name: entry
         for name, entry in entries_of(fit).items()
@@ -170,13 +170,23 @@ def limits_of(fit: Fit, effect: str) -> tuple[str, ...]:
     amounts = {name for name, entry in own.items() if entry.parameter.null is not None}
     shown = {entry.word for name, entry in own.items() if name not in amounts and name not in fit.on_bounds}
     shapes = [name for name, entry in own.items() if name not in amounts and entry.word not in shown]
+    shapes = [name for name in shapes if is_felt(fit, name)]
     return (*shapes, *(sorted(amounts) if amounts <= {*fit.on_bounds} else ()))
 
 
+def is_felt(fit: Fit, name: str) -> bool:
+    """Whether the model is worse with a parameter in the middle of its range: that of a Stribeck velocity without
+    stiction is not."""
+    moved = np.where(np.array(fit.problem.names) == name, 0.5, fit.point)
+    return not float(fit.problem.loss(moved)[0]) <= (1 + NO_WORSE) * fit.identify
+
+
 def limit_of(fit: Fit, limits: Collection[str]) -> str:
-    """What an effect is whose shapes ended on these bounds, as it is declared; empty where nothing else."""
+    """What an effect is whose shapes ended on these lower bounds, or whose amounts did on any, as it is declared; empty
+    where nothing else."""
     entries, places = entries_of(fit), dict(zip(fit.problem.names, fit.point, strict=True))
-    declared = [entries[name].parameter.limit for name in limits if places[name] < 0.5]
+    parameters = {name: entries[name].parameter for name in limits}
+    declared = [item.limit for name, item in parameters.items() if item.null is not None or places[name] < 0.5]
     return next(filter(None, declared), "")
 
 

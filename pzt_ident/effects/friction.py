@@ -56,7 +56,11 @@ class Friction(Ahead, Block):
         "1", (0, 0.5), "Excess of the break-away force over sliding friction, as a share of it.", null=0
     )
     stribeck = Parameter(
-        "response/s", (1e-3, 100), "Stribeck velocity, at which stiction has fallen by a factor of e.", scale="log"
+        "response/s",
+        (1e-3, 100),
+        "Stribeck velocity, at which stiction has fallen by a factor of e.",
+        scale="log",
+        end="lower",
     )
 
     def prepare(force, reach, stiction, stribeck, dt):

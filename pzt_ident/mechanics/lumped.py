@@ -37,7 +37,12 @@ class Lumped(Oscillator):
         "1", (0, 0.5), "Excess of the break-away force, as a share of friction.", null=0, effect="friction.motion"
     )
     stribeck = Parameter(
-        "response/s", (1e-3, 100), "Speed at which stiction has faded.", scale="log", effect="friction.motion"
+        "response/s",
+        (1e-3, 100),
+        "Speed at which stiction has faded.",
+        scale="log",
+        effect="friction.motion",
+        end="lower",
     )
     dry = Parameter(
         "response", (0, 0.1), "Coulomb friction over the stiffness.", null=0, effect="friction.coulomb_motion"

@@ -18,8 +18,9 @@ class Parameter:
     of the data: `Parameter("response/drive", (0, 2))` of a record over 100 V and 8 um goes from 0 to 0.16 um/V.
 
     `null` is the value at which the block is exactly the identity; None if there is none.
-    `end` is the value at which the range of a shape ends of itself, such as 0 for a spread; None if there is none.
-    `limit` tells what else an effect is whose shape is on its lower bound, if that is not in the catalogue: "a play".
+    `end` is the value at which the range of a shape ends of itself, such as 0 for a spread, or the bound beyond which
+    nothing changes, as of a time constant that is far longer than a record; None if there is none.
+    `limit` tells what else an effect is whose shape is on its lower bound, or whose amount is on any: "a play".
     `effect` names the effect that the parameter belongs to; unless the job lists it, the parameter stays at its null.
     `count` makes one parameter for each branch of the block, `weight_1`, `weight_2`, ...; a number, or the name of the
     setting that holds it. `per` tells what has a value of its own: every axis, the whole stage, or every axis after the
@@ -45,16 +46,18 @@ class Parameter:
     linear: bool = False
     adds_to: str | None = None
     smooth: str | None = None
-    end: float | None = None
+    end: float | Literal["lower", "upper"] | None = None
     limit: str | None = None
     name: str = ""
 
     def __set_name__(self, owner: type, name: str) -> None:
         object.__setattr__(self, "name", name)
 
-    def ends_at(self, value: float) -> bool:
-        """Whether a value is the null, or where the range ends of itself: one that rests there rests on no bound."""
-        return any(own is not None and isclose(value, own, rel_tol=1e-5, abs_tol=1e-8) for own in (self.null, self.end))
+    def ends_at(self, value: float, bound: Literal["lower", "upper"]) -> bool:
+        """Whether a value, on a bound, is the null, or where the range ends of itself: one that rests there rests on no
+        bound."""
+        numbers = [own for own in (self.null, self.end) if own is not None and not isinstance(own, str)]
+        return self.end == bound or any(isclose(value, own, rel_tol=1e-5, abs_tol=1e-8) for own in numbers)
 
 
 @dataclass(frozen=True)

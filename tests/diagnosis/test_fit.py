@@ -4,6 +4,7 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 import rig
 from pzt_ident.diagnosis import refit
@@ -12,6 +13,7 @@ from pzt_ident.diagnosis.caveats import bounds_sentence
 from pzt_ident.diagnosis.fit import EDGE, fit_at
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.engine.simulator import simulate
+from pzt_ident.model.parameter import Parameter
 from pzt_ident.search.problem import Problem
 
 
@@ -64,3 +66,10 @@ def test_amounts_of_each_record_count_among_the_parameters(plain):
         numbers[effect] = fit_at((effect,), problem, np.full(problem.dimensions, 0.5)).freedom
     free = plain.problem(()).dimensions
     assert numbers == {"periodic_disturbance": free + 3, "periodic_disturbance.ripple": free + 5, "drift": free + 2}
+
+
+@pytest.mark.parametrize(("end", "free"), [("upper", {"lower"}), ("lower", {"upper"}), (None, {"lower", "upper"})])
+def test_a_shape_rests_on_no_bound_where_its_range_ends_of_itself(end, free):
+    """A drift whose time constant is far longer than the record is a ramp."""
+    tau = Parameter("s", (1, 3000), "", scale="log", end=end)
+    assert {word for word, value in (("lower", 1.0), ("upper", 3000.0)) if not tau.ends_at(value, word)} == free

@@ -13,9 +13,9 @@ from pzt_ident.model.parameter import Parameter
 CASE = SimpleNamespace(floor=1.0)
 
 
-def fit(identify, validate, effects=(), shapes=None, dimensions=4, **declared):
+def fit(identify, validate, effects=(), shapes=None, dimensions=4, felt=True, **declared):
     """shapes: the places in its range, one an axis, of a parameter of some effects, which has no null unless one is
-    declared."""
+    declared. felt: whether the model is worse elsewhere."""
     places = {(axis, effect): place for effect, own in (shapes or {}).items() for axis, place in enumerate(own)}
     entries = [
         SimpleNamespace(parameter=Parameter("1", (0, 1), "", **declared), block=SimpleNamespace(name=effect), word="s")
@@ -27,6 +27,7 @@ def fit(identify, validate, effects=(), shapes=None, dimensions=4, **declared):
         free=range(len(places)),
         model=SimpleNamespace(entries=entries, measured=(), amounts=(), additions=()),
         physical=np.atleast_2d,
+        loss=lambda point: np.array([identify * (2 if felt else 1)]),
     )
     return Fit(tuple(effects), problem, np.array([*places.values()], float), identify, validate)
 
@@ -117,6 +118,17 @@ def test_above_the_noise_what_is_as_large_as_the_bounds_allow_on_all_axes_is_a_s
     taken_out, places, left, suspects
 ):
     assert taken_out(of(none=30, a=left), shapes={"a": places}, null=0) == suspects
+
+
+def test_a_shape_that_is_not_felt_is_in_no_limit(taken_out):
+    """A Stribeck velocity without stiction."""
+    seen = of(ab=5.0, a=20.0, b=25.0, none=300.0)
+    assert taken_out(seen, first=300.0, shapes={"a": [1.0], "b": [0.5]}, felt=False) == []
+
+
+@pytest.mark.parametrize("place", [0.0, 1.0])
+def test_an_amount_on_any_bound_may_be_in_a_limit(taken_out, place):
+    assert taken_out(of(none=30, a=1.2), shapes={"a": [place]}, null=0.5, limit="the main mode") == ["a"]
 
 
 @pytest.mark.parametrize(("left", "place", "suspects"), [(1.2, 0.0, ["a"]), (1.2, 1.0, []), (1.2, 0.1, [])])
