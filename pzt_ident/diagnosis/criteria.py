@@ -16,6 +16,8 @@ NEAR = 1.5  # noise floors, up to which an error may be that of the floor itself
 VALIDATION_FACTOR = 3.0  # times the tolerance that the validation records of an adequate model may be above the noise
 MODEL_FORM = 0.03  # of the initial misfit: less may as well be the form of the effects added as another effect
 FORM_OF_OTHERS = 0.15  # of the initial RMS misfit: what the form of the other effects may leave
+NEARLY_ALL = 0.95  # of a misfit, and NOT_LITTLE noise floors: no form leaves what another effect explains so well
+NOT_LITTLE = 0.9
 MOST_OF_OTHERS = 1.5  # noise floors: the most that it may leave, however large the initial misfit
 MOST_FORM = 2.0  # noise floors: what a model leaves above this is not adequate, whatever there was before
 
@@ -42,14 +44,27 @@ def beyond_form(case: Case, first: Fit, without: Fit, now: Fit) -> bool:
     """Whether an effect beside others takes up more than the form of these may leave, on the identification and on the
     validation records. The latter need not show it where they are at the noise with it and without, or would be if the
     noise floor were half as much again. The former need not show as much where the model with it is at the noise of
-    both: what predicts records that nothing was fitted to is not bent to them."""
+    both: what predicts records that nothing was fitted to is not bent to them. And what leaves next to nothing of a
+    rest of either kind is no part of a form."""
     removed = removed_rms(without.identify, now.identify)
+    if takes_all(case, without, now):
+        return True
     shown = removed > form_of_others(case, first.identify)
     near = max(without.validate or 0.0, now.validate or 0.0, now.identify) <= NEAR * case.floor
     if first.validate is None or near or not_in_validation(case, first, without, now):
         return shown
     predicted = removed > CLEAR * case.floor and adequate(case, first, now)
     return (shown or predicted) and removed_rms(without.validate, now.validate) > form_of_others(case, first.validate)
+
+
+def takes_all(case: Case, without: Fit, now: Fit) -> bool:
+    """Whether an effect takes up nearly all of what is left without it, and not little, of records of both kinds."""
+    pairs = [(without.identify, now.identify), (without.validate or 0.0, now.validate or 0.0)]
+    return all(
+        removed_rms(before, after) > NOT_LITTLE * case.floor
+        and misfit.share_explained(before, after, case.floor) >= NEARLY_ALL
+        for before, after in pairs
+    )
 
 
 def form_of_others(case: Case, given: float) -> float:

@@ -161,7 +161,7 @@ def test_of_two_that_leave_more_each_must_remove_more_beside_the_other_up_to_two
 
 def test_what_a_model_at_the_noise_has_is_needed_if_the_form_of_the_others_would_not_leave_as_much(taken_out):
     assert taken_out(of(ab=1.0, a=1.9, b=6.0, none=30.0)) == []
-    assert taken_out(of(ab=1.0, a=1.7, b=6.0, none=30.0)) == ["b"]
+    assert taken_out(of(ab=1.1, a=1.75, b=6.0, none=30.0)) == ["b"]
     assert taken_out(of(ab=1.0, a=1.2, b=2.0, none=2.5), first=2.5) == []
     assert taken_out(of(ab=1.0, a=1.05, b=2.0, none=2.5), first=2.5) == ["b"]
 
@@ -173,6 +173,13 @@ def test_the_form_of_the_others_is_held_against_each_kind_of_record(taken_out):
     assert taken_out(seen, of(ab=1.0, a=1.0, b=6.0, none=30.0)) == []  # nor can it be seen there
     assert taken_out(of(ab=1.2, a=6.0, b=6.0, none=30.0), of(ab=1.4, a=1.4, b=6.0, none=30.0)) == []
     assert taken_out(of(ab=1.2, a=6.0, b=6.0, none=30.0), of(ab=1.6, a=1.6, b=6.0, none=30.0)) == ["b"]
+
+
+def test_what_takes_up_nearly_all_of_a_rest_of_both_kinds_is_no_form_of_the_others(taken_out):
+    seen = of(ab=1.0, a=1.6, b=6.0, none=30.0)
+    assert taken_out(seen) == []
+    assert taken_out(seen, of(ab=1.1, a=1.6, b=6.0, none=30.0)) == ["b"]
+    assert taken_out(of(ab=1.0, a=1.3, b=6.0, none=30.0)) == ["b"]
 
 
 def test_what_brings_unseen_records_to_the_noise_need_not_show_as_much_on_those_it_was_fitted_to(taken_out):
