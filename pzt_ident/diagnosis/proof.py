@@ -64,7 +64,7 @@ class Suspect:
             names = listed(map(phrase_of, self.strangers))
             rest = f" of a model that stays above the noise with it, and {names} fitted as well when it was added."
         elif self.beyond_form and self.limit:
-            rest = f", but {listed(self.limits)} ended on a bound, where it is {self.limit}."
+            rest = f", but {listed(self.limits)} ended on a bound, where the effect is {self.limit}."
         elif self.beyond_form and self.limits:
             rest = f" of a model that stays above the noise with it, and {listed(self.limits)} ended on a bound."
         elif self.beyond_form:

@@ -142,7 +142,7 @@ def test_the_limit_is_told():
     now = fit(1.0, 1.0, ["friction"])
     item = proof.Suspect("friction", 0.99, 0.98, now, limits=("friction.reach",), limit="a play")
     assert item.why_not.endswith(
-        "98 % on the validation records, but friction.reach ended on a bound, where it is a play."
+        "98 % on the validation records, but friction.reach ended on a bound, where the effect is a play."
     )
 
 
