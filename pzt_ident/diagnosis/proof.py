@@ -39,14 +39,14 @@ class Suspect:
     without: Fit
     beyond_form: bool = True
     strangers: tuple[str, ...] = ()
-    limits: tuple[str, ...] = ()
+    on_bounds: tuple[str, ...] = ()
     limit: str = ""
     of_all: float | None = None
 
     @property
     def rank(self) -> tuple[bool, bool, bool, float]:
         """The order in which effects are taken out."""
-        return self.beyond_form, not self.strangers, not self.limits, self.share
+        return self.beyond_form, not self.strangers, not self.on_bounds, self.share
 
     @property
     def share(self) -> float:
@@ -64,9 +64,9 @@ class Suspect:
             names = listed(map(phrase_of, self.strangers))
             rest = f" of a model that stays above the noise with it, and {names} fitted as well when it was added."
         elif self.beyond_form and self.limit:
-            rest = f", but {listed(self.limits)} ended on a bound, where the effect is {self.limit}."
-        elif self.beyond_form and self.limits:
-            rest = f" of a model that stays above the noise with it, and {listed(self.limits)} ended on a bound."
+            rest = f", but {listed(self.on_bounds)} ended on a bound, where the effect is {self.limit}."
+        elif self.beyond_form and self.on_bounds:
+            rest = f" of a model that stays above the noise with it, and {listed(self.on_bounds)} ended on a bound."
         elif self.beyond_form:
             rest = " of a model that stays above the noise with it: it may stand in for something else."
         else:
@@ -98,7 +98,7 @@ def unproven(
             break
         least = least_of(case, doubtful if near else suspected)
         enough = least.share >= least_share(left_of_allowed(case, first, now, len(added)), len(added))
-        decisive = enough and not least.strangers and not least.limits
+        decisive = enough and not least.strangers and not least.on_bounds
         if not near and least.beyond_form and decisive:
             break
         suspects.append(least)
@@ -155,11 +155,11 @@ def suspect(
         clear = removed_rms(without.total, now.total) > form_of_others(case, first.total)
         return Suspect(effect, identify, validate, without, clear, others, of_all=of_all)
     clear = beyond_form(case, first, without, now)
-    limits = limits_of(now, effect)
-    return Suspect(effect, identify, validate, without, clear, others, limits, limit_of(now, limits))
+    on_bounds = own_bounds(now, effect)
+    return Suspect(effect, identify, validate, without, clear, others, on_bounds, limit_of(now, on_bounds))
 
 
-def limits_of(fit: Fit, effect: str) -> tuple[str, ...]:
+def own_bounds(fit: Fit, effect: str) -> tuple[str, ...]:
     """The shapes of an effect, its parameters without a null, that ended on a bound on every axis and are felt there,
     and its amounts if they all did: what one axis shows is that of the effect."""
     own = {
@@ -181,11 +181,11 @@ def is_felt(fit: Fit, name: str) -> bool:
     return not float(fit.problem.loss(moved)[0]) <= (1 + NO_WORSE) * fit.identify
 
 
-def limit_of(fit: Fit, limits: Collection[str]) -> str:
+def limit_of(fit: Fit, on_bounds: Collection[str]) -> str:
     """What an effect is whose shapes ended on these lower bounds, or whose amounts did on any, as it is declared; empty
     where nothing else."""
     entries, places = entries_of(fit), dict(zip(fit.problem.names, fit.point, strict=True))
-    parameters = {name: entries[name].parameter for name in limits}
+    parameters = {name: entries[name].parameter for name in on_bounds}
     declared = [item.limit for name, item in parameters.items() if item.null is not None or places[name] < 0.5]
     return next(filter(None, declared), "")
 

@@ -140,7 +140,7 @@ def test_at_the_noise_too_what_is_in_a_limit_that_is_something_else_is_a_suspect
 
 def test_the_limit_is_told():
     now = fit(1.0, 1.0, ["friction"])
-    item = proof.Suspect("friction", 0.99, 0.98, now, limits=("friction.reach",), limit="a play")
+    item = proof.Suspect("friction", 0.99, 0.98, now, on_bounds=("friction.reach",), limit="a play")
     assert item.why_not.endswith(
         "98 % on the validation records, but friction.reach ended on a bound, where the effect is a play."
     )
