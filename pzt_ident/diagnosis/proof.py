@@ -83,11 +83,10 @@ def unproven(
     stand in for what is not in the catalogue: they must also remove together as much of the misfit as given as if the
     first removed ENOUGH of all records (SINGLE, if it is alone), or DECISIVE where the identification records are at
     the noise, and EACH of either kind of them, and each of the others half of the rest, and each the share ALONE beside
-    the others; of
-    several that leave more than that each must remove more in proportion, up to BESIDE. None may have rivals that fit
-    as well and are not its look-alikes: what any effect takes up is not that of one. And none may have a shape, or all
-    its amounts, on a bound, as a cyclic error whose pitch is as long as the stroke: it stands for what it is like
-    there. At the noise, too, none may be in a limit that is declared to be something else.
+    the others; of several that leave more than that each must remove more in proportion, up to BESIDE. None may have
+    rivals that fit as well and are not its look-alikes: what any effect takes up is not that of one. And none may have
+    a shape, or all its amounts, on a bound, as a cyclic error whose pitch is as long as the stroke: it stands for what
+    it is like there. At the noise, too, none may be in a limit that is declared to be something else.
     """
     suspects: list[Suspect] = []
     while added := now.effects[len(first.effects) :]:
