@@ -184,12 +184,14 @@ class Bench:
         return {"url": self.fleet.url, "device": device} if self.fleet and self.fleet.begun else None
 
     def state(self) -> dict[str, Any]:
-        """All that the page shows, but signals."""
-        self.session.settle()
-        runner = self.runner
+        """All that the page shows, but signals. Its `version` is read first, so that the page asks again for what
+        changes while this is gathered."""
+        session, runner = self.session, self.runner
+        session.settle()
+        version = session.version
         doing = {"stage": runner.stage, "since": runner.since, "busy": self.busy, "running": runner.running}
-        failure = self.session.readable(runner.failure)
-        state = page_state.state(self.session) | doing | {"failure": failure, "lot": self.lot}
+        failure = session.readable(runner.failure)
+        state = page_state.state(session) | doing | {"failure": failure, "lot": self.lot, "version": version}
         state |= {"headline": headline(state), "error": error(state)}
         return dict(plain(state))
 

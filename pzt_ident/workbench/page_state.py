@@ -35,12 +35,10 @@ PRINTERS = {"unit": unit} | dict.fromkeys(("reason", "why", "said", "sentences")
 
 def state(session: Session) -> dict[str, Any]:
     """The whole state except the signals; parts without results are None or empty."""
-    session.settle()
     chain = session.chain()
     step = session.step() if chain else None
     job = job_of(session) if step else None  # read first: its plugins may register blocks
     return {
-        "version": session.version,
         "folder": session.relative(session.folder),
         "largest": LARGEST_UPLOAD,
         "blocks": model_blocks(),
