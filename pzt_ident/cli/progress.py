@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-import signal
 import sys
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from shlex import quote
 from typing import Any, Protocol
@@ -16,6 +15,7 @@ import click
 
 from pzt_ident.cli.table import is_terminal, number
 from pzt_ident.errors import LostError
+from pzt_ident.run.interrupts import interrupts_heard
 
 SECONDS_BETWEEN_LINES = 5.0
 
@@ -91,24 +91,23 @@ def listening(silent: bool) -> Iterator[Listener]:
     how to resume the run.
     """
     progress = Progress()
-    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    shown = nullcontext(progress.take) if silent else _bar(progress) if is_terminal(sys.stderr) else _lines(progress)
     try:
-        if silent:
-            yield progress.take
-        elif is_terminal(sys.stderr):
-            with _bar(progress) as listener:
-                yield listener
-        else:
-            yield _lines(progress)
+        with interrupts_heard() as check, shown as show:
+
+            def listen(event: Event) -> None:
+                check()
+                show(event)
+
+            yield listen
     except (KeyboardInterrupt, OSError, LostError):
         if progress.folder and not silent:
             click.echo(f"`pzt-ident resume {quote(progress.folder)}` goes on from here", err=True)
         raise
-    finally:
-        signal.signal(signal.SIGTERM, before)
 
 
-def _lines(progress: Progress) -> Listener:
+@contextmanager
+def _lines(progress: Progress) -> Iterator[Listener]:
     last_line = time.perf_counter()
 
     def listen(event: Event) -> None:
@@ -120,7 +119,7 @@ def _lines(progress: Progress) -> Listener:
             last_line = time.perf_counter()
             click.echo(progress, err=True)
 
-    return listen
+    yield listen
 
 
 @contextmanager

@@ -18,6 +18,7 @@ from pzt_ident.errors import InputError, LostError
 from pzt_ident.files import plain, temporary_files_in
 from pzt_ident.run.computing import computing
 from pzt_ident.run.folder import version_of
+from pzt_ident.run.interrupts import interrupts_deferred
 from pzt_ident.run.pool import (
     SECONDS_DEAF,
     Arguments,
@@ -29,7 +30,6 @@ from pzt_ident.run.pool import (
     Tell,
     attempt_away,
     forget,
-    interrupts_deferred,
 )
 
 if TYPE_CHECKING:

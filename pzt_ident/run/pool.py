@@ -20,6 +20,7 @@ from typing import Any
 from pzt_ident.errors import InputError, LostError, RunError
 from pzt_ident.files import temporary_files_in
 from pzt_ident.model.registry import blocks, optimizers
+from pzt_ident.run.interrupts import interrupts_blocked, interrupts_deferred
 
 Event = dict[str, Any]
 Tell = Callable[[Event], None]
@@ -77,41 +78,6 @@ def without_working_folder() -> Iterator[None]:
             del os.environ["PYTHONSAFEPATH"]
             if flag is not None:
                 os.environ["PYTHONSAFEPATH"] = flag
-
-
-@contextmanager
-def interrupts_blocked() -> Iterator[None]:
-    """Started inside, a process is deaf to Ctrl-C, where there are signal masks."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-@contextmanager
-def interrupts_deferred() -> Iterator[Callable[[], None]]:
-    """An interrupt waits for the next call of what this gives: raised in the middle of an import it can get lost."""
-    received: list[int] = []
-
-    def check() -> None:
-        if received:
-            raise KeyboardInterrupt
-
-    main = threading.current_thread() is threading.main_thread()
-    raising = [n for n in (signal.SIGINT, signal.SIGTERM) if signal.getsignal(n) is signal.default_int_handler]
-    changed = raising if main else []
-    for number in changed:
-        signal.signal(number, lambda number, frame: received.append(number))
-    try:
-        yield check
-    finally:
-        for number in changed:
-            signal.signal(number, signal.default_int_handler)
-    check()
 
 
 @dataclass(eq=False)

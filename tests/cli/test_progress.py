@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+from contextlib import suppress
 
 import pytest
 
@@ -73,6 +74,18 @@ def test_an_end_from_outside_is_an_interrupt(capsys):
         os.kill(os.getpid(), signal.SIGTERM)
     assert capsys.readouterr().err == "`pzt-ident resume out` goes on from here\n"
     assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupt_that_got_lost_is_raised_with_the_next_event(number):
+    before = signal.getsignal(number)
+    with pytest.raises(KeyboardInterrupt), listening(silent=True) as listen:
+        listen(START)
+        with suppress(KeyboardInterrupt):
+            os.kill(os.getpid(), number)
+        listen(generation("a", 500, 0.25))
+        pytest.fail("it is lost")
+    assert signal.getsignal(number) == before
 
 
 def test_a_finished_run_says_so(capsys):
