@@ -6,11 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.periods import period_of
-from pzt_ident.data.projections import ROUNDING, deviation, without_lines
+from pzt_ident.data.projections import MOST_MEMORY, ROUNDING, deviation, memory_of, without_lines
 
 Array = NDArray[np.float64]
 
 QUIETEST = 0.25  # of all that is measured: as much as no ringing and no transient need have reached
+UNLIKE = 4.0  # times the quietest one: that far apart they have more than noise in them
 LOUDER = 1.5  # times those: above that an estimate has more in it than noise
 DECAY = 2.0  # of the variance between the halves of a rest: more is a transient, and the later half is taken
 SHAPED = 64  # samples: of shorter periods the changes of their shape would take too much
@@ -30,6 +31,12 @@ def quiet_deviation(deviations: Array, seconds: Array) -> float:
     return float(np.sqrt(np.average(deviations[kept] ** 2, weights=seconds[kept])))
 
 
+def alike(deviations: Array, seconds: Array) -> bool:
+    """Whether the quiet estimates may be of one noise."""
+    kept = deviations[quiet(deviations, seconds)]
+    return bool(kept.max() <= UNLIKE * kept.min())
+
+
 def rest_noise(drive: Array, response: Array, least: int = 100) -> list[tuple[float, int]]:
     """Standard deviation and number of samples of each rest: the last four fifths of an interval of constant drive, or
     less where these still settle, less a quartic, which follows creep, and the lines of the mains and the floor."""
@@ -40,18 +47,26 @@ def rest_noise(drive: Array, response: Array, least: int = 100) -> list[tuple[fl
     for first, last in zip(edges[::2], edges[1::2], strict=True):
         first += (last - first) // 5
         if last - first >= least:
-            estimates.append(settled_deviation(response[first:last], least))
+            noise, basis = settled(response[first:last], least)
+            if not rings(noise, basis):
+                estimates.append((deviation(noise, basis), noise.size))
     return estimates
 
 
-def settled_deviation(signal: Array, least: int) -> tuple[float, int]:
-    """Standard deviation about a quartic and lines, and the number of samples that it is from: those of the later half,
-    and so on, while the earlier one has DECAY times its variance."""
+def settled(signal: Array, least: int) -> tuple[Array, Array]:
+    """A signal less a quartic and lines, and their basis: of its later half, and so on, while the earlier one has DECAY
+    times its variance."""
     noise, basis = without_lines(signal, 4)
     half = noise.size // 2
     if half >= least and np.var(noise[:half]) > DECAY * np.var(noise[half:]):
-        return settled_deviation(signal[half:], least)
-    return deviation(noise, basis), noise.size
+        return settled(signal[half:], least)
+    return noise, basis
+
+
+def rings(noise: Array, basis: Array) -> bool:
+    """Whether it is as alike from sample to sample as what settles or rings."""
+    power = float(noise @ noise)
+    return power > 0 and memory_of(float(noise[1:] @ noise[:-1]) / power, basis) >= MOST_MEMORY
 
 
 def period_noise(drive: Array, response: Array, least: int = 3) -> list[tuple[float, int]]:

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.evidence import period_noise, quiet_deviation, rest_noise
+from pzt_ident.data.evidence import alike, period_noise, quiet_deviation, rest_noise
 from pzt_ident.data.projections import deviation, without_lines
 from pzt_ident.data.quantiser import common_step, with_quantiser
 from pzt_ident.data.record import Record
@@ -31,8 +31,9 @@ def noise_floor(records: list[Record], axis: int) -> Floor:
     windows.
 
     The noise is the sensor's, the same in all records, and what a stage adds, such as ringing, only makes an estimate
-    larger: those well above the quietest quarter are left out. A quantiser adds its own. Windows are weak evidence:
-    they take slow noise for signal, and fast signal that does not follow the drive for noise.
+    larger: those well above the quietest quarter are left out, and where even these are not alike, windows may know
+    better. A quantiser adds its own. Windows are weak evidence: they take slow noise for signal, and fast signal that
+    does not follow the drive for noise.
     """
     signals = [Signal(r.drive[:, r.settle :], r.response[axis, r.settle :], r.dt) for r in records]
     pairs = [(r, other) for i, r in enumerate(records) for other in records[:i] if is_repeat(r, other, axis)]
@@ -43,9 +44,15 @@ def noise_floor(records: list[Record], axis: int) -> Floor:
         return floor_of(with_quantiser(np.sqrt(np.mean(variances)), step), "repeated records", step)
     for estimate, source in ((rest_noise, "rest segments"), (period_noise, "repeated periods")):
         found = [(part, dt) for drives, response, dt in signals for part in estimate(drives, response)]
-        estimates = [(with_quantiser(value, step), samples * dt) for (value, samples), dt in found]
-        if estimates:
-            return floor_of(quiet_deviation(*np.array(estimates).T), source, step)
+        if found:
+            estimates = [(with_quantiser(value, step), samples * dt) for (value, samples), dt in found]
+            values, seconds = np.array(estimates).T
+            still = floor_of(quiet_deviation(values, seconds), source, step)
+            return still if alike(values, seconds) else min(still, floor_in_windows(signals, step))
+    return floor_in_windows(signals, step)
+
+
+def floor_in_windows(signals: list[Signal], step: float) -> Floor:
     return floor_of(window_noise(signals, with_quantiser(0.0, step)), "short windows (weak)", step)
 
 

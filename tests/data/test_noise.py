@@ -135,6 +135,16 @@ def test_rests_that_ring_are_no_evidence_while_a_quarter_is_quiet(rings, size):
     assert (floor.source, floor.value) == ("rest segments", pytest.approx(1, rel=0.15))
 
 
+@pytest.mark.parametrize(("period", "growth", "size"), [(60, 1, 10), (60, 3, 1000), (20, 5, 300)])
+def test_rests_that_all_ring_are_no_evidence(period, growth, size):
+    """Slowly, or so unlike each other that the quiet quarter rings, too."""
+    records = [record((1 + n) * rising(500, 4000), white(4500, seed=n)) for n in range(8)]
+    ringing = np.exp(-np.arange(4000) / 1500) * np.sin(2 * np.pi * np.arange(4000) / period)
+    for n in range(8):
+        records[n].response[0, 500:] += size * float(growth) ** n * ringing
+    assert noise_floor(records, 0).value <= 1.3
+
+
 @pytest.mark.parametrize("decay", [30, 100, 400])
 def test_a_rest_counts_from_where_it_has_settled(decay):
     response = white(4500)
