@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from pzt_ident.diagnosis.budget import PROVING
+from pzt_ident.diagnosis.budget import PROVING, WHOLE
 from pzt_ident.diagnosis.candidates import (
     LIMIT_TIE,
     TIE,
@@ -16,9 +16,10 @@ from pzt_ident.diagnosis.candidates import (
 )
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
-from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.fit import Fit, fit_at
+from pzt_ident.diagnosis.main_mode import mechanics_at_main_mode
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.refit import refit, refit_beside
+from pzt_ident.diagnosis.refit import refit, refit_beside, start_of
 from pzt_ident.diagnosis.score import applicable, fitting_forms, scorer_of
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explained_share
@@ -182,6 +183,20 @@ def exchange_any(case: Case, first: Fit, now: Fit) -> list[Step]:
         if rival and rival.fit and rival.fit.total < best.total:
             best, removed = rival.fit, effect
     return [exchange_step(case, now, best, removed)] if fits_better(case, now, best) else []
+
+
+def exchange_main_mode(case: Case, first: Fit, now: Fit) -> list[Step]:
+    """The exchange of a second mode that is the main one for the effect in whose place the mechanics of the job were,
+    with these where that mode is: with any effect that fits as well."""
+    for effect in now.effects[len(first.effects) :]:
+        others = case.problem(effects_without(now, effect), now.steps)
+        if not mechanics_at_main_mode(now, others.names) or not case.budget.allows("mechanics at another mode", WHOLE):
+            continue
+        there = fit_at(effects_without(now, effect), others, start_of(others, now, {}))
+        best = diagnose(case, there, first).best
+        if best and best.fit and removed_rms(best.fit.total, now.total) < TIE * case.floor:
+            return [exchange_step(case, now, best.fit, effect)]
+    return []
 
 
 def fits_better(case: Case, now: Fit, other: Fit) -> bool:

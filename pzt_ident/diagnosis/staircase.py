@@ -14,7 +14,13 @@ from pzt_ident.diagnosis.candidates import TIE, Candidate
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, climb
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms, removes_enough
-from pzt_ident.diagnosis.exchange import add_rivals_beside, drop_outdone_rivals, find_rivals, remove_unneeded
+from pzt_ident.diagnosis.exchange import (
+    add_rivals_beside,
+    drop_outdone_rivals,
+    exchange_main_mode,
+    find_rivals,
+    remove_unneeded,
+)
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.judges import judged
 from pzt_ident.diagnosis.misfit import share_explained
@@ -171,6 +177,9 @@ def improve_within(
         if not case.budget.allows("another effect first"):
             break
     best = best_path(case, paths)
+    for step in exchange_main_mode(best.case or case, first, end_of(best)):
+        on_step(step)
+        best.steps.append(step)
     doubted = take_back(best.case or case, first, best, on_step)
     find_rivals(best.case or case, first, best.steps, on_step)
     if doubted:

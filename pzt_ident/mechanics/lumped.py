@@ -1,6 +1,6 @@
 """One mass, damper and spring."""
 
-from math import sqrt
+from math import pi, sqrt
 
 from pzt_ident.mechanics._oscillator import Oscillator, mode
 from pzt_ident.model.bristles import rub, slide
@@ -57,6 +57,13 @@ class Lumped(Oscillator):
 
     def prepare(mass, damping, stiffness, load, extra_damping, dt):
         return mode(mass + load, damping + extra_damping, stiffness, dt)
+
+    def at_mode(frequency, damping, mass, stiffness):
+        """The oscillator of a natural frequency and a damping ratio, with this mass, or with the stiffness where that is
+        not None: k = m w^2, b = 2 zeta m w."""
+        pace = 2 * pi * frequency
+        mass = mass if stiffness is None else stiffness / pace**2
+        return {"mass": mass, "damping": 2 * damping * mass * pace, "stiffness": mass * pace**2}
 
 
 class Stiffening(Lumped):

@@ -258,6 +258,7 @@ def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, mon
     monkeypatch.setattr(improving, "diagnose", lambda case, first: SimpleNamespace())
     monkeypatch.setattr(improving, "first_candidates", lambda case, first, diagnosis: [0, 1])
     monkeypatch.setattr(improving, "climb", lambda case, first, diagnosis, number, on_step: paths[number])
+    monkeypatch.setattr(improving, "exchange_main_mode", lambda *arguments: [])
     monkeypatch.setattr(improving, "take_back", lambda *arguments: None)
     monkeypatch.setattr(improving, "find_rivals", lambda *arguments: None)
     monkeypatch.setattr(improving, "conclude", lambda *arguments: None)

@@ -1,0 +1,46 @@
+"""A second mode that is the main one: the mechanics of the model rest elsewhere, where they stand in for something."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from typing import NamedTuple
+
+from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.model.block import Place
+
+
+class Mode(NamedTuple):
+    """The axis, natural frequency and damping ratio of a mode."""
+
+    axis: int
+    frequency: float
+    damping: float
+
+
+def mechanics_at_main_mode(fit: Fit, kept: Collection[str] = ()) -> dict[str, float]:
+    """Parameters of mechanics, by name, at the second mode that has the largest share which it may have; empty where
+    none has, none but one with a parameter that is kept, and where the mechanics cannot be put there."""
+    values, moved, free = values_of(fit), dict[str, float](), {*fit.problem.names}
+    for mode in main_modes(fit, values, kept):
+        for entry in fit.problem.model.entries:
+            if entry.axis == mode.axis and entry.block.place == Place.MECHANICS and hasattr(entry.block, "at_mode"):
+                mass, stiffness = (entry.name.removesuffix(entry.word) + word for word in ("mass", "stiffness"))
+                given = None if stiffness in free else values[stiffness]
+                there = entry.block.at_mode(mode.frequency, mode.damping, values[mass], given)
+                moved |= {entry.name: there[entry.word]} if entry.word in there and entry.name in free else {}
+    return moved
+
+
+def main_modes(fit: Fit, values: dict[str, float], kept: Collection[str]) -> Iterator[Mode]:
+    """The second modes whose share ended on its upper bound, but for those with a parameter that is kept."""
+    places = dict(zip(fit.problem.names, fit.point.tolist(), strict=True))
+    for entry in fit.problem.model.entries:
+        block = entry.name.removesuffix("share")
+        is_share = entry.word == "share" and f"{block}frequency" in values and entry.name not in kept
+        if is_share and places.get(entry.name, 0.0) > 0.5 and entry.name in fit.on_bounds:
+            yield Mode(entry.axis, values[f"{block}frequency"], values[f"{block}damping"])
+
+
+def values_of(fit: Fit) -> dict[str, float]:
+    """All parameters of a fit by name, SI units."""
+    return dict(zip(fit.problem.model.names, fit.problem.parameters(fit.point)[0].tolist(), strict=True))

@@ -1,0 +1,59 @@
+"""A second mode that is the main one, and what the mechanics stood in for."""
+
+import numpy as np
+import pytest
+
+import stage
+from pzt_ident.diagnosis.exchange import exchange_main_mode
+from pzt_ident.diagnosis.fit import fit_at
+from pzt_ident.diagnosis.main_mode import mechanics_at_main_mode
+from pzt_ident.diagnosis.refit import refit, start_of
+
+SECOND = {"resonance.share": 0.8, "resonance.frequency": 300.0, "resonance.damping": 0.02}
+SLOW = {"lumped.mass": 0.1, "lumped.damping": 3e3, "lumped.stiffness": 1e6}
+MODE = 2 * np.pi * 300
+
+
+def fit_with(case, values, form="resonance"):
+    problem = case.problem((form,))
+    middle = dict(zip(problem.names, problem.physical(np.full(problem.dimensions, 0.5))[0], strict=True))
+    known = {name: value for name, value in (stage.STAGE | values).items() if name in problem.names}
+    return fit_at((form,), problem, problem.unit_point(middle | known))
+
+
+@pytest.mark.parametrize("form", ["resonance", "resonance.series"])
+@pytest.mark.parametrize(("fixed", "mass"), [({}, 0.1), ({"lumped.stiffness": 1e6}, 1e6 / MODE**2)])
+def test_a_refit_without_the_main_mode_starts_with_the_mechanics_there(form, fixed, mass):
+    case = stage.case(model=("bouc_wen", "lumped"), fixed=fixed)
+    problem = case.problem(())
+    start = problem.physical(start_of(problem, fit_with(case, SLOW | SECOND, form), {}))[0]
+    found = fixed | dict(zip(problem.names, start, strict=True))
+    assert found["lumped.mass"] == pytest.approx(mass)
+    assert found["lumped.stiffness"] == pytest.approx(mass * MODE**2)
+    assert found["lumped.damping"] == pytest.approx(2 * 0.02 * mass * MODE)
+
+
+@pytest.mark.parametrize("share", [0.5, -0.8])
+def test_a_mode_that_carries_less_is_no_main_mode(share):
+    case = stage.case(model=("bouc_wen", "lumped"))
+    assert mechanics_at_main_mode(fit_with(case, SLOW | SECOND | {"resonance.share": share})) == {}
+
+
+def test_a_mode_that_stays_leaves_the_mechanics_where_they_are():
+    case = stage.case(model=("bouc_wen", "lumped"))
+    fit = fit_with(case, SLOW | SECOND)
+    assert mechanics_at_main_mode(fit, fit.problem.names) == {}
+
+
+def test_what_the_mechanics_stood_in_for_takes_the_place_of_the_main_mode():
+    """A slow sensor on a stage that rings: overdamped mechanics have its lag, and a second mode rings."""
+    drives = [np.random.default_rng(seed).normal(0, 12, 120).repeat(25) + 50 for seed in (1, 2)]
+    lag = {"sensor_lag.tau": 4e-4}
+    case = stage.case(lag, model=("bouc_wen", "lumped"), drives=drives, dt=4e-5, steps=1)
+    ringing = {"resonance.share": 0.8, "resonance.frequency": 3438.0, "resonance.damping": 0.0108}
+    slow = {"lumped.mass": 0.02, "lumped.stiffness": 1e7, "lumped.damping": 4e-4 * 1e7}
+    first = refit(case, fit_with(case, slow | ringing), (), {})
+    now = fit_with(case, slow | ringing, "resonance.series")
+    (step,) = exchange_main_mode(case, first, now)
+    assert (step.removed, step.added) == ("resonance.series", "sensor_lag")
+    assert step.fit.identify < 1.3 * stage.NOISE < 0.2 * first.identify
