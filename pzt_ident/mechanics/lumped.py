@@ -59,8 +59,8 @@ class Lumped(Oscillator):
         return mode(mass + load, damping + extra_damping, stiffness, dt)
 
     def at_mode(frequency, damping, mass, stiffness):
-        """The oscillator of a natural frequency and a damping ratio, with this mass, or with the stiffness where that is
-        not None: k = m w^2, b = 2 zeta m w."""
+        """The oscillator of a natural frequency and a damping ratio, with this mass, or with the stiffness where that
+        is not None: k = m w^2, b = 2 zeta m w."""
         pace = 2 * pi * frequency
         mass = mass if stiffness is None else stiffness / pace**2
         return {"mass": mass, "damping": 2 * damping * mass * pace, "stiffness": mass * pace**2}
