@@ -60,7 +60,7 @@ class Friction(Ahead, Block):
         (1e-3, 100),
         "Stribeck velocity, at which stiction has fallen by a factor of e.",
         scale="log",
-        end="lower",
+        end="both",
     )
 
     def prepare(force, reach, stiction, stribeck, dt):

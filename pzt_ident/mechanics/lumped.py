@@ -42,7 +42,7 @@ class Lumped(Oscillator):
         "Speed at which stiction has faded.",
         scale="log",
         effect="friction.motion",
-        end="lower",
+        end="both",
     )
     dry = Parameter(
         "response", (0, 0.1), "Coulomb friction over the stiffness.", null=0, effect="friction.coulomb_motion"

@@ -19,7 +19,7 @@ class Parameter:
 
     `null` is the value at which the block is exactly the identity; None if there is none.
     `end` is the value at which the range of a shape ends of itself, such as 0 for a spread, or the bound beyond which
-    nothing changes, as of a time constant that is far longer than a record; None if there is none.
+    nothing changes, or both, as of a time constant that is far longer than a record; None if there is none.
     `limit` tells what else an effect is whose shape is on its lower bound, or whose amount is on any: "a play".
     `effect` names the effect that the parameter belongs to; unless the job lists it, the parameter stays at its null.
     `count` makes one parameter for each branch of the block, `weight_1`, `weight_2`, ...; a number, or the name of the
@@ -46,7 +46,7 @@ class Parameter:
     linear: bool = False
     adds_to: str | None = None
     smooth: str | None = None
-    end: float | Literal["lower", "upper"] | None = None
+    end: float | Literal["lower", "upper", "both"] | None = None
     limit: str | None = None
     name: str = ""
 
@@ -57,7 +57,7 @@ class Parameter:
         """Whether a value, on a bound, is the null, or where the range ends of itself: one that rests there rests on no
         bound."""
         numbers = [own for own in (self.null, self.end) if own is not None and not isinstance(own, str)]
-        return self.end == bound or any(isclose(value, own, rel_tol=1e-5, abs_tol=1e-8) for own in numbers)
+        return self.end in (bound, "both") or any(isclose(value, own, rel_tol=1e-5, abs_tol=1e-8) for own in numbers)
 
 
 @dataclass(frozen=True)

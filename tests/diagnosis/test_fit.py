@@ -68,7 +68,9 @@ def test_amounts_of_each_record_count_among_the_parameters(plain):
     assert numbers == {"periodic_disturbance": free + 3, "periodic_disturbance.ripple": free + 5, "drift": free + 2}
 
 
-@pytest.mark.parametrize(("end", "free"), [("upper", {"lower"}), ("lower", {"upper"}), (None, {"lower", "upper"})])
+@pytest.mark.parametrize(
+    ("end", "free"), [("upper", {"lower"}), ("lower", {"upper"}), ("both", set()), (None, {"lower", "upper"})]
+)
 def test_a_shape_rests_on_no_bound_where_its_range_ends_of_itself(end, free):
     """A drift whose time constant is far longer than the record is a ramp."""
     tau = Parameter("s", (1, 3000), "", scale="log", end=end)
