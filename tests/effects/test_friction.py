@@ -34,6 +34,14 @@ def test_displacement_for_the_force_that_makes_it(sliding, reach):
     np.testing.assert_allclose(rubbed(driving(x, sliding, reach), sliding, reach), x, rtol=0, atol=1e-12)
 
 
+@pytest.mark.parametrize(("stribeck", "excess"), [(1e9, 0.4), (1e-9, 0.0)])
+def test_a_stiction_that_never_fades_is_more_friction_and_one_that_fades_at_once_is_none(stribeck, excess):
+    force = path(0, 3, 1, 2, -1, points=60)
+    with_stiction = rubbed(force, sliding=0.05, reach=0.3, stiction=0.4, stribeck=stribeck)
+    without = rubbed(force, sliding=0.05 * (1 + excess), reach=0.3 * (1 + excess))
+    np.testing.assert_allclose(with_stiction, without, rtol=0, atol=1e-9)
+
+
 def test_a_long_loop_is_twice_the_sliding_friction_wide():
     force = path(0, 10, 0, 10, points=400)
     x = rubbed(force)
