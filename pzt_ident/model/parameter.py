@@ -8,6 +8,8 @@ from typing import Any, Literal
 
 from pzt_ident.errors import InputError, nearest
 
+NOTHING_BEYOND = "its range ends there"  # what is said of a bound where it does
+
 
 @dataclass(frozen=True)
 class Parameter:

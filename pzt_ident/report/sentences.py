@@ -9,6 +9,7 @@ from typing import Any
 from pzt_ident.data.notation import count, listed, number, quantity, ranges, spelled
 from pzt_ident.data.over_axes import USE_NAMES as USE_NAMES
 from pzt_ident.data.over_axes import together, weighed
+from pzt_ident.model.parameter import NOTHING_BEYOND
 from pzt_ident.run.results import Results
 
 SENTENCE = re.compile(r"(?<=[^.\s][.?!])(?<!\beq\.)(?<!\bfig\.)(?<!\be\.g\.)(?<!\bi\.e\.) ", re.IGNORECASE)
@@ -129,16 +130,19 @@ def over_noise(results: Results, use: str) -> str:
 
 def _parameters(results: Results) -> list[str]:
     names_by_verdict: dict[str, list[str]] = {}
+    at_an_end: dict[str, list[str]] = {}
     for name, entry in results.best["parameters"].items():
-        names_by_verdict.setdefault(entry["verdict"], []).append(name)
+        chosen = at_an_end if entry["note"] == NOTHING_BEYOND else names_by_verdict
+        chosen.setdefault(entry["verdict"], []).append(name)
     sentences = []
     if names := names_by_verdict.get("not determined"):
         sentences.append(f"The data do not determine {listed(ranges(names))}: other values fit as well.")
     sentences += _not_moved(results)
     for bound in ("lower", "upper"):
-        if names := names_by_verdict.get(f"on its {bound} bound"):
-            place = f"is on its {bound} bound" if len(names) == 1 else f"are on their {bound} bounds"
-            sentences.append(f"{listed(names)} {place}: the best fit may lie outside.")
+        for chosen, what in ((names_by_verdict, "the best fit may lie outside"), (at_an_end, "nothing lies beyond")):
+            if names := chosen.get(f"on its {bound} bound"):
+                place = f"is on its {bound} bound" if len(names) == 1 else f"are on their {bound} bounds"
+                sentences.append(f"{listed(names)} {place}: {what}.")
     return sentences
 
 

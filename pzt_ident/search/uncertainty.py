@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.units import factor
+from pzt_ident.model.parameter import NOTHING_BEYOND
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.profile import TWO_SIDED, intervals
 from pzt_ident.search.sandwich import Sandwich
@@ -64,7 +65,7 @@ def estimates(problem: Problem, point: Array, going: Callable[[], bool] = lambda
     correlation = np.nan_to_num(covariance / np.outer(scale, scale))
     rows = []
     for i, name in enumerate(problem.names):
-        verdict, note = verdict_of(point[i], error[i], flat[i])
+        verdict, note = verdict_of(point[i], error[i], flat[i], ends_at_bound(problem, point, i))
         interval = interval_of(problem, point, i, ends[i])
         standard_error = float(error[i] * abs(slope[i])) if verdict != "not determined" else None
         if verdict == "determined":
@@ -179,8 +180,19 @@ def caution(problem: Problem, i: int, value: float, error: float, correlation: A
     return "; ".join(sentences + ([f"known only together with {', '.join(tied)}"] if tied else []))
 
 
-def verdict_of(place: float, error: float, flat: float) -> tuple[str, str]:
-    """Verdict and reason from the value, its standard error and the flat interval, as shares of the search range."""
+def ends_at_bound(problem: Problem, point: Array, i: int) -> bool:
+    """Whether nothing lies beyond the bound that a parameter is next to: the range ends there of itself, or it is never
+    negative."""
+    parameter = problem.model.entries[problem.free[i]].parameter
+    if point[i] >= 0.5:
+        return parameter.ends_at(float(problem.upper[i]), "upper")
+    never_negative = problem.lower[i] == 0 <= parameter.bounds[0]
+    return never_negative or parameter.ends_at(float(problem.lower[i]), "lower")
+
+
+def verdict_of(place: float, error: float, flat: float, ends: bool = False) -> tuple[str, str]:
+    """Verdict and reason from the value, its standard error and the flat interval, as shares of the search range; ends:
+    whether nothing lies beyond the bound next to it."""
     if not error < LOOSE:
         return (
             "not determined",
@@ -191,7 +203,8 @@ def verdict_of(place: float, error: float, flat: float) -> tuple[str, str]:
     near = min(EDGE, SURELY * error)
     for side, distance in (("lower", place), ("upper", 1 - place)):
         if distance <= near:
-            return f"on its {side} bound", "the best value may lie beyond it: widen the bounds, or doubt the model"
+            doubt = "the best value may lie beyond it: widen the bounds, or doubt the model"
+            return f"on its {side} bound", NOTHING_BEYOND if ends else doubt
     return "determined", ""
 
 

@@ -7,12 +7,13 @@ import pytest
 from scipy.signal import lfilter
 
 from pzt_ident.model.chain import Chain
+from pzt_ident.model.parameter import NOTHING_BEYOND, Parameter
 from pzt_ident.model.registry import blocks
 from pzt_ident.search.cube import FixedValue
 from pzt_ident.search.descent import polish
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.sandwich import Lags, Sandwich, autoregression
-from pzt_ident.search.uncertainty import caution, estimates, interval_of, verdict_of
+from pzt_ident.search.uncertainty import caution, ends_at_bound, estimates, interval_of, verdict_of
 from rig import record
 
 BLOCKS, LENGTH = 40, 10
@@ -149,3 +150,14 @@ def test_a_doubtful_sign_and_a_tie_are_told(value, correlation, note):
 def test_a_value_that_is_surely_off_a_bound_is_not_on_it(place, error, said):
     assert verdict_of(place, error, 0.0)[0] == said
     assert verdict_of(1 - place, error, 0.0)[0] == said.replace("lower", "upper")
+
+
+@pytest.mark.parametrize(("bounds", "ends"), [((0, 5), True), ((1, 5), False)])
+@pytest.mark.parametrize(("declared", "end"), [((0, 10), None), ((-3, 10), None), ((-3, 10), "upper")])
+def test_nothing_lies_beyond_the_zero_of_what_is_never_negative_or_where_a_range_ends(bounds, ends, declared, end):
+    parameter = Parameter("s", declared, "", end=end)
+    model = SimpleNamespace(entries=[SimpleNamespace(parameter=parameter)])
+    problem = SimpleNamespace(free=[0], model=model, lower=np.array([bounds[0]]), upper=np.array([bounds[1]]))
+    assert ends_at_bound(problem, np.array([0.0]), 0) == (ends and declared[0] == 0)
+    assert ends_at_bound(problem, np.array([1.0]), 0) == (end == "upper")
+    assert verdict_of(0.0, 1e-6, 0.0, ends)[1] == (NOTHING_BEYOND if ends else verdict_of(0.0, 1e-6, 0.0)[1])
