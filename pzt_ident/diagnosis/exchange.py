@@ -186,13 +186,16 @@ def exchange_any(case: Case, first: Fit, now: Fit) -> list[Step]:
 
 
 def exchange_main_mode(case: Case, first: Fit, now: Fit) -> list[Step]:
-    """The exchange of a second mode that is the main one for the effect in whose place the mechanics of the job were,
-    with these where that mode is: with any effect that fits as well."""
+    """The step that takes out a second mode which is the main one, with the mechanics of the job where that is, or puts
+    the effect in its place for which they stood in, any that fits as well."""
     for effect in now.effects[len(first.effects) :]:
         others = case.problem(effects_without(now, effect), now.steps)
         if not mechanics_at_main_mode(now, others.names) or not case.budget.allows("mechanics at another mode", WHOLE):
             continue
-        there = fit_at(effects_without(now, effect), others, start_of(others, now, {}))
+        without = refit(case, now, effects_without(now, effect), {})
+        if removed_rms(without.total, now.total) < TIE * case.floor:
+            return [Step(without, None, effect, {}, explained_share(case, now, without))]
+        there = fit_at(without.effects, others, start_of(others, now, {}))
         best = diagnose(case, there, first).best
         if best and best.fit and removed_rms(best.fit.total, now.total) < TIE * case.floor:
             return [exchange_step(case, now, best.fit, effect)]

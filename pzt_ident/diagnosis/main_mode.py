@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
+import numpy as np
+
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.model.block import Place
 
@@ -20,15 +22,27 @@ class Mode(NamedTuple):
 def mechanics_at_main_mode(fit: Fit, kept: Collection[str] = ()) -> dict[str, float]:
     """Parameters of mechanics, by name, at the second mode that has the largest share which it may have; empty where
     none has, none but one with a parameter that is kept, and where the mechanics cannot be put there."""
-    values, moved, free = values_of(fit), dict[str, float](), {*fit.problem.names}
+    values, moved = values_of(fit), dict[str, float]()
     for mode in main_modes(fit, values, kept):
         for entry in fit.problem.model.entries:
             if entry.axis == mode.axis and entry.block.place == Place.MECHANICS and hasattr(entry.block, "at_mode"):
-                mass, stiffness = (entry.name.removesuffix(entry.word) + word for word in ("mass", "stiffness"))
-                given = None if stiffness in free else values[stiffness]
-                there = entry.block.at_mode(mode.frequency, mode.damping, values[mass], given)
-                moved |= {entry.name: there[entry.word]} if entry.word in there and entry.name in free else {}
+                stiffness = stiffness_at(fit, values, entry.name.removesuffix(entry.word), mode.frequency)
+                there = entry.block.at_mode(mode.frequency, mode.damping, stiffness)
+                moved |= (
+                    {entry.name: there[entry.word]} if entry.word in there and entry.name in fit.problem.names else {}
+                )
     return moved
+
+
+def stiffness_at(fit: Fit, values: dict[str, float], block: str, frequency: float) -> float:
+    """The stiffness with which a mass has a natural frequency, within its bounds; that of the block where it is no free
+    parameter."""
+    problem, name = fit.problem, f"{block}stiffness"
+    if name not in problem.names:
+        return values[name]
+    place = problem.names.index(name)
+    wanted = values[f"{block}mass"] * (2 * np.pi * frequency) ** 2
+    return float(np.clip(wanted, problem.lower[place], problem.upper[place]))
 
 
 def main_modes(fit: Fit, values: dict[str, float], kept: Collection[str]) -> Iterator[Mode]:

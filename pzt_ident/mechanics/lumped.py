@@ -58,12 +58,10 @@ class Lumped(Oscillator):
     def prepare(mass, damping, stiffness, load, extra_damping, dt):
         return mode(mass + load, damping + extra_damping, stiffness, dt)
 
-    def at_mode(frequency, damping, mass, stiffness):
-        """The oscillator of a natural frequency and a damping ratio, with this mass, or with the stiffness where that
-        is not None: k = m w^2, b = 2 zeta m w."""
+    def at_mode(frequency, damping, stiffness):
+        """Mass and damping of a natural frequency and a damping ratio: m = k / w^2, b = 2 zeta k / w."""
         pace = 2 * pi * frequency
-        mass = mass if stiffness is None else stiffness / pace**2
-        return {"mass": mass, "damping": 2 * damping * mass * pace, "stiffness": mass * pace**2}
+        return {"mass": stiffness / pace**2, "damping": 2 * damping * stiffness / pace, "stiffness": stiffness}
 
 
 class Stiffening(Lumped):

@@ -22,11 +22,18 @@ def fit_with(case, values, form="resonance"):
 
 
 @pytest.mark.parametrize("form", ["resonance", "resonance.series"])
-@pytest.mark.parametrize(("fixed", "mass"), [({}, 0.1), ({"lumped.stiffness": 1e6}, 1e6 / MODE**2)])
-def test_a_refit_without_the_main_mode_starts_with_the_mechanics_there(form, fixed, mass):
+@pytest.mark.parametrize(
+    ("fixed", "before", "mass"),
+    [
+        ({}, 0.1, 0.1),
+        ({"lumped.stiffness": 1e6}, 0.1, 1e6 / MODE**2),
+        ({}, 0.02, 1e5 / MODE**2),
+    ],  # 1e5: its lower bound
+)
+def test_a_refit_without_the_main_mode_starts_with_the_mechanics_there(form, fixed, before, mass):
     case = stage.case(model=("bouc_wen", "lumped"), fixed=fixed)
     problem = case.problem(())
-    start = problem.physical(start_of(problem, fit_with(case, SLOW | SECOND, form), {}))[0]
+    start = problem.physical(start_of(problem, fit_with(case, SLOW | SECOND | {"lumped.mass": before}, form), {}))[0]
     found = fixed | dict(zip(problem.names, start, strict=True))
     assert found["lumped.mass"] == pytest.approx(mass)
     assert found["lumped.stiffness"] == pytest.approx(mass * MODE**2)
