@@ -7,6 +7,15 @@ import pytest
 
 from pzt_ident.run.interrupts import interrupts_deferred, interrupts_heard
 
+
+@pytest.fixture(autouse=True)
+def hearing():
+    """Whatever other tests in this process have done."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 BOTH = pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 
 
