@@ -17,7 +17,7 @@ from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.proof import Suspect
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.score import Score
-from pzt_ident.diagnosis.starts import first_fit, restart
+from pzt_ident.diagnosis.starts import best_alias, first_fit, restart
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
 from pzt_ident.diagnosis.undetermined import Undetermined
 from pzt_ident.diagnosis.verdict import Diagnosis, best_pair, diagnose
@@ -57,6 +57,8 @@ def climb(
         new = next_steps(case, first, steps, diagnosis, candidate)
         if not new:
             break
+        if not adequate(case, first, new[-1].fit):
+            fit_anew(case, (*steps, *new)[-2].fit, new[-1], best_alias(case, new[-1].fit))
         hurried = not adequate(case, first, new[-1].fit) and promises_most(case, first, new[-1].fit)
         new += [] if hurried else settle(case, first, (*steps, *new)[-2].fit, new[-1])
         if frozenset(new[-1].fit.effects) in {frozenset(step.fit.effects) for step in steps}:
@@ -101,10 +103,14 @@ def settle(case: Case, first: Fit, before: Fit, step: Step) -> list[Step]:
     """Restart the fit of a step that does not reach the noise before anything else is blamed; the steps that remove
     what is not needed any more, and exchange what fits better in another form."""
     if not adequate(case, first, step.fit) and case.budget.allows("other starts"):
-        step.fit = restart(case, step.fit)
-        step.explained = explained_share(case, before, step.fit)
+        fit_anew(case, before, step, restart(case, step.fit))
     unneeded = remove_unneeded(case, first, step.fit)
     return [*unneeded, *exchange_accounts(case, first, (unneeded or [step])[-1].fit)]
+
+
+def fit_anew(case: Case, before: Fit, step: Step, fit: Fit) -> None:
+    """Give a step another fit of the same model."""
+    step.fit, step.explained = fit, explained_share(case, before, fit)
 
 
 def next_steps(

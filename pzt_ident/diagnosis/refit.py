@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import Fit, fit_at
-from pzt_ident.diagnosis.main_mode import mechanics_at_main_mode
+from pzt_ident.diagnosis.modes import mechanics_at_main_mode
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.search.problem import Problem
 

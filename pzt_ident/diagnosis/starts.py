@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
 from itertools import combinations
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.fit import Fit, fit_at
+from pzt_ident.diagnosis.modes import with_aliases
 from pzt_ident.diagnosis.refit import refine_steps
 from pzt_ident.diagnosis.threads import side_by_side
 from pzt_ident.model.block import Modes
@@ -64,13 +66,24 @@ def first_fit(
 
 
 def best_exchange(case: Case, fit: Fit) -> Fit:
-    """The best of the fit and of those with two modes the other way round. Modes whose bounds overlap are alike but for
-    their order, and in the wrong one a mode may end on a bound short of where it is: many starts then agree on it."""
+    """The best of the fit and of those with two modes the other way round or, where it does not reach the noise, with a
+    mode at another frequency. Modes whose bounds overlap are alike but for their order, and in the wrong one a mode may
+    end on a bound short of where it is: many starts then agree on it."""
+    ordered = best_of(case, fit, exchanged(fit.problem, fit.point) if fit.on_bounds else ())
+    return ordered if adequate(case, ordered, ordered) else best_alias(case, ordered)
+
+
+def best_alias(case: Case, fit: Fit) -> Fit:
+    """The best of the fit and of those with a mode at a frequency of which the samples look alike."""
+    return best_of(case, fit, [fit.problem.unit_point(values) for values in with_aliases(fit)])
+
+
+def best_of(case: Case, fit: Fit, starts: Iterable[Array]) -> Fit:
+    """The best of the fit and of those from other starts."""
     fits = [fit]
-    for start in exchanged(fit.problem, fit.point) if fit.on_bounds else ():
-        fits.append(
-            replace(fit_at(fit.effects, fit.problem, case.descend(fit.problem, start)), converged=fit.converged)
-        )
+    for start in starts:
+        point = case.descend(fit.problem, start)
+        fits.append(fit_at(fit.effects, fit.problem, point, fit.converged, fit.measured_only))
     return min(fits, key=lambda candidate: candidate.identify)
 
 
@@ -135,7 +148,8 @@ def restart(case: Case, fit: Fit, block: str = "", starts_per_block: int = RESTA
         for start in starts[np.argsort(problem.rough_loss(starts, fit.point))[:starts_per_block]]:
             point = case.descend(problem, start, fit.identify)
             fits.append(fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
-    return min(fits, key=lambda candidate: candidate.total)
+    best = min(fits, key=lambda candidate: candidate.total)
+    return best if block else min(best, best_alias(case, best), key=lambda candidate: candidate.total)
 
 
 def random_points(problem: Problem, rng: np.random.Generator) -> Array:

@@ -1,4 +1,4 @@
-"""A second mode that is the main one, and what the mechanics stood in for."""
+"""Modes that rest elsewhere: where the samples look alike, or where the mechanics stand in for something."""
 
 from dataclasses import replace
 
@@ -6,14 +6,18 @@ import numpy as np
 import pytest
 
 import stage
+from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.exchange import exchange_main_mode
 from pzt_ident.diagnosis.fit import fit_at
-from pzt_ident.diagnosis.main_mode import mechanics_at_main_mode
+from pzt_ident.diagnosis.modes import mechanics_at_main_mode, with_aliases
 from pzt_ident.diagnosis.refit import refit, start_of
+from pzt_ident.diagnosis.starts import best_alias
+from pzt_ident.job.sections import Choice
 
 SECOND = {"resonance.share": 0.8, "resonance.frequency": 300.0, "resonance.damping": 0.02}
 SLOW = {"lumped.mass": 0.1, "lumped.damping": 3e3, "lumped.stiffness": 1e6}
 MODE = 2 * np.pi * 300
+MODAL = Choice("modal", {"modes": 2})
 
 
 def fit_with(case, values, form="resonance"):
@@ -67,3 +71,27 @@ def test_what_the_mechanics_stood_in_for_takes_the_place_of_the_main_mode():
     (step,) = exchange_main_mode(case, first, now)
     assert (step.removed, step.added) == ("resonance.series", "sensor_lag")
     assert step.fit.identify < 1.3 * stage.NOISE < 0.2 * first.identify
+
+
+@pytest.mark.parametrize("rest", [415.0, 585.0, 1085.0])
+def test_a_mode_that_rests_where_the_samples_look_alike_is_found_where_it_is(rest):
+    """85 Hz, sampled at 500 Hz."""
+    stage_of_85 = {"lumped.mass": 1e6 / (2 * np.pi * 85) ** 2, "lumped.damping": 40.0, "lumped.stiffness": 1e6}
+    case = stage.case(stage_of_85, model=("bouc_wen", "lumped"), fixed={"lumped.stiffness": 1e6}, dt=2e-3, steps=1)
+    problem, mass = case.problem(()), 1e6 / (2 * np.pi * rest) ** 2
+    values = stage.STAGE | {"lumped.mass": mass, "lumped.damping": 0.01 * 2 * np.sqrt(1e6 * mass)}
+    point = problem.unit_point({name: values[name] for name in problem.names})
+    found = best_alias(case, fit_at((), problem, point))
+    assert found.identify == pytest.approx(stage.NOISE, rel=0.1)
+    assert found.values["lumped.mass"] == pytest.approx(stage_of_85["lumped.mass"], rel=0.01)
+
+
+@pytest.mark.parametrize(("frequency", "others"), [(146.8, [53.2, 253.2, 346.8]), (20.0, [])])
+def test_a_mode_has_aliases_where_it_has_few_samples_a_period(frequency, others):
+    """At 200 Hz; of modes that many samples show none is looked for."""
+    values = {"modal.frequency_1": 12.0, "modal.frequency_2": frequency, "modal.damping_1": 0.05}
+    case = Case(("bouc_wen", MODAL), (), stage.records({}, dt=5e-3), stage.specs({"bouc_wen.gain": 0.08}))
+    fit = fit_with(case, values | {"modal.shape_1": 1.1, "modal.shape_2": -0.1}, "creep")
+    found = with_aliases(fit)
+    assert sorted(point["modal.frequency_2"] for point in found) == pytest.approx(others)
+    assert all(point["modal.frequency_1"] == pytest.approx(12.0) for point in found)

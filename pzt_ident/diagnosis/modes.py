@@ -1,0 +1,117 @@
+"""The modes of a model's mechanics, and the same model with a mode elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.model.block import Modes, Place
+
+COARSE = 8.0  # samples a period: of faster modes the samples may show another one
+SAME = 0.01  # of a frequency: closer ones are one
+
+Values = dict[str, float]
+
+
+class Mode(NamedTuple):
+    """A mode: its axis, natural frequency and damping ratio, and its number among those of its block, from `_1`, empty
+    where that has one."""
+
+    axis: int
+    frequency: float
+    damping: float
+    number: str = ""
+
+
+def mechanics_at_main_mode(fit: Fit, kept: Collection[str] = ()) -> Values:
+    """Parameters of an oscillator, by name, at the second mode that has the largest share which it may have: that is
+    the main one, and the oscillator rests elsewhere, where it stands in for something. Empty where there is none but
+    one with a parameter that is kept, and where the mechanics cannot be put there."""
+    values, moved = values_of(fit), Values()
+    for mode in main_modes(fit, values, kept):
+        moved |= oscillator_at(fit, values, mode)
+    return moved
+
+
+def main_modes(fit: Fit, values: Values, kept: Collection[str]) -> Iterator[Mode]:
+    """The second modes whose share ended on its upper bound, but for those with a parameter that is kept."""
+    places = dict(zip(fit.problem.names, fit.point.tolist(), strict=True))
+    for entry in fit.problem.model.entries:
+        block = entry.name.removesuffix("share")
+        is_share = entry.word == "share" and f"{block}frequency" in values and entry.name not in kept
+        if is_share and places.get(entry.name, 0.0) > 0.5 and entry.name in fit.on_bounds:
+            yield Mode(entry.axis, values[f"{block}frequency"], values[f"{block}damping"])
+
+
+def with_aliases(fit: Fit) -> list[Values]:
+    """The parameters of a fit with one mode of its mechanics, which has few samples a period, at another frequency of
+    which the samples of a record look alike: f, r - f, r + f, 2 r - f, ... for a rate r. A fit may rest at any."""
+    values, found = values_of(fit), list[Values]()
+    for mode in modes_of(fit, values):
+        for rate in sorted({1 / record.dt for record in fit.problem.records}):
+            least = abs(mode.frequency - round(mode.frequency / rate) * rate)
+            alike = (least, rate - least, rate + least, 2 * rate - least) if COARSE * mode.frequency > rate else ()
+            others = [f for f in alike if f > 0 and abs(f - mode.frequency) > SAME * mode.frequency]
+            moved = (mode_at(fit, values, mode._replace(frequency=frequency)) for frequency in others)
+            found += [fit.values | point for point in moved if point and is_within(fit, point)]
+    return found
+
+
+def modes_of(fit: Fit, values: Values) -> list[Mode]:
+    """Those of the mechanics; of several modes that each axis has once only."""
+    modes = list[Mode]()
+    for entry in fit.problem.model.entries:
+        block = entry.name.removesuffix(entry.word)
+        if entry.word == "mass" and hasattr(entry.block, "at_mode"):
+            mass, damping, stiffness = (values[f"{block}{word}"] for word in ("mass", "damping", "stiffness"))
+            pace = np.sqrt(stiffness / mass)
+            modes.append(Mode(entry.axis, float(pace / (2 * np.pi)), float(damping / (2 * mass * pace))))
+        elif issubclass(entry.block, Modes) and entry.word.startswith("frequency"):
+            number = entry.word.removeprefix("frequency")
+            modes.append(Mode(entry.axis, values[entry.name], values[f"{block}damping{number}"], number))
+    return modes
+
+
+def mode_at(fit: Fit, values: Values, mode: Mode) -> Values:
+    """The parameters that a mode of the mechanics has."""
+    if not mode.number:
+        return oscillator_at(fit, values, mode)
+    words = {f"frequency{mode.number}": mode.frequency, f"damping{mode.number}": mode.damping}
+    entries = [entry for entry in fit.problem.model.entries if issubclass(entry.block, Modes)]
+    return {entry.name: words[entry.word] for entry in entries if entry.word in words and entry.name in fit.values}
+
+
+def oscillator_at(fit: Fit, values: Values, mode: Mode) -> Values:
+    """The free parameters of the oscillator of an axis that has a mode."""
+    moved, free = Values(), {*fit.problem.names}
+    for entry in fit.problem.model.entries:
+        if entry.axis == mode.axis and entry.block.place == Place.MECHANICS and hasattr(entry.block, "at_mode"):
+            stiffness = stiffness_at(fit, values, entry.name.removesuffix(entry.word), mode.frequency)
+            there = entry.block.at_mode(mode.frequency, mode.damping, stiffness)
+            moved |= {entry.name: there[entry.word]} if entry.word in there and entry.name in free else {}
+    return moved
+
+
+def stiffness_at(fit: Fit, values: Values, block: str, frequency: float) -> float:
+    """The stiffness with which a mass has a natural frequency, within its bounds; that of the block where it is no free
+    parameter."""
+    problem, name = fit.problem, f"{block}stiffness"
+    if name not in problem.names:
+        return values[name]
+    place = problem.names.index(name)
+    wanted = values[f"{block}mass"] * (2 * np.pi * frequency) ** 2
+    return float(np.clip(wanted, problem.lower[place], problem.upper[place]))
+
+
+def is_within(fit: Fit, point: Values) -> bool:
+    """Whether parameters are within their bounds."""
+    ends = zip(fit.problem.names, fit.problem.lower, fit.problem.upper, strict=True)
+    return all(low <= point[name] <= high for name, low, high in ends if name in point)
+
+
+def values_of(fit: Fit) -> Values:
+    """All parameters of a fit by name, SI units."""
+    return dict(zip(fit.problem.model.names, fit.problem.parameters(fit.point)[0].tolist(), strict=True))
