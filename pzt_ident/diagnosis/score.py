@@ -31,6 +31,7 @@ LEAST_TRACE = 1e-9  # of the residual: less is rounding
 LEAST_SCORE = 0.02  # of the misfit: an effect that scores less is not refitted
 KEPT = 4  # scorers
 MANY_TRIALS = 50  # values of the shape parameters
+FINER, MOST_SCALES = 0.93, 40  # from multiple to multiple of a trial's steps
 AS_GOOD, MOST_GUESSES = 0.9, 4  # of the share explained by the best guess of a disturbance; guesses that are kept
 
 
@@ -165,7 +166,7 @@ class Scorer:
                 amounts, left = self.projection.fit(*sets.exact(number), trial.one_sided(problem), least)
                 if self.explained(left) > score.explained:
                     score.explained, least = self.explained(left), left
-                    guesses = [self._guess(problem, trial, scales) for scales in (amounts, np.ones(amounts.size))]
+                    guesses = [self._guess(problem, trial, scales) for scales in scales_of(amounts)]
         if has_many_trials(blocks[effect]):
             good = [(left, trial) for left, trial in tried if 2 * self.explained(left) >= score.explained]
             score.shapes = [trial.shape(problem) for _, trial in sorted(good, key=itemgetter(0))[:MOST_SHAPES]]
@@ -269,6 +270,15 @@ class Scorer:
             axis_residuals = [residual[row] for residual in residuals]
             guesses.append(guess(times, axis_drives, axis_residuals, problem.lower[i], problem.upper[i]).tolist())
         return guesses
+
+
+def scales_of(amounts: Array) -> Array:
+    """Multiples of the steps of a trial that may be the guess: those that are best if the effect is linear, and the
+    steps themselves; far below these, all that lie between, since a limit is felt from some size on. (scales,
+    amplitudes)."""
+    shrunk = np.where((amounts > 0) & (amounts < 1), amounts, 1.0)
+    count = min(1 + int(np.log(shrunk.min()) / np.log(FINER)), MOST_SCALES)
+    return np.vstack([amounts, shrunk ** np.linspace(0, 1, count, endpoint=False)[:, None]])
 
 
 def has_many_trials(block: type[Block]) -> bool:
