@@ -322,7 +322,7 @@ def test_the_scorers_of_the_last_fits_are_kept():
 @pytest.mark.parametrize("slowness", [5e-5, 1e-4, 2e-4])
 @pytest.mark.parametrize("over", [1.1, 1.3])
 def test_a_limit_that_is_just_exceeded_is_guessed_where_it_is(over, slowness):
-    """In proportion to the trace of a larger one it would be far below the rates of the drive: nothing is felt there."""
+    """In proportion to the trace of a larger one it would be far below the rates of the drive."""
     pace, t = over / (50 * slowness), 1e-4 * np.arange(3000)
     drives = [50 - 50 * np.cos(rate * t) * np.linspace(1, 0.5, t.size) for rate in (pace, 0.9 * pace)]
     hidden = {"slew_limit.slowness": slowness}
