@@ -61,6 +61,7 @@ def score(truth, solved):
             "tied": [],
             "verdict": verdict,
             "floors": math.nan,
+            "noise": math.nan,
         }
     named, groups = list(improvement["effects"]), classes(improvement)
     within = set().union(*groups.values()) if groups else set()
@@ -72,6 +73,7 @@ def score(truth, solved):
     row["floors"] = round(_size(last["validate"]) / truth["floor"], 2)
     row["floors_identify"] = round(_size(last["identify"]) / truth["floor"], 2)
     row["floors_before"] = round(_size(improvement["steps"][0]["rmse"]["validate"]) / truth["floor"], 2)
+    row["noise"] = round(_size(improvement.get("noise_floor")) / truth["floor"], 3)
     row["tied"] = [sorted(group) for group in groups.values() if len(group) > 1]
     following = improvement.get("next_experiment") or {}
     return row | {"proposed": following.get("why"), "reason": improvement.get("reason")}

@@ -111,6 +111,19 @@ def _ties(rows):
     return [*lines, ""]
 
 
+def _noise(rows):
+    """The noise floors that the tool took from the records of x over the noise of its sensor."""
+    lines = ["| noise floor over the noise, x | cases | median | within a fifth | least | largest |"]
+    lines.append("|---|---|---|---|---|---|")
+    for name, memory in (("white", False), ("with a memory", True)):
+        if ratios := [r["noise"] for r in rows if r["coloured"] == memory and not math.isnan(r["noise"])]:
+            close = sum(1 / 1.2 <= ratio <= 1.2 for ratio in ratios)
+            cells = [len(ratios), f"{_quantile(ratios, 0.5):.2f}", f"{close}/{len(ratios)}"]
+            cells += [f"{min(ratios):.2f}", f"{max(ratios):.2f}"]
+            lines.append(f"| {name} | " + " | ".join(map(str, cells)) + " |")
+    return [*lines, ""]
+
+
 def markdown(rows):
     """Tables by kind, effect, form, base, bounds, mechanics and other axis; at the end the cases that went wrong."""
     parts = [_head("kind"), *_grouped(rows, lambda r: [r["kind"]]), ""]
@@ -121,6 +134,7 @@ def markdown(rows):
         parts += [_head("form"), *_grouped(proper, _forms), ""]
     for name in ("base", "bounds", "mechanics", "y", "coloured"):
         parts += [_head(name), *_grouped(rows, lambda r, name=name: [str(r[name])]), ""]
+    parts += _noise(rows)
     parts += ["| case | truth | forms | named | verdict | floors left | CPU s |", "|---|---|---|---|---|---|---|"]
     for row in rows:
         if not row["in_class"]:
