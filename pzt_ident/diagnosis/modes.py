@@ -47,16 +47,16 @@ def main_modes(fit: Fit, values: Values, kept: Collection[str]) -> Iterator[Mode
 
 
 def with_aliases(fit: Fit) -> list[Values]:
-    """The parameters of a fit with one mode of its mechanics, which has few samples a period, at another frequency of
-    which the samples of a record look alike: f, r - f, r + f, 2 r - f, ... for a rate r. A fit may rest at any."""
+    """The parameters of a fit with one mode of its mechanics, which has few samples a period in all records, at another
+    frequency of which the samples look alike: f, r - f, r + f, 2 r - f for a rate r. A fit may rest at any of these."""
     values, found = values_of(fit), list[Values]()
+    rate = max(1 / record.dt for record in fit.problem.records)
     for mode in modes_of(fit, values):
-        for rate in sorted({1 / record.dt for record in fit.problem.records}):
-            least = abs(mode.frequency - round(mode.frequency / rate) * rate)
-            alike = (least, rate - least, rate + least, 2 * rate - least) if COARSE * mode.frequency > rate else ()
-            others = [f for f in alike if f > 0 and abs(f - mode.frequency) > SAME * mode.frequency]
-            moved = (mode_at(fit, values, mode._replace(frequency=frequency)) for frequency in others)
-            found += [fit.values | point for point in moved if point and is_within(fit, point)]
+        least = abs(mode.frequency - round(mode.frequency / rate) * rate)
+        alike = (least, rate - least, rate + least, 2 * rate - least) if COARSE * mode.frequency > rate else ()
+        others = [f for f in alike if f > 0 and abs(f - mode.frequency) > SAME * mode.frequency]
+        moved = (mode_at(fit, values, mode._replace(frequency=frequency)) for frequency in others)
+        found += [fit.values | point for point in moved if point and is_within(fit, point)]
     return found
 
 
