@@ -175,7 +175,8 @@ def draw_stage(rng, kind, effects):
         "forms": rough,
         "span": span,
     }
-    case["y_measured"] = bool(second and rng.random() < 0.45)
+    holds_both = len(axes["x"].modes) < 2  # `modal` has modes that both axes drive; here each axis has its own
+    case["y_measured"] = bool(second and rng.random() < 0.45 and holds_both)
     if second:
         axes["y"] = other_axis(rng, axes["x"])
     case["sensor"] = draw_sensor(rng, stroke, base)
