@@ -78,7 +78,7 @@ def _mechanics(rng, case, style, wrong):
 
 
 def _parameters(rng, case):
-    """Bounds that the user has, and a word on their style for the truth."""
+    """Bounds that the user has, and a word on their style for the truth; of x alone, for y is another axis."""
     style, base = case["bounds"], believed(case)
     block, lines, wrong = BLOCKS[base["kind"]], [], None
     choices = ["gain"] + (["mass"] if case["mechanics"] == "lumped" and base and case["axes"]["x"].modes else [])
@@ -101,7 +101,7 @@ def _parameters(rng, case):
         lines.append(_line("homogenized_energy.reach", 0.7 * reach, 1.5 * reach))
     if case["mechanics"] != "none" and (style != "none" or {"load_mass", "viscous_damping"} & set(case["truth"])):
         lines += _mechanics(rng, case, style, wrong)
-    return lines
+    return [line.replace("  ", "  x.", 1) for line in lines] if case["y_measured"] else lines
 
 
 def write_records(folder, case, readings):
