@@ -25,6 +25,7 @@ LOOK_ALIKE_TIE = 0.01  # of the total RMSE: less does not distinguish refits of 
 FORM_GAIN = 0.02  # of the misfit, by which another form of an effect explains more than the first one
 PROMISING = 0.75  # of the misfit: what an effect explains by its score, so that it is tried ahead of anything else
 NEARLY_ALL = 0.9  # of the misfit: what explains as much may be a look-alike of what is missing, in another form
+AS_LIKELY = 0.9  # of what the best score explains: what scores as much is refitted as long as others are
 LIMIT_TIE = 0.1  # of the total RMSE, by which a look-alike may be worse than an effect that rests on its own bounds
 LOOK_ALIKE_STARTS = 8  # starts of a look-alike's own parameters
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
@@ -106,9 +107,11 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
     rival = np.inf
 
     def share_allowed(candidate: Candidate) -> float:
-        if candidate is candidates[0] and candidate.score.explained >= DECISIVE:
+        best, score = candidates[0].score, candidate.score
+        if candidate is candidates[0] and score.explained >= DECISIVE:
             return PROVING
-        return share_of_others(case, first, before, fits)
+        as_likely = score.explained >= AS_LIKELY * best.explained
+        return EXPLORING if as_likely else share_of_others(case, first, before, fits)
 
     def allowed(candidate: Candidate) -> bool:
         needed = before is first and candidate is candidates[0]
