@@ -181,8 +181,8 @@ def is_felt(fit: Fit, name: str) -> bool:
 
 
 def limit_of(fit: Fit, on_bounds: Collection[str]) -> str:
-    """What an effect is whose amounts ended on these bounds, or whose shapes did where they are declared to be something
-    else; empty where nothing else."""
+    """What an effect is whose amounts ended on these bounds, or whose shapes did where they are declared to be
+    something else; empty where nothing else."""
     entries, places = entries_of(fit), dict(zip(fit.problem.names, fit.point, strict=True))
     ends = {name: "lower" if places[name] < 0.5 else "upper" for name in on_bounds}
     parameters = {name: entries[name].parameter for name in on_bounds}
