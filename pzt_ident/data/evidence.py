@@ -11,8 +11,8 @@ from pzt_ident.data.projections import MOST_MEMORY, ROUNDING, deviation, memory_
 Array = NDArray[np.float64]
 
 QUIETEST = 0.25  # of all that is measured: as much as no ringing and no transient need have reached
-UNLIKE = 4.0  # times the quietest one: that far apart they have more than noise in them
 LOUDER = 1.5  # times those: above that an estimate has more in it than noise
+UNLIKE = 4.0  # times the quietest one: that far apart they have more than noise in them
 DECAY = 2.0  # of the variance between the halves of a rest: more is a transient, and the later half is taken
 SHAPED = 64  # samples: of shorter periods the changes of their shape would take too much
 MISMATCH = 0.5  # of the noise: more may not come from periods that are no whole number of samples

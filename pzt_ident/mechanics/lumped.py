@@ -59,7 +59,7 @@ class Lumped(Oscillator):
         return mode(mass + load, damping + extra_damping, stiffness, dt)
 
     def at_mode(frequency, damping, stiffness):
-        """Mass and damping of a natural frequency and a damping ratio: m = k / w^2, b = 2 zeta k / w."""
+        """The oscillator of a natural frequency and a damping ratio: m = k / w^2, b = 2 zeta k / w."""
         pace = 2 * pi * frequency
         return {"mass": stiffness / pace**2, "damping": 2 * damping * stiffness / pace, "stiffness": stiffness}
 
