@@ -11,6 +11,7 @@ import pytest
 
 from pzt_ident.data.notation import listed
 from pzt_ident.data.over_axes import together, weighed
+from pzt_ident.model.parameter import NOTHING_BEYOND
 from pzt_ident.report.page import write_report
 from pzt_ident.report.sentences import findings, headline, next_step, over_noise, printed_reason, verdict
 from pzt_ident.run.misfit import compare
@@ -115,6 +116,15 @@ def test_parameters_that_are_not_found_are_named(plain_page):
     assert "bouc_wen.gamma is on its lower bound" in plain_page.text
     marked = [words for words in plain_page.words if words in ("not determined", "on its lower bound")]
     assert sorted(marked) == ["not determined", "not determined", "on its lower bound"]
+
+
+@pytest.mark.parametrize(
+    ("note", "said"), [(NOTHING_BEYOND, "nothing lies beyond"), ("", "the best fit may lie outside")]
+)
+def test_a_bound_is_told_with_what_lies_beyond(plain, note, said):
+    results = read_results(plain)
+    results.best["parameters"]["bouc_wen.gamma"]["note"] = note
+    assert f"bouc_wen.gamma is on its lower bound: {said}." in findings(results)
 
 
 def test_what_was_run_is_reported(plain, plain_page):
