@@ -181,12 +181,11 @@ def is_felt(fit: Fit, name: str) -> bool:
 
 
 def limit_of(fit: Fit, on_bounds: Collection[str]) -> str:
-    """What an effect is whose amounts ended on these bounds, or whose shapes did where they are declared to be
-    something else; empty where nothing else."""
+    """What an effect is whose shapes ended on these lower bounds, or whose amounts did on any, as it is declared; empty
+    where nothing else."""
     entries, places = entries_of(fit), dict(zip(fit.problem.names, fit.point, strict=True))
-    ends = {name: "lower" if places[name] < 0.5 else "upper" for name in on_bounds}
     parameters = {name: entries[name].parameter for name in on_bounds}
-    declared = [item.limit for name, item in parameters.items() if item.null is not None or item.limit_at == ends[name]]
+    declared = [item.limit for name, item in parameters.items() if item.null is not None or places[name] < 0.5]
     return next(filter(None, declared), "")
 
 

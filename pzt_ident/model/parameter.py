@@ -22,8 +22,7 @@ class Parameter:
     `null` is the value at which the block is exactly the identity; None if there is none.
     `end` is the value at which the range of a shape ends of itself, such as 0 for a spread, or the bound beyond which
     nothing changes, or both, as of a time constant that is far longer than a record; None if there is none.
-    `limit` tells what else an effect is whose amount is on any bound, or whose shape is on that which `limit_at` names:
-    "a play".
+    `limit` tells what else an effect is whose shape is on its lower bound, or whose amount is on any: "a play".
     `effect` names the effect that the parameter belongs to; unless the job lists it, the parameter stays at its null.
     `count` makes one parameter for each branch of the block, `weight_1`, `weight_2`, ...; a number, or the name of the
     setting that holds it. `per` tells what has a value of its own: every axis, the whole stage, or every axis after the
@@ -51,7 +50,6 @@ class Parameter:
     smooth: str | None = None
     end: float | Literal["lower", "upper", "both"] | None = None
     limit: str | None = None
-    limit_at: Literal["lower", "upper"] = "lower"
     name: str = ""
 
     def __set_name__(self, owner: type, name: str) -> None:

@@ -133,10 +133,8 @@ def test_an_amount_on_any_bound_may_be_in_a_limit(taken_out, place):
 
 @pytest.mark.parametrize(("left", "place", "suspects"), [(1.2, 0.0, ["a"]), (1.2, 1.0, []), (1.2, 0.1, [])])
 def test_at_the_noise_too_what_is_in_a_limit_that_is_something_else_is_a_suspect(taken_out, left, place, suspects):
-    """Friction whose reach ends on its lower bound is a play, as a backlash is; a grating with a pitch as long as the
-    stroke is a bend."""
+    """Friction whose reach ends on its lower bound is a play, as a backlash is."""
     assert taken_out(of(none=30, a=left), shapes={"a": [place]}, limit="a play") == suspects
-    assert taken_out(of(none=30, a=left), shapes={"a": [1 - place]}, limit="a bend", limit_at="upper") == suspects
     assert taken_out(of(none=30, a=left), shapes={"a": [place]}) == []
 
 
