@@ -139,10 +139,13 @@ def _parameters(results: Results) -> list[str]:
         sentences.append(f"The data do not determine {listed(ranges(names))}: other values fit as well.")
     sentences += _not_moved(results)
     for bound in ("lower", "upper"):
-        for chosen, what in ((names_by_verdict, "the best fit may lie outside"), (at_an_end, "nothing lies beyond")):
+        for chosen, what in (
+            (names_by_verdict, ": the best fit may lie outside"),
+            (at_an_end, ", where the range ends"),
+        ):
             if names := chosen.get(f"on its {bound} bound"):
                 place = f"is on its {bound} bound" if len(names) == 1 else f"are on their {bound} bounds"
-                sentences.append(f"{listed(names)} {place}: {what}.")
+                sentences.append(f"{listed(names)} {place}{what}.")
     return sentences
 
 

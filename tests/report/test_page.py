@@ -119,12 +119,12 @@ def test_parameters_that_are_not_found_are_named(plain_page):
 
 
 @pytest.mark.parametrize(
-    ("note", "said"), [(NOTHING_BEYOND, "nothing lies beyond"), ("", "the best fit may lie outside")]
+    ("note", "said"), [(NOTHING_BEYOND, ", where the range ends"), ("", ": the best fit may lie outside")]
 )
 def test_a_bound_is_told_with_what_lies_beyond(plain, note, said):
     results = read_results(plain)
     results.best["parameters"]["bouc_wen.gamma"]["note"] = note
-    assert f"bouc_wen.gamma is on its lower bound: {said}." in findings(results)
+    assert f"bouc_wen.gamma is on its lower bound{said}." in findings(results)
 
 
 def test_what_was_run_is_reported(plain, plain_page):
