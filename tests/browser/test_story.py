@@ -320,12 +320,12 @@ def test_signals_in_files_of_their_own_and_a_block_drawn_onto_the_chain(workbenc
     page.goto(workbench_here())
     expect(page.locator("#blocks li")).to_have_count(3)
     signals = ["\n".join(f"{i % period / 3}" for i in range(900)) for period in (30, 50)]
-    tab_to(page, "#choose")
     drive, response = (
         {"name": f"{name}.csv", "mimeType": "text/csv", "buffer": signal.encode()}
         for name, signal in zip(("drive", "response"), signals, strict=True)
     )
     with page.expect_file_chooser() as opened:
+        tab_to(page, "#choose")  # asks the page, which hears by then that its dialogs are waited for
         page.keyboard.press("Enter")
     opened.value.set_files([drive])
     expect(page.locator("#time canvas.drawn").first).to_be_visible()  # the one signal that is there
