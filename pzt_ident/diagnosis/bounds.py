@@ -10,8 +10,11 @@ from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refine_steps
 from pzt_ident.diagnosis.undetermined import undetermined_mechanics
+from pzt_ident.model.chain import Entry
+from pzt_ident.model.registry import word_of
 
 SLIP = 0.15  # of a bound, by which a data sheet may be beside the truth
+DECADES = 100.0  # times a bound on a logarithmic scale that the job does not give: a guess of where a search begins
 
 
 @dataclass(frozen=True)
@@ -57,28 +60,37 @@ def stands_in(wide: Case, case: Case, fit: Fit) -> bool:
 
 
 def widened(case: Case, fit: Fit) -> dict[str, Widened]:
-    """Wider bounds, by the names in the job, of the parameters that rest on one; not beyond those declared, and none of
-    mechanics that the data do not determine, which may stand in for anything slow."""
+    """Wider bounds, by the names in the job, of the parameters that rest on one: of those that the job gives not beyond
+    those declared, of others by DECADES, and none of mechanics that the data do not determine, which may stand in for
+    anything slow."""
     problem, specs = fit.problem, dict[str, Widened]()
     undetermined = undetermined_mechanics(fit) if fit.on_bounds else None
     for name in fit.on_bounds:
         i = problem.names.index(name)
-        entry = problem.model.entries[problem.free[i]]
-        if entry.block.name == undetermined:
-            continue
+        entry, given = problem.model.entries[problem.free[i]], (float(problem.lower[i]), float(problem.upper[i]))
         key = next((word for word in problem.model.spellings(entry) if word in case.specs), None)
-        if key is None:
+        if entry.block.name == undetermined or not (key or is_guessed(case, entry)):
             continue
-        given = float(problem.lower[i]), float(problem.upper[i])
         low, high = specs[key].bounds if key in specs else given
-        least, most = problem.declared_bounds(int(problem.free[i]))
-        if fit.point[i] < 0.5:
-            low = min(low, max(least, given[0] - SLIP * abs(given[0])))
+        if key is None:
+            key, least, most = name, given[0] / DECADES, given[1] * DECADES
         else:
-            high = max(high, min(most, given[1] + SLIP * abs(given[1])))
-        if (low, high) != (problem.lower[i], problem.upper[i]):
+            declared = problem.declared_bounds(int(problem.free[i]))
+            least = max(declared[0], given[0] - SLIP * abs(given[0]))
+            most = min(declared[1], given[1] + SLIP * abs(given[1]))
+        if fit.point[i] < 0.5:
+            low = min(low, least)
+        else:
+            high = max(high, most)
+        if (low, high) != given:
             specs[key] = Widened((float(low), float(high)))
     return specs
+
+
+def is_guessed(case: Case, entry: Entry) -> bool:
+    """Whether the declared bounds of a parameter of the job's own model are a guess of its order of magnitude."""
+    own = entry.block.name in map(word_of, case.words) and entry.parameter.effect is None
+    return own and entry.parameter.scale == "log" and entry.parameter.end is None
 
 
 def bounds_that_changed(case: Case, fit: Fit) -> dict[str, tuple[float, float]]:
@@ -87,9 +99,9 @@ def bounds_that_changed(case: Case, fit: Fit) -> dict[str, tuple[float, float]]:
     for name, low, high, column in zip(problem.names, problem.lower, problem.upper, problem.free, strict=True):
         spellings = (name, *problem.model.spellings(problem.model.entries[column]))
         key = next((word for word in spellings if word in case.specs), None)
-        given = key and case.specs[key].bounds
-        if key and given and tuple(given) != (low, high):
-            changed[key] = (float(low), float(high))
+        given = case.specs[key].bounds if key else problem.declared_bounds(int(column))
+        if given and tuple(given) != (low, high):
+            changed[key or name] = (float(low), float(high))
     return changed
 
 
@@ -112,5 +124,7 @@ def narrow_bounds_sentence(case: Case, fit: Fit) -> str:
             continue
         bound = given.lower[i] if value < given.lower[i] else given.upper[i]
         unit = f" {given.units[i]}".removesuffix(" 1")
-        text += f" {name} is {value:.4g}{unit}, beyond its bound of {bound:.4g}{unit} in the job, which is too narrow."
+        named = any(word in case.specs for word in given.model.spellings(given.model.entries[given.free[i]]))
+        whose = "in the job, which is too narrow" if named else "by default: give it bounds in the job"
+        text += f" {name} is {value:.4g}{unit}, beyond its bound of {bound:.4g}{unit} {whose}."
     return text

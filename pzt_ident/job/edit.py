@@ -95,7 +95,7 @@ def edited(
     """The job's text with these effects, and with paths relative to another folder.
 
     words: the blocks of the model, where it changes. steps: of the simulation in a sample, for every record.
-    values: of parameters that are fixed from now on. bounds: of parameters that the job has, where they change.
+    values: of parameters that are fixed from now on. bounds: of parameters where they change.
     parameters: what the job says of some from now on, `bounds` or `value`. sections: other sections, whole.
     """
     from ruamel.yaml import YAML
@@ -110,10 +110,14 @@ def edited(
     for record, source, count in zip(document["records"], job.records, steps, strict=False):
         if count != source.steps:
             record["steps"] = count
-    for name, (low, high) in (bounds or {}).items():
-        document["parameters"][name]["bounds"][:] = [float(f"{low:.6g}"), float(f"{high:.6g}")]
+    ends = {name: [float(f"{low:.6g}"), float(f"{high:.6g}")] for name, (low, high) in (bounds or {}).items()}
+    given = document.get("parameters") or {}
+    for name in ends.keys() & given.keys():
+        given[name]["bounds"][:] = ends[name]
     _drop_parameters(document, job, effects, words)
-    if settings := {name: {"value": value} for name, value in (values or {}).items()} | dict(parameters or {}):
+    settings = {name: {"value": value} for name, value in (values or {}).items()} | dict(parameters or {})
+    settings |= {name: {"bounds": pair} for name, pair in ends.items() if name not in given}
+    if settings:
         _set_parameters(document, settings)
     for name, content in (sections or {}).items():
         document[name] = _flow(content)

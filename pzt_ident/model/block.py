@@ -176,6 +176,7 @@ def _configured(block: type[Block], name: str, settings: tuple[tuple[str, Any], 
     return type(block.__name__, (block,), attributes) if settings or block.name != name else block
 
 
+@cache
 def argument_names(function: Callable[..., object]) -> tuple[str, ...]:
     return tuple(inspect.signature(function).parameters)
 

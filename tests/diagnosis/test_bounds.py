@@ -2,11 +2,13 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import stage
 from pzt_ident.diagnosis import staircase
 from pzt_ident.diagnosis.bounds import (
+    DECADES,
     Widened,
     are_decisive,
     beyond_bounds,
@@ -117,6 +119,28 @@ def test_only_bounds_of_the_job_that_are_reached_are_widened_and_not_beyond_thos
     widest = case.with_specs({"bouc_wen.gain": Widened((0.9 * GAIN, most))})
     at_most = fit_at((), widest.problem(()), widest.problem(()).unit_point(values | {"bouc_wen.gain": most}))
     assert widened(widest, at_most) == {}
+
+
+MASS = 4e-3  # kg, given: the stiffness of its resonance is below all that a job without bounds looks for
+SOFT = {"lumped.mass": MASS, "lumped.stiffness": MASS * (2 * np.pi * 60) ** 2, "lumped.damping": 2 * 0.03 * MASS * 377}
+
+
+@pytest.mark.parametrize("effect", ["", "quadratic_gain"])
+def test_a_bound_that_the_job_does_not_give_is_a_guess_and_no_payload(effect):
+    """It is told, and is in the job that is written."""
+    t = np.arange(3000) * 1e-3
+    chirps = [50 + reach * np.sin(2 * np.pi * (10 + 20 * t) * t) for reach in (30, 20)]
+    known = SOFT | stage.EFFECTS.get(effect, {})
+    case = stage.case(known, {"lumped.mass": MASS}, model=("bouc_wen", "lumped"), drives=chirps, dt=1e-3, steps=1)
+    first = first_fit(case, 0)
+    least, most = first.problem.declared_bounds(first.problem.model.names.index("lumped.stiffness"))
+    assert known["lumped.stiffness"] < least
+    found = improve(case, first)
+    end = found.steps[-1].fit
+    assert found.last.verdict == "adequate" and end.effects == tuple(filter(None, [effect]))
+    assert end.values["lumped.stiffness"] == pytest.approx(known["lumped.stiffness"], rel=1e-2)
+    assert bounds_that_changed(case, end) == {"lumped.stiffness": (least / DECADES, most)}
+    assert "by default: give it bounds in the job" in narrow_bounds_sentence(case, end)
 
 
 def test_wider_bounds_that_help_too_little_are_no_account():

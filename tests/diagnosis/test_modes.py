@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import stage
+from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.exchange import exchange_main_mode
 from pzt_ident.diagnosis.fit import fit_at
@@ -17,6 +18,7 @@ from pzt_ident.job.sections import Choice
 SECOND = {"resonance.share": 0.8, "resonance.frequency": 300.0, "resonance.damping": 0.02}
 SLOW = {"lumped.mass": 0.1, "lumped.damping": 3e3, "lumped.stiffness": 1e6}
 MODE = 2 * np.pi * 300
+STIFFNESS = (1e5, 1e9)  # its bounds
 MODAL = Choice("modal", {"modes": 2})
 
 
@@ -33,11 +35,12 @@ def fit_with(case, values, form="resonance"):
     [
         ({}, 0.1, 0.1),
         ({"lumped.stiffness": 1e6}, 0.1, 1e6 / MODE**2),
-        ({}, 0.02, 1e5 / MODE**2),
-    ],  # 1e5: its lower bound
+        ({}, 0.02, STIFFNESS[0] / MODE**2),
+    ],
 )
 def test_a_refit_without_the_main_mode_starts_with_the_mechanics_there(form, fixed, before, mass):
-    case = stage.case(model=("bouc_wen", "lumped"), fixed=fixed)
+    free = stage.case(model=("bouc_wen", "lumped"))
+    case = free.with_specs({"lumped.stiffness": Widened(STIFFNESS)} | stage.specs(fixed))
     problem = case.problem(())
     start = problem.physical(start_of(problem, fit_with(case, SLOW | SECOND | {"lumped.mass": before}, form), {}))[0]
     found = fixed | dict(zip(problem.names, start, strict=True))

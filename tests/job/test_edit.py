@@ -64,6 +64,17 @@ def test_values_join_the_parameters(job, text):
     assert new[-1] == "  y.amplifier_lag.tau: {value: 0.0}"
 
 
+def test_bounds_that_the_job_does_not_give_join_the_parameters(job):
+    before = load_job(job(JOB))
+    bounds = {"bouc_wen.alpha": (0.0, 2.0), "bouc_wen.beta": (1e-4, 5.0)}
+    gone, new = changed(JOB, edited(before, before.effects, before.folder, bounds=bounds))
+    assert [line.split("#")[0].rstrip() for line in new] == [
+        "  bouc_wen.alpha: {bounds: [0.0, 2.0]}",
+        "  bouc_wen.beta: {bounds: [0.0001, 5.0]}",
+    ]
+    assert [line.split(":")[0] for line in gone] == ["  bouc_wen.alpha"]
+
+
 def call(*arguments):
     return CliRunner().invoke(main, [*map(str, arguments)])
 
