@@ -13,7 +13,7 @@ from pzt_ident.diagnosis.undetermined import undetermined_mechanics
 from pzt_ident.model.chain import Entry
 from pzt_ident.model.registry import word_of
 
-SLIP = 0.15  # of a bound, by which a data sheet may be beside the truth
+SLIP = 0.08  # of a bound, by which a data sheet may be beside the truth
 DECADES = 100.0  # times a bound on a logarithmic scale that the job does not give: a guess of where a search begins
 
 

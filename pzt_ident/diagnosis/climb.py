@@ -11,7 +11,7 @@ from pzt_ident.diagnosis.bounds import are_decisive, beyond_bounds, stands_in
 from pzt_ident.diagnosis.candidates import Candidate, promises_most
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, clears_an_axis, removes_enough
-from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, remove_unneeded
+from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, remove_unneeded, separate_accounts
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.proof import Suspect
@@ -59,6 +59,7 @@ def climb(
             break
         if not adequate(case, first, new[-1].fit):
             fit_anew(case, (*steps, *new)[-2].fit, new[-1], best_alias(case, new[-1].fit))
+        new += separate_accounts(case, first, new[-1].fit)
         hurried = not adequate(case, first, new[-1].fit) and promises_most(case, first, new[-1].fit)
         new += [] if hurried else settle(case, first, (*steps, *new)[-2].fit, new[-1])
         if frozenset(new[-1].fit.effects) in {frozenset(step.fit.effects) for step in steps}:

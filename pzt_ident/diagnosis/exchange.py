@@ -64,6 +64,35 @@ def exchange_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
     return steps
 
 
+def separate_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
+    """Where an effect contains another one, as friction with a viscous part a lag, the steps to a form that does not,
+    and to that other one by itself or a look-alike of it, where these remove most of what is left."""
+    for effect in () if adequate(case, first, now) else now.effects[len(first.effects) :]:
+        parts, plain = parts_of(case, now, effect), other_forms(case, now, effect)
+        bare = [item for item in plain if not blocks[item].contains]
+        if not parts or not bare or not case.budget.allows("other forms and look-alikes"):
+            continue
+        others = effects_without(now, effect)
+        base = min((refit(case, now, (*others, item), {}) for item in bare), key=lambda fit: fit.total)
+        scores = map(scorer_of(case, base).score, parts)
+        fits = [refit_beside(case, (base, now), (*base.effects, s.effect), s.guess, now.identify) for s in scores]
+        best = min(fits, key=lambda fit: fit.total)
+        if fits_better(case, now, best) and clears_up(case, now, best):
+            part = best.effects[-1]
+            rivals = {fit.effects[-1]: fit for fit in (best, *fits) if fit is best or is_tied(case, part, best, fit)}
+            alone = exchange_step(case, now, base, effect)
+            return [alone, Step(best, part, None, rivals, explained_share(case, base, best))]
+    return []
+
+
+def parts_of(case: Case, now: Fit, effect: str) -> list[str]:
+    """What an effect contains, and its look-alikes, as far as the model can have them beside it."""
+    contained = blocks[effect].contains
+    words = dict.fromkeys([*contained, *(alike for word in contained for alike in blocks[word].look_alikes)])
+    possible = applicable(case, now.effects)
+    return [word for word in words if word in possible]
+
+
 def in_its_limit(now: Fit, other: Fit) -> bool:
     """Whether an effect in the place of another is hardly better and rests on a bound of its own: it may be the limit
     in which it is that other one."""

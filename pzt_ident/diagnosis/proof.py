@@ -10,7 +10,15 @@ import numpy as np
 from pzt_ident.data.notation import listed
 from pzt_ident.diagnosis.candidates import TIE, strangers
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.criteria import DECISIVE, beyond_form, form_of_others, near_noise, reaches_noise, removed_rms
+from pzt_ident.diagnosis.criteria import (
+    DECISIVE,
+    adequate,
+    beyond_form,
+    form_of_others,
+    near_noise,
+    reaches_noise,
+    removed_rms,
+)
 from pzt_ident.diagnosis.fit import NO_WORSE, Fit
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refit
@@ -47,6 +55,11 @@ class Suspect:
     def rank(self) -> tuple[bool, bool, bool, float]:
         """The order in which effects are taken out."""
         return self.beyond_form, not self.strangers, not self.on_bounds, self.share
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether it may be less than the form of the others leaves, or is something else in its limit."""
+        return bool(self.limit) or not self.beyond_form
 
     @property
     def share(self) -> float:
@@ -86,13 +99,14 @@ def unproven(
     the others; of several that leave more than that each must remove more in proportion, up to BESIDE. None may have
     rivals that fit as well and are not its look-alikes: what any effect takes up is not that of one. And none may have
     a shape, or all its amounts, on a bound, as a cyclic error whose pitch is as long as the stroke: it stands for what
-    it is like there. At the noise, too, none may be in a limit that is declared to be something else.
+    it is like there, unless the model is adequate with it. Even then none may be in a limit that is declared to be
+    something else.
     """
     suspects: list[Suspect] = []
     while added := now.effects[len(first.effects) :]:
         suspected = [suspect(case, first, now, effect, rivals.get(effect, ()), known) for effect in added]
-        near = near_noise(case, first, now)
-        doubtful = [item for item in suspected if item.limit or not item.beyond_form]
+        near, explained = near_noise(case, first, now), adequate(case, first, now)
+        doubtful = [item for item in suspected if item.is_doubtful or (item.on_bounds and not explained)]
         if near and not doubtful:
             break
         least = least_of(case, doubtful if near else suspected)
@@ -148,14 +162,14 @@ def suspect(
     if now.validate is not None and without.validate is not None:
         validate = share_explained(without.validate, now.validate, case.floor)
     identify = share_explained(without.identify, now.identify, case.floor)
-    others = strangers(effect, rivals)
+    others, on_bounds = strangers(effect, rivals), own_bounds(now, effect)
+    limit = limit_of(now, on_bounds)
     if validate is not None and differs_by_record(effect):
         of_all = share_explained(without.total, now.total, case.floor)
         clear = removed_rms(without.total, now.total) > form_of_others(case, first.total)
-        return Suspect(effect, identify, validate, without, clear, others, of_all=of_all)
+        return Suspect(effect, identify, validate, without, clear, others, on_bounds, limit, of_all)
     clear = beyond_form(case, first, without, now)
-    on_bounds = own_bounds(now, effect)
-    return Suspect(effect, identify, validate, without, clear, others, on_bounds, limit_of(now, on_bounds))
+    return Suspect(effect, identify, validate, without, clear, others, on_bounds, limit)
 
 
 def own_bounds(fit: Fit, effect: str) -> tuple[str, ...]:

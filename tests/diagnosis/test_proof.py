@@ -103,6 +103,22 @@ def test_above_the_noise_what_has_the_shape_of_its_limit_on_all_axes_is_a_suspec
     assert taken_out(seen, first=300.0, shapes={"a": places, "b": [0.5]}) == suspects
 
 
+@pytest.mark.parametrize(("place", "suspects"), [(1.0, ["a"]), (0.9, [])])
+def test_near_the_noise_of_a_model_that_is_not_adequate_what_has_the_shape_of_its_limit_is_a_suspect(
+    taken_out, place, suspects
+):
+    seen = of(ab=1.4, a=4.0, b=2.8, none=12.0)
+    assert taken_out(seen, first=12.0, shapes={"a": [place], "b": [0.5]}) == suspects
+
+
+@pytest.mark.parametrize(("place", "suspects"), [(0.0, ["drift"]), (0.5, [])])
+def test_above_the_noise_what_has_the_shape_of_its_limit_is_a_suspect_though_each_record_has_its_own_amount(
+    taken_out, place, suspects
+):
+    seen = {frozenset(): 300.0, frozenset(["drift"]): 20.0, frozenset("b"): 25.0, frozenset(["drift", "b"]): 5.0}
+    assert taken_out(seen, first=300.0, shapes={"drift": [place], "b": [0.5]}) == suspects
+
+
 @pytest.mark.parametrize(
     ("places", "left", "suspects"),
     [

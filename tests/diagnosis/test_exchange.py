@@ -1,0 +1,45 @@
+"""What two effects leave is not given to one that contains the other."""
+
+import pytest
+
+import stage
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.exchange import parts_of, separate_accounts
+from pzt_ident.diagnosis.fit import fit_at
+from pzt_ident.diagnosis.refit import refit
+from pzt_ident.model.registry import blocks, word_of
+
+RUBBING = {"friction.force": 0.6e-6, "friction.reach": 0.4e-6, "friction.stiction": 0.3, "friction.stribeck": 20e-6}
+VISCOUS = "friction.lugre_viscous"
+
+
+def with_viscous_friction(late):
+    """A case of a stage that rubs, with what `late` says, its first fit, and that with viscous friction."""
+    effects = ("friction", "delay") if "delay.time" in late else (VISCOUS,)
+    made = stage.records(RUBBING | late, model=("bouc_wen", *effects), noise=stage.NOISE / 2)
+    case = Case(("bouc_wen",), (), made, {})
+    problem = case.problem(())
+    first = fit_at((), problem, case.descend(problem, problem.unit_point(stage.STAGE)))
+    return case, first, refit(case, first, (VISCOUS,), {"friction.viscous": 0.01} | RUBBING)
+
+
+def test_a_delay_that_viscous_friction_stood_in_for_is_told_beside_friction():
+    case, first, now = with_viscous_friction({"delay.time": 0.012})
+    steps = separate_accounts(case, first, now)
+    assert [(step.added, step.removed) for step in steps] == [("friction", VISCOUS), ("delay", None)]
+    end = steps[-1].fit
+    assert end.values["delay.time"] == pytest.approx(0.012, rel=0.05)
+    assert end.identify < now.identify / 2
+
+
+def test_viscous_friction_is_one_effect():
+    case, first, now = with_viscous_friction({"friction.viscous": 0.02})
+    assert separate_accounts(case, first, now) == []
+
+
+@pytest.mark.parametrize("item", [item for word in blocks.effects() for item in blocks.forms(word)])
+def test_the_parts_of_a_form_are_what_it_contains_and_look_alikes_of_that_and_nothing_the_model_has(item):
+    case, first, now = with_viscous_friction({"delay.time": 0.012})
+    parts = parts_of(case, now, item)
+    assert bool(parts) == bool(blocks[item].contains)
+    assert not {*parts} & {*map(word_of, now.effects)}
