@@ -12,7 +12,7 @@ from pzt_ident.cli.table import number, table
 from pzt_ident.data.notation import listed
 from pzt_ident.data.over_axes import together
 from pzt_ident.report.tables import expected
-from pzt_ident.run.events import step_name, verdict_line
+from pzt_ident.run.events import explains, step_name, verdict_line
 
 Facts = dict[str, Any]
 
@@ -67,7 +67,7 @@ def show_improvement(improvement: Facts, folder: Path) -> None:
             number(step["rmse"]["validate"]),
             f"{step['rmse']['identify'] / floor:.2f}",
             "" if step["expected"] is None else f"{round(100 * min(step['expected'], 1))} %",
-            f"{round(100 * step['explained'])} %" if step["added"] or step["removed"] else "",
+            f"{round(100 * step['explained'])} %" if explains(step) else "",
             " or ".join(step["class"]),
         )
         for step in improvement["steps"]

@@ -94,13 +94,15 @@ def is_guessed(case: Case, entry: Entry) -> bool:
 
 
 def bounds_that_changed(case: Case, fit: Fit) -> dict[str, tuple[float, float]]:
-    """The bounds of a fit that are not those of the job, by the names in the job, in the user's units."""
+    """The bounds of a fit that are not those of the job, by the names in the job, in the user's units, and those of
+    parameters that the model of the job does not have free."""
     problem, changed = fit.problem, {}
     for name, low, high, column in zip(problem.names, problem.lower, problem.upper, problem.free, strict=True):
         spellings = (name, *problem.model.spellings(problem.model.entries[column]))
         key = next((word for word in spellings if word in case.specs), None)
         given = case.specs[key].bounds if key else problem.declared_bounds(int(column))
-        if given and tuple(given) != (low, high):
+        is_new = key is None and problem.model.entries[column].axis not in problem.model.measured
+        if is_new or (given and tuple(given) != (low, high)):
             changed[key or name] = (float(low), float(high))
     return changed
 
@@ -118,8 +120,8 @@ def brought_back(case: Case, fit: Fit) -> Fit | None:
 def narrow_bounds_sentence(case: Case, fit: Fit) -> str:
     """A sentence about each parameter that lies beyond the bounds of the job; empty where none does."""
     given, text = case.problem(fit.effects, fit.steps, fit.measured_only), ""
-    for name, value in fit.values.items():
-        i = given.names.index(name)
+    for i, name in enumerate(given.names):
+        value = fit.values[name]
         if given.lower[i] <= value <= given.upper[i]:
             continue
         bound = given.lower[i] if value < given.lower[i] else given.upper[i]

@@ -53,7 +53,7 @@ def exchange_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
     for effect in added:
         rivals = look_alikes(case, now, effect, in_every_form=not at_noise(case, now)) if len(added) > 1 else []
         items = rivals if adequate(case, first, now) else [*rivals, *other_forms(case, now, effect)]
-        if items and not case.budget.allows("other forms and look-alikes"):
+        if items and not case.budget.allows("other forms"):
             break
         fits = [fit for fit in fits_in_place(case, now, effect, items) if not in_its_limit(now, fit)]
         best = min(fits, key=lambda fit: fit.total, default=now)
@@ -70,7 +70,7 @@ def separate_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
     for effect in () if adequate(case, first, now) else now.effects[len(first.effects) :]:
         parts, plain = parts_of(case, now, effect), other_forms(case, now, effect)
         bare = [item for item in plain if not blocks[item].contains]
-        if not parts or not bare or not case.budget.allows("other forms and look-alikes"):
+        if not parts or not bare or not case.budget.allows("other forms"):
             continue
         others = effects_without(now, effect)
         base = min((refit(case, now, (*others, item), {}) for item in bare), key=lambda fit: fit.total)

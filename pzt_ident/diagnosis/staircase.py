@@ -32,6 +32,7 @@ from pzt_ident.diagnosis.undetermined import (
     undetermined_mechanics,
     without_mechanics,
 )
+from pzt_ident.diagnosis.unmeasured import OWN, with_own_mechanics
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
 
 FIRST_EFFECTS = 2  # effects that are tried as the first to be added
@@ -73,6 +74,9 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener) -> Staircase:
         given = lean
     if given.last.verdict == "adequate":
         return given
+    own = improve_own(case, first, diagnosis, on_step)
+    if own and (own.last.verdict == "adequate" or end_of(own).total < end_of(given).total):
+        return own
     beyond = beyond or bounds_beside(case, first, diagnosis)
     if not beyond:
         return given
@@ -123,6 +127,16 @@ def steps_without(case: Case, first: Fit, word: str, lean: Case, start: Fit) -> 
         Step(first),
         Step(start, explained=explained_share(case, first, start), change=f"without {word}", case=lean),
     ]
+
+
+def improve_own(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListener) -> Staircase | None:
+    """The staircase where axes without a response have a stiffness of their own; None where nothing speaks for it.
+    diagnosis: of the fit `first`."""
+    alternative = with_own_mechanics(case, first, diagnosis)
+    if alternative is None or not case.budget.allows("axes without a response that are not like the others", WHOLE):
+        return None
+    own, start = alternative
+    return improve_within(own, [Step(first), Step(start, change=OWN, case=own)], on_step)
 
 
 def accounts(wide: Staircase, case: Case, first: Fit) -> bool:

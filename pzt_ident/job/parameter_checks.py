@@ -32,7 +32,6 @@ def check_parameters(document: Document, settings: dict[str, Setting], earlier: 
     except InputError:
         return  # a bad setting of a block, reported at the setting
     entries = {name: entry for entry in model.entries for name in model.spellings(entry)}
-    unmeasured = {entry.name for entry in model.entries if entry.axis not in model.measured}
     if entries and not any(_is_free(model, entry, settings) for entry in model.entries):
         document.fault(("parameters",), "every parameter is fixed", "free at least one: give it `bounds`")
     for name, setting in settings.items():
@@ -41,8 +40,6 @@ def check_parameters(document: Document, settings: dict[str, Setting], earlier: 
             _unknown_name(document, name, earlier, entries)
             continue
         declared = entries[name].parameter
-        if setting.bounds and name in unmeasured:
-            document.fault(loc, "its axis has no response to fit it to", "give it a `value`")
         least = setting.bounds[0] if setting.bounds else setting.value
         if declared.scale == "log" and least is not None and least <= 0:
             document.fault(loc, f"{least:g} is not above 0", "give a value or lower bound above 0")

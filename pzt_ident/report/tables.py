@@ -14,7 +14,7 @@ from pzt_ident.data.over_axes import together
 from pzt_ident.files import write_text
 from pzt_ident.report.latex import tabular
 from pzt_ident.report.sentences import USE_NAMES
-from pzt_ident.run.events import step_name
+from pzt_ident.run.events import explains, step_name
 from pzt_ident.run.results import Results
 
 Columns = dict[str, list[Any]]
@@ -221,14 +221,14 @@ def steps(results: Results) -> Table:
             "step": step_name(step),
             **step["rmse"],
             "floors": step["rmse"]["identify"] / results.improvement["floor"],
-            **{key: step.get(key) for key in ("expected", "explained")},
+            "expected": step.get("expected"),
+            "explained": step["explained"] if explains(step) else None,
             "promised": (step.get("promised") or {}).get("identify"),
             "note": step.get("note") or "",
             "class": " or ".join(step["class"]),
         }
         for step in results.improvement["steps"]
     ]
-    rows[0]["explained"] = None
     cells: dict[str, Cell] = {
         "step": lambda row: row["step"],
         pooled("identification RMSE", results): lambda row: number(row["identify"]),

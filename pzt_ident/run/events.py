@@ -70,3 +70,8 @@ def step_name(step: Mapping[str, Any]) -> str:
     added = f"+ {step['added']}{form}" if step["added"] else ""
     removed = f"- {step['removed']}" if step["removed"] else ""
     return step.get("change") or " ".join(filter(None, (added, removed))) or "as given"
+
+
+def explains(step: Mapping[str, Any]) -> bool:
+    """Whether a step adds or takes out something, and less is left after it."""
+    return bool((step["added"] or step["removed"]) and step["explained"] >= 0)

@@ -16,9 +16,10 @@ from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.candidates import TWIN, Candidate
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.caveats import broken_conditions, caveats, misfit_sentences
-from pzt_ident.diagnosis.criteria import DECISIVE
+from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, removed_rms
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
+from pzt_ident.diagnosis.unmeasured import own_mechanics_sentence
 from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.job.schema import Job
 from pzt_ident.model.description import headline
@@ -46,7 +47,7 @@ def improvement_of(
     undecided = dict.fromkeys(step.tied for step in ties(steps))
     reason += "".join(f" These data cannot tell {' from '.join(map(phrase_of, tied))}." for tied in undecided)
     reason += no_drive_sentence(job, case, [step.rivals for step in ties(steps)]) if undecided and not proposed else ""
-    reason += narrow_bounds_sentence(case, end)
+    reason += narrow_bounds_sentence(case, end) + own_mechanics_sentence(case, end)
     of_end = caveats(case, end)
     reason += "" if of_end in reason else of_end  # the last diagnosis may be of this fit
     return {
@@ -74,7 +75,8 @@ def prediction_sentence(case: Case, steps: Sequence[stairs.Step]) -> str:
     best = min(fits, key=lambda fit: fit.validate or 0.0, default=end)
     if not end.validate or not best.validate or {*best.effects} <= {*end.effects}:
         return ""
-    if share_explained(end.validate, best.validate, case.floor) < DECISIVE:
+    little = removed_rms(end.validate, best.validate) <= CLEAR * case.floor
+    if little or share_explained(end.validate, best.validate, case.floor) < DECISIVE:
         return ""
     floors = f"{best.validate / case.floor:.1f} instead of {end.validate / case.floor:.1f} noise floors"
     return (

@@ -39,7 +39,7 @@ def test_viscous_friction_is_one_effect():
 
 @pytest.mark.parametrize("item", [item for word in blocks.effects() for item in blocks.forms(word)])
 def test_the_parts_of_a_form_are_what_it_contains_and_look_alikes_of_that_and_nothing_the_model_has(item):
-    case, first, now = with_viscous_friction({"delay.time": 0.012})
+    case, _, now = with_viscous_friction({"delay.time": 0.012})
     parts = parts_of(case, now, item)
     assert bool(parts) == bool(blocks[item].contains)
     assert not {*parts} & {*map(word_of, now.effects)}
