@@ -32,7 +32,7 @@ from pzt_ident.diagnosis.undetermined import (
     undetermined_mechanics,
     without_mechanics,
 )
-from pzt_ident.diagnosis.unmeasured import OWN, with_own_mechanics
+from pzt_ident.diagnosis.unmeasured import OWN, own_stiffnesses, with_own_mechanics
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
 
 FIRST_EFFECTS = 2  # effects that are tried as the first to be added
@@ -74,7 +74,7 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener) -> Staircase:
         given = lean
     if given.last.verdict == "adequate":
         return given
-    own = improve_own(case, first, diagnosis, on_step)
+    own = improve_own(case, first, on_step)
     if own and (own.last.verdict == "adequate" or end_of(own).total < end_of(given).total):
         return own
     beyond = beyond or bounds_beside(case, first, diagnosis)
@@ -129,11 +129,12 @@ def steps_without(case: Case, first: Fit, word: str, lean: Case, start: Fit) -> 
     ]
 
 
-def improve_own(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListener) -> Staircase | None:
-    """The staircase where axes without a response have a stiffness of their own; None where nothing speaks for it.
-    diagnosis: of the fit `first`."""
-    alternative = with_own_mechanics(case, first, diagnosis)
-    if alternative is None or not case.budget.allows("axes without a response that are not like the others", WHOLE):
+def improve_own(case: Case, first: Fit, on_step: StepListener) -> Staircase | None:
+    """The staircase where axes without a response have a stiffness of their own; None where nothing speaks for it."""
+    if not own_stiffnesses(case) or not case.budget.allows("axes without a response that are unlike the others", WHOLE):
+        return None
+    alternative = with_own_mechanics(case, first)
+    if alternative is None:
         return None
     own, start = alternative
     return improve_within(own, [Step(first), Step(start, change=OWN, case=own)], on_step)

@@ -4,29 +4,47 @@ from __future__ import annotations
 
 from itertools import product
 
+import numpy as np
+
 from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE
 from pzt_ident.diagnosis.fit import Fit, fit_at
-from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.verdict import Diagnosis
+from pzt_ident.diagnosis.score import applicable, scorer_of
 from pzt_ident.model.block import Coupling
 from pzt_ident.model.registry import blocks
 
 OWN = "mechanics of each axis"  # the step after which axes without a response have a stiffness of their own
 STIFFNESS = "stiffness"
+REACH, TRIED = 30.0, 41  # times that of the measured axis, down and up; so many between
 
 
-def with_own_mechanics(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fit] | None:
-    """The case in which the stiffness of each axis without a response is free, and the fit as given in it; None where
-    the job says something of it, and where no coupling takes up most of the misfit of the identification records."""
+def with_own_mechanics(case: Case, first: Fit) -> tuple[Case, Fit] | None:
+    """The case in which the stiffness of each axis without a response is free, and the fit as given in it, with these
+    where a coupling would explain most; None where the job says something of them, and where none would explain most
+    of the misfit."""
     free = own_stiffnesses(case)
-    if not free or not any(takes_up_most(case, first, fit) for fit in coupled(diagnosis)):
+    if not free:
         return None
     own = case.with_specs(free)
-    problem = own.problem(first.effects, first.steps)
-    point = problem.unit_point(first.values | {name: alike(first, name) for name in free})
-    return own, fit_at(first.effects, problem, point, first.converged)
+    problem, values = own.problem(first.effects, first.steps), first.values
+    values |= {name: alike(first, name) for name in free}
+    explained = 0.0
+    for name in free:
+        tried = values[name] * np.geomspace(1 / REACH, REACH, TRIED)
+        inside = tried[(tried >= free[name].bounds[0]) & (tried <= free[name].bounds[1])]
+        starts = [problem.unit_point(values | {name: stiffness}) for stiffness in inside]
+        promised = [promise_of_coupling(own, fit_at(first.effects, problem, start)) for start in starts]
+        explained = max(promised, default=0.0)
+        values[name] = float(inside[int(np.argmax(promised))]) if explained else values[name]
+    start = fit_at(first.effects, problem, problem.unit_point(values), first.converged)
+    return (own, start) if explained >= DECISIVE else None
+
+
+def promise_of_coupling(case: Case, fit: Fit) -> float:
+    """The share of the misfit that a coupling would explain by its score."""
+    scorer, words = scorer_of(case, fit), applicable(case, fit.effects)
+    return max((scorer.score(word).explained for word in words if issubclass(blocks[word], Coupling)), default=0.0)
 
 
 def own_stiffnesses(case: Case) -> dict[str, Widened]:
@@ -39,17 +57,6 @@ def own_stiffnesses(case: Case) -> dict[str, Widened]:
         if hasattr(block, "at_mode") and not known and f"{axis}.{plain}" not in case.specs:
             found[f"{axis}.{plain}"] = Widened(block.parameters()[STIFFNESS].bounds)
     return found
-
-
-def coupled(diagnosis: Diagnosis) -> list[Fit]:
-    """The refits with a coupling."""
-    couplings = [item for item in diagnosis.candidates if issubclass(blocks[item.score.effect], Coupling)]
-    return [item.fit for item in couplings if item.fit]
-
-
-def takes_up_most(case: Case, first: Fit, fit: Fit) -> bool:
-    """Whether a fit leaves less than half of the misfit of the identification records."""
-    return share_explained(first.identify, fit.identify, case.floor) >= DECISIVE
 
 
 def alike(fit: Fit, name: str) -> float:

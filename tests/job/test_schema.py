@@ -89,6 +89,11 @@ def test_every_key_is_read():
     assert (job.text, job.folder) == (GOOD, Path("here"))
 
 
+def test_an_axis_without_a_response_may_have_bounds_for_what_a_coupling_shows_of_it():
+    given = Job.from_text(GOOD.replace("bouc_wen.alpha", "y.bouc_wen.alpha")).parameters
+    assert given["y.bouc_wen.alpha"].bounds == (1e-6, 1)
+
+
 def test_short_job_has_defaults():
     text = 'records: [{file: a.csv}]\nchannels: {axes: {x: {drive: "u [V]", response: "x [um]"}}}\nmodel: [bouc_wen]\n'
     job = Job.from_text(text, file="folder/creep test.yaml")
@@ -177,7 +182,6 @@ ONE_FAULT = [
     ('    y: {drive: "u_y [V]"}\n', "", "10:11: effects[0]: 'cross_coupling' needs a second axis", "`drive`"),
     ("bouc_wen.alpha", "bouc_wen.alhpa", "13:3: parameters.bouc_wen.alhpa: 'bouc_wen' has no", "bouc_wen.alpha"),
     ("bouc_wen.alpha", "z.bouc_wen.alpha", "13:3: parameters.z.bouc_wen.alpha: there is no axis 'z'", "known: x, y"),
-    ("bouc_wen.alpha", "y.bouc_wen.alpha", "13:21: parameters.y.bouc_wen.alpha: its axis has no response", "`value`"),
     ("bouc_wen.alpha", "alpha", "13:3: parameters.alpha: unknown parameter 'alpha'", "bouc_wen.alpha"),
     ("bouc_wen.alpha", "prandtl_ishlinskii.gain", "'prandtl_ishlinskii' is not in this model", "`model`"),
     ("repeats: 3", "shared: [lumped.mas]", "17:10: shared[0]: unknown parameter 'lumped.mas'", "'lumped.mass'"),

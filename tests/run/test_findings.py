@@ -20,6 +20,7 @@ from pzt_ident.run.statement import Statement
 @pytest.mark.parametrize("verdict", ["adequate", "unexplained", "refused"])
 def test_an_improvement_says_what_it_added_and_what_it_suspects(verdict, monkeypatch):
     silent = {"stair": {}, "caveats": "", "narrow_bounds_sentence": "", "units_and_floors": {}, "limits_of": "10 V"}
+    silent |= {"own_mechanics_sentence": ""}
     for name, nothing in silent.items():
         monkeypatch.setattr(findings, name, lambda *arguments, nothing=nothing: nothing)
     before, after = (
@@ -66,6 +67,11 @@ def test_a_model_that_predicts_better_and_is_not_proven_is_told(effects, left, s
         == said
         == bool(sentence)
     )
+
+
+def test_a_model_that_predicts_hardly_better_is_not_told():
+    fits = [SimpleNamespace(effects=words, validate=error) for words, error in ((("drift", "creep"), 1.0), ((), 1.05))]
+    assert findings.prediction_sentence(SimpleNamespace(floor=1.0), [stairs.Step(fit) for fit in fits]) == ""
 
 
 def test_what_is_to_be_said_of_the_last_fit_is_said_once(monkeypatch, tmp_path):

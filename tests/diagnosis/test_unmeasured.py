@@ -1,0 +1,67 @@
+"""An axis without a response is like the measured one until a coupling shows that it is not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import rig
+import stage
+from pzt_ident.diagnosis.bounds import bounds_that_changed
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.staircase import improve
+from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.diagnosis.unmeasured import OWN, own_mechanics_sentence, own_stiffnesses
+from pzt_ident.model.registry import word_of
+
+DT, MODEL = 1e-3, ("bouc_wen", "lumped")
+STIFFNESS = 5e4  # N/m of y, three times that of x: 92 against 53 Hz
+X = stage.STAGE | {"lumped.mass": 0.15, "lumped.stiffness": 0.15 * (2 * np.pi * 53) ** 2, "lumped.damping": 6.0}
+SHARE = 0.05  # of y in the reading of x
+
+
+def chirp(low, high, reach, start):
+    t = DT * np.arange(2500)
+    return 50 + reach * np.sin(2 * np.pi * (low + (high - low) * t / t[-1] / 2) * t + start)
+
+
+def coupled(stiffness, known=None):
+    """A stage whose y moves with this stiffness and is not measured."""
+    truth, noise, made = {f"x.{name}": value for name, value in X.items()}, np.random.default_rng(3), []
+    truth |= {f"y.{name}": value for name, value in X.items()} | {"y.lumped.stiffness": stiffness}
+    truth |= {"x.kinematic_coupling.ratio": SHARE, "y.kinematic_coupling.ratio": 0.0}
+    for use, x, y in (
+        ("identify", chirp(2, 20, 40, 0), chirp(20, 130, 30, 0)),
+        ("identify", chirp(10, 90, 30, 1), chirp(1, 5, 40, 0)),
+        ("validate", chirp(5, 60, 30, 0), chirp(30, 120, 35, 1)),
+    ):
+        response = rig.response([*MODEL, "kinematic_coupling"], truth, x, y, dt=DT)[0]
+        response += noise.normal(0, 5 * stage.NOISE, response.size)
+        record = rig.record(x, y, response=[response, 0 * response], measured=[0], dt=DT)
+        made.append(replace(record, use=use, name=f"{use} {len(made)}", response_units=("um", None)))
+    return Case(MODEL, (), made, stage.specs({"lumped.mass": X["lumped.mass"]} | (known or {})))
+
+
+def test_a_coupling_shows_the_stiffness_of_an_axis_without_a_response():
+    case = coupled(STIFFNESS)
+    found = improve(case, first_fit(case, 0))
+    end = found.steps[-1].fit
+    assert found.last.verdict == "adequate" and [*map(word_of, end.effects)] == ["kinematic_coupling"]
+    assert [step.change for step in found.steps] == ["", OWN, ""]
+    assert end.values["y.lumped.stiffness"] == pytest.approx(STIFFNESS, rel=0.01)
+    assert "y.lumped.stiffness" in bounds_that_changed(case, end)
+    assert "y.lumped.stiffness is 5" in own_mechanics_sentence(case, end)
+
+
+def test_an_axis_that_is_like_the_measured_one_is_taken_for_it():
+    case = coupled(X["lumped.stiffness"])
+    found = improve(case, first_fit(case, 0))
+    assert {*map(word_of, found.steps[-1].fit.effects)} <= {"kinematic_coupling", "cross_coupling"}
+    assert bounds_that_changed(case, found.steps[-1].fit) == {}
+    assert own_mechanics_sentence(case, found.steps[-1].fit) == ""
+
+
+@pytest.mark.parametrize("name", ["y.lumped.stiffness", "lumped.stiffness"])
+def test_what_the_job_says_of_it_holds(name):
+    assert own_stiffnesses(coupled(STIFFNESS, {name: STIFFNESS})) == {}
+    assert [*own_stiffnesses(coupled(STIFFNESS))] == ["y.lumped.stiffness"]
