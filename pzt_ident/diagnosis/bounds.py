@@ -88,9 +88,10 @@ def widened(case: Case, fit: Fit) -> dict[str, Widened]:
 
 
 def is_guessed(case: Case, entry: Entry) -> bool:
-    """Whether the declared bounds of a parameter of the job's own model are a guess of its order of magnitude."""
+    """Whether the declared bounds of a parameter of the job's own model are a guess of its order of magnitude: it has
+    a dimension."""
     own = entry.block.name in map(word_of, case.words) and entry.parameter.effect is None
-    return own and entry.parameter.scale == "log" and entry.parameter.end is None
+    return own and entry.parameter.scale == "log" and entry.parameter.unit != "1" and entry.parameter.end is None
 
 
 def bounds_that_changed(case: Case, fit: Fit) -> dict[str, tuple[float, float]]:
