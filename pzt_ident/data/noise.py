@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.evidence import alike, period_noise, quiet_deviation, rest_noise
 from pzt_ident.data.projections import deviation, without_lines
-from pzt_ident.data.quantiser import common_step, with_quantiser
+from pzt_ident.data.quantiser import common_step, errors_of_readings, with_quantiser
 from pzt_ident.data.record import Record
 from pzt_ident.data.units import common_unit, factor, of_one_kind
 from pzt_ident.data.windows import Signal, window_noise
@@ -45,8 +45,8 @@ def noise_floor(records: list[Record], axis: int) -> Floor:
     for estimate, source in ((rest_noise, "rest segments"), (period_noise, "repeated periods")):
         found = [(part, dt) for drives, response, dt in signals for part in estimate(drives, response)]
         if found:
-            estimates = [(with_quantiser(value, step), samples * dt) for (value, samples), dt in found]
-            values, seconds = np.array(estimates).T
+            scatters, seconds = np.array([(value, samples * dt) for (value, samples), dt in found]).T
+            values = errors_of_readings(scatters, seconds, step)
             still = floor_of(quiet_deviation(values, seconds), source, step)
             return still if alike(values, seconds) else min(still, floor_in_windows(signals, step))
     return floor_in_windows(signals, step)

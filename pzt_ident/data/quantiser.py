@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 PART = 128  # samples
+MOST_OF_TWO = 0.51  # of a step: what is read at two values scatters by half a step at most
 
 
 def quantiser_step(response: Array) -> float:
@@ -45,3 +46,14 @@ def with_quantiser(scatter: float, step: float) -> float:
     if 2 * np.pi * scatter**2 >= step**2:
         return scatter
     return float(np.hypot(np.sqrt(np.pi) * scatter**2 / step, step / np.sqrt(12)))
+
+
+def errors_of_readings(scatters: Array, seconds: Array, step: float) -> Array:
+    """The same for several estimates of one scatter, each of so many seconds: what scatters by half a step or less is at
+    one place between two steps, and only their mean square over many places tells the noise."""
+    near = scatters <= MOST_OF_TWO * step
+    errors = np.array([with_quantiser(float(scatter), step) for scatter in scatters])
+    if near.any():
+        mean = np.sqrt(np.average(scatters[near] ** 2, weights=seconds[near]))
+        errors[near] = with_quantiser(float(mean), step)
+    return errors

@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from noises import rising, white
-from pzt_ident.data.quantiser import common_step, quantiser_step, with_quantiser
+from pzt_ident.data.evidence import quiet_deviation
+from pzt_ident.data.quantiser import common_step, errors_of_readings, quantiser_step, with_quantiser
 
 
 def test_quantiser_needs_a_grid():
@@ -46,3 +47,13 @@ def test_coarse_readings_of_things_at_rest_tell_their_error(size):
     readings = np.round(places + rng.normal(0, size, (3000, 300)))
     error = np.sqrt(np.mean((readings - places) ** 2))
     assert with_quantiser(np.sqrt(readings.var(axis=1).mean()), 1.0) == pytest.approx(error, rel=0.02)
+
+
+@pytest.mark.parametrize("scatter", [0.1, 0.2, 0.3, 0.6])
+def test_several_rests_tell_the_noise_beside_a_quantiser_in_the_median(scatter):
+    """One alone may be between two steps, where it is quiet, or on an edge, where it is loud."""
+    rng, rests = np.random.default_rng(0), 6
+    places = rng.uniform(0, 1, (200, rests, 1))
+    read = np.std(np.round(places + rng.normal(0, scatter, (200, rests, 400))), axis=2)
+    errors = [quiet_deviation(errors_of_readings(each, np.ones(rests), 1.0), np.ones(rests)) for each in read]
+    assert np.median(errors) == pytest.approx(np.hypot(scatter, 1 / np.sqrt(12)), rel=0.03)
