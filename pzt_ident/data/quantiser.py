@@ -49,8 +49,8 @@ def with_quantiser(scatter: float, step: float) -> float:
 
 
 def errors_of_readings(scatters: Array, seconds: Array, step: float) -> Array:
-    """The same for several estimates of one scatter, each of so many seconds: what scatters by half a step or less is at
-    one place between two steps, and only their mean square over many places tells the noise."""
+    """The same for several estimates of one scatter, each of so many seconds: what scatters by half a step or less is
+    at one place between two steps, and only their mean square over many places tells the noise."""
     near = scatters <= MOST_OF_TWO * step
     errors = np.array([with_quantiser(float(scatter), step) for scatter in scatters])
     if near.any():
