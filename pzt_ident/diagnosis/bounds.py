@@ -122,7 +122,7 @@ def narrow_bounds_sentence(case: Case, fit: Fit) -> str:
     """A sentence about each parameter that lies beyond the bounds of the job; empty where none does."""
     given, text = case.problem(fit.effects, fit.steps, fit.measured_only), ""
     for i, name in enumerate(given.names):
-        value = fit.values[name]
+        value = fit.values.get(name, given.lower[i])  # mechanics that are left out lie beyond nothing
         if given.lower[i] <= value <= given.upper[i]:
             continue
         bound = given.lower[i] if value < given.lower[i] else given.upper[i]

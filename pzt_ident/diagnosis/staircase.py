@@ -32,7 +32,7 @@ from pzt_ident.diagnosis.undetermined import (
     undetermined_mechanics,
     without_mechanics,
 )
-from pzt_ident.diagnosis.unmeasured import OWN, own_stiffnesses, with_own_mechanics
+from pzt_ident.diagnosis.unmeasured import OWN, own_mechanics, with_own_mechanics
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
 
 FIRST_EFFECTS = 2  # effects that are tried as the first to be added
@@ -130,8 +130,8 @@ def steps_without(case: Case, first: Fit, word: str, lean: Case, start: Fit) -> 
 
 
 def improve_own(case: Case, first: Fit, on_step: StepListener) -> Staircase | None:
-    """The staircase where axes without a response have a stiffness of their own; None where nothing speaks for it."""
-    if not own_stiffnesses(case) or not case.budget.allows("axes without a response that are unlike the others", WHOLE):
+    """The staircase where axes without a response have a resonance of their own; None where nothing speaks for it."""
+    if not own_mechanics(case) or not case.budget.allows("axes without a response that are unlike the others", WHOLE):
         return None
     alternative = with_own_mechanics(case, first)
     if alternative is None:

@@ -144,6 +144,12 @@ def test_a_bound_that_the_job_does_not_give_is_a_guess_and_no_payload(effect):
     assert "by default: give it bounds in the job" in narrow_bounds_sentence(case, end)
 
 
+def test_nothing_is_said_of_bounds_of_mechanics_that_a_fit_does_without():
+    case = stage.case(model=("bouc_wen", "lumped")).with_specs({"lumped.stiffness": Widened((1e6, 1e7))})
+    lean = first_fit(case.with_words(("bouc_wen",)), 0)
+    assert narrow_bounds_sentence(case, lean) == "" and bounds_that_changed(case, lean) == {}
+
+
 def test_wider_bounds_that_help_too_little_are_no_account():
     case = bounded(0.9, 1.2)
     first = first_fit(case, 0)

@@ -11,7 +11,7 @@ from pzt_ident.diagnosis.bounds import bounds_that_changed
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
-from pzt_ident.diagnosis.unmeasured import OWN, own_mechanics_sentence, own_stiffnesses
+from pzt_ident.diagnosis.unmeasured import OWN, own_mechanics, own_mechanics_sentence
 from pzt_ident.model.registry import word_of
 
 DT, MODEL = 1e-3, ("bouc_wen", "lumped")
@@ -61,7 +61,15 @@ def test_an_axis_that_is_like_the_measured_one_is_taken_for_it():
     assert own_mechanics_sentence(case, found.steps[-1].fit) == ""
 
 
-@pytest.mark.parametrize("name", ["y.lumped.stiffness", "lumped.stiffness"])
-def test_what_the_job_says_of_it_holds(name):
-    assert own_stiffnesses(coupled(STIFFNESS, {name: STIFFNESS})) == {}
-    assert [*own_stiffnesses(coupled(STIFFNESS))] == ["y.lumped.stiffness"]
+@pytest.mark.parametrize(
+    ("said", "free"),
+    [
+        ("y.lumped.stiffness", []),
+        ("y.lumped.damping", ["y.lumped.stiffness"]),
+        ("x.lumped.stiffness", ["y.lumped.stiffness", "y.lumped.damping"]),
+        ("lumped.stiffness", ["y.lumped.stiffness", "y.lumped.damping"]),
+    ],
+)
+def test_what_the_job_says_of_that_axis_holds(said, free):
+    """A stage with one measured axis has its names without an axis, too."""
+    assert [*own_mechanics(coupled(STIFFNESS, {said: 1.0}))] == free
