@@ -36,6 +36,20 @@ def mechanics_at_main_mode(fit: Fit, kept: Collection[str] = ()) -> Values:
     return moved
 
 
+def mechanics_without_payload(fit: Fit, kept: Collection[str] = ()) -> Values:
+    """Stiffness and damping, by name, with which mechanics whose mass is fixed move as with a payload that is not kept:
+    m x'' + b x' + k x = k f has the same solution for all three in proportion."""
+    values, moved = values_of(fit), Values()
+    for entry in fit.problem.model.entries:
+        block = entry.name.removesuffix(entry.word)
+        mass = f"{block}{entry.parameter.adds_to}"
+        if entry.parameter.adds_to == "mass" and entry.name not in kept and mass not in fit.values:
+            lighter = values[mass] / (values[mass] + values[entry.name])
+            names = (f"{block}{word}" for word in ("damping", "stiffness"))
+            moved |= {name: values[name] * lighter for name in names if name in fit.values}
+    return moved
+
+
 def main_modes(fit: Fit, values: Values, kept: Collection[str]) -> Iterator[Mode]:
     """The second modes whose share ended on its upper bound, but for those with a parameter that is kept."""
     places = dict(zip(fit.problem.names, fit.point.tolist(), strict=True))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import Fit, fit_at
-from pzt_ident.diagnosis.modes import mechanics_at_main_mode
+from pzt_ident.diagnosis.modes import mechanics_at_main_mode, mechanics_without_payload
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.search.problem import Problem
 
@@ -61,9 +61,10 @@ def start_of(problem: Problem, before: Fit, guess: dict[str, float]) -> Array:
 
 
 def values_in(problem: Problem, before: Fit) -> dict[str, float]:
-    """The parameters of a fit; what one of them that the problem does not have is added to has the sum, and mechanics
-    are where a second mode was that the problem does not have, if that was the main one."""
-    moved = mechanics_at_main_mode(before, problem.names)
+    """The parameters of a fit; what one of them that the problem does not have is added to has the sum, or mechanics of
+    a fixed mass are as with it, and mechanics are where a second mode was that the problem does not have, if that was
+    the main one."""
+    moved = mechanics_at_main_mode(before, problem.names) | mechanics_without_payload(before, problem.names)
     values, entries = before.values | moved, before.problem.model.entries
     for name, column in zip(before.problem.names, before.problem.free, strict=True):
         parameter = entries[column].parameter

@@ -25,6 +25,7 @@ from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.judges import judged
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.proof import Suspect, unproven
+from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
 from pzt_ident.diagnosis.undetermined import (
     Undetermined,
@@ -34,6 +35,7 @@ from pzt_ident.diagnosis.undetermined import (
 )
 from pzt_ident.diagnosis.unmeasured import OWN, own_mechanics, with_own_mechanics
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
+from pzt_ident.model.registry import word_of
 
 FIRST_EFFECTS = 2  # effects that are tried as the first to be added
 PROVEN = "back to what is proven"  # the step that goes back to an earlier one
@@ -66,6 +68,9 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener) -> Staircase:
         if keeps_within(wide, case) and not case.budget.allows("effects within the bounds of the job"):
             return wide
     diagnosis = diagnose(case, first)
+    behind = fit_behind(case, first, diagnosis)
+    if behind:
+        return improve_judged(case, behind, on_step)
     lean = improve_lean(case, first, diagnosis, on_step)
     if lean and (lean.last.verdict == "adequate" or settles_for(case, first, lean)):
         return lean
@@ -83,6 +88,23 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener) -> Staircase:
     if wide is None and case.budget.allows("wider bounds"):
         wide = improve_beyond(case, first, *beyond, on_step)
     return wide if wide and (accounts(wide, case, first) or clearly_better(wide, given, case)) else given
+
+
+def fit_behind(case: Case, first: Fit, diagnosis: Diagnosis) -> Fit | None:
+    """The model as given where the best effect led to, if it fits as well there: an effect that only adds to parameters
+    of its mechanics, as a payload to a mass, may have led out of a side minimum. None where it is needed."""
+    best = diagnosis.best.fit if diagnosis.best else None
+    if best is None or not only_adds(best):
+        return None
+    fit = refit(case, best, first.effects, {})
+    return fit if removed_rms(fit.total, best.total) < TIE * case.floor else None
+
+
+def only_adds(fit: Fit) -> bool:
+    """Whether all parameters of the last effect of a fit are added to others."""
+    word, entries = word_of(fit.effects[-1]), fit.problem.model.entries
+    own = [item.parameter for item in entries if word in (item.block.name, word_of(item.parameter.effect or ""))]
+    return bool(own) and all(parameter.adds_to for parameter in own)
 
 
 def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fit] | None:

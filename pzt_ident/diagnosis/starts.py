@@ -116,7 +116,7 @@ def settled(case: Case, fit: Fit) -> Fit:
 
 def ranked_points(problem: Problem, seed: int, count: int) -> Array:
     """(count, dimensions) random points, the best first."""
-    points = random_points(problem, np.random.default_rng(seed), count)
+    points = np.random.default_rng(seed).uniform(size=(count, problem.dimensions))
     return points[np.argsort(problem.rough().loss(points), kind="stable")]
 
 
@@ -144,7 +144,7 @@ def restart(case: Case, fit: Fit, block: str = "", starts_per_block: int = RESTA
     chosen = [(axis, name) for axis, name in owners if name == block or (not block and name not in guessed)]
     for owner in dict.fromkeys(chosen):
         restarted = np.array([column_owner == owner for column_owner in owners])
-        starts = np.where(restarted, random_points(problem, rng, STARTS), fit.point)
+        starts = np.where(restarted, random_points(problem, rng), fit.point)
         for start in starts[np.argsort(problem.rough_loss(starts, fit.point))[:starts_per_block]]:
             point = case.descend(problem, start, fit.identify)
             fits.append(fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
@@ -152,8 +152,8 @@ def restart(case: Case, fit: Fit, block: str = "", starts_per_block: int = RESTA
     return best if block else min(best, best_alias(case, best), key=lambda candidate: candidate.total)
 
 
-def random_points(problem: Problem, rng: np.random.Generator, count: int) -> Array:
-    """(count, dimensions) random points; half of them keep parameters whose lower bound is 0 near it."""
-    points = rng.uniform(size=(count, problem.dimensions))
-    near = (problem.lower == 0) & (rng.random((count, 1)) < 0.5)
+def random_points(problem: Problem, rng: np.random.Generator) -> Array:
+    """(STARTS, dimensions) random points; half of them keep parameters whose lower bound is 0 near it."""
+    points = rng.uniform(size=(STARTS, problem.dimensions))
+    near = (problem.lower == 0) & (rng.random((STARTS, 1)) < 0.5)
     return np.where(near, points**4, points)

@@ -12,6 +12,7 @@ from pzt_ident.diagnosis.exchange import exchange_main_mode
 from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.modes import mechanics_at_main_mode, with_aliases
 from pzt_ident.diagnosis.refit import refit, start_of
+from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import best_alias
 from pzt_ident.job.sections import Choice
 
@@ -98,3 +99,34 @@ def test_a_mode_has_aliases_where_it_has_few_samples_a_period(frequency, others)
     found = with_aliases(fit)
     assert sorted(point["modal.frequency_2"] for point in found) == pytest.approx(others)
     assert all(point["modal.frequency_1"] == pytest.approx(12.0) for point in found)
+
+
+SOFT = {"lumped.mass": 0.3, "lumped.stiffness": 0.3 * (2 * np.pi * 60) ** 2, "lumped.damping": 2 * 0.03 * 0.3 * 377}
+
+
+def ringing():
+    """A stage of a known mass whose resonance two chirps cross."""
+    t = np.arange(3000) * 1e-3
+    chirps = [50 + reach * np.sin(2 * np.pi * (10 + 20 * t) * t) for reach in (30, 20)]
+    fixed = {"lumped.mass": SOFT["lumped.mass"]}
+    return stage.case(SOFT, fixed, model=("bouc_wen", "lumped"), drives=chirps, dt=1e-3, steps=1)
+
+
+def test_a_payload_on_a_known_mass_is_a_softer_stage():
+    case = ringing()
+    heavy = SOFT | {"lumped.load": 2.7, "lumped.stiffness": 10 * SOFT["lumped.stiffness"], "lumped.damping": 68.0}
+    fit = fit_with(case, heavy, "load_mass")
+    problem = case.problem(())
+    start = start_of(problem, fit, {})
+    assert problem.loss(start)[0] == pytest.approx(fit.identify, rel=1e-9)
+
+
+def test_what_leads_out_of_a_side_minimum_is_no_payload():
+    case = ringing()
+    problem = case.problem(())
+    overdamped = problem.unit_point(stage.STAGE | {"lumped.damping": 1e4, "lumped.stiffness": 1.3e7})
+    first = fit_at((), problem, case.descend(problem, overdamped))
+    assert first.identify > 10 * stage.NOISE
+    found = improve(case, first)
+    assert found.last.verdict == "adequate" and found.steps[-1].fit.effects == ()
+    assert found.steps[-1].fit.values["lumped.stiffness"] == pytest.approx(SOFT["lumped.stiffness"], rel=0.01)
