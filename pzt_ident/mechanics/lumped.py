@@ -19,7 +19,7 @@ class Lumped(Oscillator):
 
     mass = Parameter("kg", (0.01, 10), "Moving mass, m.", scale="log")
     damping = Parameter("N*s/m", (0, 1e4), "Viscous damping, b.")
-    stiffness = Parameter("N/m", (1e3, 1e9), "Stiffness of flexure and actuator together, k.", scale="log")
+    stiffness = Parameter("N/m", (1e4, 1e9), "Stiffness of flexure and actuator together, k.", scale="log")
     load = Parameter(
         "kg", (0, 10), "Mass of a payload, added to the moving mass.", null=0, effect="load_mass", adds_to="mass"
     )
