@@ -13,16 +13,30 @@ RATES = {"slow": (200, 500, 1000), "fast": (5000, 10000, 20000, 50000)}
 
 @dataclass
 class Record:
-    """One record: what was run, at which sample rate, for which use, and the voltage of every axis."""
+    """One record: what was run, at which sample rate, for which use, and the voltage of every axis.
+
+    `ahead` has the voltages that the stage went through ahead of the first sample, or none: a start from rest.
+    """
 
     kind: str
     use: str
     rate: float
     drives: dict = field(default_factory=dict)
+    ahead: dict = field(default_factory=dict)
 
     @property
     def samples(self):
         return len(self.drives["x"])
+
+    @property
+    def lead(self):
+        """Samples ahead of the first one."""
+        return len(self.ahead["x"]) if self.ahead else 0
+
+    @property
+    def run(self):
+        """Voltages of every axis, with those ahead."""
+        return {axis: np.concatenate([self.ahead[axis], u]) if self.ahead else u for axis, u in self.drives.items()}
 
 
 def through(t, points, speeds=None):

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from . import jobs
+from .ahead import begin
 from .campaign import campaign, floor, one_frequency, read, slow_loops
 from .family import Family
 from .forms import FORMS, NEEDS
@@ -15,6 +16,8 @@ from .stage import Axis
 from .visibility import Rig, apart
 
 KINDS = {"single": 1, "pair": 2, "none": 3, "outside": 4, "family": 5, "loops": 6, "one_frequency": 7}
+KINDS |= {"begun": 8, "begun_none": 9}
+BEGUN = ("begun", "begun_none")  # `single` and `none`, with a drive ahead of every record
 TIED = ("loops", "one_frequency")  # campaigns that may not tell two effects apart: the proposed drive is played
 LEAST, MOST = 3.0, 60.0
 INSIDE_BOUC_WEN = {"asymmetry", "rate_dependence"}
@@ -163,6 +166,7 @@ def draw_stage(rng, kind, effects):
     count = count_modes(rng, effects, rough)
     gentle = count > 0 and pace != "slow"
     records = draw_records(rng, kind, pace, effects, span, ("y",) if second else (), gentle)
+    way = begin(rng, records, {"x": span, "y": (0.0, 0.8 * high)}) if kind in BEGUN else None
     base = draw_base(rng, kind, effects, span, stroke)
     needed = bool(MECHANICAL & set(effects)) or any("inside" in form for form in rough)
     axes = {"x": Axis(base, draw_modes(rng, count, needed, pace, max(r.rate for r in records)))}
@@ -174,6 +178,7 @@ def draw_stage(rng, kind, effects):
         "stroke": stroke,
         "forms": rough,
         "span": span,
+        "ahead": way,
     }
     holds_both = len(axes["x"].modes) < 2  # `modal` has modes that both axes drive; here each axis has its own
     case["y_measured"] = bool(second and rng.random() < 0.45 and holds_both)
@@ -197,7 +202,7 @@ def other_axis(rng, x):
 
 def draw_effects(rng, kind, seed):
     """What is hidden: nothing in every third case of a base of another family."""
-    if kind in ("none", "outside"):
+    if kind in ("none", "begun_none", "outside"):
         return [kind] * (kind == "outside")
     if kind == "family":
         return [str(rng.choice(ANY_BASE))] if seed % 3 else []
@@ -291,6 +296,8 @@ def write(kind, seed, out):
     truth = {key: case.get(key) for key in (*keys, "y_measured", "wrong", "attempt", "mass", "bouc_wen")}
     if kind == "family":
         truth["truth"] = ["distributed_memory", *case["truth"]]
+    if kind in BEGUN:
+        truth["ahead"] = case["ahead"]
     truth["base"] = case["axes"]["x"].base
     truth["modes"] = case["axes"]["x"].modes
     truth["y"] = None if "y" not in case["axes"] else {"base": case["axes"]["y"].base["kind"]}

@@ -44,6 +44,7 @@ def score(truth, solved):
     row["work"] = (improvement or {}).get("work") or float("nan")
     row |= {"seconds": solved["seconds"], "base": truth["base"]["kind"], "bounds": truth["bounds"]}
     row |= {"mechanics": truth["mechanics"], "y": _other(truth), "coloured": bool(truth["sensor"]["memory"])}
+    row["ahead"] = truth.get("ahead")
     row["forms"] = [truth["base"]["kind"]] * (truth["kind"] == "family")
     row["forms"] += [entry["form"] for entry in (truth["sizes"] or {}).values()]
     row["visible"] = {effect: max(seen) for effect, seen in truth["seen"].items()}

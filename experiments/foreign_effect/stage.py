@@ -167,12 +167,13 @@ def plan_of(axis):
 
 def sense(axis, x, t, dt, record, rng):
     """Reading without noise."""
+    since = np.maximum(t, 0.0)  # what a record begins with begins at its first sample
     if found := axis.size("drift"):
-        x = x + act.drift(t, *found, record)
+        x = x + act.drift(since, *found, record)
     if (found := axis.size("periodic_disturbance")) and found[0] != "ripple":
         x = x + act.hum(t, found[1], found[2], record)
     if (found := axis.size("outside")) and found[0] != "crossover":
-        x = act.outside(x, t, *found)
+        x = act.outside(x, since, *found)
     if found := axis.size("sensor_lag"):
         x = act.sensor_lag(x, dt, found[0], found[1])
     if found := axis.size("encoder_cyclic_error"):
@@ -194,13 +195,16 @@ def coupled(axes, forces, voltages):
     return out
 
 
-def simulate(axes, drives, sample, fine, record=0, seed=0):
-    """Clean readings {axis: y} of the voltages {axis: u} at `sample` seconds, `fine` steps to a sample."""
+def simulate(axes, drives, sample, fine, record=0, seed=0, lead=0):
+    """Clean readings {axis: y} of the voltages {axis: u} at `sample` seconds, `fine` steps to a sample.
+
+    The first `lead` samples are ahead of the record: simulated, not read, and at times below zero.
+    """
     rng = np.random.default_rng([seed, record])
     n = len(next(iter(drives.values())))
     dt = sample / fine
-    t = np.arange((n - 1) * fine + 1) * dt
-    u = {name: np.interp(t, np.arange(n) * sample, drive) for name, drive in drives.items()}
+    t = np.arange(-lead * fine, (n - 1 - lead) * fine + 1) * dt
+    u = {name: np.interp(t, np.arange(-lead, n - lead) * sample, drive) for name, drive in drives.items()}
     asked = {name: actuate(axes[name], u[name], t, dt, record) for name in axes}
     forces = coupled(axes, {k: v[0] for k, v in asked.items()}, {k: v[1] for k, v in asked.items()})
     moved = {}
@@ -211,4 +215,4 @@ def simulate(axes, drives, sample, fine, record=0, seed=0):
         moved[name] = carry(forces[name], axes[name].base["gain"] * asked[name][1], dt, plan_of(axes[name]))
     if found := axes["x"].size("kinematic_coupling"):
         moved["x"] = moved["x"] + found[1] * moved["y"]
-    return {name: sense(axes[name], moved[name], t, dt, record, rng)[::fine] for name in axes}
+    return {name: sense(axes[name], moved[name], t, dt, record, rng)[lead * fine :: fine] for name in axes}

@@ -125,7 +125,7 @@ def _noise(rows):
 
 
 def markdown(rows):
-    """Tables by kind, effect, form, base, bounds, mechanics and other axis; at the end the cases that went wrong."""
+    """Tables by kind, effect, form, base, bounds, mechanics, other axis, way ahead; at the end what went wrong."""
     parts = [_head("kind"), *_grouped(rows, lambda r: [r["kind"]]), ""]
     parts += [*_family([r for r in rows if r["kind"] == "family"]), *_ties(rows)]
     proper = [r for r in rows if r["truth"]]
@@ -134,6 +134,8 @@ def markdown(rows):
         parts += [_head("form"), *_grouped(proper, _forms), ""]
     for name in ("base", "bounds", "mechanics", "y", "coloured"):
         parts += [_head(name), *_grouped(rows, lambda r, name=name: [str(r[name])]), ""]
+    if begun := [r for r in rows if r.get("ahead")]:
+        parts += [_head("ahead"), *_grouped(begun, lambda r: [f"{r['kind']}: {r['ahead']}"]), ""]
     parts += _noise(rows)
     parts += ["| case | truth | forms | named | verdict | floors left | CPU s |", "|---|---|---|---|---|---|---|"]
     for row in rows:

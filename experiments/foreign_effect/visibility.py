@@ -37,7 +37,7 @@ class Rig:
         """Clean readings of record number i."""
         axes = axes or self.axes
         fine = self._fine(record, axes["x"].effects)
-        return simulate(axes, record.drives, 1 / record.rate, fine, i, self.case["noise_seed"])
+        return simulate(axes, record.run, 1 / record.rate, fine, i, self.case["noise_seed"], record.lead)
 
     def readings(self, axes=None):
         """Clean readings of all records."""
@@ -122,11 +122,12 @@ class Rig:
         fields = reach * (np.arange(22) + 0.5) / 22
         worst = 0.0
         for record in self.records:
-            u = record.drives["x"]
+            u = record.run["x"]
             columns = erf(plays(u, fields) / math.sqrt(2) / base["interaction"])
             columns = np.column_stack([u, np.ones(len(u)), columns])
             table = {k: v for k, v in base.items() if k != "gain"}
             goal = preisach_density(u, 0.0, _table(table))
+            columns, goal = columns[record.lead :], goal[record.lead :]
             found = np.linalg.lstsq(columns, goal, rcond=1e-9)[0]
             worst = max(worst, float(np.sqrt(np.mean((goal - columns @ found) ** 2))))
         return worst
