@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.criteria import DECISIVE, removes_enough
+from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removes_enough
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refine_steps
@@ -14,6 +14,7 @@ from pzt_ident.model.chain import Entry
 from pzt_ident.model.registry import word_of
 
 SLIP = 0.08  # of a bound, by which a data sheet may be beside the truth
+FAR_SLIP = 0.3  # by which it may be where nothing else is missing
 DECADES = 100.0  # times a bound on a logarithmic scale that the job does not give: a guess of where a search begins
 
 
@@ -27,8 +28,15 @@ class Widened:
 
 def beyond_bounds(case: Case, first: Fit, fit: Fit) -> tuple[Case, Fit] | None:
     """The case with wider bounds where a fit rests on bounds of the job, and the fit in it, if that removes enough;
-    None where it does not."""
-    specs = widened(case, fit)
+    None where it does not. Bounds that are still too narrow then are taken further if that leads to the noise."""
+    near = beyond_by(SLIP, case, first, fit)
+    far = beyond_by(FAR_SLIP, case, first, fit) if near is None or stands_in(near[0], case, near[1]) else None
+    return far if far and adequate(case, first, far[1]) and not stands_in(far[0], case, far[1]) else near
+
+
+def beyond_by(slip: float, case: Case, first: Fit, fit: Fit) -> tuple[Case, Fit] | None:
+    """The same with bounds that are wider by a share of them."""
+    specs = widened(case, fit, slip)
     if not specs:
         return None
     wide = case.with_specs(specs)
@@ -59,7 +67,7 @@ def stands_in(wide: Case, case: Case, fit: Fit) -> bool:
     return any(name in fit.on_bounds and (low if place < 0.5 else high) != 0 for name, low, high, place in ends)
 
 
-def widened(case: Case, fit: Fit) -> dict[str, Widened]:
+def widened(case: Case, fit: Fit, slip: float = SLIP) -> dict[str, Widened]:
     """Wider bounds, by the names in the job, of the parameters that rest on one: of those that the job gives not beyond
     those declared, of others by DECADES, and none of mechanics that the data do not determine, which may stand in for
     anything slow."""
@@ -76,8 +84,8 @@ def widened(case: Case, fit: Fit) -> dict[str, Widened]:
             key, least, most = name, given[0] / DECADES, given[1] * DECADES
         else:
             declared = problem.declared_bounds(int(problem.free[i]))
-            least = max(declared[0], given[0] - SLIP * abs(given[0]))
-            most = min(declared[1], given[1] + SLIP * abs(given[1]))
+            least = max(declared[0], given[0] - slip * abs(given[0]))
+            most = min(declared[1], given[1] + slip * abs(given[1]))
         if fit.point[i] < 0.5:
             low = min(low, least)
         else:
@@ -123,9 +131,9 @@ def narrow_bounds_sentence(case: Case, fit: Fit) -> str:
     given, text = case.problem(fit.effects, fit.steps, fit.measured_only), ""
     for i, name in enumerate(given.names):
         value = fit.values.get(name, given.lower[i])  # mechanics that are left out lie beyond nothing
-        if given.lower[i] <= value <= given.upper[i]:
+        bound = min(max(value, given.lower[i]), given.upper[i])
+        if f"{value:.4g}" == f"{bound:.4g}":
             continue
-        bound = given.lower[i] if value < given.lower[i] else given.upper[i]
         unit = f" {given.units[i]}".removesuffix(" 1")
         named = any(word in case.specs for word in given.model.spellings(given.model.entries[given.free[i]]))
         whose = "in the job, which is too narrow" if named else "by default: give it bounds in the job"

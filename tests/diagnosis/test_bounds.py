@@ -39,8 +39,9 @@ def bounded(low, high, effects=(), **more):
     return stage.case(hidden, **more).with_specs({"bouc_wen.gain": Widened((low * GAIN, high * GAIN))})
 
 
-def test_a_gain_five_percent_beside_its_bounds_is_the_bound_and_no_effect():
-    case = bounded(1.05, 1.3)
+@pytest.mark.parametrize("low", [1.05, 1.1, 1.25])
+def test_a_gain_beside_its_bounds_is_the_bound_and_no_effect(low):
+    case = bounded(low, 1.3)
     first = first_fit(case, 0)
     assert first.identify > 5 * stage.NOISE
     found = improve(case, first)
@@ -97,6 +98,14 @@ def test_where_no_effect_passes_the_bounds_that_the_best_one_reaches_are_widened
     wide, start = bounds_beside(case, first, replace(diagnosis, passing=[]))
     assert wide.specs["bouc_wen.gain"].bounds[0] < GAIN
     assert start.effects == () and start.identify == pytest.approx(first.identify, rel=1e-6)
+
+
+def test_a_parameter_on_its_bound_lies_not_beyond_it():
+    """However it is rounded on the way to the cube and back."""
+    case = bounded(1.05, 1.3)
+    problem = case.with_specs({"bouc_wen.gain": Widened((1.05 * GAIN * (1 - 1e-9), 1.3 * GAIN))}).problem(())
+    on_bound = fit_at((), problem, problem.unit_point(stage.STAGE | {"bouc_wen.gain": problem.lower[0]}))
+    assert narrow_bounds_sentence(case, on_bound) == ""
 
 
 def test_bounds_that_hold_the_truth_are_kept():
