@@ -71,7 +71,7 @@ class Suspect:
     @property
     def why_not(self) -> str:
         """A sentence on why it is not proven."""
-        seen = f"{self.identify:.0%} of the misfit on the identification records"
+        seen = f"{max(self.identify, 0):.0%} of the misfit on the identification records"
         unseen = "" if self.validate is None else f" and {max(self.validate, 0):.0%} on the validation records"
         if self.beyond_form and self.strangers:
             names = listed(map(phrase_of, self.strangers))
