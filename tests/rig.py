@@ -79,7 +79,7 @@ def candidates(made, drive, count, seed, response=10.0):
         low, high = np.array(declared.bounds) * size(declared.unit, np.ptp(drive), response)
         share = rng.uniform(0.02, 0.98, count)
         columns.append(low * (high / low) ** share if declared.scale == "log" else low + (high - low) * share)
-    return np.array(columns).T.reshape(count, -1)
+    return np.array(columns).T.reshape(count, len(columns))
 
 
 def size(unit, drive, response):

@@ -31,13 +31,14 @@ class Value(NamedTuple):
 class Shown:
     """An item of the registry in the standard chain: `respond` with it, `bare` without it.
 
-    An effect is shown at a share of its ranges: the largest, up to LARGEST, at which it changes no loop and no hold by
-    more than VISIBLE. Operators and mechanics are fitted; without them a straight line is left, or a rigid stage.
+    An effect, or what leads to a record, is shown at a share of its ranges: the largest, up to LARGEST, at which it
+    changes no loop and no hold by more than VISIBLE. Operators and mechanics are fitted; without them a straight line
+    is left, or a rigid stage.
     """
 
     def __init__(self, item: str) -> None:
         self.item, self.block = item, blocks[item]
-        self.effect = blocks.is_effect(word_of(item))
+        self.effect = blocks.is_effect(word_of(item)) or self.block.lead > 0
         words, self.fixed = fitted(self._host() if self.effect else item)
         self.stage = self._stage([*words, *([item] if self.effect else [])])
         self.rest = [word for word in words if word != item]

@@ -108,9 +108,13 @@ class Case:
         }
 
     def words_of(self, fit: Fit) -> tuple[str | Choice, ...]:
-        """The blocks of this case that are in the model of a fit, which may do without some."""
-        names = {block.name for block in fit.problem.model.blocks}
-        return tuple(item for item in self.words if word_of(item) in names)
+        """The blocks of this case that are in the model of a fit, which may do without some, and what that follows of
+        the time before the records."""
+        model, own = fit.problem.model.blocks, [*map(word_of, self.words)]
+        names = {block.name for block in model}
+        before = [block for block in model if block.lead and block.name not in own]
+        items = [item for block in before for item in blocks.forms(block.name) if blocks[item] is block]
+        return (*items, *(item for item in self.words if word_of(item) in names))
 
     def record_with_steps(self, number: int, steps: int) -> Record:
         """A record simulated in so many steps per sample; always the same object, so that its signals are prepared

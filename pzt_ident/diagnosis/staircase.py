@@ -22,6 +22,7 @@ from pzt_ident.diagnosis.exchange import (
     remove_unneeded,
 )
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.history import BEFORE, at_rest, history_behind, with_history
 from pzt_ident.diagnosis.judges import judged
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.proof import Suspect, unproven
@@ -38,23 +39,71 @@ from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
 from pzt_ident.model.registry import word_of
 
 FIRST_EFFECTS = 2  # effects that are tried as the first to be added
+SETTLED = "adequate", "refused"
 PROVEN = "back to what is proven"  # the step that goes back to an earlier one
 
 
 def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
     """The staircase from the model as given to the one with all effects that are proven, judged by the records that can
     judge it."""
+    settled = adequate(case, first, first) or needs_wider_bounds(case, first)
+    diagnosis = None if settled else diagnose(case, first)
+    told = with_history(case, first, diagnosis) if diagnosis else None
+    aged = improve_aged(case, first, *told, on_step) if told else None
+    if aged and (aged.last.verdict in SETTLED or not case.budget.allows("records that start at rest", WHOLE)):
+        return aged
     judging, fit = judged(case, first)
-    staircase = improve_judged(judging, fit, on_step)
+    staircase = improve_judged(judging, fit, on_step, diagnosis if judging is case else None)
     if judging is not case:
         staircase.case = staircase.case or judging
-    return staircase
+    if aged is None and staircase.last.verdict not in SETTLED:
+        behind = history_behind(staircase.case or case, first, end_of(staircase))
+        aged = improve_aged(case, first, *behind, on_step) if behind else None
+    return best_path(case, [staircase, aged]) if aged else staircase
 
 
-def improve_judged(case: Case, first: Fit, on_step: StepListener) -> Staircase:
-    """The same, judged by all records that are left to judge it. Wider bounds, where those of the job are too narrow,
-    are tried first where they remove most of the misfit of an axis; mechanics that the data do not determine are left
-    out first where no effect beside them reaches the noise, and any where nothing is missing without them."""
+def with_least_history(case: Case, first: Fit, staircase: Staircase) -> Staircase:
+    """The staircase whose records start from rest, where its last model fits as well then."""
+    end, rested = end_of(staircase), at_rest(staircase.case or case)
+    fit = refit(rested, end, end.effects, {})
+    if not adequate(case, first, fit) or removed_rms(fit.total, end.total) >= TIE * case.floor:
+        return staircase
+    steps, home = list[Step](), case
+    for step in staircase.steps:
+        home = at_rest(step.case) if step.case else home
+        if step.change != BEFORE:
+            fit = refit(home, step.fit, step.fit.effects, {}) if steps else first
+            share = explained_share(case, steps[-1].fit, fit) if steps else 0.0
+            steps.append(replace(step, fit=fit, explained=share, case=step.case and home))
+    wider = staircase.case and rested.specs is not case.specs
+    kept = replace(staircase, steps=steps, case=rested if wider else None)
+    conclude(rested, first, kept)
+    return kept
+
+
+def needs_wider_bounds(case: Case, first: Fit) -> bool:
+    """Whether bounds of the job keep out most of what the model as given leaves."""
+    beyond = beyond_bounds(case, first, first)
+    return bool(beyond and are_decisive(case, first, beyond[1]))
+
+
+def improve_aged(case: Case, first: Fit, aged: Case, start: Fit, on_step: StepListener) -> Staircase:
+    """The staircase where the model follows what was before the records."""
+    on_step(Step(first))
+    staircase = improve(aged, start, on_step)
+    share = explained_share(case, first, start)
+    staircase.steps[0] = replace(staircase.steps[0], explained=share, change=BEFORE, case=aged)
+    staircase.steps.insert(0, Step(first))
+    staircase.case = staircase.case or aged
+    return with_least_history(case, first, staircase)
+
+
+def improve_judged(case: Case, first: Fit, on_step: StepListener, diagnosis: Diagnosis | None = None) -> Staircase:
+    """The same, judged by all records that are left to judge it; diagnosis: of the first fit, if there is one.
+
+    Wider bounds, where those of the job are too narrow, are tried first where they remove most of the misfit of an
+    axis; mechanics that the data do not determine are left out first where no effect beside them reaches the noise, and
+    any where nothing is missing without them."""
     good = adequate(case, first, first)
     enough = None if good else enough_without_mechanics(case, first)
     if enough:
@@ -67,7 +116,7 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener) -> Staircase:
             return wide
         if keeps_within(wide, case) and not case.budget.allows("effects within the bounds of the job"):
             return wide
-    diagnosis = diagnose(case, first)
+    diagnosis = diagnosis or diagnose(case, first)
     behind = fit_behind(case, first, diagnosis)
     if behind:
         return improve_judged(case, behind, on_step)
@@ -129,7 +178,7 @@ def end_of(staircase: Staircase) -> Fit:
 def improve_lean(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListener) -> Staircase | None:
     """The staircase without mechanics that the data do not determine; None where these determine them, alone or beside
     the best effect, or where the model needs one effect at most beside them. diagnosis: of the fit `first`."""
-    settled = diagnosis.verdict in ("adequate", "refused") or any(
+    settled = diagnosis.verdict in SETTLED or any(
         adequate(case, first, candidate.fit) for candidate in diagnosis.passing if candidate.fit
     )
     best = min((item.fit for item in diagnosis.passing if item.fit), key=lambda fit: fit.total, default=first)
@@ -209,7 +258,7 @@ def improve_within(
     for candidate in candidates or [None]:
         path = climb(case, base, diagnosis, candidate, on_step)
         paths.append(path)
-        if path.last.verdict in ("adequate", "refused") or path.steps[-1].fit.identify / case.floor > HOPELESS:
+        if path.last.verdict in SETTLED or path.steps[-1].fit.identify / case.floor > HOPELESS:
             break
         if not case.budget.allows("another effect first"):
             break
@@ -304,5 +353,5 @@ def conclude(case: Case, first: Fit, staircase: Staircase) -> None:
     unexplained."""
     if staircase.last.before is not end_of(staircase):
         staircase.last = diagnose(case, end_of(staircase), first)
-    if staircase.last.verdict not in ("adequate", "refused"):
+    if staircase.last.verdict not in SETTLED:
         staircase.last = unexplained(case, first, staircase.last)

@@ -131,7 +131,7 @@ class Additions:
         if self.follow:
             bases[:, 1 + self.signals :] = self.follow[axis][:, at]
         if self.signals:
-            program, lead = self.program, self.record.run_in * self.record.samples
+            program, lead = self.program, self.program.lead
             steps, tiles = np.array(self.steps(axis), dtype=np.int64), program.tiles + 1 + np.arange(self.signals)
             begin, since, count = (lead + at.start) // TILE * TILE, lead + at.start, program.tiles + self.tiles
             scratch, output = program.scratch(theta, program.rows), np.empty_like(bases[:, 1 : 1 + self.signals])

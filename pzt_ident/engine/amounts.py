@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -28,8 +28,8 @@ DEPENDENT = 1e-10  # of the largest eigenvalue: directions of less are one
 class Amounts:
     """The amounts of a record, from least squares over its scored samples together with the offset and the additions.
 
-    Gauss and Newton's steps from zero, as many for every candidate, so that what follows is a smooth function of its
-    other parameters; or from those of a candidate beside, `near`.
+    Gauss and Newton's steps from zero, or from the best of the starts of a block, as many for every candidate, so that
+    what follows is a smooth function of its other parameters; or from those of a candidate beside, `near`.
     """
 
     def __init__(self, simulator: Simulator, settled: float = SETTLED, near: Array | float = 0.0) -> None:
@@ -39,6 +39,7 @@ class Amounts:
         bounds = np.array([entry.parameter.bounds for entry in model.amounts]).reshape(-1, 2)
         self._low, self._high = bounds.T * np.array(sizes)
         self._widths = WIDTH * (self._high - self._low)
+        self._starts = starts_of(model.amounts) * self._high
         spans = np.ptp(record.response[list(model.measured), record.settle :], axis=1)
         self._scales = 1 / np.where(spans > 0, spans, 1)
         self._known: dict[bytes, Array] = {}  # amounts of the candidates that were asked for last
@@ -61,7 +62,7 @@ class Amounts:
 
     def _solved(self, theta: Array) -> Array:
         """Those of each candidate: (candidates, amounts)."""
-        amounts = np.full((len(theta), self._low.size), self.near)
+        amounts = self._begun(theta)
         best, steps, least = amounts.copy(), amounts.copy(), np.full(len(theta), np.inf)
         promised = np.full(len(theta), np.inf)  # by the next step, of the sum of squares
         moving = np.arange(len(theta))
@@ -81,12 +82,21 @@ class Amounts:
             amounts = np.clip(best + steps, self._low, self._high)
         return best
 
-    def _products(self, theta: Array, amounts: Array) -> Array:
+    def _begun(self, theta: Array) -> Array:
+        """Where each candidate sets out from: (candidates, amounts)."""
+        if len(self._starts) == 1 or np.ndim(self.near):
+            return np.full((len(theta), self._low.size), self.near)
+        tried = np.repeat(self._starts[None], len(theta), axis=0)
+        squares = [self._products(theta, tried[:, k], alone=True)[:, 0, 0] for k in range(len(self._starts))]
+        return np.asarray(self._starts[np.argmin(squares, axis=0)])
+
+    def _products(self, theta: Array, amounts: Array, alone: bool = False) -> Array:
         """Of the error and its changes by a width of each amount, without offset and additions, summed over the
         measured axes in multiples of their spans: (candidates, 1 + amounts, 1 + amounts). A failed one has an
-        infinite error, and no change."""
-        simulator, several = self.simulator, 1 + amounts.shape[1]
-        candidates = self._moved(np.hstack([theta, amounts]))
+        infinite error, and no change. alone: of the error without its changes."""
+        simulator, several = self.simulator, 1 if alone else 1 + amounts.shape[1]
+        complete = np.hstack([theta, amounts])
+        candidates = complete if alone else self._moved(complete)
         signals = 1 + simulator.additions.signals
         tables = np.zeros((len(self._scales), len(theta), signals + several, signals + several))
         level: Array | None = None  # of which nothing is left beside an offset; its square would drown small errors
@@ -125,6 +135,14 @@ class Amounts:
         rows = {axis: [k for k, entry in enumerate(model.amounts) if entry.axis == axis] for axis in model.measured}
         directions = {axis: changes[rows[axis], i] for i, axis in enumerate(model.measured)}
         return Held(complete[0, theta.shape[1] :], directions)
+
+
+def starts_of(entries: Sequence[Entry]) -> Array:
+    """Shares of the ranges of amounts that are sought from there, the best of these first: (starts, amounts). Zero, and
+    those of a block that cannot be left from there."""
+    each = [entry.block.starts.get(entry.parameter.name, ()) for entry in entries]
+    count = max(map(len, each), default=0)
+    return np.array([np.zeros(len(each)), *([own[k] if own else 0.0 for own in each] for k in range(count))])
 
 
 def size_of(record: Record, entry: Entry) -> float:

@@ -96,8 +96,18 @@ class Program:
 
     @cached_property
     def steps(self) -> list[tuple[int, ...]]:
-        """Rows of (address, row of the scratch, row of signals, tile, first sample), for the kernel."""
-        return [(self.address(item), item.row, 2 * item.axis, item.tile, 0) for item in self.operations]
+        """Rows of (address, row of the scratch, row of signals, tile, first sample), for the kernel: what is not of the
+        memory sets out from rest where that of what was before the record has led."""
+        lead = 0 if self.single else self.model.lead * self.substeps
+        return [
+            (self.address(item), item.row, 2 * item.axis, item.tile, 0 if self._remembers(item) else lead)
+            for item in self.operations
+        ]
+
+    @staticmethod
+    def _remembers(item: Operation) -> bool:
+        """Whether an operation is a part of the memory, or feeds it."""
+        return item.block is None or item.place == Place.OPERATOR or item.block.lead > 0
 
     def address(self, item: Operation) -> int:
         """Of the compiled function of an operation."""
@@ -112,6 +122,11 @@ class Program:
     def substeps(self) -> int:
         """Steps of the simulation in a sample."""
         return self.model.oversample * self.record.steps
+
+    @property
+    def lead(self) -> int:
+        """Samples that are simulated ahead of the record."""
+        return self.model.lead + self.record.run_in * self.record.samples
 
     def _append(self, block: type[Block], axis: int) -> None:
         """Add a block of one axis, in the variant that the blocks around it require."""
@@ -214,10 +229,9 @@ class Program:
         span, peak = float(np.ptp(drive)), float(np.abs(drive).max())
         duration = self.record.dt * (self.record.samples - 1)
         known = {"dt": self.record.dt / self.substeps, "span": span, "peak": peak, "duration": duration}
-        known["from_rest"] = float(self.model.from_rest)
+        known |= {"from_rest": float(self.model.from_rest), "lead": float(self.model.lead * self.substeps)}
         if issubclass(block, Addition):
-            first = self.record.run_in * self.record.samples
-            known |= {"_first": first, "_start": self.record.start, "_dt": self.record.dt}
+            known |= {"_first": self.lead, "_start": self.record.start, "_dt": self.record.dt}
         return nulls | block.numbers() | known
 
     def _weigh(self, block: type[Modes], mode: int, row: int) -> int:

@@ -86,7 +86,7 @@ class Simulator:
     def simulate(self, theta: Array) -> Array:
         """Responses without the free offset, SI units: (candidates, measured axes, samples). Without the amounts of the
         record, unless theta has them."""
-        return next(self._stretches(np.atleast_2d(theta), self.record.samples * (self.record.run_in + 1)))[1]
+        return next(self._stretches(np.atleast_2d(theta), self._program.lead + self.record.samples))[1]
 
     def tiles(self, theta: Array) -> Iterator[tuple[slice, Array]]:
         """Model minus measurement over the scored samples, with the offset, a stretch after the other: its samples, and
@@ -115,7 +115,7 @@ class Simulator:
         scratch = self._program.scratch(fewer.theta, self._rows)
         shared = self._shared(scratch, np.array(self._program.steps, dtype=np.int64).reshape(-1, 5))
         length = -(-most // TILE) * TILE
-        lead, samples = self.record.run_in * self.record.samples, self.record.samples
+        lead, samples = self._program.lead, self.record.samples
         for first in range(0, lead + samples, length):
             last = min(first + length, lead + samples)
             at = slice(max(first - lead, 0), last - lead)
@@ -149,8 +149,7 @@ class Simulator:
         sums = scratch.reshape(scratch.shape[0], self._rows, WIDTH)[:, self._sums :]
         self.additions.begin(sums)
         shared = self._shared(scratch, self._scoring)
-        last = self.record.samples * (self.record.run_in + 1)
-        self._run(scratch, *shared, np.empty((0, 0, 0)), 0, last)
+        self._run(scratch, *shared, np.empty((0, 0, 0)), 0, self._program.lead + self.record.samples)
         table = sums.reshape(-1, len(self.model.measured), self._each, WIDTH).transpose(0, 3, 1, 2)
         table = fewer.of_candidates(table.reshape(-1, *table.shape[2:])[: len(fewer.theta)])
         if self.model.additions:
@@ -179,7 +178,7 @@ class Simulator:
         complete = self.amounts.complete(np.atleast_2d(theta))
         response = self.simulate(complete)[0]
         sizes = self.additions.sizes(self.record.response[list(self.model.measured)] - response, theta)
-        ahead = {entry.block.name for entry in self.model.amounts}
+        ahead = {entry.block.name for entry in self.model.amounts if not entry.block.lead}
         moved = response - self.simulate(theta)[0] if ahead else response
         return sizes | dict.fromkeys(ahead, np.std(moved[:, self.record.settle :], axis=1))
 
@@ -198,7 +197,7 @@ class Simulator:
         """The program, followed by the sums of errors."""
         from pzt_ident.engine.kernel import address
 
-        since = self.record.run_in * self.record.samples + self.record.settle
+        since = self._program.lead + self.record.settle
         responses = 2 * len(self.model.axes)  # first row of signals after those of the drives
         sums, added = address("products" if self.model.additions else "errors"), []
         for i, a in enumerate(self.model.measured):
@@ -218,11 +217,11 @@ class Simulator:
     def _run(
         self, scratch: Array, steps: NDArray[np.int64], signals: Array, rows: int, output: Array, first: int, last: int
     ) -> None:
-        """Step from sample `first` to sample `last`, counted from the start of the run-in. rows: that are run."""
+        """Step from sample `first` to sample `last`, counted from where the lead begins. rows: that are run."""
         from pzt_ident.engine.kernel import WIDTH, run
 
         fine = self.substeps
-        since = self.record.run_in * self.record.samples * fine
+        since = self._program.lead * fine
         tiles = self._program.tiles + self.additions.tiles
         run(steps, signals, scratch, tiles, first * fine, last * fine, since, fine, output, self._measured)
         work.add(work.of_run(len(scratch) * WIDTH, (last - first) * fine, rows))
@@ -231,21 +230,22 @@ class Simulator:
     def _signals(self) -> Array:
         """The signals that the kernel reads, one array for all models with the same substeps and measured axes."""
         cached = SIGNALS.setdefault(self.record, {})
-        key = self.substeps, self.model.oversample > 1, self.model.measured
+        key = self.substeps, self.model.oversample > 1, self.model.measured, self.model.lead
         if key not in cached:
             cached[key] = self._build_signals()
         return cached[key]
 
     def _build_signals(self) -> Array:
-        """Rows: each drive over run-in and record, followed by its runs, then the responses about their means; with a
-        sample of rest ahead and padding behind."""
+        """Rows: each drive over lead, run-in and record, followed by its runs, then the responses about their means;
+        with a sample of rest ahead and padding behind."""
         from pzt_ident.engine.kernel import PADDING, runs_of
 
         record, model = self.record, self.model
-        samples = record.samples * (record.run_in + 1) * self.substeps
+        ahead = model.lead * self.substeps
+        samples = ahead + record.samples * (record.run_in + 1) * self.substeps
         table = np.zeros((2 * len(record.drive) + len(model.measured), 1 + samples + PADDING))
         for row, drive in zip(table[0::2], record.drive, strict=False):
-            row[1 : 1 + samples] = np.tile(self._fine(drive), record.run_in + 1)
+            row[1 : 1 + samples] = np.pad(np.tile(self._fine(drive), record.run_in + 1), (ahead, 0), mode="edge")
         for i in range(len(record.drive)):
             table[2 * i + 1, 1 : 1 + samples] = runs_of(table[2 * i, 1 : 1 + samples])
         for row, axis in zip(table[2 * len(record.drive) :], model.measured, strict=True):

@@ -115,7 +115,7 @@ def run(program, steps, signals, rows, row, scratch, groups, group, at, tiles, b
                         program[s],
                         here - skip,
                         first + skip,
-                        1 if first == 0 else 0,
+                        1 if first <= program[s + 4] else 0,
                         signals + row * program[s + 2] + 8,
                         signals + row * min(program[s + 2] + 1, rows - 1) + 8,
                         scratch + group * g + 8 * WIDTH * program[s + 1],

@@ -127,9 +127,15 @@ def _model(document: Document, items: tuple[str | Choice, ...], earlier: Earlier
         elif folder in folders:
             message = f"{word!r} beside {folders[folder]!r}: two blocks of {folder}"
             document.fault(loc, message, "keep one of the two")
-        elif not isinstance(item, str):
+        elif isinstance(item, str):
+            with _as_fault(document, ("model", i)):
+                blocks[item]
+        else:
             _settings(document, ("model", i), item, blocks[word].form_of(item.settings).make)
         folders[folder] = word
+    if folders.keys() == {"start"}:
+        remedy = "add one, see `pzt-ident list blocks`"
+        document.fault(("model",), f"nothing responds to the drive beside {folders['start']!r}", remedy)
 
 
 def _plugins(document: Document, files: tuple[str, ...], earlier: Earlier) -> None:

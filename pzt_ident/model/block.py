@@ -50,8 +50,9 @@ class Place(IntEnum):
 class Block:
     """One box of the signal chain, acting on each axis with that axis' own parameters.
 
-    prepare(*parameters[, dt][, span][, peak][, duration][, from_rest][, settings]) -> coefficients; dt: sample time in
-    s; span, peak: the peak-to-peak drive of the axis and its largest magnitude; duration: of the record in s;
+    prepare(*parameters[, dt][, span][, peak][, duration][, lead][, from_rest][, settings]) -> coefficients; dt: sample
+    time in s; span, peak: the peak-to-peak drive of the axis and its largest magnitude; duration: of the record in s;
+    lead: steps of the simulation ahead of the record;
     from_rest: 1 in a chain with a block that is `about_rest`, such as a spring that is not bent at rest, else 0: an
     operator then counts its response from that at rest, at zero drive. Parameters that
     are `per_record` follow from least squares on each record, and are at their null where nothing was measured.
@@ -70,6 +71,8 @@ class Block:
     name: ClassVar[str] = ""
     place: ClassVar[Place]
     oversample: ClassVar[int] = 1
+    starts: ClassVar[Mapping[str, tuple[float, ...]]] = {}  # of amounts that are not found from zero: shares of a bound
+    lead: ClassVar[int] = 0  # samples ahead of a record in which it acts on the memory, all else being at rest
     look_alikes: ClassVar[tuple[str, ...]] = ()
     contains: ClassVar[tuple[str, ...]] = ()
     separate_by: ClassVar[str] = ""

@@ -153,6 +153,11 @@ class Chain:
         return tuple(entry.name for entry in self.entries)
 
     @property
+    def lead(self) -> int:
+        """Samples ahead of a record in which a block leads the memory to where it was when the record began."""
+        return max((block.lead for block in self.blocks), default=0)
+
+    @property
     def oversample(self) -> int:
         return max((block.oversample for block in self.blocks), default=1)
 

@@ -250,6 +250,8 @@ class Blocks(Registry[Any]):
 
 
 blocks = Blocks(
-    "block or effect", ("pzt_ident.hysteresis", "pzt_ident.mechanics", "pzt_ident.effects"), "pzt_ident.block"
+    "block or effect",
+    ("pzt_ident.start", "pzt_ident.hysteresis", "pzt_ident.mechanics", "pzt_ident.effects"),
+    "pzt_ident.block",
 )
 optimizers: Registry[Any] = Registry("optimizer", ("pzt_ident.optimizers",), "pzt_ident.optimizer")

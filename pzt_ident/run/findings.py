@@ -18,6 +18,7 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.caveats import broken_conditions, caveats, misfit_sentences
 from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, removed_rms
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.history import history_sentence
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.unmeasured import own_mechanics_sentence
 from pzt_ident.diagnosis.verdict import Diagnosis
@@ -47,7 +48,7 @@ def improvement_of(
     undecided = dict.fromkeys(step.tied for step in ties(steps))
     reason += "".join(f" These data cannot tell {' from '.join(map(phrase_of, tied))}." for tied in undecided)
     reason += no_drive_sentence(job, case, [step.rivals for step in ties(steps)]) if undecided and not proposed else ""
-    reason += narrow_bounds_sentence(case, end) + own_mechanics_sentence(case, end)
+    reason += narrow_bounds_sentence(case, end) + own_mechanics_sentence(case, end) + history_sentence(case, end)
     of_end = caveats(case, end)
     reason += "" if of_end in reason else of_end  # the last diagnosis may be of this fit
     return {
@@ -122,7 +123,7 @@ def stair(case: Case, step: stairs.Step, budget: Budget | None = None) -> dict[s
         "explained": step.explained,
         "expected": step.expected,
         "parameters": parameters_of(step.fit, budget),
-        "model": list(map(word_of, case.words_of(step.fit))),
+        "model": [*map(word_of, case.words_of(step.fit))],
         "bounds": bounds_that_changed(case, step.fit),
         "effects": list(step.fit.effects),
         "steps": list(step.fit.steps),

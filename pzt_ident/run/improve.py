@@ -23,7 +23,6 @@ from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.files import write_sealed, write_text
 from pzt_ident.job.edit import edited
 from pzt_ident.job.schema import Job
-from pzt_ident.model.registry import word_of
 from pzt_ident.run.events import Event, Listen, event_log, nobody, sentence
 from pzt_ident.run.findings import diagnosis_of, improvement_of, size_of, stair, ties
 from pzt_ident.run.folder import begin, results_folder
@@ -196,5 +195,5 @@ def improved(job: Job, case: Case, end: Fit, folder: Path) -> str:
     words = case.words_of(end)
     values = case.unmeasured_nulls(end.effects) if end.measured_only else {}
     bounds = bounds_that_changed(case, end)
-    blocks = None if words == case.words else list(map(word_of, words))
+    blocks = None if words == case.words else [item if isinstance(item, str) else item.name for item in words]
     return edited(job, end.effects, folder, blocks, steps=end.steps, values=values, bounds=bounds)

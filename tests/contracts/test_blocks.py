@@ -43,11 +43,13 @@ def at(place):
 BESIDE = [word for word in WORDS if issubclass(blocks[word], Beside)]
 FORMS = [f"{word}:{each}" for word in IN_CHAIN for item in blocks[word].settings().values() for each in words_of(item)]
 FORMS = [form for form in FORMS if not issubclass(block_of(form), Term)]
-ALONE = [*IN_CHAIN, *FORMS, *map(" ".join, HOSTS)]
+LEADS = [item for item in [*IN_CHAIN, *FORMS] if block_of(item).lead]
+ALONE = [item for item in [*IN_CHAIN, *FORMS, *map(" ".join, HOSTS)] if item not in LEADS]
 BESIDE_OTHERS = [
     *map(" ".join, product(at(Place.READOUT), at(Place.OPERATOR))),
     *map(" ".join, product(at(Place.MECHANICS), BESIDE)),
     *map(" ".join, product(OPERATORS, ADDITIONS)),
+    *map(" ".join, product(LEADS, [word for word in at(Place.OPERATOR) if not issubclass(blocks[word], Relays)])),
     " ".join(["bouc_wen", *(term for term in TERMS if term in blocks["bouc_wen"].effects()), *at(Place.READOUT)]),
     *(f"bouc_wen {form}" for form in FORMS if block_of(form).place == Place.READOUT),
 ]

@@ -267,6 +267,16 @@ def test_two_operators_do_not_go_together():
     assert "10:27: model[2]: 'prandtl_ishlinskii' beside 'bouc_wen': two blocks of hysteresis" in message
 
 
+def test_what_was_before_a_record_is_no_model_by_itself():
+    message = faults(GOOD.replace("[bouc_wen, lumped]", "[history]"))
+    assert "10:8: model: nothing responds to the drive beside 'history'" in message
+
+
+def test_a_form_that_a_block_does_not_have_is_told():
+    message = faults(GOOD.replace("[bouc_wen, lumped]", "[history.tow, bouc_wen, lumped]"))
+    assert "10:9: model[0]: history.form: 'tow' is no such form\n  did you mean 'two'?" in message
+
+
 def test_something_must_be_left_to_identify():
     fixed = "".join(f"  bouc_wen.{word}: {{value: 0.5}}\n" for word in ("gain", "alpha", "beta", "gamma"))
     text = GOOD.replace(", lumped]", "]").replace("effects: [cross_coupling]\n", "")

@@ -16,10 +16,11 @@ SIZES = ("span", "peak")  # of the drive of the axis itself
 def simulate(model, record, theta):
     """What `Model.simulate` gives for one candidate: (measured axes, samples). Once a number overflows, NaN.
 
-    The prompt response of an operator is driven by what the readouts make of the drive, its memory by the drive.
+    The prompt response of an operator is driven by what the readouts make of the drive, its memory by the drive. What
+    was before the record is nothing: its amounts are at their null.
     """
     drives = [np.tile(fine(row, model, record), record.run_in + 1) for row in record.drive]
-    early = [block for block in model.blocks if block.place < Place.READOUT]
+    early = [block for block in model.blocks if block.place < Place.READOUT and not block.lead]
     readouts = [block for block in model.blocks if block.place == Place.READOUT]
     middle = [block for block in model.blocks if Place.READOUT < block.place < Place.GUIDE]
     late = [block for block in model.blocks if block.place >= Place.GUIDE]

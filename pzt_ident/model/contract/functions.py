@@ -14,7 +14,7 @@ from pzt_ident.model.contract.declared import fault, parameters
 from pzt_ident.model.contract.kinds import ANY, BRANCHED, KINDS, Signature, kind_of, signatures
 from pzt_ident.model.parameter import Setting
 
-MEASURED = ("dt", "span", "peak", "duration", "from_rest")
+MEASURED = ("dt", "span", "peak", "duration", "lead", "from_rest")
 EXAMPLE = {
     "dt": 1e-3,
     "span": 1.0,
@@ -23,6 +23,7 @@ EXAMPLE = {
     "low": 0.0,
     "sign": 1.0,
     "duration": 1.0,
+    "lead": 1.0,
     "from_rest": 1.0,
 }
 Known = dict[str, Any]

@@ -1,0 +1,127 @@
+"""Records that start in the middle of a motion: the model as given, with what the stage went through before them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pzt_ident.data.notation import listed, quantity
+from pzt_ident.data.units import factor
+from pzt_ident.diagnosis.candidates import TIE
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, LEAST_SHARE, adequate, removed_rms
+from pzt_ident.diagnosis.fit import Fit, fit_at
+from pzt_ident.diagnosis.misfit import share_explained
+from pzt_ident.diagnosis.refit import refit, start_of
+from pzt_ident.diagnosis.undetermined import has_operator
+from pzt_ident.diagnosis.verdict import Diagnosis
+from pzt_ident.engine.simulator import Simulator
+from pzt_ident.model.block import Operator, Place
+from pzt_ident.model.registry import blocks, word_of
+
+Array = NDArray[np.float64]
+
+HISTORY = "history"  # the word of the block
+BEFORE = "what was before the records"  # the step after which a model follows it
+TRIED = 3  # effects beside which it is looked for
+PROMISING = 0.02  # of the misfit: what is removed at once, with all parameters as they are
+
+
+def with_history(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fit] | None:
+    """The case whose model follows what was before the records, and the fit as given in it, where that removes most of
+    the misfit or more than any effect, alone or beside one of the best of these; None elsewhere, and where an effect
+    alone leads to the noise as well. diagnosis: of the fit."""
+    if has_history(first) or not has_operator(case):
+        return None
+    best = beside(case, first)
+    effects = sorted((item.fit for item in diagnosis.passing if item.fit), key=lambda fit: fit.total)
+    left = best[1].total if best else first.total
+    if any(adequate(case, first, fit) and removed_rms(fit.total, left) < TIE * case.floor for fit in effects):
+        return None
+    share = share_explained(first.total, best[1].total, case.floor) if best else 0.0
+    least = DECISIVE if best and any(removed_rms(fit.total, best[1].total) < 0 for fit in effects) else LEAST_SHARE
+    if share >= least:
+        return best
+    behind = (history_behind(case, first, fit) for fit in effects[:TRIED])
+    return next((found for found in behind if found), None)
+
+
+def history_behind(case: Case, first: Fit, end: Fit) -> tuple[Case, Fit] | None:
+    """The same where what was before the records shows behind the effects of a fit, most of what these leave; else
+    None."""
+    best = None if has_history(end) or not has_operator(case) else beside(case, end)
+    if best is None or share_explained(end.total, best[1].total, case.floor) < DECISIVE:
+        return None
+    return best[0], refit(best[0], first, first.effects, {})
+
+
+def beside(case: Case, fit: Fit) -> tuple[Case, Fit] | None:
+    """The case whose model follows what was before the records, with as few reversals as do, and the refit in it; None
+    where it promises nothing."""
+    best: tuple[Case, Fit] | None = None
+    for item in blocks.forms(HISTORY) if remembers_reversals(case) else [HISTORY]:
+        aged = case.with_words((item, *case.words))
+        if promise(aged, fit) >= PROMISING and case.budget.allows(BEFORE):
+            other = refit(aged, fit, fit.effects, {})
+            if best is None or removed_rms(best[1].total, other.total) > CLEAR * case.floor:
+                best = aged, other
+        if best and adequate(case, fit, best[1]):
+            break
+    return best
+
+
+def remembers_reversals(case: Case) -> bool:
+    """Whether the hysteresis has more than one number to remember, as plays have."""
+    return any(block.place == Place.OPERATOR and not issubclass(block, Operator) for block in blocks.chain(case.words))
+
+
+def at_rest(case: Case) -> Case:
+    """The case whose model starts every record from rest."""
+    return case.with_words([item for item in case.words if word_of(item) != HISTORY])
+
+
+def has_history(fit: Fit) -> bool:
+    """Whether a model follows what was before the records."""
+    return any(block.lead for block in fit.problem.model.blocks)
+
+
+def promise(aged: Case, first: Fit) -> float:
+    """The share of the misfit that goes with what was before the records, all parameters being as they are."""
+    problem = aged.problem(first.effects, first.steps)
+    fit = fit_at(first.effects, problem, start_of(problem, first, {}))
+    return share_explained(first.total, fit.total, aged.floor)
+
+
+def history_sentence(case: Case, fit: Fit) -> str:
+    """A sentence on the records of which the start shows what was before them, with their last reversals; empty where
+    there are none."""
+    if not has_history(fit):
+        return ""
+    problem = fit.problem
+    theta = problem.parameters(fit.point)
+    told = [
+        f"{simulator.record.name} at {quantity(turned, unit)}"
+        for simulator in problem.every_simulator
+        if shows(case, simulator, theta)
+        for turned, unit in last_reversals(simulator, theta)
+    ]
+    said = f" Records do not start at rest: the hysteresis remembers a reversal ahead of {listed(told)}."
+    return said if told else ""
+
+
+def shows(case: Case, simulator: Simulator, theta: Array) -> bool:
+    """Whether a record shows what was before it."""
+    moved = simulator.simulate(simulator.amounts.complete(theta)) - simulator.simulate(theta)
+    rms = np.std(moved[0, :, simulator.record.settle :], axis=1) / case.error_scales
+    return bool((rms > CLEAR * case.floors).any())
+
+
+def last_reversals(simulator: Simulator, theta: Array) -> Iterator[tuple[float, str]]:
+    """The last reversal ahead of a record, by axis, with its unit."""
+    record, amounts = simulator.record, simulator.amounts.complete(theta)[0, theta.shape[1] :]
+    for entry, value in zip(simulator.model.amounts, amounts, strict=True):
+        if entry.block.lead and entry.word == "last":
+            unit = record.drive_units[entry.axis]
+            yield (record.drive[entry.axis, 0] + value) / factor(unit), unit

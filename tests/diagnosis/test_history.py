@@ -1,0 +1,58 @@
+"""Records that start in the middle of a motion: no effect is named for it, and what is missing is named beside it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import rig
+import stage
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.history import BEFORE, has_history, history_sentence, with_history
+from pzt_ident.diagnosis.staircase import improve
+from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.diagnosis.verdict import diagnose
+from pzt_ident.model.registry import word_of
+
+LED = rig.path(0, 100, 10, 90, 45, points=60)  # what was before: the hysteresis is far from rest, at 45 V
+DRIVES = rig.path(45, 100, 20, 80, 0, 60, points=150), rig.path(45, 70, 10, 110, 40, 90, points=150)
+KNOWN = {
+    "quadratic_gain": stage.EFFECTS["quadratic_gain"],
+    "amplifier_lag": {"amplifier_lag.tau": 0.02},
+}
+
+
+def begun_in_motion(effect=None, words=("bouc_wen",)):
+    """A stage whose records are the ends of longer ones."""
+    whole = [np.concatenate([LED, np.full(2, LED[-1]), drive]) for drive in DRIVES]
+    made = stage.records(KNOWN.get(effect, {}), drives=whole)
+    since = LED.size + 2
+    cut = [replace(each, drive=each.drive[:, since:], response=each.response[:, since:]) for each in made]
+    return Case(words, (), cut, stage.specs({}))
+
+
+@pytest.mark.parametrize("effect", [None, *KNOWN])
+def test_what_is_missing_is_named_and_nothing_for_the_start(effect):
+    case = begun_in_motion(effect)
+    found = improve(case, first_fit(case, 0))
+    end = found.steps[-1].fit
+    assert found.last.verdict == "adequate"
+    assert [*map(word_of, end.effects)] == ([effect] if effect else [])
+    assert found.steps[0].change == "" and found.steps[1].change == BEFORE and has_history(end)
+    assert case.words_of(end) == ("history", "bouc_wen")
+    assert "the hysteresis remembers a reversal ahead of identify" in history_sentence(case, end)
+
+
+def test_records_that_start_at_rest_have_nothing_before_them():
+    case = stage.case(stage.EFFECTS["creep"])
+    first = first_fit(case, 0)
+    assert with_history(case, first, diagnose(case, first)) is None
+    assert not has_history(first) and history_sentence(case, first) == ""
+
+
+def test_a_job_that_follows_what_was_before_is_followed():
+    case = begun_in_motion(words=("history", "bouc_wen"))
+    first = first_fit(case, 0)
+    found = improve(case, first)
+    assert has_history(first) and found.last.verdict == "adequate" and len(found.steps) == 1
+    assert case.words_of(first) == ("history", "bouc_wen")
