@@ -23,12 +23,12 @@ def _make(job):
     return home
 
 
-def _solve(job, limit, on):
-    _say(job, solve.solve(Path(job[2]) / f"{job[0]}-{job[1]}", limit, on))
+def _solve(job, **how):
+    _say(job, solve.solve(Path(job[2]) / f"{job[0]}-{job[1]}", **how))
 
 
-def _follow(job, limit, on):
-    if answer := follow.follow(Path(job[2]) / f"{job[0]}-{job[1]}", limit, on):
+def _follow(job, **how):
+    if answer := follow.follow(Path(job[2]) / f"{job[0]}-{job[1]}", **how):
         _say(job, answer)
 
 
@@ -47,6 +47,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--limit", type=float, default=900, help="seconds for each answer")
     parser.add_argument("--on", default="", help="where the answers are found, as of `pzt-ident improve --on`")
+    parser.add_argument("--budget", default="", help="of each answer, as of `pzt-ident improve --budget`")
     given = parser.parse_args()
     work = [(kind, seed, given.out) for kind in given.kind.split(",") for seed in given.seeds]
     if given.task in ("cases", "solve"):
@@ -56,7 +57,7 @@ def main():
     if given.task in ("solve", "follow"):
         act = _solve if given.task == "solve" else _follow
         with ThreadPoolExecutor(given.jobs) as threads:
-            list(threads.map(partial(act, limit=given.limit, on=given.on), work))
+            list(threads.map(partial(act, limit=given.limit, on=given.on, budget=given.budget), work))
     if given.task == "table":
         rows = score.rows(given.out)
         (Path(given.out) / "rows.json").write_text(json.dumps(rows, indent=1))

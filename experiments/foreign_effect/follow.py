@@ -14,7 +14,7 @@ from .solve import solve
 from .visibility import Rig
 
 
-def follow(home, limit, on=""):
+def follow(home, limit, on="", budget=""):
     """The second answer, in home/followed; None where there is no tie or no drive was proposed."""
     home = Path(home)
     improvement = json.loads((home / "solved.json").read_text())["improvement"]
@@ -31,7 +31,7 @@ def follow(home, limit, on=""):
         jobs.write_record(job.parent, case, last, record, play(case, record))
         added = f"records:\n{jobs.record_line(case, last, record)}\n"
         job.write_text(job.read_text().replace("records:\n", added, 1))
-    return solve(home / "followed", limit, on)
+    return solve(home / "followed", limit, on, budget)
 
 
 def proposed(case, path):

@@ -31,9 +31,10 @@ def _wait(process, limit):
         time.sleep(0.2)
 
 
-def solve(home, limit, on=""):
+def solve(home, limit, on="", budget=""):
     """Answer of the tool on the case in `home`; it is given home/rig only. A case that has one is skipped. on: the
-    place where the tool works, if not here; what it does there is not counted as its CPU."""
+    place where the tool works, if not here; what it does there is not counted as its CPU. budget: the tool's own, or as
+    `--budget` has it."""
     home = Path(home)
     done = home / "solved.json"
     if done.exists():
@@ -41,7 +42,7 @@ def solve(home, limit, on=""):
     answer = home / "answer"
     shutil.rmtree(answer, ignore_errors=True)
     command = [COMMAND, "improve", (home / "rig" / "job.yaml").resolve(), "--out", answer.resolve()]
-    command += ["--no-report", "--quiet", *(["--on", on] if on else [])]
+    command += ["--no-report", "--quiet", *(["--on", on] if on else []), *(["--budget", budget] if budget else [])]
     started = time.monotonic()
     environment = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     with open(home / "said.txt", "w") as said:
