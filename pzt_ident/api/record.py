@@ -34,7 +34,8 @@ class Record:
     y: the response likewise; an axis without one is driven but not measured. Without any y the record is a drive.
     drive, response: their units, for all axes or by axis. name: without one it is called train or test, by its use.
     settle: s, or text such as `"20 ms"`, at the start that are simulated but not scored. run_in: how often the drive is
-    simulated before the first sample, for a periodic record in steady state. steps: of the simulation in a sample.
+    simulated before the first sample, for a periodic record in steady state. denoise_drive: whether noise of the drive,
+    as of a monitor output, is left out. steps: of the simulation in a sample.
     Raises InputError where shapes or units do not fit; gaps, time stamps and constant responses are looked at when the
     record is identified from.
     """
@@ -50,12 +51,13 @@ class Record:
         name: str = "",
         settle: float | str = 0.0,
         run_in: int = 0,
+        denoise_drive: bool = False,
         steps: int = 1,
     ) -> None:
         if not isinstance(name, str):
             raise InputError(f"{name!r} is no text", where="name", remedy="give text such as 'slow'")
         title = name or "record"
-        self.name, self.run_in, self.steps = name, run_in, steps
+        self.name, self.run_in, self.steps, self.denoise_drive = name, run_in, steps, denoise_drive
         self.settle = seconds(settle, f"{title}: settle")
         self.rate, self.t = rate_or_stamps(t, f"{title}: t")
         samples = None if self.t is None else self.t.size
@@ -133,6 +135,7 @@ class Record:
             for a, unit in zip(record.measured, record.units.values(), strict=True)
         }
         known: dict[str, Any] = {"settle": record.settle * record.dt, "run_in": record.run_in, "steps": record.steps}
+        known["denoise_drive"] = record.denoise_drive
         known |= {"name": record.name, "drive": drives, "response": record.units}
         return cls(record.time, signals, responses or None, **(known | more))
 

@@ -103,7 +103,12 @@ def uniform(record: Record, axes: Sequence[str]) -> data.Record:
     """The drives of a record on a uniform grid, in SI units, the axes in this order."""
     headers = record.channels()
     channels = {axis: data.Axis(data.Channel(name=headers[axis]["drive"])) for axis in axes}
-    settings: dict[str, Any] = {"sample_rate": record.rate, "run_in": record.run_in, "steps": record.steps}
+    settings: dict[str, Any] = {
+        "sample_rate": record.rate,
+        "run_in": record.run_in,
+        "denoise_drive": record.denoise_drive,
+        "steps": record.steps,
+    }
     source = data.Source(file_of(record), name=record.name, **settings)
     time = data.Channel(name="time [s]") if record.t is not None else None
     with as_arguments():
@@ -163,7 +168,7 @@ def _named(each: Sequence[Record], word: str, taken: set[str]) -> Iterator[Recor
 def _record(record: Record, use: str, stamps: bool) -> dict[str, Any]:
     facts: dict[str, Any] = {"file": file_of(record), "use": use, "name": record.name}
     facts |= {} if stamps else {"sample_rate": record.rate}
-    usual = {"settle": 0.0, "run_in": 0, "steps": 1}
+    usual = {"settle": 0.0, "run_in": 0, "denoise_drive": False, "steps": 1}
     return facts | {key: getattr(record, key) for key, value in usual.items() if getattr(record, key) != value}
 
 

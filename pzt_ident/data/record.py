@@ -40,8 +40,9 @@ class Source:
 
     sample_rate: Hz, where no column has the time. rows: counted from 0, the end excluded. time: an interval, s. settle:
     the time at the start that is simulated but not scored, s. decimate: every n-th sample is taken. run_in: how often
-    the drive is simulated before the first sample, for a periodic record in steady state. steps: of the simulation in a
-    sample. dataset, table, sheet and index: which part of a file with several ones, and of an array.
+    the drive is simulated before the first sample, for a periodic record in steady state. denoise_drive: whether noise
+    of the recorded drive is left out; it turns where that goes back by more. steps: of the simulation in a sample.
+    dataset, table, sheet and index: which part of a file with several ones, and of an array.
 
     `channels` overrides channels in this record, by `time`, `drive`, `response` or, of one axis, `x.drive`:
     `{response: {file: y.npy}}` takes every response from another file.
@@ -56,6 +57,7 @@ class Source:
     settle: float = 0.0
     decimate: int = 1
     run_in: int = 0
+    denoise_drive: bool = False
     steps: int = 1
     dataset: str | None = None
     table: int | str | None = None
@@ -71,6 +73,7 @@ class Record:
     drive, response: (axes, samples); the response of an axis that is not measured is NaN throughout.
     dt, start: sample time and first time stamp, s. settle: samples simulated but not scored at the start.
     run_in: how often the drive is simulated before the first sample (a periodic record in steady state).
+    denoise_drive: whether the drives are without the noise that was recorded.
     steps: simulation steps per sample.
     sha256: of the file as read. rows: the first row of the file that the record holds, and the first after it.
     judges: whether a model is judged by it; a record kept back may show what the others leave open.
@@ -84,6 +87,7 @@ class Record:
     start: float = 0.0
     settle: int = 0
     run_in: int = 0
+    denoise_drive: bool = False
     steps: int = 1
     file: str = ""
     sha256: str = ""

@@ -14,6 +14,7 @@ from pzt_ident.diagnosis.candidates import TIE, Candidate
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, climb
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms, removes_enough
+from pzt_ident.diagnosis.drive_noise import QUIET, with_quiet_drives
 from pzt_ident.diagnosis.exchange import (
     add_rivals_beside,
     drop_outdone_rivals,
@@ -46,6 +47,9 @@ PROVEN = "back to what is proven"  # the step that goes back to an earlier one
 def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
     """The staircase from the model as given to the one with all effects that are proven, judged by the records that can
     judge it."""
+    quiet = with_quiet_drives(case, first)
+    if quiet:
+        return improve_otherwise(case, first, *quiet, QUIET, on_step)
     settled = adequate(case, first, first) or needs_wider_bounds(case, first)
     diagnosis = None if settled else diagnose(case, first)
     told = with_history(case, first, diagnosis) if diagnosis else None
@@ -88,14 +92,20 @@ def needs_wider_bounds(case: Case, first: Fit) -> bool:
 
 
 def improve_aged(case: Case, first: Fit, aged: Case, start: Fit, on_step: StepListener) -> Staircase:
-    """The staircase where the model follows what was before the records."""
+    """The staircase where the model follows what was before the records, if it must."""
+    return with_least_history(case, first, improve_otherwise(case, first, aged, start, BEFORE, on_step))
+
+
+def improve_otherwise(case: Case, first: Fit, other: Case, start: Fit, change: str, on_step: StepListener) -> Staircase:
+    """The staircase in another case than that of the first fit. start: the fit of the model as given there. change:
+    what is other."""
     on_step(Step(first))
-    staircase = improve(aged, start, on_step)
+    staircase = improve(other, start, on_step)
     share = explained_share(case, first, start)
-    staircase.steps[0] = replace(staircase.steps[0], explained=share, change=BEFORE, case=aged)
+    staircase.steps[0] = replace(staircase.steps[0], explained=share, change=change, case=other)
     staircase.steps.insert(0, Step(first))
-    staircase.case = staircase.case or aged
-    return with_least_history(case, first, staircase)
+    staircase.case = staircase.case or other
+    return staircase
 
 
 def improve_judged(case: Case, first: Fit, on_step: StepListener, diagnosis: Diagnosis | None = None) -> Staircase:

@@ -14,6 +14,7 @@ from pzt_ident.data.record import Record
 from pzt_ident.diagnosis import staircase as stairs
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import adequate
+from pzt_ident.diagnosis.drive_noise import quieted
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.judges import judged
 from pzt_ident.diagnosis.proof import Suspect, unproven
@@ -158,7 +159,8 @@ def on_all_samples(case: Case, thin: Case, staircase: Staircase) -> Staircase | 
     homes = {id(None): case}
     for few in [staircase.case, *(step.case for step in staircase.steps)]:
         if few is not None and id(few) not in homes:
-            homes[id(few)] = case.with_words(few.words).with_specs(few.specs)
+            whole = quieted(case) if any(record.denoise_drive for record in few.records) else case
+            homes[id(few)] = whole.with_words(few.words).with_specs(few.specs)
     home, steps = case, list[stairs.Step]()
     for step in staircase.steps:
         home = homes[id(step.case)] if step.case else home

@@ -91,12 +91,14 @@ def edited(
     bounds: Mapping[str, tuple[float, float]] | None = None,
     parameters: Mapping[str, Mapping[str, Any]] | None = None,
     sections: Mapping[str, Any] | None = None,
+    denoised: Sequence[bool] = (),
 ) -> str:
     """The job's text with these effects, and with paths relative to another folder.
 
     words: the blocks of the model, where it changes. steps: of the simulation in a sample, for every record.
     values: of parameters that are fixed from now on. bounds: of parameters where they change.
     parameters: what the job says of some from now on, `bounds` or `value`. sections: other sections, whole.
+    denoised: whether noise is taken out of the drive, for every record.
     """
     from ruamel.yaml import YAML
 
@@ -110,6 +112,9 @@ def edited(
     for record, source, count in zip(document["records"], job.records, steps, strict=False):
         if count != source.steps:
             record["steps"] = count
+    for record, source, quiet in zip(document["records"], job.records, denoised, strict=False):
+        if quiet and not source.denoise_drive:
+            record["denoise_drive"] = True
     ends = {name: [float(f"{low:.6g}"), float(f"{high:.6g}")] for name, (low, high) in (bounds or {}).items()}
     given = document.get("parameters") or {}
     for name in ends.keys() & given.keys():

@@ -196,4 +196,5 @@ def improved(job: Job, case: Case, end: Fit, folder: Path) -> str:
     values = case.unmeasured_nulls(end.effects) if end.measured_only else {}
     bounds = bounds_that_changed(case, end)
     blocks = None if words == case.words else [item if isinstance(item, str) else item.name for item in words]
-    return edited(job, end.effects, folder, blocks, steps=end.steps, values=values, bounds=bounds)
+    quiet = [record.denoise_drive for record in end.problem.records]
+    return edited(job, end.effects, folder, blocks, steps=end.steps, values=values, bounds=bounds, denoised=quiet)

@@ -98,11 +98,12 @@ def _record(channels: SourceChannels, axes: Mapping[str, Axis], time: Channel | 
         name=source.name or Path(source.file).stem,
         use=source.use,
         dt=grid.dt * source.decimate,
-        drive=_sampled(drives, part, source),
+        drive=_quiet(_sampled(drives, part, source)) if source.denoise_drive else _sampled(drives, part, source),
         response=_sampled(responses, part, source),
         start=grid.start + grid.dt * part.start,
         settle=round(source.settle / (grid.dt * source.decimate)),
         run_in=source.run_in,
+        denoise_drive=source.denoise_drive,
         steps=source.steps,
         file=source.file,
         sha256=channels.hash(),
@@ -148,6 +149,13 @@ def _sampled(signals: Sequence[Signal | None], part: slice, source: Source) -> N
     missing = np.full(len(range(part.start, part.stop, step)), np.nan)
     cut = [item.cut(part).complete().values if item else None for item in signals]
     return np.array([missing if values is None else decimated(values, step, periodic) for values in cut])
+
+
+def _quiet(drives: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Drives without the noise of their recording: (axes, samples)."""
+    from pzt_ident.data.drive_noise import without_noise
+
+    return np.array([without_noise(drive) for drive in drives])
 
 
 def _notes(source: Source) -> tuple[str, ...]:
