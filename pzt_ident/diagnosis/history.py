@@ -99,16 +99,13 @@ def history_sentence(case: Case, fit: Fit) -> str:
     there are none."""
     if not has_history(fit):
         return ""
-    problem = fit.problem
-    theta = problem.parameters(fit.point)
-    told = [
-        f"{simulator.record.name} at {quantity(turned, unit)}"
-        for simulator in problem.every_simulator
-        if shows(case, simulator, theta)
-        for turned, unit in last_reversals(simulator, theta)
-    ]
-    said = f" Records do not start at rest: the hysteresis remembers a reversal ahead of {listed(told)}."
-    return said if told else ""
+    theta, told = fit.problem.parameters(fit.point), list[str]()
+    for simulator in fit.problem.every_simulator:
+        if shows(case, simulator, theta):
+            told.append(f"{simulator.record.name} at {listed(last_reversals(simulator, theta))}")
+    return (
+        f" Records do not start at rest: the hysteresis remembers a reversal ahead of {listed(told)}." if told else ""
+    )
 
 
 def shows(case: Case, simulator: Simulator, theta: Array) -> bool:
@@ -118,10 +115,12 @@ def shows(case: Case, simulator: Simulator, theta: Array) -> bool:
     return bool((rms > CLEAR * case.floors).any())
 
 
-def last_reversals(simulator: Simulator, theta: Array) -> Iterator[tuple[float, str]]:
-    """The last reversal ahead of a record, by axis, with its unit."""
+def last_reversals(simulator: Simulator, theta: Array) -> Iterator[str]:
+    """The last reversal ahead of a record, of each measured axis."""
     record, amounts = simulator.record, simulator.amounts.complete(theta)[0, theta.shape[1] :]
+    several = len(record.measured) > 1
     for entry, value in zip(simulator.model.amounts, amounts, strict=True):
         if entry.block.lead and entry.word == "last":
             unit = record.drive_units[entry.axis]
-            yield (record.drive[entry.axis, 0] + value) / factor(unit), unit
+            turned = quantity((record.drive[entry.axis, 0] + value) / factor(unit), unit)
+            yield f"{turned} of {record.axes[entry.axis]}" if several else turned
