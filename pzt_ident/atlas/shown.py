@@ -87,7 +87,7 @@ class Shown:
     def _amounts(self, share: float) -> list[tuple[Parameter, float]]:
         """The parameters of which each record has its own, V or m."""
         spans = {"drive": SPAN, "response": STROKE}
-        declared = [parameter for parameter in self.block.parameters().values() if parameter.per_record]
+        declared = [p for p in self.block.parameters().values() if p.per_record and self._declares(p, self.block)]
         return [(parameter, share * parameter.bounds[1] * spans[parameter.unit]) for parameter in declared]
 
     def respond(self, drive: Drive) -> Array:
@@ -95,12 +95,14 @@ class Shown:
         return self._respond(drive, self.share)
 
     def _respond(self, drive: Drive, share: float) -> Array:
-        theta, amounts = self._theta(share), [amount for _, amount in self._amounts(share)]
+        theta, own = self._theta(share), {parameter.name: amount for parameter, amount in self._amounts(share)}
         added = issubclass(self.block, Addition)
+        ahead = [own.get(entry.word, 0.0) for entry in self.stage.chain.amounts]
         with np.errstate(all="ignore"):
-            response = self.stage.respond(drive, theta if added else np.append(theta, amounts))
+            response = self.stage.respond(drive, theta if added else np.append(theta, ahead))
         if added:
-            response = response + Additions(Program(self.stage.chain, record(drive))).basis(0, theta)[:, 1:] @ amounts
+            signals = Additions(Program(self.stage.chain, record(drive))).basis(0, theta)[:, 1:]
+            response = response + signals @ [*own.values()]
         return response
 
     def bare(self, drive: Drive) -> Array:

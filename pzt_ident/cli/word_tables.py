@@ -53,7 +53,7 @@ def _number(value: float | None) -> str:
 def _meaning(row: Facts) -> str:
     """What a parameter is, and when it is searched for."""
     fixed = "" if row["value"] is None else f" Fixed at {row['value']:g} unless the job gives bounds."
-    effect = "" if row["effect"] is None else f" With the effect {row['effect']} only."
+    effect = "" if row["effect"] is None else f" With `{row['effect']}` only."
     per_record = " Each record has its own." if row["per_record"] else ""
     form = f" With `{row['form']}` only." if row["form"] else ""
     return row["doc"] + fixed + effect + per_record + form

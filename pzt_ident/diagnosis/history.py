@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.notation import listed, quantity
-from pzt_ident.data.units import factor
+from pzt_ident.data.notation import listed
 from pzt_ident.diagnosis.candidates import TIE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, LEAST_SHARE, adequate, removed_rms
@@ -95,17 +92,12 @@ def promise(aged: Case, first: Fit) -> float:
 
 
 def history_sentence(case: Case, fit: Fit) -> str:
-    """A sentence on the records of which the start shows what was before them, with their last reversals; empty where
-    there are none."""
+    """A sentence on the records of which the start shows what was before them; empty where there are none."""
     if not has_history(fit):
         return ""
-    theta, told = fit.problem.parameters(fit.point), list[str]()
-    for simulator in fit.problem.every_simulator:
-        if shows(case, simulator, theta):
-            told.append(f"{simulator.record.name} at {listed(last_reversals(simulator, theta))}")
-    return (
-        f" Records do not start at rest: the hysteresis remembers a reversal ahead of {listed(told)}." if told else ""
-    )
+    theta = fit.problem.parameters(fit.point)
+    told = [each.record.name for each in fit.problem.every_simulator if shows(case, each, theta)]
+    return f" {listed(told)} did not start at rest, and the model follows what was before." if told else ""
 
 
 def shows(case: Case, simulator: Simulator, theta: Array) -> bool:
@@ -113,14 +105,3 @@ def shows(case: Case, simulator: Simulator, theta: Array) -> bool:
     moved = simulator.simulate(simulator.amounts.complete(theta)) - simulator.simulate(theta)
     rms = np.std(moved[0, :, simulator.record.settle :], axis=1) / case.error_scales
     return bool((rms > CLEAR * case.floors).any())
-
-
-def last_reversals(simulator: Simulator, theta: Array) -> Iterator[str]:
-    """The last reversal ahead of a record, of each measured axis."""
-    record, amounts = simulator.record, simulator.amounts.complete(theta)[0, theta.shape[1] :]
-    several = len(record.measured) > 1
-    for entry, value in zip(simulator.model.amounts, amounts, strict=True):
-        if entry.block.lead and entry.word == "last":
-            unit = record.drive_units[entry.axis]
-            turned = quantity((record.drive[entry.axis, 0] + value) / factor(unit), unit)
-            yield f"{turned} of {record.axes[entry.axis]}" if several else turned

@@ -178,7 +178,8 @@ class Simulator:
         complete = self.amounts.complete(np.atleast_2d(theta))
         response = self.simulate(complete)[0]
         sizes = self.additions.sizes(self.record.response[list(self.model.measured)] - response, theta)
-        ahead = {entry.block.name for entry in self.model.amounts if not entry.block.lead}
+        of_start = {block.name for block in self.model.blocks if block.lead}
+        ahead = {entry.parameter.effect or entry.block.name for entry in self.model.amounts} - of_start
         moved = response - self.simulate(theta)[0] if ahead else response
         return sizes | dict.fromkeys(ahead, np.std(moved[:, self.record.settle :], axis=1))
 

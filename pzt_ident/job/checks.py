@@ -172,7 +172,7 @@ def _rule_out(document: Document, words: tuple[str, ...], earlier: Earlier) -> N
 
 def _effects(document: Document, items: tuple[str, ...], earlier: Earlier) -> None:
     hosts = blocks.forms_of(earlier.get("model", ()))
-    terms = {word for block in hosts for word in block.effects()}
+    terms = {word for block in hosts for word in block.effects() if blocks.is_effect(word)}
     known, words = terms | set(blocks.effects()), list(map(word_of, items))
     for i, word in enumerate(words):
         loc: Loc = ("effects", i)

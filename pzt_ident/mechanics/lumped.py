@@ -55,6 +55,13 @@ class Lumped(Oscillator):
         effect="friction.coulomb_motion",
     )
 
+    begun = Parameter(
+        "response", (-1, 1), "Displacement from that at rest as a record begins.", 0, effect="history", per_record=True
+    )
+    swing = Parameter(
+        "response", (-1, 1), "Speed then, over the natural frequency.", 0, effect="history", per_record=True
+    )
+
     def prepare(mass, damping, stiffness, load, extra_damping, dt):
         return mode(mass + load, damping + extra_damping, stiffness, dt)
 
@@ -132,5 +139,24 @@ class Sliding(Lumped):
         return w, v, now, friction, now + w
 
 
-Lumped.forms = {"friction.motion": Rubbing, "friction.coulomb_motion": Sliding, "cubic_stiffness": Stiffening}
+class Moving(Lumped):
+    """m x'' + b x' + k x = k f, under way as a record begins: x(0) = f(0) + begun, x'(0) = omega swing."""
+
+    def prepare(mass, damping, stiffness, load, extra_damping, begun, swing, dt):
+        return begun, swing, *mode(mass + load, damping + extra_damping, stiffness, dt)
+
+    def start(u, begun, swing, r11, r12, r21, r22, b1, b2):
+        return begun, swing, u
+
+    def step(w, v, f, u, begun, swing, r11, r12, r21, r22, b1, b2):
+        w, v = oscillate(w, v, u - f, r11, r12, r21, r22, b1, b2)
+        return w, v, u, u + w
+
+
+Lumped.forms = {
+    "friction.motion": Rubbing,
+    "friction.coulomb_motion": Sliding,
+    "cubic_stiffness": Stiffening,
+    "history": Moving,
+}
 """Where two act at once the first form has the term of the other, too."""

@@ -108,8 +108,8 @@ class Block:
 
     @classmethod
     def amounts(cls) -> int:
-        """Number of parameters of which each record has its own."""
-        return sum(declared.per_record for declared in cls.parameters().values())
+        """Number of parameters of which each record has its own, but for those of an effect in its equation."""
+        return sum(declared.per_record and not declared.effect for declared in cls.parameters().values())
 
     @classmethod
     def effects(cls) -> set[str]:

@@ -59,7 +59,8 @@ class Chain:
         self.blocks = tuple(sorted(chain, key=lambda block: (block.place, issubclass(block, Coupling))))
         self.additions = tuple(block for block in blocks if issubclass(block, Addition))
         self.listed_terms = tuple(block for block in blocks if issubclass(block, Term))
-        self._listed = {item for block in self.listed_terms for item in (block.name, block.item())}
+        acting = [block for block in blocks if issubclass(block, Term) or block.lead]
+        self._listed = {item for block in acting for item in (block.name, block.item())}
         self.axes, self.measured, self.shared = tuple(axes), tuple(measured), frozenset(shared)
         entries = [entry for block in self.blocks for entry in self._entries(block, given)]
         added = [entry for block in self.additions for entry in self._entries(block, given)]

@@ -16,7 +16,8 @@ class History(Block):
     """A record that starts in motion: the hysteresis came from v = u(0) + last, the last reversal, to v = u(0).
 
     Visintin (1994), Differential Models of Hysteresis: of what was before, a memory keeps reversals alone. At the first
-    of those that are followed it is virgin, and all else is at rest. One is all that Bouc-Wen can tell.
+    of those that are followed it is virgin. One is all that Bouc-Wen can tell. `lumped` may be under way, and all else
+    is at rest.
     """
 
     place = Place.SUPPLY

@@ -290,7 +290,7 @@ class TestWords:
         monkeypatch.setitem(blocks._items, "skewed", Skewed)
         assert json.loads(call("list", "effects", "--json").stdout)["skewness"] == "a term of skewed"
         shown = call("show", "skewness").stdout
-        assert "skewed.skew  1/drive  -1 to 1  0     Skew. With the effect skewness only." in shown
+        assert "skewed.skew  1/drive  -1 to 1  0     Skew. With `skewness` only." in shown
 
     def test_effect_says_what_to_do(self):
         for word in ("creep", "drift", "load_mass"):

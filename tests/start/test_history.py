@@ -54,7 +54,6 @@ def test_without_a_reversal_it_is_as_from_rest(word, item):
 @pytest.mark.parametrize(
     ("effect", "values"),
     [
-        ("lumped", MECHANICS),
         ("creep", {"creep.ratio": 0.2, "creep.tau": 0.02, "creep.decades": 1.0}),
         ("sensor_lag", {"sensor_lag.tau": 5e-3}),
         ("friction", {"friction.force": 2.0, "friction.stiffness": 1.0, "friction.stiction": 0.1}),
@@ -71,6 +70,30 @@ def test_all_behind_the_hysteresis_is_at_rest(effect, values):
     expected = of_model([effect], values, force)
     found = of_model(["history", "bouc_wen", effect], named("bouc_wen") | values, RECORD, amounts_of("history"))
     np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.parametrize(("begun", "swing"), [(0.0, 0.0), (3.0, 0.0), (0.0, -2.0), (1.0, 1.5)])
+def test_a_mass_is_under_way_as_a_record_begins(begun, swing):
+    """It decays about the force: x = f + exp(-zeta w t) (A cos(w_d t) + B sin(w_d t))."""
+    rested, dt, steps = np.full(400, 30.0), 1e-4, np.arange(1, 401)
+    mass, damping, stiffness = MECHANICS.values()
+    omega = np.sqrt(stiffness / mass)
+    zeta = damping / (2 * np.sqrt(stiffness * mass))
+    damped, t = omega * np.sqrt(1 - zeta**2), dt * steps
+    sine = omega * (swing + zeta * begun) / damped
+    free = np.exp(-zeta * omega * t) * (begun * np.cos(damped * t) + sine * np.sin(damped * t))
+    found = of_model(["history", "lumped"], MECHANICS, rested, [0.0, begun, swing], dt=dt)
+    np.testing.assert_allclose(found, 30 + free, rtol=0, atol=1e-9)
+
+
+def test_what_a_mass_did_before_a_record_follows_from_it():
+    made, drive = model("history", "bouc_wen", "lumped"), path(30, 70, 10, 50, points=150)
+    known = named("bouc_wen") | MECHANICS
+    theta, truth = np.array([[known[name] for name in made.names]]), [40.0, 1.5, -0.7]
+    response = of_model(["history", "bouc_wen", "lumped"], known, drive, truth)
+    simulator = Simulator(made, record(drive, response=[response]))
+    assert simulator.squares(theta)[0, 0] < 1e-9 * np.sum((response - response.mean()) ** 2)
+    np.testing.assert_allclose(simulator.amounts.complete(theta)[0, -3:], truth, atol=2e-3)
 
 
 @pytest.mark.parametrize("reversal", [-40.0, 10.0, 55.0, 100.0])

@@ -78,5 +78,5 @@ def check_loaded(block: Any, known: Any) -> None:
         word = word.partition(".")[0]
         if word not in known:
             raise fault(block, where, f"unknown effect {word!r}", nearest(word, known.effects()))
-        if not known[word].remedy:
+        if not known[word].remedy and not known[word].lead:
             raise fault(block, where, f"{word!r} is a block, but no effect", "name an effect: it has a remedy")
