@@ -69,7 +69,8 @@ class Chain:
 
     def terms(self, block: type[Block]) -> set[str]:
         """The listed effects that act inside a block's equation."""
-        return self._listed & {parameter.effect for parameter in block.parameters().values() if parameter.effect}
+        names = {item for term in self.listed_terms for item in (term.name, term.item())}
+        return names & {parameter.effect for parameter in block.parameters().values() if parameter.effect}
 
     def form_of(self, block: type[Block]) -> type[Block]:
         """The block, with the listed effects in its equation."""

@@ -1,7 +1,7 @@
 import { about, placeOf } from "./about.js";
 import { element, select } from "./parts.js";
 
-const KINDS = { hysteresis: "Hysteresis", mechanics: "Mechanics" };
+const KINDS = { start: "Start of a record", hysteresis: "Hysteresis", mechanics: "Mechanics" };
 const TERM = 4.5; // place of an effect that is a term in the equation of the hysteresis operator
 
 /** The model as a chain of blocks in signal order, and the blocks to choose from: a block that is dragged onto the
@@ -99,7 +99,7 @@ export class Chain {
   place(word) {
     const kind = this.known[word]?.kind;
     if (!(kind in KINDS) || this.model.includes(word)) return;
-    const others = this.model.filter((other) => this.known[other]?.kind !== kind);
-    this.setModel(kind === "hysteresis" ? [word, ...others] : [...others, word]);
+    const others = this.model.filter((other) => this.known[other.split(".")[0]]?.kind !== kind);
+    this.setModel(kind === "mechanics" ? [...others, word] : [word, ...others]);
   }
 }
