@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import combinations
@@ -84,7 +84,14 @@ def best_of(case: Case, fit: Fit, starts: Iterable[Array]) -> Fit:
     for start in starts:
         point = case.descend(fit.problem, start)
         fits.append(fit_at(fit.effects, fit.problem, point, fit.converged, fit.measured_only))
-    return min(fits, key=lambda candidate: candidate.identify)
+    return best_with_fine_steps(case, fits, lambda candidate: candidate.identify)
+
+
+def best_with_fine_steps(case: Case, fits: Sequence[Fit], error: Callable[[Fit], float]) -> Fit:
+    """The best fit, or the first one where the best is worse than that with steps that are fine enough for it: a mode
+    that rings at the rate of the samples may stand in for anything between them."""
+    best = min(fits, key=error)
+    return best if best is fits[0] else min(fits[0], refine_steps(case, best), key=error)
 
 
 def exchanged(problem: Problem, point: Array) -> Array:
@@ -148,7 +155,7 @@ def restart(case: Case, fit: Fit, block: str = "", starts_per_block: int = RESTA
         for start in starts[np.argsort(problem.rough_loss(starts, fit.point))[:starts_per_block]]:
             point = case.descend(problem, start, fit.identify)
             fits.append(fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
-    best = min(fits, key=lambda candidate: candidate.total)
+    best = best_with_fine_steps(case, fits, lambda candidate: candidate.total)
     return best if block else min(best, best_alias(case, best), key=lambda candidate: candidate.total)
 
 

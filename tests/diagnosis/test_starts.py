@@ -10,7 +10,8 @@ from pzt_ident.diagnosis import starts
 from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import fit_at
-from pzt_ident.diagnosis.starts import best_exchange, first_fit, restart
+from pzt_ident.diagnosis.refit import FINEST, STEP_TOLERANCE, step_errors
+from pzt_ident.diagnosis.starts import best_exchange, best_of, first_fit, restart
 from pzt_ident.search.descent import descend
 
 
@@ -45,6 +46,21 @@ def test_more_starts_are_refined_until_two_agree(plain, monkeypatch):
     monkeypatch.setattr(Case, "descend", lame)
     assert first_fit(plain, 0).converged
     assert len(points) == 24
+
+
+def test_what_is_found_elsewhere_has_fine_steps_or_is_not_taken():
+    """A mode that rings at the rate of the samples, without damping, may look as good in steps that are too coarse."""
+    drifting = stage.with_response(
+        stage.case(model=("bouc_wen", "lumped")), lambda record: 2e-7 * (1 - np.exp(-record.time / 3))
+    )
+    problem, rate = drifting.problem(()), 1 / drifting.records[0].dt
+    stiff = stage.STAGE | {"bouc_wen.gain": 0.082}
+    alias = {"lumped.mass": 0.15, "lumped.stiffness": 0.15 * (2 * np.pi * rate) ** 2, "lumped.damping": 0.0}
+    fit = fit_at((), problem, problem.unit_point(stiff))
+    for found in (best_of(drifting, fit, [problem.unit_point(stiff | alias)]), restart(drifting, fit)):
+        errors = step_errors(drifting, found)
+        coarse = errors > STEP_TOLERANCE * max(drifting.floor, found.identify)
+        assert found is fit or all(count == FINEST for count, each in zip(found.steps, coarse, strict=True) if each)
 
 
 def test_a_block_is_found_elsewhere_and_a_fit_at_the_noise_stays(plain):
@@ -89,7 +105,7 @@ def test_modes_the_wrong_way_round_are_exchanged():
     chirps = [50 + 20 * np.sin(2 * np.pi * (10 + rate * t) * t) for rate in (80, 60)]
     true = {"frequency_1": 88.0, "frequency_2": 143.0, "damping_1": 0.02, "damping_2": 0.01, "shape_1": 0.8}
     modes = {f"modal.{word}": value for word, value in (true | {"shape_2": 0.2}).items()}
-    made = stage.records(modes, chirps, dt=1e-3, model=("bouc_wen", "modal"), steps=1)
+    made = stage.records(modes, chirps, dt=1e-3, model=("bouc_wen", "modal"))
     overlapping = {"modal.frequency_1": Widened((50.0, 140.0)), "modal.frequency_2": Widened((80.0, 230.0))}
     known = {name: value for name, value in stage.STAGE.items() if name.startswith("bouc_wen")}
     known["bouc_wen.gain"] *= 1e6
