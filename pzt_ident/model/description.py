@@ -26,9 +26,10 @@ def words(kind: str) -> dict[str, str]:
 def _terms() -> dict[str, str]:
     """Effects that are terms in the equations of other blocks, with the names of those blocks."""
     owners: dict[str, list[str]] = {}
-    for block, effect in ((block, effect) for block in blocks for effect in block.effects()):
-        if effect not in blocks or blocks.is_effect(effect):
-            owners.setdefault(effect, []).append(block.name)
+    for block in blocks:
+        for effect in block.effects():
+            if effect not in blocks or blocks.is_effect(effect):
+                owners.setdefault(effect, []).append(block.name)
     return {effect: "a term of " + ", ".join(names) for effect, names in sorted(owners.items())}
 
 
