@@ -23,6 +23,7 @@ LONG = [
     "amplitude_gain:running homogenized_energy thermal_relaxation creep:elements cross_coupling modal",
     "delay bouc_wen_oscillator drift",
     "periodic_disturbance.ripple bouc_wen creep",
+    "history bouc_wen lumped",
 ]
 
 

@@ -213,7 +213,7 @@ class Program:
         for branch in branches:
             for word in words:
                 column = columns.get(word) if columns else None
-                if column is None:
+                if column is None or (self.single and self._is_amount(column)):
                     self.known.append((row, (known | {"branch": branch}).get(word, 0.0)))
                 else:
                     self.given.append((row, column[branch] if isinstance(column, list) else column))
@@ -221,6 +221,10 @@ class Program:
             if issubclass(block, Modes):
                 row = self._weigh(block, branch, row)
         return row
+
+    def _is_amount(self, column: int | list[int]) -> bool:
+        """Whether a column of theta is one of the parameters of which each record has its own, which are behind all."""
+        return max(np.atleast_1d(column)) >= len(self.model.entries)
 
     def _known(self, block: type[Block], axis: int) -> dict[str, float]:
         """What `prepare` may ask for besides the parameters of the model."""

@@ -115,3 +115,13 @@ def test_a_record_in_steady_state_forgets_what_was_before(item):
         for chain, amounts in (([item, "bouc_wen"], [20.0] * len(LED[item])), (["bouc_wen"], ()))
     )
     np.testing.assert_allclose(led, plain, rtol=0, atol=1e-3)
+
+
+def test_a_sample_at_a_time_nothing_is_before():
+    """As for a controller, which begins at rest: the model is the one without it."""
+    known = named("bouc_wen") | MECHANICS
+    chains = [model(*before, "bouc_wen", "lumped") for before in ([], ["history"])]
+    theta = np.array([known[name] for name in chains[0].names])
+    alone, led = (rig.stage_of(chain, record(RECORD), theta) for chain in chains)
+    drive = RECORD[None]
+    np.testing.assert_array_equal(led.respond(drive), alone.respond(drive))
