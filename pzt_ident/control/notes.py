@@ -37,7 +37,7 @@ class Notes:
         """Blocks that the drive does not make up for."""
         blocks = self.inverse.stage.left_out
         readings = [b.name for b in blocks if not b.amounts() and b.place != Place.SLEW]
-        disturbances = [block.name for block in blocks if block.amounts()]
+        disturbances = [block.name for block in blocks if block.amounts() and not block.lead]
         if readings:
             yield f"{listed(readings)} acts on the reading, not on the stage, and is not fed forward"
         if disturbances:
