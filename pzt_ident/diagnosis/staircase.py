@@ -79,8 +79,8 @@ def with_least_history(case: Case, first: Fit, staircase: Staircase) -> Staircas
             fit = refit(home, step.fit, step.fit.effects, {}) if steps else first
             share = explained_share(case, steps[-1].fit, fit) if steps else 0.0
             steps.append(replace(step, fit=fit, explained=share, case=step.case and home))
-    wider = staircase.case and rested.specs is not case.specs
-    kept = replace(staircase, steps=steps, case=rested if wider else None)
+    as_given = rested.specs is case.specs and rested.records == case.records
+    kept = replace(staircase, steps=steps, case=None if as_given else rested)
     conclude(rested, first, kept)
     return kept
 

@@ -138,8 +138,8 @@ class Amounts:
 
 
 def starts_of(entries: Sequence[Entry]) -> Array:
-    """Shares of the ranges of amounts that are sought from there, the best of these first: (starts, amounts). Zero, and
-    those of a block that cannot be left from there."""
+    """Where amounts are sought from, as shares of their upper bounds: zero, and the starts that a block declares for
+    its own, (starts, amounts)."""
     each = [entry.block.starts.get(entry.parameter.name, ()) for entry in entries]
     count = max(map(len, each), default=0)
     return np.array([np.zeros(len(each)), *([own[k] if own else 0.0 for own in each] for k in range(count))])

@@ -123,7 +123,7 @@ def stair(case: Case, step: stairs.Step, budget: Budget | None = None) -> dict[s
         "explained": step.explained,
         "expected": step.expected,
         "parameters": parameters_of(step.fit, budget),
-        "model": [*map(word_of, case.words_of(step.fit))],
+        "model": list(map(word_of, case.words_of(step.fit))),
         "bounds": bounds_that_changed(case, step.fit),
         "effects": list(step.fit.effects),
         "steps": list(step.fit.steps),
