@@ -15,6 +15,7 @@ from pzt_ident.model.registry import word_of
 
 SLIP = 0.08  # of a bound, by which a data sheet may be beside the truth
 FAR_SLIP = 0.3  # by which it may be where nothing else is missing
+BESIDE = 0.02  # of the range of such a guess: that close a fit is as good as on its bound
 DECADES = 100.0  # times a bound on a logarithmic scale that the job does not give: a guess of where a search begins
 
 
@@ -72,9 +73,10 @@ def widened(case: Case, fit: Fit, slip: float = SLIP) -> dict[str, Widened]:
     those declared, of others by DECADES, and none of mechanics that the data do not determine, which may stand in for
     anything slow."""
     problem, specs = fit.problem, dict[str, Widened]()
-    undetermined = undetermined_mechanics(fit) if fit.on_bounds else None
-    for name in fit.on_bounds:
-        i = problem.names.index(name)
+    resting = [i for i in range(problem.dimensions) if rests(case, fit, i)]
+    undetermined = undetermined_mechanics(fit) if resting else None
+    for i in resting:
+        name = problem.names[i]
         entry, given = problem.model.entries[problem.free[i]], (float(problem.lower[i]), float(problem.upper[i]))
         key = next((word for word in problem.model.spellings(entry) if word in case.specs), None)
         if entry.block.name == undetermined or not (key or is_guessed(case, entry)):
@@ -93,6 +95,20 @@ def widened(case: Case, fit: Fit, slip: float = SLIP) -> dict[str, Widened]:
         if (low, high) != given:
             specs[key] = Widened((float(low), float(high)))
     return specs
+
+
+def rests(case: Case, fit: Fit, i: int) -> bool:
+    """Whether a free parameter is on a bound, or beside one that is a guess."""
+    beside = min(fit.point[i], 1 - fit.point[i]) < BESIDE
+    return fit.problem.names[i] in fit.on_bounds or (
+        beside and not is_given(case, fit, i) and is_guessed(case, fit.problem.model.entries[fit.problem.free[i]])
+    )
+
+
+def is_given(case: Case, fit: Fit, i: int) -> bool:
+    """Whether the job says something of a free parameter."""
+    problem = fit.problem
+    return any(word in case.specs for word in problem.model.spellings(problem.model.entries[problem.free[i]]))
 
 
 def is_guessed(case: Case, entry: Entry) -> bool:

@@ -135,6 +135,20 @@ MASS = 4e-3  # kg, given: the stiffness of its resonance is below all that a job
 SOFT = {"lumped.mass": MASS, "lumped.stiffness": MASS * (2 * np.pi * 60) ** 2, "lumped.damping": 2 * 0.03 * MASS * 377}
 
 
+@pytest.mark.parametrize("given", [False, True])
+def test_beside_a_guessed_bound_is_as_good_as_on_it(given):
+    """Far from the noise another machine rounds to another place on the same plateau."""
+    case = stage.case(SOFT, {"lumped.mass": MASS}, model=("bouc_wen", "lumped"))
+    as_given, rigid = case.problem(()), "lumped.stiffness"
+    least, most = as_given.declared_bounds(as_given.model.names.index(rigid))
+    case = case.with_specs({rigid: Widened((least, most))}) if given else case
+    problem = case.problem(())
+    values = dict(zip(problem.names, problem.physical(np.full(problem.dimensions, 0.5))[0], strict=True))
+    beside, between = (fit_at((), problem, problem.unit_point(values | {rigid: k * least})) for k in (1.05, 30))
+    assert not beside.on_bounds and widened(case, between) == {}
+    assert widened(case, beside) == ({} if given else {rigid: Widened((least / DECADES, most))})
+
+
 @pytest.mark.parametrize("effect", ["", "quadratic_gain"])
 def test_a_bound_that_the_job_does_not_give_is_a_guess_and_no_payload(effect):
     """It is told, and is in the job that is written."""
