@@ -13,7 +13,7 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, reaches_noise, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.refit import refit_from
+from pzt_ident.diagnosis.refit import refit, refit_from
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, applicable, scorer_of, squared_misfit
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.threads import side_by_side
@@ -119,10 +119,11 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
 
     def refitted(candidate: Candidate) -> Candidate:
         forms = {score.effect: score for score in (candidate.forms[0], candidate.score)}
-        candidate.refits = {
+        fits = {
             item: refit_from(case, before, (*before.effects, item), score.guesses, rival)
             for item, score in forms.items()
         }
+        candidate.refits = from_each_other(case, fits)
         return candidate
 
     made: list[Candidate] = []
@@ -132,6 +133,25 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
             fits.extend(candidate.refits.values())
         rival = min((fit.identify for fit in fits), default=np.inf)
     return made
+
+
+def from_each_other(case: Case, refits: Mapping[str, Fit]) -> dict[str, Fit]:
+    """The refits with the forms of an effect, by item: those far behind the best one are tried from where it led,
+    too. Forms share parameters, and a poor guess may rest in a side minimum."""
+    best = min(refits.values(), key=lambda fit: fit.total)
+    return {
+        item: from_where(case, best, fit, {}) if is_far_behind(case, fit, best) else fit for item, fit in refits.items()
+    }
+
+
+def is_far_behind(case: Case, fit: Fit, best: Fit) -> bool:
+    """Whether another fit leaves half of what a fit leaves, or less."""
+    return share_explained(fit.total, best.total, case.floor) >= DECISIVE
+
+
+def from_where(case: Case, other: Fit, fit: Fit, guess: dict[str, float]) -> Fit:
+    """A fit, or the same model refitted from where another one led and from a guess of its own parameters."""
+    return min(fit, refit(case, other, fit.effects, guess, other.identify), key=lambda each: each.total)
 
 
 def share_of_others(case: Case, first: Fit, before: Fit, fits: Sequence[Fit]) -> float:
@@ -182,16 +202,20 @@ def restart_unconfirmed(case: Case, first: Fit, candidates: Sequence[Candidate])
 
 
 def restart_look_alikes(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> None:
-    """Restart the fits of look-alikes of the best that are hardly worse on the identification records: with several
-    parameters they may rest in a side minimum that shows on the validation records only."""
+    """Refit the look-alikes of the best that are worse from where that led, and restart those that are hardly worse on
+    the identification records: with several parameters they may rest in a side minimum that shows on the validation
+    records only."""
     passing = [item for item in candidates if item.fit and removes_enough(case, first, before, item.fit)]
     best = min(passing, key=lambda item: item.fit.total, default=None)  # type: ignore[union-attr]
     if best is None or best.fit is None:
         return
     for candidate in candidates:
-        word, fit = candidate.score.effect, candidate.fit
-        close = fit and removed_rms(fit.identify, best.fit.identify) < 2 * TIE * case.floor
-        if fit and close and are_look_alikes(word, best.score.effect) and len(candidate.score.guess) > 1:
+        word, fit, guess = candidate.score.effect, candidate.fit, candidate.score.guess
+        if fit is None or not are_look_alikes(word, best.score.effect):
+            continue
+        if is_far_behind(case, fit, best.fit):
+            candidate.fit = candidate.refits[word] = fit = from_where(case, best.fit, fit, guess)
+        if removed_rms(fit.identify, best.fit.identify) < 2 * TIE * case.floor and len(guess) > 1:
             candidate.fit = candidate.refits[word] = restart(case, fit, word_of(word), LOOK_ALIKE_STARTS)
 
 
@@ -221,7 +245,7 @@ def refit_other_forms(
             score.effect: refit_from(case, before, (*before.effects, score.effect), score.guesses, best.identify)
             for score in missing
         }
-        candidate.refits = {**candidate.refits, **new}
+        candidate.refits = from_each_other(case, {**candidate.refits, **new})
     shortlist += [item for item in wanted if item.refits and item not in shortlist]
 
 

@@ -377,12 +377,42 @@ def test_a_form_of_more_parameters_than_the_best_effect_may_contain_it():
     assert not generalises(fit(1.0, effects=["sensor_lag.second_order"], dimensions=5), lag)
 
 
+@pytest.mark.parametrize("plain, led, kept", [(8.0, 4.0, 4.0), (8.0, 9.0, 8.0), (3.9, 1.0, 3.9)])
+def test_a_form_far_behind_another_one_is_tried_from_where_that_led(monkeypatch, plain, led, kept):
+    """And no worse than from its own guess."""
+    refits = {"creep": fit(plain, plain, ["creep"]), "creep.voltage": fit(3.0, 3.0, ["creep.voltage"])}
+
+    def refit(case, other, effects, guess, rival):
+        assert other is refits["creep.voltage"] and effects == ("creep",)
+        return fit(led, led, effects)
+
+    monkeypatch.setattr(candidates, "refit", refit)
+    found = candidates.from_each_other(CASE, refits)
+    assert found["creep"].identify == kept and found["creep.voltage"] is refits["creep.voltage"]
+
+
+@pytest.mark.parametrize("own, led", [(6.0, 1.0), (6.0, 7.0)])
+def test_a_look_alike_far_behind_is_tried_from_where_the_best_led(monkeypatch, own, led):
+    monkeypatch.setattr(candidates, "refit", lambda case, other, effects, guess, rival: fit(led, led, effects))
+    best = Candidate.of([Score("amplifier_lag", guesses=[{"tau": 1.0}])])
+    rival = Candidate.of([Score("sensor_lag", guesses=[{"tau": 1.0}])])
+    stranger = Candidate.of([Score("saturation", guesses=[{"knee": 1.0}])])
+    for item, left in ((best, 1.0), (rival, own), (stranger, own)):
+        word = item.score.effect
+        item.refits = {word: fit(left, left, [word])}
+        item.take(word)
+    candidates.restart_look_alikes(CASE, fit(9.0, 9.0), fit(9.0, 9.0), [best, rival, stranger])
+    assert rival.fit.identify == rival.refits["sensor_lag"].identify == min(own, led)
+    assert best.fit.identify == 1.0 and stranger.fit.identify == own
+
+
 def test_a_look_alike_in_another_form_is_started_anew_by_the_name_of_its_block(monkeypatch):
     def started(case, fit, block, starts):
         assert block == "sensor_lag"
         return replace(fit, identify=1.5)
 
     monkeypatch.setattr(candidates, "restart", started)
+    monkeypatch.setattr(candidates, "from_where", lambda case, other, fit, guess: fit)
     best = Candidate.of([Score("amplifier_lag", guesses=[{"tau": 1.0}])])
     best.refits, item = {"amplifier_lag": fit(1.5, 1.5)}, "sensor_lag.second_order"
     rival = Candidate(Score(item, guesses=[{"one": 1.0, "two": 2.0}]), forms=[Score(item)])
