@@ -259,7 +259,7 @@ def improve_within(
     model as given first. diagnosis: of the last of them, where there is one.
 
     Where the best first effect leads to no adequate model, the next best one is tried: the first may have stood in for
-    something else.
+    something else. What counts of either path is then what is proven.
     """
     first = base[-1].fit
     diagnosis = diagnosis or diagnose(case, first)
@@ -272,21 +272,32 @@ def improve_within(
             break
         if not case.budget.allows("another effect first"):
             break
-    best = best_path(case, paths)
-    for step in exchange_main_mode(best.case or case, first, end_of(best)):
-        on_step(step)
-        best.steps.append(step)
-    doubted = take_back(best.case or case, first, best, on_step)
+    finished = [best_path(case, paths)] if any(map(is_adequate, paths)) else paths
+    doubts = [(path, finish(path.case or case, first, path, on_step)) for path in finished]
+    best = best_path(case, finished)
     find_rivals(best.case or case, first, best.steps, on_step)
-    if doubted:
+    for doubted in [fit for path, fit in doubts if path is best and fit]:
         add_rivals_beside(best.case or case, first, best.steps, doubted)
     conclude(best.case or case, first, best)
     return best
 
 
+def finish(case: Case, first: Fit, path: Staircase, on_step: StepListener) -> Fit | None:
+    """Take back what a path can do without, or does not prove; see `take_back`."""
+    for step in exchange_main_mode(case, first, end_of(path)):
+        on_step(step)
+        path.steps.append(step)
+    return take_back(case, first, path, on_step)
+
+
+def is_adequate(path: Staircase) -> bool:
+    """Whether a path led to an adequate model."""
+    return path.last.verdict == "adequate"
+
+
 def best_path(case: Case, paths: Sequence[Staircase]) -> Staircase:
     """The adequate path, else the lowest one; of those that end as low, that with the fewest parameters."""
-    settled = [path for path in paths if path.last.verdict == "adequate"] or paths
+    settled = [*filter(is_adequate, paths)] or paths
     least = min(end_of(path).total for path in settled)
     close = [path for path in settled if removed_rms(end_of(path).total, least) < TIE * case.floor]
     return min(close, key=lambda path: (end_of(path).freedom, end_of(path).total))

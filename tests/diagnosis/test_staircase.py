@@ -255,15 +255,28 @@ def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, mon
         Staircase([Step(ending(identify, total))], SimpleNamespace(verdict=verdict))
         for verdict, identify, total in ends
     ]
+    assert taken_of(paths, lambda path: [], monkeypatch) is paths[taken]
+
+
+def taken_of(paths, taken_back, monkeypatch):
+    """The one that is taken of paths, of which some steps are taken back."""
+
+    def take_back(case, first, path, on_step):
+        path.steps += taken_back(path)
+
     monkeypatch.setattr(improving, "diagnose", lambda case, first: SimpleNamespace())
-    monkeypatch.setattr(improving, "first_candidates", lambda case, first, diagnosis: [0, 1])
+    monkeypatch.setattr(improving, "first_candidates", lambda case, first, diagnosis: [*range(len(paths))])
     monkeypatch.setattr(improving, "climb", lambda case, first, diagnosis, number, on_step: paths[number])
     monkeypatch.setattr(improving, "exchange_main_mode", lambda *arguments: [])
-    monkeypatch.setattr(improving, "take_back", lambda *arguments: None)
+    monkeypatch.setattr(improving, "take_back", take_back)
     monkeypatch.setattr(improving, "find_rivals", lambda *arguments: None)
     monkeypatch.setattr(improving, "conclude", lambda *arguments: None)
-    given = Step(SimpleNamespace())
-    assert improve_within(SimpleNamespace(floor=1.0, budget=Budget()), [given], None) is paths[taken]
+    return improve_within(SimpleNamespace(floor=1.0, budget=Budget()), [Step(SimpleNamespace())], None)
+
+
+def test_of_two_paths_that_end_above_the_noise_the_one_is_taken_that_is_lower_with_what_is_proven(monkeypatch):
+    lower, proven = (Staircase([Step(ending(2.0, end))], SimpleNamespace(verdict="unexplained")) for end in (2.0, 3.0))
+    assert taken_of([lower, proven], lambda path: [Step(ending(9.0, 9.0))] * (path is lower), monkeypatch) is proven
 
 
 @pytest.mark.parametrize(("parameters", "taken"), [(1, "sensor_lag"), (3, "friction.coulomb"), (4, "friction.coulomb")])
