@@ -135,14 +135,15 @@ def test_rests_that_ring_are_no_evidence_while_a_quarter_is_quiet(rings, size):
     assert (floor.source, floor.value) == ("rest segments", pytest.approx(1, rel=0.15))
 
 
-@pytest.mark.parametrize(("period", "growth", "size"), [(60, 1, 10), (60, 3, 1000), (20, 5, 300)])
-def test_rests_that_all_ring_are_no_evidence(period, growth, size):
-    """Slowly, or so unlike each other that the quiet quarter rings, too."""
-    records = [record((1 + n) * rising(500, 4000), white(4500, seed=n)) for n in range(8)]
+@pytest.mark.parametrize("seed", range(0, 40, 10))
+@pytest.mark.parametrize(("period", "growth", "size"), [(60, 1, 10), (60, 3, 100), (20, 5, 3)])
+def test_rests_that_all_ring_are_no_evidence(period, growth, size, seed):
+    """Slowly, or so unlike each other that the quiet quarter rings, too: up to 200,000 times the noise."""
+    records = [record((1 + n) * rising(500, 4000), white(4500, seed=seed + n)) for n in range(8)]
     ringing = np.exp(-np.arange(4000) / 1500) * np.sin(2 * np.pi * np.arange(4000) / period)
     for n in range(8):
         records[n].response[0, 500:] += size * float(growth) ** n * ringing
-    assert noise_floor(records, 0).value == pytest.approx(1, rel=0.3)
+    assert noise_floor(records, 0).value == pytest.approx(1, rel=0.2)
 
 
 @pytest.mark.parametrize("decay", [30, 100, 400])
