@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 Signals = Any  # an array, or one by axis
 Units = str | Mapping[str, str]
 AXES = "xyzabc"
-QUANTITY = re.compile(r"^([\d.]+(?:[eE][-+]?\d+)?)\s*(\D.*)$")
+QUANTITY = re.compile(r"^([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(\D.*)$")
 
 
 def rate_or_stamps(t: Any, where: str) -> tuple[float | None, Array | None]:
@@ -98,6 +98,24 @@ def by_unit(units: Units, axes: Sequence[str], where: str, usual: str) -> dict[s
         except InputError as error:
             raise InputError(error.message, where=where, remedy=error.remedy) from None
     return {axis: given[axis] for axis in axes}
+
+
+def by_level(levels: Any, units: Mapping[str, str], where: str) -> dict[str, float]:
+    """A constant drive of each axis in its unit, of a number or text such as `0 V` for all axes or by axis; empty of
+    None. Raises InputError where one is no number, or in another kind of unit, and for an axis that has no drive."""
+    given = {} if levels is None else levels if isinstance(levels, Mapping) else dict.fromkeys(units, levels)
+    for axis in given:
+        if axis not in units:
+            raise InputError(f"axis {axis!r} has no drive", where=where, remedy=f"name {' or '.join(units)}")
+    return {axis: _level(level, units[axis], where) for axis, level in given.items()}
+
+
+def _level(level: Any, unit: str, where: str) -> float:
+    number = _quantity(level, dimension(unit)) if isinstance(level, str) else level
+    if isinstance(number, bool) or not isinstance(number, int | float | np.number) or not math.isfinite(number):
+        remedy = f"give a number, or text such as '0 {unit}'"
+        raise InputError(f"{level!r} is no drive in {unit}", where=where, remedy=remedy)
+    return float(number) / (factor(unit) if isinstance(level, str) else 1)
 
 
 def path_of(path: Any, where: str) -> Path:

@@ -12,7 +12,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pzt_ident.api.arguments import QUANTITY, Array, Signals, Units, by_axis, by_unit, path_of, rate_or_stamps, seconds
+from pzt_ident.api.arguments import (
+    QUANTITY,
+    Array,
+    Signals,
+    Units,
+    by_axis,
+    by_level,
+    by_unit,
+    path_of,
+    rate_or_stamps,
+    seconds,
+)
 from pzt_ident.api.wording import as_arguments
 from pzt_ident.data import record as data
 from pzt_ident.data.notation import short
@@ -34,8 +45,10 @@ class Record:
     y: the response likewise; an axis without one is driven but not measured. Without any y the record is a drive.
     drive, response: their units, for all axes or by axis. name: without one it is called train or test, by its use.
     settle: s, or text such as `"20 ms"`, at the start that are simulated but not scored. run_in: how often the drive is
-    simulated before the first sample, for a periodic record in steady state. denoise_drive: whether noise of the drive,
-    as of a monitor output, is left out. steps: of the simulation in a sample.
+    simulated before the first sample, for a periodic record in steady state. rest_at: the drive at which the stage
+    rested until the sample ahead of the first one, a number or text such as `"0 V"`, of all axes or by axis.
+    denoise_drive: whether noise of the drive, as of a monitor output, is left out. steps: of the simulation in a
+    sample.
     Raises InputError where shapes or units do not fit; gaps, time stamps and constant responses are looked at when the
     record is identified from.
     """
@@ -51,6 +64,7 @@ class Record:
         name: str = "",
         settle: float | str = 0.0,
         run_in: int = 0,
+        rest_at: float | str | Mapping[str, float | str] | None = None,
         denoise_drive: bool = False,
         steps: int = 1,
     ) -> None:
@@ -65,6 +79,7 @@ class Record:
         self.y = {} if y is None else by_axis(y, self.samples, f"{title}: y", list(self.u))
         self.drive = by_unit(drive, list(self.u), f"{title}: drive", "V")
         self.response = by_unit(response, list(self.y), f"{title}: response", "um")
+        self.rest_at = by_level(rest_at, self.drive, f"{title}: rest_at")
         if self.samples < SHORTEST:
             problem = f"has {self.samples} samples, at least {SHORTEST} are needed"
             raise InputError(problem, where=title, remedy="give more")
@@ -136,6 +151,11 @@ class Record:
         }
         known: dict[str, Any] = {"settle": record.settle * record.dt, "run_in": record.run_in, "steps": record.steps}
         known["denoise_drive"] = record.denoise_drive
+        known["rest_at"] = {
+            axis: level / factor(drives[axis])
+            for axis, level in zip(record.axes, record.rest_at, strict=False)
+            if level is not None
+        }
         known |= {"name": record.name, "drive": drives, "response": record.units}
         return cls(record.time, signals, responses or None, **(known | more))
 

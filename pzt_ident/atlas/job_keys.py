@@ -30,6 +30,7 @@ WORDS = {
 }
 PLACES = {
     "Source": "each item of records",
+    "Level": "a drive, as of rest_at",
     "Channels": "channels",
     "Axis": "each axis of channels.axes",
     "Channel": "a channel: time, drive or response",

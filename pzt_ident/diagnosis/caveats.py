@@ -6,6 +6,7 @@ from itertools import product
 
 from pzt_ident.data.noise import noise_floor
 from pzt_ident.data.notation import listed
+from pzt_ident.data.start_step import start_steps
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import Fit
@@ -14,7 +15,8 @@ from pzt_ident.diagnosis.locate import locate
 
 def caveats(case: Case, fit: Fit) -> str:
     """The sentences about additions, effects on measured axes only, bounds, and records."""
-    return addition_sentences(fit) + measured_only_sentence(case, fit) + bounds_sentence(fit) + case.caveat
+    of_fit = addition_sentences(fit) + measured_only_sentence(case, fit) + bounds_sentence(fit)
+    return of_fit + start_step_sentence(case) + case.caveat
 
 
 def addition_sentences(fit: Fit) -> str:
@@ -54,6 +56,14 @@ def bounds_sentence(fit: Fit) -> str:
         return f" {names[0]} ended on its bound of {values[0]}: {reasons}."
     reasons = "these data do not determine them, their bounds are too narrow, or they stand in for something else"
     return f" {listed(names)} ended on their bounds of {listed(values)}: {reasons}."
+
+
+def start_step_sentence(case: Case) -> str:
+    """A sentence on the records that begin as after a step of the drive, of which the job says nothing."""
+    stepped = [record.name for record in case.records if start_steps(record)]
+    begin = "begins" if len(stepped) == 1 else "begin"
+    advice = "say with `rest_at` at which drive the stage rested, and the model follows what the step started"
+    return f" {listed(stepped)} {begin} as after a step: {advice}." if stepped else ""
 
 
 def broken_conditions(fit: Fit) -> str:

@@ -90,7 +90,7 @@ def drives_of(records: Sequence[Record]) -> NDArray[np.intp]:
 def respond(case: Case, fit: Fit, dt: float, drive: Array) -> Array:
     """Response of the first measured axis about its mean, in units of the loss: (samples,)."""
     first = case.records[0]
-    record: Record = replace(first, dt=dt, drive=drive, response=np.zeros_like(drive), settle=0, run_in=0)
+    record: Record = replace(first, dt=dt, drive=drive, response=np.zeros_like(drive), settle=0, run_in=0, rest_at=())
     simulator = Simulator(fit.problem.model, record)
     response = simulator.simulate(fit.problem.parameters(fit.point))[0, 0] / case.error_scales[0]
     return response - response.mean()

@@ -126,7 +126,7 @@ class Program:
     @property
     def lead(self) -> int:
         """Samples that are simulated ahead of the record."""
-        return self.model.lead + self.record.run_in * self.record.samples
+        return self.model.lead + self.record.ahead + self.record.run_in * self.record.samples
 
     def _append(self, block: type[Block], axis: int) -> None:
         """Add a block of one axis, in the variant that the blocks around it require."""
@@ -228,9 +228,9 @@ class Program:
 
     def _known(self, block: type[Block], axis: int) -> dict[str, float]:
         """What `prepare` may ask for besides the parameters of the model."""
-        drive = self.record.drive[axis]
+        drive, whole = self.record.drive[axis], self.record.drive_from_rest[axis]
         nulls = {p.name: p.null for p in block.parameters().values() if p.null is not None}
-        span, peak = float(np.ptp(drive)), float(np.abs(drive).max())
+        span, peak = float(np.ptp(drive)), float(np.abs(whole).max())
         duration = self.record.dt * (self.record.samples - 1)
         known = {"dt": self.record.dt / self.substeps, "span": span, "peak": peak, "duration": duration}
         known |= {"from_rest": float(self.model.from_rest), "lead": float(self.model.lead * self.substeps)}

@@ -243,9 +243,9 @@ class Simulator:
 
         record, model = self.record, self.model
         ahead = model.lead * self.substeps
-        samples = ahead + record.samples * (record.run_in + 1) * self.substeps
+        samples = ahead + (record.ahead + record.samples * (record.run_in + 1)) * self.substeps
         table = np.zeros((2 * len(record.drive) + len(model.measured), 1 + samples + PADDING))
-        for row, drive in zip(table[0::2], record.drive, strict=False):
+        for row, drive in zip(table[0::2], record.drive_from_rest, strict=False):
             row[1 : 1 + samples] = np.pad(np.tile(self._fine(drive), record.run_in + 1), (ahead, 0), mode="edge")
         for i in range(len(record.drive)):
             table[2 * i + 1, 1 : 1 + samples] = runs_of(table[2 * i, 1 : 1 + samples])

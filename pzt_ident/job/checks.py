@@ -51,6 +51,12 @@ def _record_numbers(document: Document, loc: Loc, source: Source) -> None:
             document.fault((*loc, word), f"{document.source((*loc, word))} is too small", f"give at least {least}")
     if source.sample_rate is not None and source.sample_rate <= 0:
         document.fault((*loc, "sample_rate"), f"{source.sample_rate:g} Hz", "give a rate above 0 Hz")
+    if source.rest_at and source.run_in:
+        message = "a record of a steady state, which `run_in` says this is, does not begin at rest"
+        document.fault((*loc, "rest_at"), message, "keep one of the two")
+    for axis, level in (source.rest_at or {}).items():
+        if level.unit is not None:
+            _unit(document, document.reach((*loc, "rest_at", axis)), level.unit)
     if source.steps > MOST_STEPS:
         document.fault((*loc, "steps"), f"{source.steps} steps a sample", f"give at most {MOST_STEPS}")
 
@@ -79,6 +85,11 @@ def _channels(document: Document, channels: Channels, earlier: Earlier) -> None:
         if complete and axis.response is not None:
             _response(document, (*loc, "response"), axis, responses.get(axis.response))
             responses.setdefault(axis.response, name)
+    for i, source in enumerate(earlier.get("records", ())):
+        for name in source.rest_at or ():
+            if name not in channels.axes:
+                loc = ("records", i, "rest_at", name)
+                document.fault(loc, f"there is no axis {name!r}", nearest(name, channels.axes), at_key=True)
     if all(axis.response is None for axis in channels.axes.values()):
         document.fault(("channels", "axes"), "no axis has a response", "give at least one axis a `response`")
 

@@ -69,10 +69,23 @@ def _in(unit: str) -> Expand:
     return convert
 
 
-def _target(document: Document, loc: Loc, value: Any) -> Any:
-    if isinstance(value, str):
-        return dict(zip(("value", "unit"), _number_and_unit(document, loc, value, "0.1 um"), strict=True))
-    return {"value": value} if isinstance(value, (int, float)) else value
+def _quantity(example: str) -> Expand:
+    def convert(document: Document, loc: Loc, value: Any) -> Any:
+        if isinstance(value, str):
+            return dict(zip(("value", "unit"), _number_and_unit(document, loc, value, example), strict=True))
+        return {"value": value} if isinstance(value, (int, float)) else value
+
+    return convert
+
+
+def _levels(document: Document, loc: Loc, value: Any) -> Any:
+    """A drive for each axis; one alone is that of all."""
+    level_of = _quantity("0 V")
+    if isinstance(value, dict):
+        return {axis: level_of(document, (*loc, axis), level) for axis, level in value.items()}
+    channels = document.data.get("channels")
+    axes = channels.get("axes") if isinstance(channels, dict) else None
+    return dict.fromkeys(axes, level_of(document, loc, value)) if isinstance(axes, dict) else None
 
 
 def _number_and_unit(document: Document, loc: Loc, text: str, example: str) -> tuple[float, str | None]:
@@ -87,6 +100,7 @@ _SHORT_FORMS: tuple[tuple[str, Expand], ...] = (
     ("records.*.sample_rate", _in("Hz")),
     ("records.*.settle", _in("s")),
     ("records.*.time.*", _in("s")),
+    ("records.*.rest_at", _levels),
     ("records.*.channels.*", _channel),
     ("channels.time", _channel),
     ("channels.axes.*.drive", _channel),
@@ -94,5 +108,5 @@ _SHORT_FORMS: tuple[tuple[str, Expand], ...] = (
     ("model.*", _block),
     ("optimizers.*", _choice),
     ("stop.seconds", _in("s")),
-    ("stop.target", _target),
+    ("stop.target", _quantity("0.1 um")),
 )

@@ -42,6 +42,15 @@ def test_how_a_record_is_scored_and_simulated_is_kept(part, quick, tmp_path):
     np.testing.assert_array_equal(loaded.residuals["train"], fit.residuals["train"])
 
 
+@pytest.mark.parametrize("level", [-20, "-0.02 kV", {"x": -20.0}])
+def test_a_record_from_rest_is_kept_with_the_drive_of_it(level, part, quick, tmp_path):
+    fit = quick(pzt.Record(*part, rest_at=level))
+    loaded = pzt.load(fit.save(tmp_path / "run"))
+    (record,) = loaded.records["identify"]
+    assert record.rest_at == {"x": pytest.approx(-20)}
+    np.testing.assert_array_equal(loaded.residuals["train"], fit.residuals["train"])
+
+
 def test_a_fit_goes_to_another_process(fit):
     other = pickle.loads(pickle.dumps(fit))
     assert str(other) == str(fit)
@@ -83,6 +92,14 @@ def test_a_drive_that_has_run_in_is_the_second_of_two_periods(fit, demo):
     steady = fit.simulate(pzt.Record(rate, u, run_in=1))
     np.testing.assert_allclose(steady, fit.simulate(rate, np.tile(u, 2))[t.size :], rtol=0, atol=1e-9)
     assert np.ptp(steady - fit.simulate(rate, u)) > 1e-3
+
+
+def test_a_drive_from_rest_is_one_with_a_sample_ahead(fit, demo):
+    t, u, _ = demo[1]
+    rate = 1 / (t[1] - t[0])
+    stepped = fit.simulate(pzt.Record(rate, u + 20, rest_at=0))
+    np.testing.assert_allclose(stepped, fit.simulate(rate, np.append(0, u + 20))[1:], rtol=0, atol=1e-9)
+    assert np.ptp(stepped - fit.simulate(rate, u + 20)) > 1e-3
 
 
 def test_each_axis_keeps_its_own_unit(part, quick):

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 
 from pzt_ident.data.record import Record
@@ -18,3 +20,13 @@ def test_time_and_measured_axes():
     assert record.samples == 3
     assert record.measured == (0,)
     np.testing.assert_array_equal(record.time, [10.0, 10.5, 11.0])
+
+
+def test_a_record_from_rest_has_a_sample_ahead_on_every_axis():
+    drive = np.array([[1.0, 2, 3], [4.0, 5, 6]])
+    record = Record("r", "identify", 0.5, drive, drive, axes=("x", "y"), drive_units=("V", "V"))
+    assert record.ahead == 0 and record.drive_from_rest is not drive
+    np.testing.assert_array_equal(record.drive_from_rest, drive)
+    stepped = replace(record, rest_at=(7.0, None))
+    assert stepped.ahead == 1 and stepped.samples == 3
+    np.testing.assert_array_equal(stepped.drive_from_rest, [[7.0, 1, 2, 3], [4.0, 4, 5, 6]])

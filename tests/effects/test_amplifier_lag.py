@@ -34,3 +34,11 @@ def test_phase_and_amplitude_of_a_sine():
 def test_long_time_constants_keep_their_digits():
     t = 1e-4 * np.arange(1000)
     np.testing.assert_allclose(lagged(t, tau=5.0), t - 5 * -np.expm1(-t / 5), rtol=1e-6, atol=1e-15)
+
+
+def test_a_step_from_rest_is_followed_from_the_sample_ahead():
+    """The drive goes there on a line: the lag follows that ramp, and then decays towards the drive."""
+    dt, level, start = 1e-4, 10.0, -4.0
+    found = response(["amplifier_lag"], {"amplifier_lag.tau": TAU}, np.full(100, level), dt=dt, rest_at=(start,))
+    left = (level - start) * TAU / dt * -np.expm1(-dt / TAU) * np.exp(-dt * np.arange(100) / TAU)
+    np.testing.assert_allclose(found, level - left, rtol=1e-9)

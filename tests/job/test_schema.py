@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pzt_ident.data.record import Axis, Channel, Source
+from pzt_ident.data.record import Axis, Channel, Level, Source
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import Job, load_job
 from pzt_ident.job.sections import Choice, Quantity, Setting
@@ -66,6 +66,19 @@ def faults(text: str) -> str:
     with pytest.raises(InputError) as caught:
         Job.from_text(text, file="job.yaml")
     return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("written", "read"),
+    [
+        ("0 V", {"x": Level(0.0, "V"), "y": Level(0.0, "V")}),
+        ("-5", {"x": Level(-5.0), "y": Level(-5.0)}),
+        ("{y: 0.1 kV}", {"y": Level(0.1, "kV")}),
+    ],
+)
+def test_a_drive_of_rest_is_one_of_all_axes_or_by_axis(written, read):
+    job = Job.from_text(GOOD.replace("settle: 500 ms", f"rest_at: {written}"), Path())
+    assert job.records[0].rest_at == read and job.records[1].rest_at is None
 
 
 def test_every_key_is_read():
@@ -145,6 +158,11 @@ ONE_FAULT = [
     ("0.2 kHz", "true", "3:47: records[0].sample_rate: true is not a number", "write a plain number"),
     ("500 ms", "-1", "3:64: records[0].settle: -1 is too small", "at least 0"),
     ("500 ms", ".nan", "3:64: records[0].settle: .nan is not a finite number", "plain number"),
+    ("settle: 500 ms", "rest_at: true", "3:65: records[0].rest_at: true is not a number", "plain number"),
+    ("settle: 500 ms", "rest_at: 0 mile", "3:65: records[0].rest_at: unknown unit 'mile'", "known"),
+    ("settle: 500 ms", "rest_at: {z: 0}", "3:66: records[0].rest_at.z: there is no axis 'z'", "x, y"),
+    ("settle: 500 ms", "rest_at: {x: low}", "3:69: records[0].rest_at.x: 'low' is not a number", "such as `0 V`"),
+    ("settle: 500 ms", "rest_at: 0, run_in: 1", "3:65: records[0].rest_at: a record of a steady", "keep one of"),
     ("settle: 500 ms", "decimate: 0", "records[0].decimate: 0 is too small", "at least 1"),
     ("settle: 500 ms", "steps: 0", "records[0].steps: 0 is too small", "at least 1"),
     ("settle: 500 ms", "steps: 101", "records[0].steps: 101 steps a sample", "at most 100"),

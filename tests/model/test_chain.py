@@ -24,7 +24,9 @@ def noise(axes, samples=150, seed=0):
 
 
 measured_axes = st.sampled_from([(1, (0,)), (2, (0,)), (2, (1,)), (2, (0, 1)), (3, (0, 2)), (3, (0, 1, 2))])
-seeds, periods = st.integers(0, 1000), st.sampled_from([{}, {"run_in": 1}, {"steps": 3}, {"run_in": 1, "steps": 2}])
+REST = {"rest_at": (30.0, None, 130.0)}  # of up to three axes
+WAYS = [{}, {"run_in": 1}, {"steps": 3}, {"run_in": 1, "steps": 2}, REST, REST | {"steps": 2}]
+seeds, periods = st.integers(0, 1000), st.sampled_from(WAYS)
 
 
 def kind(item):

@@ -16,8 +16,9 @@ from pzt_ident.data.readers.signal import Signal
 from pzt_ident.data.readers.source_channels import SourceChannels
 from pzt_ident.data.readers.table import Table
 from pzt_ident.data.readers.timebase import time_slice
-from pzt_ident.data.record import Axis, Channel, Record, Source
-from pzt_ident.data.units import same_kind, unscaled
+from pzt_ident.data.record import Axis, Channel, Level, Record, Source
+from pzt_ident.data.start_step import start_steps
+from pzt_ident.data.units import factor, same_kind, unscaled
 from pzt_ident.errors import InputError
 
 SHORTEST = 3
@@ -94,7 +95,7 @@ def _record(channels: SourceChannels, axes: Mapping[str, Axis], time: Channel | 
     _check_length(part, source, grid.dt, where)
     for response in filter(None, responses):
         _check_not_constant(response.cut(part).complete())
-    return Record(
+    record = Record(
         name=source.name or Path(source.file).stem,
         use=source.use,
         dt=grid.dt * source.decimate,
@@ -103,6 +104,7 @@ def _record(channels: SourceChannels, axes: Mapping[str, Axis], time: Channel | 
         start=grid.start + grid.dt * part.start,
         settle=round(source.settle / (grid.dt * source.decimate)),
         run_in=source.run_in,
+        rest_at=_rest(source, axes, drives, where),
         denoise_drive=source.denoise_drive,
         steps=source.steps,
         file=source.file,
@@ -113,6 +115,7 @@ def _record(channels: SourceChannels, axes: Mapping[str, Axis], time: Channel | 
         response_units=tuple(unscaled(response.unit) if response else None for response in responses),
         notes=_notes(source),
     )
+    return replace(record, notes=(*record.notes, *start_steps(record)))
 
 
 def _rows(signals: Sequence[Signal | None], where: str) -> int:
@@ -149,6 +152,24 @@ def _sampled(signals: Sequence[Signal | None], part: slice, source: Source) -> N
     missing = np.full(len(range(part.start, part.stop, step)), np.nan)
     cut = [item.cut(part).complete().values if item else None for item in signals]
     return np.array([missing if values is None else decimated(values, step, periodic) for values in cut])
+
+
+def _rest(
+    source: Source, axes: Mapping[str, Axis], drives: Sequence[Signal | None], where: str
+) -> tuple[float | None, ...]:
+    """The drives at which a record begins at rest, SI units, as of `Record`."""
+    levels = source.rest_at or {}
+    each = zip(axes, drives, strict=True)
+    return tuple(_level(levels.get(axis), drive, where) for axis, drive in each) if levels else ()
+
+
+def _level(level: Level | None, drive: Signal | None, where: str) -> float | None:
+    if level is None or drive is None:
+        return None
+    if level.unit and not same_kind(level.unit, drive.unit):
+        problem = f"rest_at: {level.value:g} {level.unit} cannot be a drive in {drive.unit}"
+        raise InputError(problem, where=where, remedy=f"give it in a unit such as {drive.unit}")
+    return level.value * factor(level.unit or drive.unit)
 
 
 def _quiet(drives: NDArray[np.float64]) -> NDArray[np.float64]:

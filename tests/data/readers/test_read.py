@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from pzt_ident.data.readers import read_records
 from pzt_ident.data.readers.decimate import decimated
-from pzt_ident.data.record import Axis, Channel, Source
+from pzt_ident.data.record import Axis, Channel, Level, Source
 
 SAMPLES = 400
 
@@ -76,6 +76,19 @@ def test_what_a_record_carries(path, read):
     assert record.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
     assert record.notes == ()
     assert read(path, name="slow").name == "slow"
+
+
+@pytest.mark.parametrize(("level", "volts"), [(Level(2.0), 2.0), (Level(-0.1, "kV"), -100.0), (None, None)])
+def test_the_drive_of_rest_is_ahead_of_the_record(path, read, level, volts):
+    record = read(path, rows=(100, 300), rest_at=level and {"x": level})
+    assert record.rest_at == ((volts,) if level else ())
+    assert record.samples == 200 and record.drive[0, 0] == 100
+    np.testing.assert_array_equal(record.drive_from_rest[0], ([volts] if level else []) + [*record.drive[0]])
+
+
+def test_the_drive_of_rest_has_the_unit_of_a_drive(path, problem):
+    fault = problem(path, rest_at={"x": Level(2.0, "um")})
+    assert "rest_at: 2 um cannot be a drive in V" in fault.message
 
 
 def test_records_of_one_file_are_numbered_and_rates_may_differ(path):
