@@ -40,6 +40,11 @@ class Staircase:
     suspects: list[Suspect | Undetermined] = field(default_factory=list)
     case: Case | None = None
 
+    @property
+    def end(self) -> Fit:
+        """The fit of the last model."""
+        return self.steps[-1].fit
+
 
 def climb(
     case: Case, base: Sequence[Step], diagnosis: Diagnosis, candidate: Candidate | None, on_step: StepListener

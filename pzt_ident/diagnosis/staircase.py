@@ -3,30 +3,20 @@ effect first."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from pzt_ident.diagnosis.bounds import are_decisive, beyond_bounds, brought_back, continued, stands_in
-from pzt_ident.diagnosis.budget import PROVING, WHOLE
-from pzt_ident.diagnosis.candidates import TIE, Candidate
+from pzt_ident.diagnosis.budget import WHOLE
+from pzt_ident.diagnosis.candidates import TIE
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, climb
-from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms, removes_enough
+from pzt_ident.diagnosis.climb import WIDER, Staircase
+from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms
 from pzt_ident.diagnosis.drive_noise import QUIET, with_quiet_drives
-from pzt_ident.diagnosis.exchange import (
-    add_rivals_beside,
-    drop_outdone_rivals,
-    exchange_main_mode,
-    find_rivals,
-    remove_unneeded,
-)
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.history import BEFORE, at_rest, history_behind, with_history
 from pzt_ident.diagnosis.judges import judged
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.proof import Suspect, unproven
+from pzt_ident.diagnosis.paths import SETTLED, best_path, conclude, improve_within
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
 from pzt_ident.diagnosis.undetermined import (
@@ -36,12 +26,8 @@ from pzt_ident.diagnosis.undetermined import (
     without_mechanics,
 )
 from pzt_ident.diagnosis.unmeasured import OWN, own_mechanics, with_own_mechanics
-from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
+from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
 from pzt_ident.model.registry import word_of
-
-FIRST_EFFECTS = 2  # effects that are tried as the first to be added
-SETTLED = "adequate", "refused"
-PROVEN = "back to what is proven"  # the step that goes back to an earlier one
 
 
 def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
@@ -61,14 +47,14 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
     if judging is not case:
         staircase.case = staircase.case or judging
     if aged is None and staircase.last.verdict not in SETTLED:
-        behind = history_behind(staircase.case or case, first, end_of(staircase))
+        behind = history_behind(staircase.case or case, first, staircase.end)
         aged = improve_aged(case, first, *behind, on_step) if behind else None
     return best_path(case, [staircase, aged]) if aged else staircase
 
 
 def with_least_history(case: Case, first: Fit, staircase: Staircase) -> Staircase:
     """The staircase whose records start from rest, where its last model fits as well then."""
-    end, rested = end_of(staircase), at_rest(staircase.case or case)
+    end, rested = staircase.end, at_rest(staircase.case or case)
     fit = refit(rested, end, end.effects, {})
     if not adequate(case, first, fit) or removed_rms(fit.total, end.total) >= TIE * case.floor:
         return staircase
@@ -134,12 +120,12 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener, diagnosis: Dia
     if lean and (lean.last.verdict == "adequate" or settles_for(case, first, lean)):
         return lean
     given = with_least_bounds(case, improve_within(case, [Step(first)], on_step, diagnosis))
-    if lean and given.last.verdict != "adequate" and end_of(lean).total < end_of(given).total:
+    if lean and given.last.verdict != "adequate" and lean.end.total < given.end.total:
         given = lean
     if given.last.verdict == "adequate":
         return given
     own = improve_own(case, first, on_step)
-    if own and (own.last.verdict == "adequate" or end_of(own).total < end_of(given).total):
+    if own and (own.last.verdict == "adequate" or own.end.total < given.end.total):
         return own
     beyond = beyond or bounds_beside(case, first, diagnosis)
     if not beyond:
@@ -177,12 +163,7 @@ def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, F
 
 def settles_for(case: Case, first: Fit, lean: Staircase) -> bool:
     """Whether the staircase without mechanics is better than the model as given, and there is no time for another."""
-    return end_of(lean).total < first.total and not case.budget.allows("effects beside the mechanics", WHOLE)
-
-
-def end_of(staircase: Staircase) -> Fit:
-    """The fit of the last model."""
-    return staircase.steps[-1].fit
+    return lean.end.total < first.total and not case.budget.allows("effects beside the mechanics", WHOLE)
 
 
 def improve_lean(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListener) -> Staircase | None:
@@ -198,7 +179,7 @@ def improve_lean(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepList
     word, lean, start = alternative
     staircase = improve_within(lean, steps_without(case, first, *alternative), on_step)
     share = explained_share(case, start, first)
-    staircase.suspects.append(Undetermined(word, share, end_of(staircase).total / case.floor))
+    staircase.suspects.append(Undetermined(word, share, staircase.end.total / case.floor))
     return staircase
 
 
@@ -223,18 +204,18 @@ def improve_own(case: Case, first: Fit, on_step: StepListener) -> Staircase | No
 
 def accounts(wide: Staircase, case: Case, first: Fit) -> bool:
     """Whether wider bounds lead near the noise, to a model in which none of them is reached."""
-    return near_noise(case, first, wide.steps[-1].fit) and keeps_within(wide, case)
+    return near_noise(case, first, wide.end) and keeps_within(wide, case)
 
 
 def clearly_better(wide: Staircase, given: Staircase, case: Case) -> bool:
     """Whether wider bounds, none of which is reached, remove most of what the staircase as given leaves."""
-    share = share_explained(given.steps[-1].fit.total, wide.steps[-1].fit.total, case.floor)
+    share = share_explained(given.end.total, wide.end.total, case.floor)
     return share >= DECISIVE and keeps_within(wide, case)
 
 
 def keeps_within(wide: Staircase, case: Case) -> bool:
     """Whether the last model reaches none of the wider bounds."""
-    return wide.case is None or not stands_in(wide.case, case, wide.steps[-1].fit)
+    return wide.case is None or not stands_in(wide.case, case, wide.end)
 
 
 def improve_beyond(case: Case, first: Fit, wide: Case, start: Fit, on_step: StepListener) -> Staircase:
@@ -245,134 +226,8 @@ def improve_beyond(case: Case, first: Fit, wide: Case, start: Fit, on_step: Step
 
 def with_least_bounds(case: Case, staircase: Staircase) -> Staircase:
     """The staircase, within the bounds of the job where its last model is."""
-    if staircase.case is None or brought_back(case, staircase.steps[-1].fit) is None:
+    if staircase.case is None or brought_back(case, staircase.end) is None:
         return staircase
     kept = [step for step in staircase.steps if step.change != WIDER]
     steps = [replace(step, fit=brought_back(case, step.fit) or step.fit) for step in kept]
     return replace(staircase, steps=steps, case=None)
-
-
-def improve_within(
-    case: Case, base: Sequence[Step], on_step: StepListener, diagnosis: Diagnosis | None = None
-) -> Staircase:
-    """The staircase of a case, with its blocks and bounds. base: the steps to the model that effects are added to, the
-    model as given first. diagnosis: of the last of them, where there is one.
-
-    Where the best first effect leads to no adequate model, the next best one is tried: the first may have stood in for
-    something else. What counts of either path is then what is proven.
-    """
-    first = base[-1].fit
-    diagnosis = diagnosis or diagnose(case, first)
-    paths: list[Staircase] = []
-    candidates: list[Candidate | None] = [*first_candidates(case, first, diagnosis)]
-    for candidate in candidates or [None]:
-        path = climb(case, base, diagnosis, candidate, on_step)
-        paths.append(path)
-        if path.last.verdict in SETTLED or path.steps[-1].fit.identify / case.floor > HOPELESS:
-            break
-        if not case.budget.allows("another effect first"):
-            break
-    finished = [best_path(case, paths)] if any(map(is_adequate, paths)) else paths
-    doubts = [(path, finish(path.case or case, first, path, on_step)) for path in finished]
-    best = best_path(case, finished)
-    find_rivals(best.case or case, first, best.steps, on_step)
-    for doubted in [fit for path, fit in doubts if path is best and fit]:
-        add_rivals_beside(best.case or case, first, best.steps, doubted)
-    conclude(best.case or case, first, best)
-    return best
-
-
-def finish(case: Case, first: Fit, path: Staircase, on_step: StepListener) -> Fit | None:
-    """Take back what a path can do without, or does not prove; see `take_back`."""
-    for step in exchange_main_mode(case, first, end_of(path)):
-        on_step(step)
-        path.steps.append(step)
-    return take_back(case, first, path, on_step)
-
-
-def is_adequate(path: Staircase) -> bool:
-    """Whether a path led to an adequate model."""
-    return path.last.verdict == "adequate"
-
-
-def best_path(case: Case, paths: Sequence[Staircase]) -> Staircase:
-    """The adequate path, else the lowest one; of those that end as low, that with the fewest parameters."""
-    settled = [*filter(is_adequate, paths)] or paths
-    least = min(end_of(path).total for path in settled)
-    close = [path for path in settled if removed_rms(end_of(path).total, least) < TIE * case.floor]
-    return min(close, key=lambda path: (end_of(path).freedom, end_of(path).total))
-
-
-def first_candidates(case: Case, first: Fit, diagnosis: Diagnosis) -> list[Candidate]:
-    """The best candidate, and the next best one, for which another form of any effect counts too."""
-    if not diagnosis.passing:
-        return []
-    best, *others = diagnosis.passing
-    every = [
-        replace(item, score=score, fit=item.refits[score.effect])
-        for item in diagnosis.candidates
-        for score in item.forms
-        if score.effect in item.refits and item.fit is not item.refits[score.effect]
-    ]
-    others += [item for item in every if item.fit and removes_enough(case, first, first, item.fit)]
-    return [best, *sorted(others, key=lambda item: item.fit.total if item.fit else np.inf)[: FIRST_EFFECTS - 1]]
-
-
-def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListener) -> Fit | None:
-    """Steps that take effects out again: those that the last model can do without, which may only have led the fit out
-    of a side minimum, such as that to which the bounds of the job had led it, and the unproven ones; or back to a
-    model whose effects are all proven, where that is better than what is then left. Returns the fit with the unproven
-    ones, None where there are none beside those of the last model."""
-    now, wider = staircase.steps[-1].fit, any(step.change == WIDER for step in staircase.steps)
-    steps = remove_unneeded(case, first, now, newest=0, restarted=wider) if near_noise(case, first, now) else []
-    now = steps[-1].fit if steps else now
-    if not near_noise(case, first, now):
-        drop_outdone_rivals(case, now, staircase.steps)
-    doubted, suspects = now, unproven_of(case, first, now, staircase.steps)
-    end = suspects[-1].without if suspects else now
-    proven = proven_before(case, first, end, staircase.steps)
-    staircase.suspects = [item for item in suspects if proven is None or item.effect not in proven.effects]
-    if proven:
-        steps.append(Step(proven, explained=explained_share(case, now, proven), change=PROVEN))
-    for suspect in suspects if proven is None else []:
-        share = explained_share(case, now, suspect.without)
-        steps.append(Step(suspect.without, None, suspect.effect, {}, share))
-        now = suspect.without
-    for step in steps:
-        on_step(step)
-    staircase.steps += steps
-    return doubted if suspects and proven is None else None
-
-
-def unproven_of(case: Case, first: Fit, fit: Fit, steps: Sequence[Step]) -> list[Suspect]:
-    """The effects of a fit that are to be taken out again. steps: all of the staircase."""
-    rivals = {step.added: step.tied for step in steps if step.added}
-    return unproven(case, first, fit, rivals, [first, *(step.fit for step in steps)])
-
-
-def proven_before(case: Case, first: Fit, end: Fit, steps: Sequence[Step]) -> Fit | None:
-    """The lowest fit of the case short of the last one whose effects are all proven and which leaves clearly less than
-    the model that is left at the end; None where there is none."""
-    since = max(number for number, step in enumerate(steps) if number == 0 or step.case)
-    lower = [
-        number
-        for number, step in enumerate(steps[:-1])
-        if number > since
-        and len(step.fit.effects) > len(end.effects)
-        and removed_rms(end.total, step.fit.total) > TIE * case.floor
-    ]
-    for number in sorted(lower, key=lambda number: steps[number].fit.total):
-        if not case.budget.allows("proof of fewer effects", PROVING):
-            return None
-        if not unproven_of(case, first, steps[number].fit, steps[: number + 1]):
-            return steps[number].fit
-    return None
-
-
-def conclude(case: Case, first: Fit, staircase: Staircase) -> None:
-    """Diagnose the last model where that is another one than the path led to; what no effect explains then is
-    unexplained."""
-    if staircase.last.before is not end_of(staircase):
-        staircase.last = diagnose(case, end_of(staircase), first)
-    if staircase.last.verdict not in SETTLED:
-        staircase.last = unexplained(case, first, staircase.last)

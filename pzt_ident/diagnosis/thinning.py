@@ -17,6 +17,7 @@ from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.drive_noise import quieted
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.judges import judged
+from pzt_ident.diagnosis.paths import PROVEN
 from pzt_ident.diagnosis.proof import Suspect, unproven
 from pzt_ident.diagnosis.refit import refine_steps
 from pzt_ident.diagnosis.staircase import Staircase, StepListener
@@ -172,7 +173,7 @@ def on_all_samples(case: Case, thin: Case, staircase: Staircase) -> Staircase | 
     few_first, few_last = staircase.steps[0].fit, staircase.steps[-1].fit
     if not holds(case, few_last, last) or adequate(case, first, last) != adequate(thin, few_first, few_last):
         return None
-    back = staircase.steps[-1].change == stairs.PROVEN  # at once, not from suspect to suspect
+    back = staircase.steps[-1].change == PROVEN  # at once, not from suspect to suspect
     doubted = [] if back else [suspect.effect for suspect in staircase.suspects if isinstance(suspect, Suspect)]
     fullest = steps[-1 - len(doubted)].fit
     if [suspect.effect for suspect in unproven(home, first, fullest, rivals)] != doubted:

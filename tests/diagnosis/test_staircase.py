@@ -8,14 +8,13 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis import candidates, climb, exchange
-from pzt_ident.diagnosis import staircase as improving
 from pzt_ident.diagnosis.budget import Budget
-from pzt_ident.diagnosis.climb import Staircase, add_pair, add_restarted
+from pzt_ident.diagnosis.climb import add_pair, add_restarted
 from pzt_ident.diagnosis.exchange import exchange_any, remove_unneeded
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.score import Score
-from pzt_ident.diagnosis.staircase import improve, improve_within
+from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step, explained_share
 from pzt_ident.diagnosis.verdict import Candidate, Diagnosis, diagnose
@@ -238,47 +237,6 @@ def test_what_fits_as_well_in_the_place_of_an_effect_is_told_once_all_are_known(
             assert set(step.tied[1:]) <= set(blocks[step.added].look_alikes)
 
 
-@pytest.mark.parametrize(
-    ("ends", "taken"),
-    [
-        ([("unexplained", 1.0, 1.5), ("adequate", 1.0, 2.0)], 1),
-        ([("unexplained", 1.0, 2.0), ("unexplained", 1.0, 1.5)], 1),
-        ([("unexplained", 1.0, 1.5), ("unexplained", 1.0, 2.0)], 0),
-        ([("adequate", 1.0, 2.0), ("adequate", 1.0, 1.5)], 0),
-        ([("unexplained", 5.1, 9.0), ("adequate", 1.0, 1.5)], 0),
-    ],
-    ids=["adequate", "better", "worse", "adequate at once", "hopeless at once"],
-)
-def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, monkeypatch):
-    """Each path by its verdict, its last error in noise floors and its total; the second is tried where it may help."""
-    paths = [
-        Staircase([Step(ending(identify, total))], SimpleNamespace(verdict=verdict))
-        for verdict, identify, total in ends
-    ]
-    assert taken_of(paths, lambda path: [], monkeypatch) is paths[taken]
-
-
-def taken_of(paths, taken_back, monkeypatch):
-    """The one that is taken of paths, of which some steps are taken back."""
-
-    def take_back(case, first, path, on_step):
-        path.steps += taken_back(path)
-
-    monkeypatch.setattr(improving, "diagnose", lambda case, first: SimpleNamespace())
-    monkeypatch.setattr(improving, "first_candidates", lambda case, first, diagnosis: [*range(len(paths))])
-    monkeypatch.setattr(improving, "climb", lambda case, first, diagnosis, number, on_step: paths[number])
-    monkeypatch.setattr(improving, "exchange_main_mode", lambda *arguments: [])
-    monkeypatch.setattr(improving, "take_back", take_back)
-    monkeypatch.setattr(improving, "find_rivals", lambda *arguments: None)
-    monkeypatch.setattr(improving, "conclude", lambda *arguments: None)
-    return improve_within(SimpleNamespace(floor=1.0, budget=Budget()), [Step(SimpleNamespace())], None)
-
-
-def test_of_two_paths_that_end_above_the_noise_the_one_is_taken_that_is_lower_with_what_is_proven(monkeypatch):
-    lower, proven = (Staircase([Step(ending(2.0, end))], SimpleNamespace(verdict="unexplained")) for end in (2.0, 3.0))
-    assert taken_of([lower, proven], lambda path: [Step(ending(9.0, 9.0))] * (path is lower), monkeypatch) is proven
-
-
 @pytest.mark.parametrize(("parameters", "taken"), [(1, "sensor_lag"), (3, "friction.coulomb"), (4, "friction.coulomb")])
 @pytest.mark.parametrize("twin", [False, True])
 def test_beside_other_effects_too_the_simpler_of_tied_look_alikes_is_taken(monkeypatch, parameters, taken, twin):
@@ -365,65 +323,6 @@ def test_what_scores_far_less_than_an_effect_is_not_refitted_in_its_place(monkey
     monkeypatch.setattr(exchange, "scorer_of", lambda case, fit: scorer)
     monkeypatch.setattr(exchange, "refit_beside", lambda case, fits, effects, guess, rival: effects)
     assert exchange.fits_in_place(None, now, "creep", ["drift", "sensor_lag", "delay"]) == [("drift",)]
-
-
-def ending(identify, total, parameters=3):
-    return SimpleNamespace(identify=identify, total=total, freedom=parameters)
-
-
-def test_of_paths_that_end_as_low_the_one_with_fewer_parameters_is_taken():
-    """A general form ends as low as the effect that it contains."""
-    ends = ending(1.22, 1.2196, 9), ending(1.22, 1.2197, 7), ending(4, 4, 2)
-    paths = [Staircase([Step(end)], SimpleNamespace(verdict="unexplained")) for end in ends]
-    assert improving.best_path(SimpleNamespace(floor=1.0), paths) is paths[1]
-
-
-def test_an_effect_that_only_led_out_of_a_side_minimum_is_taken_out_again():
-    """The first fit rests far from the stage; with drift it gets there, and then drift is of no use."""
-    case = stage.case()
-    problem, model = case.problem(()), case.problem(("drift",))
-    resting = fit_at((), problem, problem.unit_point(first_fit(case, 0).values | {"bouc_wen.alpha": 0.9}))
-    there = fit_at(("drift",), model, model.unit_point(first_fit(case, 0).values | {"drift.tau": 100.0}))
-    found = Staircase([Step(resting), Step(there, "drift")], Diagnosis("adequate", "", there, [], []))
-    improving.take_back(case, resting, found, lambda step: None)
-    assert [(step.added, step.removed) for step in found.steps] == [(None, None), ("drift", None), (None, "drift")]
-    assert (found.steps[-1].fit.effects, found.last.verdict, found.suspects) == ((), "adequate", [])
-
-
-@pytest.mark.parametrize(
-    ("proven", "left", "since", "end"),
-    [
-        ({"ab"}, 20.0, 0, "ab"),
-        ({"a", "ab"}, 20.0, 0, "ab"),
-        ({"a"}, 20.0, 0, "a"),
-        ({"abc", "ab"}, 20.0, 0, "abc"),
-        ({"ab"}, 2.9, 0, ""),
-        (set(), 20.0, 0, ""),
-        ({"a", "ab"}, 20.0, 2, ""),
-    ],
-    ids=["fewer", "the lowest", "one", "all", "no better", "none", "within other bounds"],
-)
-def test_where_little_is_left_of_the_last_model_the_lowest_one_before_it_that_is_proven_is(
-    monkeypatch, proven, left, since, end
-):
-    """since: the step from which on bounds are wider."""
-    totals = {"": 20.0, "a": 5.0, "ab": 3.0, "abc": 2.0}
-    fits = [Fit(tuple(word), None, np.zeros(1), total, total) for word, total in totals.items()]
-    case, nothing = SimpleNamespace(floor=1.0, budget=Budget()), replace(fits[0], identify=left, validate=left)
-
-    def suspects(case, first, fit, steps):
-        return [] if "".join(fit.effects) in proven else [SimpleNamespace(effect="c", without=nothing)]
-
-    monkeypatch.setattr(improving, "unproven_of", suspects)
-    monkeypatch.setattr(improving, "near_noise", lambda *arguments: False)
-    monkeypatch.setattr(improving, "drop_outdone_rivals", lambda *arguments: None)
-    steps = [Step(fit, *fit.effects[-1:], case=case if number == since else None) for number, fit in enumerate(fits)]
-    reported = []
-    found = Staircase(steps, None)
-    improving.take_back(case, fits[0], found, reported.append)
-    assert "".join(found.steps[-1].fit.effects) == end
-    assert [step.change for step in reported] == {"abc": [], "": [""]}.get(end, [improving.PROVEN])
-    assert len(found.steps) == len(fits) + len(reported)
 
 
 @pytest.mark.parametrize("beside", ["creep", ""], ids=["tied beside the memory", "tied nowhere"])

@@ -10,6 +10,7 @@ from pzt_ident.diagnosis import proof, thinning
 from pzt_ident.diagnosis import staircase as stairs
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.paths import PROVEN
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step
 from pzt_ident.diagnosis.thinning import enough, keeps_all, most_of, situations, thin_record, thinned
@@ -119,13 +120,13 @@ def test_an_earlier_model_that_is_proven_on_fewer_samples_is_carried_to_all(monk
         found = improve(*given)
         proven = found.steps[-1].fit
         suspect = proof.Suspect("drift", 0.1, 0.1, proven)
-        steps = [*found.steps, Step(proven, "drift"), Step(proven, change=stairs.PROVEN)]
+        steps = [*found.steps, Step(proven, "drift"), Step(proven, change=PROVEN)]
         return replace(found, steps=steps, suspects=[suspect])
 
     improve = stairs.improve
     monkeypatch.setattr(stairs, "improve", back)
     staircase = thinning.improve(case, lambda case: first_fit(case, 0))
-    assert staircase.steps[-1].change == stairs.PROVEN
+    assert staircase.steps[-1].change == PROVEN
     assert [suspect.effect for suspect in staircase.suspects] == ["drift"]
     assert "what was found holds on all" in staircase.last.reason
 

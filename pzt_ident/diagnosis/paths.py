@@ -1,0 +1,155 @@
+"""The best of the paths from a model to one with what it misses, within the blocks and bounds of a case."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from pzt_ident.diagnosis.budget import PROVING
+from pzt_ident.diagnosis.candidates import TIE, Candidate
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, climb
+from pzt_ident.diagnosis.criteria import near_noise, removed_rms, removes_enough
+from pzt_ident.diagnosis.exchange import (
+    add_rivals_beside,
+    drop_outdone_rivals,
+    exchange_main_mode,
+    find_rivals,
+    remove_unneeded,
+)
+from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.proof import Suspect, unproven
+from pzt_ident.diagnosis.step import Step, StepListener, explained_share
+from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
+
+FIRST_EFFECTS = 2  # effects that are tried as the first to be added
+SETTLED = "adequate", "refused"
+PROVEN = "back to what is proven"  # the step that goes back to an earlier one
+
+
+def improve_within(
+    case: Case, base: Sequence[Step], on_step: StepListener, diagnosis: Diagnosis | None = None
+) -> Staircase:
+    """The staircase of a case, with its blocks and bounds. base: the steps to the model that effects are added to, the
+    model as given first. diagnosis: of the last of them, where there is one.
+
+    Where the best first effect leads to no adequate model, the next best one is tried: the first may have stood in for
+    something else. What counts of either path is then what is proven.
+    """
+    first = base[-1].fit
+    diagnosis = diagnosis or diagnose(case, first)
+    paths: list[Staircase] = []
+    candidates: list[Candidate | None] = [*first_candidates(case, first, diagnosis)]
+    for candidate in candidates or [None]:
+        path = climb(case, base, diagnosis, candidate, on_step)
+        paths.append(path)
+        if path.last.verdict in SETTLED or path.end.identify / case.floor > HOPELESS:
+            break
+        if not case.budget.allows("another effect first"):
+            break
+    finished = [best_path(case, paths)] if any(map(is_adequate, paths)) else paths
+    doubts = [(path, finish(path.case or case, first, path, on_step)) for path in finished]
+    best = best_path(case, finished)
+    find_rivals(best.case or case, first, best.steps, on_step)
+    for doubted in [fit for path, fit in doubts if path is best and fit]:
+        add_rivals_beside(best.case or case, first, best.steps, doubted)
+    conclude(best.case or case, first, best)
+    return best
+
+
+def finish(case: Case, first: Fit, path: Staircase, on_step: StepListener) -> Fit | None:
+    """Take back what a path can do without, or does not prove; see `take_back`."""
+    for step in exchange_main_mode(case, first, path.end):
+        on_step(step)
+        path.steps.append(step)
+    return take_back(case, first, path, on_step)
+
+
+def is_adequate(path: Staircase) -> bool:
+    """Whether a path led to an adequate model."""
+    return path.last.verdict == "adequate"
+
+
+def best_path(case: Case, paths: Sequence[Staircase]) -> Staircase:
+    """The adequate path, else the lowest one; of those that end as low, that with the fewest parameters."""
+    settled = [*filter(is_adequate, paths)] or paths
+    least = min(path.end.total for path in settled)
+    close = [path for path in settled if removed_rms(path.end.total, least) < TIE * case.floor]
+    return min(close, key=lambda path: (path.end.freedom, path.end.total))
+
+
+def first_candidates(case: Case, first: Fit, diagnosis: Diagnosis) -> list[Candidate]:
+    """The best candidate, and the next best one, for which another form of any effect counts too."""
+    if not diagnosis.passing:
+        return []
+    best, *others = diagnosis.passing
+    every = [
+        replace(item, score=score, fit=item.refits[score.effect])
+        for item in diagnosis.candidates
+        for score in item.forms
+        if score.effect in item.refits and item.fit is not item.refits[score.effect]
+    ]
+    others += [item for item in every if item.fit and removes_enough(case, first, first, item.fit)]
+    return [best, *sorted(others, key=lambda item: item.fit.total if item.fit else np.inf)[: FIRST_EFFECTS - 1]]
+
+
+def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListener) -> Fit | None:
+    """Steps that take effects out again: those that the last model can do without, which may only have led the fit out
+    of a side minimum, such as that to which the bounds of the job had led it, and the unproven ones; or back to a
+    model whose effects are all proven, where that is better than what is then left. Returns the fit with the unproven
+    ones, None where there are none beside those of the last model."""
+    now, wider = staircase.end, any(step.change == WIDER for step in staircase.steps)
+    steps = remove_unneeded(case, first, now, newest=0, restarted=wider) if near_noise(case, first, now) else []
+    now = steps[-1].fit if steps else now
+    if not near_noise(case, first, now):
+        drop_outdone_rivals(case, now, staircase.steps)
+    doubted, suspects = now, unproven_of(case, first, now, staircase.steps)
+    end = suspects[-1].without if suspects else now
+    proven = proven_before(case, first, end, staircase.steps)
+    staircase.suspects = [item for item in suspects if proven is None or item.effect not in proven.effects]
+    if proven:
+        steps.append(Step(proven, explained=explained_share(case, now, proven), change=PROVEN))
+    for suspect in suspects if proven is None else []:
+        share = explained_share(case, now, suspect.without)
+        steps.append(Step(suspect.without, None, suspect.effect, {}, share))
+        now = suspect.without
+    for step in steps:
+        on_step(step)
+    staircase.steps += steps
+    return doubted if suspects and proven is None else None
+
+
+def unproven_of(case: Case, first: Fit, fit: Fit, steps: Sequence[Step]) -> list[Suspect]:
+    """The effects of a fit that are to be taken out again. steps: all of the staircase."""
+    rivals = {step.added: step.tied for step in steps if step.added}
+    return unproven(case, first, fit, rivals, [first, *(step.fit for step in steps)])
+
+
+def proven_before(case: Case, first: Fit, end: Fit, steps: Sequence[Step]) -> Fit | None:
+    """The lowest fit of the case short of the last one whose effects are all proven and which leaves clearly less than
+    the model that is left at the end; None where there is none."""
+    since = max(number for number, step in enumerate(steps) if number == 0 or step.case)
+    lower = [
+        number
+        for number, step in enumerate(steps[:-1])
+        if number > since
+        and len(step.fit.effects) > len(end.effects)
+        and removed_rms(end.total, step.fit.total) > TIE * case.floor
+    ]
+    for number in sorted(lower, key=lambda number: steps[number].fit.total):
+        if not case.budget.allows("proof of fewer effects", PROVING):
+            return None
+        if not unproven_of(case, first, steps[number].fit, steps[: number + 1]):
+            return steps[number].fit
+    return None
+
+
+def conclude(case: Case, first: Fit, staircase: Staircase) -> None:
+    """Diagnose the last model where that is another one than the path led to; what no effect explains then is
+    unexplained."""
+    if staircase.last.before is not staircase.end:
+        staircase.last = diagnose(case, staircase.end, first)
+    if staircase.last.verdict not in SETTLED:
+        staircase.last = unexplained(case, first, staircase.last)

@@ -1,0 +1,117 @@
+"""Of several paths the one that proves most is taken, without what it does not prove."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import stage
+from pzt_ident.diagnosis import paths
+from pzt_ident.diagnosis.budget import Budget
+from pzt_ident.diagnosis.climb import Staircase
+from pzt_ident.diagnosis.fit import Fit, fit_at
+from pzt_ident.diagnosis.paths import PROVEN, best_path, improve_within, take_back
+from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.diagnosis.step import Step
+from pzt_ident.diagnosis.verdict import Diagnosis
+
+
+@pytest.mark.parametrize(
+    ("ends", "taken"),
+    [
+        ([("unexplained", 1.0, 1.5), ("adequate", 1.0, 2.0)], 1),
+        ([("unexplained", 1.0, 2.0), ("unexplained", 1.0, 1.5)], 1),
+        ([("unexplained", 1.0, 1.5), ("unexplained", 1.0, 2.0)], 0),
+        ([("adequate", 1.0, 2.0), ("adequate", 1.0, 1.5)], 0),
+        ([("unexplained", 5.1, 9.0), ("adequate", 1.0, 1.5)], 0),
+    ],
+    ids=["adequate", "better", "worse", "adequate at once", "hopeless at once"],
+)
+def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, monkeypatch):
+    """Each path by its verdict, its last error in noise floors and its total; the second is tried where it may help."""
+    several = [
+        Staircase([Step(ending(identify, total))], SimpleNamespace(verdict=verdict))
+        for verdict, identify, total in ends
+    ]
+    assert taken_of(several, lambda path: [], monkeypatch) is several[taken]
+
+
+def taken_of(several, taken_back, monkeypatch):
+    """The one that is taken of paths, of which some steps are taken back."""
+
+    def take_back(case, first, path, on_step):
+        path.steps += taken_back(path)
+
+    monkeypatch.setattr(paths, "diagnose", lambda case, first: SimpleNamespace())
+    monkeypatch.setattr(paths, "first_candidates", lambda case, first, diagnosis: [*range(len(several))])
+    monkeypatch.setattr(paths, "climb", lambda case, first, diagnosis, number, on_step: several[number])
+    monkeypatch.setattr(paths, "exchange_main_mode", lambda *arguments: [])
+    monkeypatch.setattr(paths, "take_back", take_back)
+    monkeypatch.setattr(paths, "find_rivals", lambda *arguments: None)
+    monkeypatch.setattr(paths, "conclude", lambda *arguments: None)
+    return improve_within(SimpleNamespace(floor=1.0, budget=Budget()), [Step(SimpleNamespace())], None)
+
+
+def test_of_two_paths_that_end_above_the_noise_the_one_is_taken_that_is_lower_with_what_is_proven(monkeypatch):
+    lower, proven = (Staircase([Step(ending(2.0, end))], SimpleNamespace(verdict="unexplained")) for end in (2.0, 3.0))
+    assert taken_of([lower, proven], lambda path: [Step(ending(9.0, 9.0))] * (path is lower), monkeypatch) is proven
+
+
+def ending(identify, total, parameters=3):
+    return SimpleNamespace(identify=identify, total=total, freedom=parameters)
+
+
+def test_of_paths_that_end_as_low_the_one_with_fewer_parameters_is_taken():
+    """A general form ends as low as the effect that it contains."""
+    ends = ending(1.22, 1.2196, 9), ending(1.22, 1.2197, 7), ending(4, 4, 2)
+    several = [Staircase([Step(end)], SimpleNamespace(verdict="unexplained")) for end in ends]
+    assert best_path(SimpleNamespace(floor=1.0), several) is several[1]
+
+
+def test_an_effect_that_only_led_out_of_a_side_minimum_is_taken_out_again():
+    """The first fit rests far from the stage; with drift it gets there, and then drift is of no use."""
+    case = stage.case()
+    problem, model = case.problem(()), case.problem(("drift",))
+    resting = fit_at((), problem, problem.unit_point(first_fit(case, 0).values | {"bouc_wen.alpha": 0.9}))
+    there = fit_at(("drift",), model, model.unit_point(first_fit(case, 0).values | {"drift.tau": 100.0}))
+    found = Staircase([Step(resting), Step(there, "drift")], Diagnosis("adequate", "", there, [], []))
+    take_back(case, resting, found, lambda step: None)
+    assert [(step.added, step.removed) for step in found.steps] == [(None, None), ("drift", None), (None, "drift")]
+    assert (found.steps[-1].fit.effects, found.last.verdict, found.suspects) == ((), "adequate", [])
+
+
+@pytest.mark.parametrize(
+    ("proven", "left", "since", "end"),
+    [
+        ({"ab"}, 20.0, 0, "ab"),
+        ({"a", "ab"}, 20.0, 0, "ab"),
+        ({"a"}, 20.0, 0, "a"),
+        ({"abc", "ab"}, 20.0, 0, "abc"),
+        ({"ab"}, 2.9, 0, ""),
+        (set(), 20.0, 0, ""),
+        ({"a", "ab"}, 20.0, 2, ""),
+    ],
+    ids=["fewer", "the lowest", "one", "all", "no better", "none", "within other bounds"],
+)
+def test_where_little_is_left_of_the_last_model_the_lowest_one_before_it_that_is_proven_is(
+    monkeypatch, proven, left, since, end
+):
+    """since: the step from which on bounds are wider."""
+    totals = {"": 20.0, "a": 5.0, "ab": 3.0, "abc": 2.0}
+    fits = [Fit(tuple(word), None, np.zeros(1), total, total) for word, total in totals.items()]
+    case, nothing = SimpleNamespace(floor=1.0, budget=Budget()), replace(fits[0], identify=left, validate=left)
+
+    def suspects(case, first, fit, steps):
+        return [] if "".join(fit.effects) in proven else [SimpleNamespace(effect="c", without=nothing)]
+
+    monkeypatch.setattr(paths, "unproven_of", suspects)
+    monkeypatch.setattr(paths, "near_noise", lambda *arguments: False)
+    monkeypatch.setattr(paths, "drop_outdone_rivals", lambda *arguments: None)
+    steps = [Step(fit, *fit.effects[-1:], case=case if number == since else None) for number, fit in enumerate(fits)]
+    reported = []
+    found = Staircase(steps, None)
+    take_back(case, fits[0], found, reported.append)
+    assert "".join(found.steps[-1].fit.effects) == end
+    assert [step.change for step in reported] == {"abc": [], "": [""]}.get(end, [PROVEN])
+    assert len(found.steps) == len(fits) + len(reported)
