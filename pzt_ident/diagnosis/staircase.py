@@ -98,8 +98,8 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener, diagnosis: Dia
     """The same, judged by all records that are left to judge it; diagnosis: of the first fit, if there is one.
 
     Wider bounds, where those of the job are too narrow, are tried first where they remove most of the misfit of an
-    axis; mechanics that the data do not determine are left out first where no effect beside them reaches the noise, and
-    any where nothing is missing without them."""
+    axis, or lead to the noise beside one effect; mechanics that the data do not determine are left out first where no
+    effect beside them reaches the noise, and any where nothing is missing without them."""
     good = adequate(case, first, first)
     enough = None if good else enough_without_mechanics(case, first)
     if enough:
@@ -116,6 +116,12 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener, diagnosis: Dia
     behind = fit_behind(case, first, diagnosis)
     if behind:
         return improve_judged(case, behind, on_step)
+    beside = None if good or beyond else bounds_beside(case, first, diagnosis)
+    if beside:
+        beyond = beside[0], continued(beside[0], first)
+        wide = improve_beyond(case, first, *beyond, on_step) if adequate(case, first, beside[1]) else None
+        if wide and accounts(wide, case, first):
+            return wide
     lean = improve_lean(case, first, diagnosis, on_step)
     if lean and (lean.last.verdict == "adequate" or settles_for(case, first, lean)):
         return lean
@@ -127,7 +133,6 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener, diagnosis: Dia
     own = improve_own(case, first, on_step)
     if own and (own.last.verdict == "adequate" or own.end.total < given.end.total):
         return own
-    beyond = beyond or bounds_beside(case, first, diagnosis)
     if not beyond:
         return given
     if wide is None and case.budget.allows("wider bounds"):
@@ -153,12 +158,14 @@ def only_adds(fit: Fit) -> bool:
 
 
 def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fit] | None:
-    """The case with the wider bounds that the model with one effect needs, where no effect removes enough within those
-    of the job, and the fit of the model as given in it; None where there are none."""
+    """The case with the wider bounds that the model with one effect needs, and the fit with it there; None where there
+    are none. Within the bounds of the job it is the best on the identification records alone, by far, since it does not
+    remove enough on the others."""
     fits = [candidate.fit for candidate in diagnosis.candidates if candidate.fit]
+    passing = [candidate.fit.identify for candidate in diagnosis.passing if candidate.fit]
     best = min(fits, key=lambda fit: fit.identify, default=first)
-    beyond = None if diagnosis.passing else beyond_bounds(case, first, best)
-    return (beyond[0], continued(beyond[0], first)) if beyond else None
+    by_far = not passing or share_explained(min(passing), best.identify, case.floor) >= DECISIVE
+    return beyond_bounds(case, first, best) if by_far else None
 
 
 def settles_for(case: Case, first: Fit, lean: Staircase) -> bool:

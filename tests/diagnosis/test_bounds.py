@@ -22,8 +22,10 @@ from pzt_ident.diagnosis.bounds import (
 )
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.climb import Staircase
+from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.misfit import share_explained
+from pzt_ident.diagnosis.paths import improve_within
 from pzt_ident.diagnosis.staircase import bounds_beside, improve
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step
@@ -88,16 +90,39 @@ def test_a_bound_that_only_the_first_effect_reaches_is_widened_before_a_second_o
     assert found.steps[-1].fit.values["bouc_wen.gain"] == pytest.approx(GAIN, rel=1e-2)
 
 
-def test_where_no_effect_passes_the_bounds_that_the_best_one_reaches_are_widened():
+@pytest.mark.parametrize(("left", "widened"), [(None, True), (10.0, True), (1.0, False)])
+def test_where_no_effect_passes_that_does_as_well_the_bounds_that_the_best_one_reaches_are_widened(left, widened):
+    """left: what the effect that passes leaves, in what the best one leaves."""
     case = stage.case({"quadratic_gain.curvature": 2e-3}).with_specs(
         {"bouc_wen.gain": Widened((1.05 * GAIN, 1.6 * GAIN))}
     )
     first = first_fit(case, 0)
     diagnosis = diagnose(case, first)
     assert bounds_beside(case, first, diagnosis) is None
-    wide, start = bounds_beside(case, first, replace(diagnosis, passing=[]))
-    assert wide.specs["bouc_wen.gain"].bounds[0] < GAIN
-    assert start.effects == () and start.identify == pytest.approx(first.identify, rel=1e-6)
+    best = diagnosis.best
+    passing = [replace(best, fit=replace(best.fit, identify=left * best.fit.identify))] if left else []
+    found = bounds_beside(case, first, replace(diagnosis, passing=passing))
+    assert bool(found) == widened
+    if found:
+        wide, fit = found
+        assert wide.specs["bouc_wen.gain"].bounds[0] < GAIN
+        assert fit.effects == ("quadratic_gain",) and adequate(case, first, fit)
+
+
+@pytest.mark.parametrize("leads", [True, False])
+def test_bounds_that_lead_to_the_noise_beside_one_effect_are_widened_before_other_effects_are_tried(monkeypatch, leads):
+    case = stage.case({"quadratic_gain.curvature": 2e-3}).with_specs(
+        {"bouc_wen.gain": Widened((1.05 * GAIN, 1.6 * GAIN))}
+    )
+    first, tried = first_fit(case, 0), []
+    wide, after = beyond_bounds(case, first, diagnose(case, first).best.fit)
+    after = after if leads else replace(after, identify=10 * after.identify)
+    monkeypatch.setattr(staircase, "bounds_beside", lambda *arguments: (wide, after))
+    monkeypatch.setattr(
+        staircase, "improve_within", lambda case, *more: tried.append(case) or improve_within(case, *more)
+    )
+    assert improve(case, first).last.verdict == "adequate"
+    assert (tried[0] is wide) == leads
 
 
 def test_a_parameter_on_its_bound_lies_not_beyond_it():
