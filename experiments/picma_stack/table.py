@@ -6,7 +6,6 @@ from collections.abc import Mapping
 
 from experiments.tables import Result, command, league, parameters, records, staircase
 
-
 STAIRCASES = {
     "missing": "as identified above",
     "one_sample_late": "the sensor one sample late",

@@ -9,24 +9,37 @@ import numpy as np
 from pzt_ident.data.drive_noise import path_of, without_noise
 from pzt_ident.data.record import Record
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.criteria import CLEAR, adequate, removed_rms
+from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refit
 
 QUIET = "noise of the drive left out"  # the step after which drives have none
+PROMISING = 0.02  # of the misfit of the model as given
 LONGER = 1.001  # times its path without noise: less changes no hysteresis
 
 
 def with_quiet_drives(case: Case, first: Fit) -> tuple[Case, Fit] | None:
     """The case with the noise of its drives left out, and the fit as given in it; None where they have none that makes
     their path longer, and where that changes little."""
-    if adequate(case, first, first):
-        return None
+    return None if adequate(case, first, first) else quiet_beside(case, first, first, PROMISING)
+
+
+def quiet_behind(case: Case, first: Fit, end: Fit) -> tuple[Case, Fit] | None:
+    """The same where the noise of its drives is most of what a fit with effects leaves; else None."""
+    return quiet_beside(case, first, end, DECISIVE)
+
+
+def quiet_beside(case: Case, first: Fit, fit: Fit, share: float) -> tuple[Case, Fit] | None:
+    """The same where that removes so much of what a fit leaves, and not little."""
     quiet = quieted(case)
     if quiet is case or not case.budget.allows(QUIET):
         return None
-    fit = refit(quiet, first, first.effects, {})
-    return (quiet, fit) if removed_rms(first.total, fit.total) > CLEAR * case.floor else None
+    after = refit(quiet, fit, fit.effects, {})
+    clear = removed_rms(fit.total, after.total) > CLEAR * case.floor
+    if not clear or share_explained(fit.total, after.total, case.floor) < share:
+        return None
+    return quiet, after if fit is first else refit(quiet, first, first.effects, {})
 
 
 def quieted(case: Case) -> Case:
@@ -37,7 +50,9 @@ def quieted(case: Case) -> Case:
 
 
 def denoised(record: Record) -> Record:
-    """The record with drives without noise; the same where that makes no path shorter."""
+    """The record with drives without noise; the same where that makes no path shorter, and where it was left out."""
+    if record.denoise_drive:
+        return record
     drives = np.array([without_noise(drive) for drive in record.drive])
     pairs = zip(record.drive, drives, strict=True)
     longer = any(path_of(with_it) > LONGER * path_of(without) for with_it, without in pairs)

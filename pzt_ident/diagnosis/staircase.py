@@ -11,7 +11,7 @@ from pzt_ident.diagnosis.candidates import TIE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms
-from pzt_ident.diagnosis.drive_noise import QUIET, with_quiet_drives
+from pzt_ident.diagnosis.drive_noise import QUIET, quiet_behind, with_quiet_drives
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.history import BEFORE, at_rest, history_behind, with_history
 from pzt_ident.diagnosis.judges import judged
@@ -49,7 +49,9 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
     if aged is None and staircase.last.verdict not in SETTLED:
         behind = history_behind(staircase.case or case, first, staircase.end)
         aged = improve_aged(case, first, *behind, on_step) if behind else None
-    return best_path(case, [staircase, aged]) if aged else staircase
+    best = best_path(case, [staircase, aged]) if aged else staircase
+    quiet = None if best.last.verdict in SETTLED else quiet_behind(best.case or case, first, best.end)
+    return improve_otherwise(case, first, *quiet, QUIET, on_step) if quiet else best
 
 
 def with_least_history(case: Case, first: Fit, staircase: Staircase) -> Staircase:

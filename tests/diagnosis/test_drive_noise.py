@@ -7,8 +7,9 @@ import pytest
 
 import rig
 import stage
+from pzt_ident.diagnosis import drive_noise
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.drive_noise import QUIET, quieted
+from pzt_ident.diagnosis.drive_noise import QUIET, quiet_behind, quieted, with_quiet_drives
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.model.registry import word_of
@@ -31,6 +32,26 @@ def test_what_is_missing_is_named_and_nothing_for_the_noise(effect):
     assert found.last.verdict == "adequate" and found.steps[1].change == QUIET
     assert [*map(word_of, end.effects)] == ([effect] if effect else [])
     assert all(record.denoise_drive for record in end.problem.records)
+
+
+def test_noise_is_left_out_once():
+    quiet = quieted(recorded_with_noise())
+    assert quieted(quiet) is quiet
+
+
+@pytest.mark.parametrize(
+    ("removed", "first_of_all", "behind"), [(0.01, False, False), (0.1, True, False), (0.7, True, True)]
+)
+def test_noise_is_left_out_where_it_is_much_of_the_misfit_and_behind_effects_where_it_is_most_of_the_rest(
+    monkeypatch, removed, first_of_all, behind
+):
+    """removed: the share of the mean square that goes with it."""
+    case = recorded_with_noise()
+    given = replace(first_fit(case, 0), identify=20 * case.floor, validate=20 * case.floor)
+    left = (1 - removed) ** 0.5 * given.identify
+    monkeypatch.setattr(drive_noise, "refit", lambda *more: replace(given, identify=left, validate=left))
+    assert bool(with_quiet_drives(case, given)) == first_of_all
+    assert bool(quiet_behind(case, given, replace(given))) == behind
 
 
 def test_drives_without_noise_stay_as_they_are():
