@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.data.notation import listed
 from pzt_ident.data.readers.decimate import decimated
 from pzt_ident.data.readers.signal import Signal
 from pzt_ident.data.readers.source_channels import SourceChannels
@@ -115,7 +116,7 @@ def _record(channels: SourceChannels, axes: Mapping[str, Axis], time: Channel | 
         response_units=tuple(unscaled(response.unit) if response else None for response in responses),
         notes=_notes(source),
     )
-    return replace(record, notes=(*record.notes, *start_steps(record)))
+    return replace(record, notes=(*record.notes, *_rests(record), *start_steps(record)))
 
 
 def _rows(signals: Sequence[Signal | None], where: str) -> int:
@@ -183,6 +184,13 @@ def _notes(source: Source) -> tuple[str, ...]:
     if source.decimate == 1:
         return ()
     return (f"decimated by {source.decimate} after a zero-phase low-pass, which rounds the corners of the drive",)
+
+
+def _rests(record: Record) -> list[str]:
+    """What the record was at before its first sample, where the job says it."""
+    each = zip(record.axes, record.rest_at, record.drive_units, strict=False)
+    levels = [f"{axis} at {level / factor(unit):g} {unit}" for axis, level, unit in each if level is not None]
+    return [f"the stage rested with {listed(levels)} until the sample ahead of the first one"] if levels else []
 
 
 def _in_units_of(first: Record, record: Record) -> Record:
