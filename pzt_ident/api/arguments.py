@@ -101,7 +101,7 @@ def by_unit(units: Units, axes: Sequence[str], where: str, usual: str) -> dict[s
 
 
 def by_level(levels: Any, units: Mapping[str, str], where: str) -> dict[str, float]:
-    """A constant drive of each axis in its unit, of a number or text such as `0 V` for all axes or by axis; empty of
+    """A constant drive of each axis in its unit, of a number or text such as `0 V` for all axes or by axis; empty for
     None. Raises InputError where one is no number, or in another kind of unit, and for an axis that has no drive."""
     given = {} if levels is None else levels if isinstance(levels, Mapping) else dict.fromkeys(units, levels)
     for axis in given:

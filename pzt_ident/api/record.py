@@ -46,7 +46,7 @@ class Record:
     drive, response: their units, for all axes or by axis. name: without one it is called train or test, by its use.
     settle: s, or text such as `"20 ms"`, at the start that are simulated but not scored. run_in: how often the drive is
     simulated before the first sample, for a periodic record in steady state. rest_at: the drive at which the stage
-    rested until the sample ahead of the first one, a number or text such as `"0 V"`, of all axes or by axis.
+    rested until one sample before the first, a number or text such as `"0 V"`, of all axes or by axis.
     denoise_drive: whether noise of the drive, as of a monitor output, is left out. steps: of the simulation in a
     sample.
     Raises InputError where shapes or units do not fit; gaps, time stamps and constant responses are looked at when the
@@ -80,6 +80,9 @@ class Record:
         self.drive = by_unit(drive, list(self.u), f"{title}: drive", "V")
         self.response = by_unit(response, list(self.y), f"{title}: response", "um")
         self.rest_at = by_level(rest_at, self.drive, f"{title}: rest_at")
+        if self.rest_at and run_in:
+            problem = "a record of a steady state, which `run_in` says this is, does not begin at rest"
+            raise InputError(problem, where=f"{title}: rest_at", remedy="keep one of the two")
         if self.samples < SHORTEST:
             problem = f"has {self.samples} samples, at least {SHORTEST} are needed"
             raise InputError(problem, where=title, remedy="give more")

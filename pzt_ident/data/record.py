@@ -49,9 +49,9 @@ class Source:
     sample_rate: Hz, where no column has the time. rows: counted from 0, the end excluded. time: an interval, s. settle:
     the time at the start that is simulated but not scored, s. decimate: every n-th sample is taken. run_in: how often
     the drive is simulated before the first sample, for a periodic record in steady state. rest_at: the drive at which
-    the stage rested until the sample ahead of the first one, of all axes or by axis, for a record that begins with a
-    step. denoise_drive: whether noise of the recorded drive is left out; it turns where that goes back by more. steps:
-    of the simulation in a sample.
+    the stage rested until one sample before the first, from where it goes there on a line, of all axes or by axis, for
+    a record that begins with a step. denoise_drive: whether noise of the recorded drive is left out; it turns where
+    that goes back by more. steps: of the simulation in a sample.
     dataset, table, sheet and index: which part of a file with several ones, and of an array.
 
     `channels` overrides channels in this record, by `time`, `drive`, `response` or, of one axis, `x.drive`:
@@ -84,8 +84,8 @@ class Record:
     drive, response: (axes, samples); the response of an axis that is not measured is NaN throughout.
     dt, start: sample time and first time stamp, s. settle: samples simulated but not scored at the start.
     run_in: how often the drive is simulated before the first sample (a periodic record in steady state).
-    rest_at: the drive of each axis at which the stage rested until the sample ahead of the first one; None where that
-    is the drive of the first sample. Empty where it is on all axes.
+    rest_at: the drive of each axis at which the stage rested until one sample before the first; None where that is the
+    drive of the first sample. Empty where it is on all axes.
     denoise_drive: whether the drives are without the noise that was recorded.
     steps: simulation steps per sample.
     sha256: of the file as read. rows: the first row of the file that the record holds, and the first after it.
@@ -118,16 +118,14 @@ class Record:
 
     @property
     def ahead(self) -> int:
-        """Samples that are simulated from rest ahead of the first one."""
+        """Samples that are simulated from rest before the first one."""
         return 1 if self.rest_at else 0
 
     @property
-    def drive_from_rest(self) -> NDArray[np.float64]:
-        """The drives with the samples ahead of them: (axes, ahead + samples)."""
-        first = self.drive[:, : self.ahead].copy()
-        for row, level in zip(first, self.rest_at, strict=False):
-            row[:] = row if level is None else level
-        return np.hstack([first, self.drive])
+    def levels(self) -> list[float]:
+        """The drive of each axis at which the stage rests at first."""
+        given = self.rest_at or (None,) * len(self.drive)
+        return [float(drive[0]) if level is None else level for level, drive in zip(given, self.drive, strict=False)]
 
     @property
     def measured(self) -> tuple[int, ...]:

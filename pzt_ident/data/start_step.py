@@ -5,27 +5,27 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.data.notation import listed
 from pzt_ident.data.record import Record
 
-HARDLY = 0.1  # of the range of the drive, within which the response
-FAR = 0.3  # of its own moves further than any hysteresis lets it
+HARDLY = 0.1  # of the range of a drive: while it moves no further
+FAR = 0.3  # of its range a response moves after a step only, and
+FASTER = 2.0  # times as far as in any such time later
 
 
-def start_steps(record: Record) -> list[str]:
-    """A sentence for each measured axis of which the response moves at the start as after a step of the drive."""
+def start_step(record: Record) -> str:
+    """What begins as after a step of which the job says nothing: the axes, and how far they move; empty for none."""
     if record.rest_at or record.run_in:
-        return []
-    pairs = [(record.axes[axis], record.drive[axis], record.response[axis]) for axis in record.measured]
-    return [
-        f"{axis} moves by {100 * share:.0f} % of its range while the drive first moves by {100 * HARDLY:.0f} % of its, "
-        "as after a step: if the stage rested at another drive until then, say so, as by `rest_at: 0 V`"
-        for axis, drive, response in pairs
-        if (share := first_move(drive, response)) >= FAR
-    ]
+        return ""
+    moves = {record.axes[axis]: first_move(record.drive[axis], record.response[axis]) for axis in record.measured}
+    stepped = [f"{axis} by {100 * share:.0f} % of its range" for axis, share in moves.items() if share >= FAR]
+    return f"{listed(stepped)} while the drive moves by {100 * HARDLY:.0f} %" if stepped else ""
 
 
 def first_move(drive: NDArray[np.float64], response: NDArray[np.float64]) -> float:
-    """The share of its range by which the response moves while the drive first moves by HARDLY: both (samples,)."""
-    left = np.abs(drive - drive[0]) > HARDLY * np.ptp(drive)
-    moved = np.abs(response - response[0])[: int(left.argmax())]
-    return float(moved.max(initial=0.0) / (np.ptp(response) or 1.0))
+    """The share of its range by which the response moves at first, while the drive moves by HARDLY; 0 where it moves
+    nearly as far in such a time later. drive, response: (samples,)."""
+    count = int((np.abs(drive - drive[0]) > HARDLY * np.ptp(drive)).argmax())
+    first = np.abs(response[:count] - response[0]).max(initial=0.0)
+    later = np.abs(response[2 * count :] - response[count:-count]).max(initial=0.0) if count else 0.0
+    return float(first / (np.ptp(response) or 1.0)) if first > FASTER * later else 0.0

@@ -15,8 +15,8 @@ from pzt_ident.model.registry import word_of
 
 SLIP = 0.08  # of a bound, by which a data sheet may be beside the truth
 FAR_SLIP = 0.3  # by which it may be where nothing else is missing
-BESIDE = 0.02  # of the range of such a guess: that close a fit is as good as on its bound
 DECADES = 100.0  # times a bound on a logarithmic scale that the job does not give: a guess of where a search begins
+BESIDE = 0.02  # of the range of such a guess: that close to its bound a fit is as good as on it
 
 
 @dataclass(frozen=True)
@@ -64,8 +64,8 @@ def continued(wide: Case, fit: Fit) -> Fit:
 def stands_in(wide: Case, case: Case, fit: Fit) -> bool:
     """Whether a parameter rests on its wider bound too: then it makes up for something else."""
     given, problem = case.problem(fit.effects, fit.steps, fit.measured_only), fit.problem
-    ends = zip(problem.names, problem.lower - given.lower, problem.upper - given.upper, fit.point, strict=True)
-    return any(name in fit.on_bounds and (low if place < 0.5 else high) != 0 for name, low, high, place in ends)
+    ends = zip(problem.lower - given.lower, problem.upper - given.upper, fit.point, strict=True)
+    return any(rests(case, fit, i) and (low if place < 0.5 else high) != 0 for i, (low, high, place) in enumerate(ends))
 
 
 def widened(case: Case, fit: Fit, slip: float = SLIP) -> dict[str, Widened]:
@@ -78,7 +78,7 @@ def widened(case: Case, fit: Fit, slip: float = SLIP) -> dict[str, Widened]:
     for i in resting:
         name = problem.names[i]
         entry, given = problem.model.entries[problem.free[i]], (float(problem.lower[i]), float(problem.upper[i]))
-        key = next((word for word in problem.model.spellings(entry) if word in case.specs), None)
+        key = given_name(case, fit, i)
         if entry.block.name == undetermined or not (key or is_guessed(case, entry)):
             continue
         low, high = specs[key].bounds if key in specs else given
@@ -101,14 +101,14 @@ def rests(case: Case, fit: Fit, i: int) -> bool:
     """Whether a free parameter is on a bound, or beside one that is a guess."""
     beside = min(fit.point[i], 1 - fit.point[i]) < BESIDE
     return fit.problem.names[i] in fit.on_bounds or (
-        beside and not is_given(case, fit, i) and is_guessed(case, fit.problem.model.entries[fit.problem.free[i]])
+        beside and not given_name(case, fit, i) and is_guessed(case, fit.problem.model.entries[fit.problem.free[i]])
     )
 
 
-def is_given(case: Case, fit: Fit, i: int) -> bool:
-    """Whether the job says something of a free parameter."""
-    problem = fit.problem
-    return any(word in case.specs for word in problem.model.spellings(problem.model.entries[problem.free[i]]))
+def given_name(case: Case, fit: Fit, i: int) -> str | None:
+    """The name under which the job says something of a free parameter; None where it says nothing."""
+    entry = fit.problem.model.entries[fit.problem.free[i]]
+    return next((word for word in fit.problem.model.spellings(entry) if word in case.specs), None)
 
 
 def is_guessed(case: Case, entry: Entry) -> bool:

@@ -202,8 +202,8 @@ def restart_unconfirmed(case: Case, first: Fit, candidates: Sequence[Candidate])
 
 
 def restart_look_alikes(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> None:
-    """Refit the look-alikes of the best that are worse from where that led, and restart those that are hardly worse on
-    the identification records: with several parameters they may rest in a side minimum that shows on the validation
+    """Refit the look-alikes that are far behind the best from where that led, and restart those that are hardly worse
+    on the identification records: with several parameters they may rest in a side minimum that shows on the validation
     records only."""
     passing = [item for item in candidates if item.fit and removes_enough(case, first, before, item.fit)]
     best = min(passing, key=lambda item: item.fit.total, default=None)  # type: ignore[union-attr]
@@ -213,7 +213,7 @@ def restart_look_alikes(case: Case, first: Fit, before: Fit, candidates: list[Ca
         word, fit, guess = candidate.score.effect, candidate.fit, candidate.score.guess
         if fit is None or not are_look_alikes(word, best.score.effect):
             continue
-        if is_far_behind(case, fit, best.fit):
+        if is_far_behind(case, fit, best.fit) and case.budget.allows("ties", PROVING):
             candidate.fit = candidate.refits[word] = fit = from_where(case, best.fit, fit, guess)
         if removed_rms(fit.identify, best.fit.identify) < 2 * TIE * case.floor and len(guess) > 1:
             candidate.fit = candidate.refits[word] = restart(case, fit, word_of(word), LOOK_ALIKE_STARTS)

@@ -6,17 +6,18 @@ from itertools import product
 
 from pzt_ident.data.noise import noise_floor
 from pzt_ident.data.notation import listed
-from pzt_ident.data.start_step import start_steps
+from pzt_ident.data.start_step import start_step
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.locate import locate
 
 
-def caveats(case: Case, fit: Fit) -> str:
-    """The sentences about additions, effects on measured axes only, bounds, and records."""
-    of_fit = addition_sentences(fit) + measured_only_sentence(case, fit) + bounds_sentence(fit)
-    return of_fit + start_step_sentence(case) + case.caveat
+def caveats(case: Case, fit: Fit, said: str = "") -> str:
+    """The sentences about additions, effects on measured axes only, bounds, and records, but for those said before."""
+    of_fit = addition_sentences(fit), measured_only_sentence(case, fit), bounds_sentence(fit)
+    sentences = *of_fit, start_step_sentence(case, fit), case.caveat
+    return "".join(sentence for sentence in sentences if sentence not in said)
 
 
 def addition_sentences(fit: Fit) -> str:
@@ -58,12 +59,15 @@ def bounds_sentence(fit: Fit) -> str:
     return f" {listed(names)} ended on their bounds of {listed(values)}: {reasons}."
 
 
-def start_step_sentence(case: Case) -> str:
-    """A sentence on the records that begin as after a step of the drive, of which the job says nothing."""
-    stepped = [record.name for record in case.records if start_steps(record)]
+def start_step_sentence(case: Case, fit: Fit) -> str:
+    """A sentence on the records that begin as after a step of the drive, of which neither the job nor the model says
+    what was before."""
+    stepped = [record.name for record in case.records if start_step(record)]
+    if not stepped or any(block.lead for block in fit.problem.model.blocks):
+        return ""
     begin = "begins" if len(stepped) == 1 else "begin"
-    advice = "say with `rest_at` at which drive the stage rested, and the model follows what the step started"
-    return f" {listed(stepped)} {begin} as after a step: {advice}." if stepped else ""
+    advice = "if the stage rested at another drive until then, `rest_at` in the job lets the model follow the step"
+    return f" {listed(stepped)} {begin} as after a step: {advice}."
 
 
 def broken_conditions(fit: Fit) -> str:

@@ -21,25 +21,29 @@ LONGER = 1.001  # times its path without noise: less changes no hysteresis
 
 def with_quiet_drives(case: Case, first: Fit) -> tuple[Case, Fit] | None:
     """The case with the noise of its drives left out, and the fit as given in it; None where they have none that makes
-    their path longer, and where that changes little."""
-    return None if adequate(case, first, first) else quiet_beside(case, first, first, PROMISING)
-
-
-def quiet_behind(case: Case, first: Fit, end: Fit) -> tuple[Case, Fit] | None:
-    """The same where the noise of its drives is most of what a fit with effects leaves; else None."""
-    return quiet_beside(case, first, end, DECISIVE)
-
-
-def quiet_beside(case: Case, first: Fit, fit: Fit, share: float) -> tuple[Case, Fit] | None:
-    """The same where that removes so much of what a fit leaves, and not little."""
-    quiet = quieted(case)
-    if quiet is case or not case.budget.allows(QUIET):
+    their path longer, and where that is little of the misfit."""
+    if adequate(case, first, first):
         return None
+    quiet = quieted(case)
+    return (quiet, refit(quiet, first, first.effects, {})) if is_noise(case, quiet, first, PROMISING) else None
+
+
+def quiet_behind(case: Case, first: Fit, last: Case, end: Fit) -> tuple[Case, Fit] | None:
+    """The same where the noise of its drives is most of what the last fit of a staircase leaves; else None. last: the
+    case of that."""
+    if not is_noise(last, quieted(last), end, DECISIVE):
+        return None
+    quiet = quieted(case)
+    return quiet, refit(quiet, first, first.effects, {})
+
+
+def is_noise(case: Case, quiet: Case, fit: Fit, least: float) -> bool:
+    """Whether a fit leaves clearly less without the noise of the drives, and less by that share of its misfit."""
+    if quiet is case or not case.budget.allows(QUIET):
+        return False
     after = refit(quiet, fit, fit.effects, {})
     clear = removed_rms(fit.total, after.total) > CLEAR * case.floor
-    if not clear or share_explained(fit.total, after.total, case.floor) < share:
-        return None
-    return quiet, after if fit is first else refit(quiet, first, first.effects, {})
+    return clear and share_explained(fit.total, after.total, case.floor) >= least
 
 
 def quieted(case: Case) -> Case:

@@ -36,7 +36,7 @@ def improve_within(
     model as given first. diagnosis: of the last of them, where there is one.
 
     Where the best first effect leads to no adequate model, the next best one is tried: the first may have stood in for
-    something else. What counts of either path is then what is proven.
+    something else. Both are then compared without the effects that they do not prove.
     """
     first = base[-1].fit
     diagnosis = diagnosis or diagnose(case, first)
@@ -50,8 +50,11 @@ def improve_within(
         if not case.budget.allows("another effect first"):
             break
     finished = [best_path(case, paths)] if any(map(is_adequate, paths)) else paths
-    doubts = [(path, finish(path.case or case, first, path, on_step)) for path in finished]
+    climbed = {id(path): len(path.steps) for path in finished}
+    doubts = [(path, finish(path.case or case, first, path)) for path in finished]
     best = best_path(case, finished)
+    for step in best.steps[climbed[id(best)] if best is paths[-1] else 0 :]:  # another path is told anew
+        on_step(step)
     find_rivals(best.case or case, first, best.steps, on_step)
     for doubted in [fit for path, fit in doubts if path is best and fit]:
         add_rivals_beside(best.case or case, first, best.steps, doubted)
@@ -59,12 +62,10 @@ def improve_within(
     return best
 
 
-def finish(case: Case, first: Fit, path: Staircase, on_step: StepListener) -> Fit | None:
+def finish(case: Case, first: Fit, path: Staircase) -> Fit | None:
     """Take back what a path can do without, or does not prove; see `take_back`."""
-    for step in exchange_main_mode(case, first, path.end):
-        on_step(step)
-        path.steps.append(step)
-    return take_back(case, first, path, on_step)
+    path.steps += exchange_main_mode(case, first, path.end)
+    return take_back(case, first, path)
 
 
 def is_adequate(path: Staircase) -> bool:
@@ -95,7 +96,7 @@ def first_candidates(case: Case, first: Fit, diagnosis: Diagnosis) -> list[Candi
     return [best, *sorted(others, key=lambda item: item.fit.total if item.fit else np.inf)[: FIRST_EFFECTS - 1]]
 
 
-def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListener) -> Fit | None:
+def take_back(case: Case, first: Fit, staircase: Staircase) -> Fit | None:
     """Steps that take effects out again: those that the last model can do without, which may only have led the fit out
     of a side minimum, such as that to which the bounds of the job had led it, and the unproven ones; or back to a
     model whose effects are all proven, where that is better than what is then left. Returns the fit with the unproven
@@ -115,8 +116,6 @@ def take_back(case: Case, first: Fit, staircase: Staircase, on_step: StepListene
         share = explained_share(case, now, suspect.without)
         steps.append(Step(suspect.without, None, suspect.effect, {}, share))
         now = suspect.without
-    for step in steps:
-        on_step(step)
     staircase.steps += steps
     return doubted if suspects and proven is None else None
 

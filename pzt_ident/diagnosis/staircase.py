@@ -50,8 +50,8 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
         behind = history_behind(staircase.case or case, first, staircase.end)
         aged = improve_aged(case, first, *behind, on_step) if behind else None
     best = best_path(case, [staircase, aged]) if aged else staircase
-    quiet = None if best.last.verdict in SETTLED else quiet_behind(best.case or case, first, best.end)
-    return improve_otherwise(case, first, *quiet, QUIET, on_step) if quiet else best
+    quiet = None if best.last.verdict in SETTLED else quiet_behind(case, first, best.case or case, best.end)
+    return best_path(case, [best, improve_otherwise(case, first, *quiet, QUIET, on_step)]) if quiet else best
 
 
 def with_least_history(case: Case, first: Fit, staircase: Staircase) -> Staircase:
@@ -161,8 +161,8 @@ def only_adds(fit: Fit) -> bool:
 
 def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fit] | None:
     """The case with the wider bounds that the model with one effect needs, and the fit with it there; None where there
-    are none. Within the bounds of the job it is the best on the identification records alone, by far, since it does not
-    remove enough on the others."""
+    are none. Only where no effect passes within the bounds of the job, or the one that is best on the identification
+    records leaves there less than half of what the best that passes leaves."""
     fits = [candidate.fit for candidate in diagnosis.candidates if candidate.fit]
     passing = [candidate.fit.identify for candidate in diagnosis.passing if candidate.fit]
     best = min(fits, key=lambda fit: fit.identify, default=first)

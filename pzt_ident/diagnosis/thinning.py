@@ -132,8 +132,9 @@ def situations(u: Array) -> NDArray[np.int64]:
 
 
 def keeps_all(record: Record, step: int, floors: Sequence[float]) -> bool:
-    """Whether drives and responses are those of every `step`-th sample but for the noise."""
-    if record.run_in and record.samples % step:
+    """Whether drives and responses are those of every `step`-th sample but for the noise: a step at the start takes one
+    sample."""
+    if record.rest_at or (record.run_in and record.samples % step):
         return False
     responses = list(zip(record.response[list(record.measured)], floors, strict=True))
     if any(np.mean(off_line(y, step) ** 2) > INTERPOLATED * floor**2 for y, floor in responses):

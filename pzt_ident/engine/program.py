@@ -228,9 +228,9 @@ class Program:
 
     def _known(self, block: type[Block], axis: int) -> dict[str, float]:
         """What `prepare` may ask for besides the parameters of the model."""
-        drive, whole = self.record.drive[axis], self.record.drive_from_rest[axis]
+        drive, level = self.record.drive[axis], self.record.levels[axis]
         nulls = {p.name: p.null for p in block.parameters().values() if p.null is not None}
-        span, peak = float(np.ptp(drive)), float(np.abs(whole).max())
+        span, peak = float(np.ptp(drive)), float(max(np.abs(drive).max(), abs(level)))
         duration = self.record.dt * (self.record.samples - 1)
         known = {"dt": self.record.dt / self.substeps, "span": span, "peak": peak, "duration": duration}
         known |= {"from_rest": float(self.model.from_rest), "lead": float(self.model.lead * self.substeps)}

@@ -245,8 +245,10 @@ class Simulator:
         ahead = model.lead * self.substeps
         samples = ahead + (record.ahead + record.samples * (record.run_in + 1)) * self.substeps
         table = np.zeros((2 * len(record.drive) + len(model.measured), 1 + samples + PADDING))
-        for row, drive in zip(table[0::2], record.drive_from_rest, strict=False):
-            row[1 : 1 + samples] = np.pad(np.tile(self._fine(drive), record.run_in + 1), (ahead, 0), mode="edge")
+        for row, drive, level in zip(table[0::2], record.drive, record.levels, strict=False):
+            rise = np.linspace(level, drive[0], record.ahead * self.substeps, endpoint=False)
+            whole = np.append(rise, np.tile(self._fine(drive), record.run_in + 1))
+            row[1 : 1 + samples] = np.pad(whole, (ahead, 0), mode="edge")
         for i in range(len(record.drive)):
             table[2 * i + 1, 1 : 1 + samples] = runs_of(table[2 * i, 1 : 1 + samples])
         for row, axis in zip(table[2 * len(record.drive) :], model.measured, strict=True):

@@ -54,6 +54,9 @@ def _record_numbers(document: Document, loc: Loc, source: Source) -> None:
     if source.rest_at and source.run_in:
         message = "a record of a steady state, which `run_in` says this is, does not begin at rest"
         document.fault((*loc, "rest_at"), message, "keep one of the two")
+    if source.rest_at and source.decimate > 1:
+        message = "a step takes one sample, and `decimate` makes that longer"
+        document.fault((*loc, "rest_at"), message, "keep one of the two")
     for axis, level in (source.rest_at or {}).items():
         if level.unit is not None:
             _unit(document, document.reach((*loc, "rest_at", axis)), level.unit)

@@ -80,6 +80,11 @@ def _quantity(example: str) -> Expand:
 
 def _levels(document: Document, loc: Loc, value: Any) -> Any:
     """A drive for each axis; one alone is that of all."""
+    if value is None:
+        return None
+    if isinstance(value, list):
+        document.fault(loc, "is a list", "write a drive such as `0 V`, or one by axis such as `{x: 0 V}`")
+        return None
     level_of = _quantity("0 V")
     if isinstance(value, dict):
         return {axis: level_of(document, (*loc, axis), level) for axis, level in value.items()}

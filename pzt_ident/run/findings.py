@@ -49,8 +49,7 @@ def improvement_of(
     reason += "".join(f" These data cannot tell {' from '.join(map(phrase_of, tied))}." for tied in undecided)
     reason += no_drive_sentence(job, case, [step.rivals for step in ties(steps)]) if undecided and not proposed else ""
     reason += narrow_bounds_sentence(case, end) + own_mechanics_sentence(case, end) + history_sentence(case, end)
-    of_end = caveats(case, end)
-    reason += "" if of_end in reason else of_end  # the last diagnosis may be of this fit
+    reason += caveats(case, end, reason)  # the last diagnosis may be of this fit
     return {
         "name": job.name,
         "steps": [*(stair(case, step) for step in steps[:-1]), stair(case, steps[-1], budget)],

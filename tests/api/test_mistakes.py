@@ -77,6 +77,7 @@ IDENTIFY = {
     "record: rest_at: '3 um' is no drive in V": lambda: record(rest_at="3 um"),
     "record: rest_at: inf is no drive in V": lambda: record(rest_at=np.inf),
     "record: rest_at: axis 'z' has no drive": lambda: record(rest_at={"z": 0}),
+    "record: rest_at: a record of a steady state": lambda: record(rest_at=0, run_in=1),
     "run_in: 2.5 is not a whole number": lambda: identify(record(run_in=2.5)),
     "train: y: no axis has a response": lambda: identify(record(y=None)),
     "train: no record to identify from": lambda: pzt.identify("bouc_wen", []),

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from pzt_ident.data.start_step import first_move, start_steps
+from pzt_ident.data.start_step import first_move, start_step
 from rig import record
 
 T = np.arange(400) * 5e-3
@@ -14,23 +14,28 @@ STEP = 10 * U * 1e-6 - 20e-6 * np.exp(-T / 0.02)  # from 0 V, through a lag of 2
 
 
 def test_what_a_lag_leaves_of_a_step_is_told():
-    (sentence,) = start_steps(record(U, response=[STEP]))
-    assert sentence.startswith("x moves by ") and "`rest_at: 0 V`" in sentence
-    assert float(sentence.split()[3]) == pytest.approx(100 * first_move(U, STEP), abs=0.5)
+    told = start_step(record(U, response=[STEP]))
+    assert told == f"x by {100 * first_move(U, STEP):.0f} % of its range while the drive moves by 10 %"
+    assert first_move(U, STEP) > 0.3
 
 
 @pytest.mark.parametrize("known", [{"rest_at": (0.0,)}, {"run_in": 1}])
 def test_what_the_job_says_is_not_asked_for(known):
-    assert start_steps(replace(record(U, response=[STEP]), **known)) == []
+    assert start_step(replace(record(U, response=[STEP]), **known)) == ""
 
 
 @pytest.mark.parametrize(
     "response",
-    [U, U + 0.5 * np.abs(U - 2), np.roll(U, 4), 0.02 * np.random.default_rng(0).normal(size=T.size) + U],
-    ids=["linear", "bent", "late", "noisy"],
+    [
+        U,
+        U + 0.5 * np.abs(U - 2),
+        0.02 * np.random.default_rng(0).normal(size=T.size) + U,
+        *(np.roll(U, n) for n in (4, 50, 120)),
+    ],
+    ids=["linear", "bent", "noisy", "late", "in quadrature", "against the drive"],
 )
 def test_a_motion_is_no_step(response):
-    assert start_steps(record(U, response=[response])) == []
+    assert start_step(record(U, response=[response])) == ""
 
 
 def test_a_drive_that_does_not_move_shows_no_step():

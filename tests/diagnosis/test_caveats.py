@@ -6,13 +6,19 @@ import numpy as np
 import pytest
 
 import stage
-from pzt_ident.diagnosis.caveats import start_step_sentence
+from pzt_ident.diagnosis.caveats import caveats, start_step_sentence
+from pzt_ident.diagnosis.fit import fit_at
+
+
+def fit_of(case):
+    problem = case.problem(())
+    return fit_at((), problem, np.full(problem.dimensions, 0.5))
 
 
 def stepped(which):
     """The case of which some records begin as after a step."""
     case = stage.case()
-    after = 1e-5 * np.exp(-np.arange(case.records[0].samples) / 5)
+    after = 1e-4 * np.exp(-np.arange(case.records[0].samples) / 3)
     made = [
         replace(record, response=record.response - after[: record.samples]) if number in which else record
         for number, record in enumerate(case.records)
@@ -23,11 +29,22 @@ def stepped(which):
 @pytest.mark.parametrize(("which", "begins"), [((), ""), ((0,), " begins "), ((0, 1), " begin ")])
 def test_records_that_begin_with_a_step_are_told(which, begins):
     case = stepped(which)
-    sentence = start_step_sentence(case)
+    sentence = start_step_sentence(case, fit_of(case))
     assert begins in sentence and bool(sentence) == bool(which) == ("`rest_at`" in sentence)
     assert all((record.name in sentence) == (number in which) for number, record in enumerate(case.records))
 
 
-def test_a_record_of_which_the_job_says_it_is_not_told():
+def test_what_the_job_or_the_model_says_is_not_asked_for():
     case = stepped((0, 1))
-    assert start_step_sentence(case.with_records([replace(each, rest_at=(0.0,)) for each in case.records])) == ""
+    known = case.with_records([replace(each, rest_at=(0.0,)) for each in case.records])
+    assert start_step_sentence(known, fit_of(known)) == ""
+    moving = case.with_words(("history", *case.words))
+    assert start_step_sentence(moving, fit_of(moving)) == ""
+
+
+def test_what_was_said_is_not_said_again():
+    case = stepped((0,))
+    sentence = start_step_sentence(case, fit_of(case))
+    assert sentence in caveats(case, fit_of(case)) and sentence not in caveats(
+        case, fit_of(case), said=f"So.{sentence}"
+    )

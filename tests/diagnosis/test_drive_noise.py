@@ -51,7 +51,7 @@ def test_noise_is_left_out_where_it_is_much_of_the_misfit_and_behind_effects_whe
     left = (1 - removed) ** 0.5 * given.identify
     monkeypatch.setattr(drive_noise, "refit", lambda *more: replace(given, identify=left, validate=left))
     assert bool(with_quiet_drives(case, given)) == first_of_all
-    assert bool(quiet_behind(case, given, replace(given))) == behind
+    assert bool(quiet_behind(case, given, case, replace(given))) == behind
 
 
 def test_drives_without_noise_stay_as_they_are():

@@ -23,7 +23,7 @@ from pzt_ident.diagnosis.score import Score, squared_misfit
 from pzt_ident.diagnosis.verdict import best_pair, diagnose
 from pzt_ident.model.parameter import Parameter
 
-CASE = SimpleNamespace(floor=1.0, floors=np.ones(1), on_event=lambda event: None)
+CASE = SimpleNamespace(floor=1.0, floors=np.ones(1), on_event=lambda event: None, budget=Budget())
 FAR = 10.0  # an error that nobody takes for noise
 
 

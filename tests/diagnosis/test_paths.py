@@ -40,17 +40,25 @@ def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, mon
 def taken_of(several, taken_back, monkeypatch):
     """The one that is taken of paths, of which some steps are taken back."""
 
-    def take_back(case, first, path, on_step):
+    told = []
+
+    def climb(case, first, diagnosis, number, on_step):
+        told[:] = several[number].steps
+        return several[number]
+
+    def take_back(case, first, path):
         path.steps += taken_back(path)
 
     monkeypatch.setattr(paths, "diagnose", lambda case, first: SimpleNamespace())
     monkeypatch.setattr(paths, "first_candidates", lambda case, first, diagnosis: [*range(len(several))])
-    monkeypatch.setattr(paths, "climb", lambda case, first, diagnosis, number, on_step: several[number])
+    monkeypatch.setattr(paths, "climb", climb)
     monkeypatch.setattr(paths, "exchange_main_mode", lambda *arguments: [])
     monkeypatch.setattr(paths, "take_back", take_back)
     monkeypatch.setattr(paths, "find_rivals", lambda *arguments: None)
     monkeypatch.setattr(paths, "conclude", lambda *arguments: None)
-    return improve_within(SimpleNamespace(floor=1.0, budget=Budget()), [Step(SimpleNamespace())], None)
+    best = improve_within(SimpleNamespace(floor=1.0, budget=Budget()), [Step(SimpleNamespace())], told.append)
+    assert told[-len(best.steps) :] == best.steps
+    return best
 
 
 def test_of_two_paths_that_end_above_the_noise_the_one_is_taken_that_is_lower_with_what_is_proven(monkeypatch):
@@ -76,7 +84,7 @@ def test_an_effect_that_only_led_out_of_a_side_minimum_is_taken_out_again():
     resting = fit_at((), problem, problem.unit_point(first_fit(case, 0).values | {"bouc_wen.alpha": 0.9}))
     there = fit_at(("drift",), model, model.unit_point(first_fit(case, 0).values | {"drift.tau": 100.0}))
     found = Staircase([Step(resting), Step(there, "drift")], Diagnosis("adequate", "", there, [], []))
-    take_back(case, resting, found, lambda step: None)
+    take_back(case, resting, found)
     assert [(step.added, step.removed) for step in found.steps] == [(None, None), ("drift", None), (None, "drift")]
     assert (found.steps[-1].fit.effects, found.last.verdict, found.suspects) == ((), "adequate", [])
 
@@ -109,9 +117,7 @@ def test_where_little_is_left_of_the_last_model_the_lowest_one_before_it_that_is
     monkeypatch.setattr(paths, "near_noise", lambda *arguments: False)
     monkeypatch.setattr(paths, "drop_outdone_rivals", lambda *arguments: None)
     steps = [Step(fit, *fit.effects[-1:], case=case if number == since else None) for number, fit in enumerate(fits)]
-    reported = []
-    found = Staircase(steps, None)
-    take_back(case, fits[0], found, reported.append)
+    found = Staircase([*steps], None)
+    take_back(case, fits[0], found)
     assert "".join(found.steps[-1].fit.effects) == end
-    assert [step.change for step in reported] == {"abc": [], "": [""]}.get(end, [PROVEN])
-    assert len(found.steps) == len(fits) + len(reported)
+    assert [step.change for step in found.steps[len(steps) :]] == {"abc": [], "": [""]}.get(end, [PROVEN])

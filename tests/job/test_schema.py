@@ -74,6 +74,7 @@ def faults(text: str) -> str:
         ("0 V", {"x": Level(0.0, "V"), "y": Level(0.0, "V")}),
         ("-5", {"x": Level(-5.0), "y": Level(-5.0)}),
         ("{y: 0.1 kV}", {"y": Level(0.1, "kV")}),
+        ("null", None),
     ],
 )
 def test_a_drive_of_rest_is_one_of_all_axes_or_by_axis(written, read):
@@ -160,9 +161,11 @@ ONE_FAULT = [
     ("500 ms", ".nan", "3:64: records[0].settle: .nan is not a finite number", "plain number"),
     ("settle: 500 ms", "rest_at: true", "3:65: records[0].rest_at: true is not a number", "plain number"),
     ("settle: 500 ms", "rest_at: 0 mile", "3:65: records[0].rest_at: unknown unit 'mile'", "known"),
+    ("settle: 500 ms", "rest_at: [0 V]", "3:65: records[0].rest_at: is a list", "such as `0 V`"),
     ("settle: 500 ms", "rest_at: {z: 0}", "3:66: records[0].rest_at.z: there is no axis 'z'", "x, y"),
     ("settle: 500 ms", "rest_at: {x: low}", "3:69: records[0].rest_at.x: 'low' is not a number", "such as `0 V`"),
     ("settle: 500 ms", "rest_at: 0, run_in: 1", "3:65: records[0].rest_at: a record of a steady", "keep one of"),
+    ("settle: 500 ms", "rest_at: 0, decimate: 2", "3:65: records[0].rest_at: a step takes one", "keep one of"),
     ("settle: 500 ms", "decimate: 0", "records[0].decimate: 0 is too small", "at least 1"),
     ("settle: 500 ms", "steps: 0", "records[0].steps: 0 is too small", "at least 1"),
     ("settle: 500 ms", "steps: 101", "records[0].steps: 101 steps a sample", "at most 100"),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import stage
+from pzt_ident.diagnosis import caveats
 from pzt_ident.diagnosis import staircase as stairs
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.fit import fit_at
@@ -76,7 +77,7 @@ def test_a_model_that_predicts_hardly_better_is_not_told():
 
 def test_what_is_to_be_said_of_the_last_fit_is_said_once(monkeypatch, tmp_path):
     """Sentences on its bounds and on effects with an amount of each record, with a diagnosis and an improvement."""
-    monkeypatch.setattr(findings, "caveats", lambda case, fit: f" {fit.effects} ended on its bound.")
+    monkeypatch.setattr(caveats, "bounds_sentence", lambda fit: f" {fit.effects} ended on its bound.")
     job = load_job(stage.write(tmp_path, stage.case().records))
     case = case_of(Statement(job))
     fit = fit_at((), case.problem(()), np.full(case.problem(()).dimensions, 0.5))

@@ -19,7 +19,10 @@ def simulate(model, record, theta):
     The prompt response of an operator is driven by what the readouts make of the drive, its memory by the drive. What
     was before the record is nothing: its amounts are at their null.
     """
-    drives = [np.tile(fine(row, model, record), record.run_in + 1) for row in from_rest(record)]
+    drives = [np.tile(fine(row, model, record), record.run_in + 1) for row in record.drive]
+    drives = [
+        np.append(rise(row[0], level, model, record), row) for row, level in zip(drives, at_rest(record), strict=True)
+    ]
     early = [block for block in model.blocks if block.place < Place.READOUT and not block.lead]
     readouts = [block for block in model.blocks if block.place == Place.READOUT]
     middle = [block for block in model.blocks if Place.READOUT < block.place < Place.GUIDE]
@@ -35,10 +38,16 @@ def simulate(model, record, theta):
     return np.array([signals[axis][ahead * times :: times] for axis in model.measured])
 
 
-def from_rest(record):
-    """The drives behind the sample of rest that some records have ahead."""
-    first = [row[0] if level is None else level for level, row in zip(record.rest_at, record.drive, strict=False)]
-    return [np.append(level, row) for level, row in zip(first, record.drive, strict=True)] if first else record.drive
+def at_rest(record):
+    """The drive of each axis until the sample ahead of those records that have one; else None."""
+    given = record.rest_at or [None] * len(record.drive)
+    return [row[0] if level is None else level for level, row in zip(given, record.drive, strict=False)]
+
+
+def rise(drive, level, model, record):
+    """The line from rest to the first drive, a sample long."""
+    times = model.oversample * record.steps if record.rest_at else 0
+    return [level + (drive - level) * n / times for n in range(times)]
 
 
 def through(chain, model, record, theta, signals, aside=None):
@@ -98,7 +107,9 @@ def parameters(model, block, record, axis, other, theta):
     where it is not given its own."""
     found = {"dt": [record.dt / model.oversample / record.steps], "span": [np.ptp(record.drive[axis])]}
     found["from_rest"] = [float(any(item.about_rest for item in (*model.blocks, *model.listed_terms)))]
-    found |= {"peak": [np.abs(from_rest(record)[axis]).max()]} | {word: [n] for word, n in block.numbers().items()}
+    found |= {"peak": [np.abs([*record.drive[axis], at_rest(record)[axis]]).max()]} | {
+        word: [n] for word, n in block.numbers().items()
+    }
     found |= {name: [each.null] for name, each in block.parameters().items() if each.null is not None}
     if axis not in model.measured:
         if other != axis or issubclass(block, Modes):

@@ -18,7 +18,7 @@ from pzt_ident.data.readers.source_channels import SourceChannels
 from pzt_ident.data.readers.table import Table
 from pzt_ident.data.readers.timebase import time_slice
 from pzt_ident.data.record import Axis, Channel, Level, Record, Source
-from pzt_ident.data.start_step import start_steps
+from pzt_ident.data.start_step import start_step
 from pzt_ident.data.units import factor, same_kind, unscaled
 from pzt_ident.errors import InputError
 
@@ -116,7 +116,7 @@ def _record(channels: SourceChannels, axes: Mapping[str, Axis], time: Channel | 
         response_units=tuple(unscaled(response.unit) if response else None for response in responses),
         notes=_notes(source),
     )
-    return replace(record, notes=(*record.notes, *_rests(record), *start_steps(record)))
+    return replace(record, notes=(*record.notes, *_start(record)))
 
 
 def _rows(signals: Sequence[Signal | None], where: str) -> int:
@@ -186,11 +186,16 @@ def _notes(source: Source) -> tuple[str, ...]:
     return (f"decimated by {source.decimate} after a zero-phase low-pass, which rounds the corners of the drive",)
 
 
-def _rests(record: Record) -> list[str]:
-    """What the record was at before its first sample, where the job says it."""
+def _start(record: Record) -> list[str]:
+    """What the record was at before its first sample, or may have been."""
     each = zip(record.axes, record.rest_at, record.drive_units, strict=False)
     levels = [f"{axis} at {level / factor(unit):g} {unit}" for axis, level, unit in each if level is not None]
-    return [f"the stage rested with {listed(levels)} until the sample ahead of the first one"] if levels else []
+    if levels:
+        return [f"the stage rested with {listed(levels)} until one sample before the first"]
+    if moved := start_step(record):
+        advice = "if the stage rested at another drive until then, say so, as by `rest_at: 0 V`"
+        return [f"it begins as after a step, {moved}: {advice}"]
+    return []
 
 
 def _in_units_of(first: Record, record: Record) -> Record:

@@ -84,7 +84,7 @@ def test_the_drive_of_rest_is_ahead_of_the_record(path, read, level, volts):
     assert record.rest_at == ((volts,) if level else ())
     assert record.samples == 200 and record.drive[0, 0] == 100
     assert [f"x at {volts:g} V" in note for note in record.notes] == ([True] if level else [])
-    np.testing.assert_array_equal(record.drive_from_rest[0], ([volts] if level else []) + [*record.drive[0]])
+    assert record.levels == [volts if level else 100] and record.ahead == bool(level)
 
 
 def test_the_drive_of_rest_has_the_unit_of_a_drive(path, problem):
