@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,7 +13,8 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, LEAST_SHARE, adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.refit import refit, start_of
+from pzt_ident.diagnosis.refit import refit, refit_from, start_of
+from pzt_ident.diagnosis.score import applicable, scorer_of
 from pzt_ident.diagnosis.undetermined import has_operator
 from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.engine.simulator import Simulator
@@ -22,6 +25,7 @@ Array = NDArray[np.float64]
 
 HISTORY = "history"  # the word of the block
 BEFORE = "what was before the records"  # the step after which a model follows it
+ALIKE = ("drift",)  # a memory that fades slowly from what was before, in each record from another place, is one
 TRIED = 3  # effects beside which it is looked for
 PROMISING = 0.02  # of the misfit: what is removed at once, with all parameters as they are
 
@@ -77,6 +81,15 @@ def remembers_reversals(case: Case) -> bool:
 def at_rest(case: Case) -> Case:
     """The case whose model starts every record from rest."""
     return case.with_words([item for item in case.words if word_of(item) != HISTORY])
+
+
+def fits_at_rest(rested: Case, end: Fit) -> Iterator[Fit]:
+    """The last model where every record starts from rest, as it is and with each effect that leaves the same trace."""
+    fit = refit(rested, end, end.effects, {})
+    yield fit
+    words = [word for word in ALIKE if word in applicable(rested, end.effects)]
+    for score in (scorer_of(rested, fit).score(word) for word in words):
+        yield refit_from(rested, fit, (*end.effects, score.effect), score.guesses)
 
 
 def has_history(fit: Fit) -> bool:

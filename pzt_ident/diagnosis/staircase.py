@@ -13,7 +13,7 @@ from pzt_ident.diagnosis.climb import WIDER, Staircase
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms
 from pzt_ident.diagnosis.drive_noise import QUIET, quiet_behind, with_quiet_drives
 from pzt_ident.diagnosis.fit import Fit
-from pzt_ident.diagnosis.history import BEFORE, at_rest, history_behind, with_history
+from pzt_ident.diagnosis.history import BEFORE, at_rest, fits_at_rest, history_behind, with_history
 from pzt_ident.diagnosis.judges import judged
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.paths import SETTLED, best_path, conclude, improve_within
@@ -55,10 +55,12 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
 
 
 def with_least_history(case: Case, first: Fit, staircase: Staircase) -> Staircase:
-    """The staircase whose records start from rest, where its last model fits as well then."""
+    """The staircase whose records start from rest, where its last model fits as well then, or with an effect in the
+    place of what was before."""
     end, rested = staircase.end, at_rest(staircase.case or case)
-    fit = refit(rested, end, end.effects, {})
-    if not adequate(case, first, fit) or removed_rms(fit.total, end.total) >= TIE * case.floor:
+    fits = (fit for fit in fits_at_rest(rested, end) if adequate(case, first, fit))
+    kept = next((fit for fit in fits if removed_rms(fit.total, end.total) < TIE * case.floor), None)
+    if kept is None:
         return staircase
     steps, home = list[Step](), case
     for step in staircase.steps:
@@ -67,10 +69,12 @@ def with_least_history(case: Case, first: Fit, staircase: Staircase) -> Staircas
             fit = refit(home, step.fit, step.fit.effects, {}) if steps else first
             share = explained_share(case, steps[-1].fit, fit) if steps else 0.0
             steps.append(replace(step, fit=fit, explained=share, case=step.case and home))
+    for effect in kept.effects[len(end.effects) :]:
+        steps.append(Step(kept, effect, None, {effect: kept}, explained_share(case, steps[-1].fit, kept)))
     as_given = rested.specs is case.specs and rested.records == case.records
-    kept = replace(staircase, steps=steps, case=None if as_given else rested)
-    conclude(rested, first, kept)
-    return kept
+    staircase = replace(staircase, steps=steps, case=None if as_given else rested)
+    conclude(rested, first, staircase)
+    return staircase
 
 
 def needs_wider_bounds(case: Case, first: Fit) -> bool:
