@@ -19,6 +19,7 @@ from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, remove
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.modes import mechanics_at_main_mode
+from pzt_ident.diagnosis.proof import own_bounds
 from pzt_ident.diagnosis.refit import refit, refit_beside, start_of
 from pzt_ident.diagnosis.score import applicable, fitting_forms, scorer_of
 from pzt_ident.diagnosis.starts import restart
@@ -91,6 +92,21 @@ def parts_of(case: Case, now: Fit, effect: str) -> list[str]:
     words = dict.fromkeys([*contained, *(alike for word in contained for alike in blocks[word].look_alikes)])
     possible = applicable(case, now.effects)
     return [word for word in words if word in possible]
+
+
+def exchange_limits(case: Case, first: Fit, now: Fit) -> list[Step]:
+    """Steps from effects of which a shape ended on a bound to a form without it that fits as well: a drift that never
+    settles is a ramp."""
+    steps: list[Step] = []
+    for effect in now.effects[len(first.effects) :]:
+        if not own_bounds(now, effect) or not case.budget.allows("other forms", PROVING):
+            continue
+        fits = fits_in_place(case, now, effect, other_forms(case, now, effect))
+        free = [fit for fit in fits if is_equal(case, now, fit) and not own_bounds(fit, fit.effects[-1])]
+        if free:
+            steps.append(exchange_step(case, now, min(free, key=lambda fit: fit.total), effect))
+            now = steps[-1].fit
+    return steps
 
 
 def in_its_limit(now: Fit, other: Fit) -> bool:

@@ -15,6 +15,7 @@ from pzt_ident.diagnosis.criteria import near_noise, removed_rms, removes_enough
 from pzt_ident.diagnosis.exchange import (
     add_rivals_beside,
     drop_outdone_rivals,
+    exchange_limits,
     exchange_main_mode,
     find_rivals,
     remove_unneeded,
@@ -65,6 +66,7 @@ def improve_within(
 def finish(case: Case, first: Fit, path: Staircase) -> Fit | None:
     """Take back what a path can do without, or does not prove; see `take_back`."""
     path.steps += exchange_main_mode(case, first, path.end)
+    path.steps += exchange_limits(case, first, path.end)
     return take_back(case, first, path)
 
 

@@ -1,12 +1,16 @@
 """What two effects leave is not given to one that contains the other."""
 
+from dataclasses import replace
+
 import pytest
 
 import stage
+from pzt_ident.diagnosis import exchange
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.exchange import parts_of, separate_accounts
+from pzt_ident.diagnosis.exchange import exchange_limits, parts_of, separate_accounts
 from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.refit import refit
+from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.model.registry import blocks, word_of
 
 RUBBING = {"friction.force": 0.6e-6, "friction.reach": 0.4e-6, "friction.stiction": 0.3, "friction.stribeck": 20e-6}
@@ -43,3 +47,17 @@ def test_the_parts_of_a_form_are_what_it_contains_and_look_alikes_of_that_and_no
     parts = parts_of(case, now, item)
     assert bool(parts) == bool(blocks[item].contains)
     assert not {*parts} & {*map(word_of, now.effects)}
+
+
+@pytest.mark.parametrize("on_bound", [True, False])
+def test_a_drift_whose_time_is_on_its_bound_is_a_ramp_where_that_fits_as_well(on_bound, monkeypatch):
+    made = stage.records({}, dt=5e-5)
+    late = [replace(record, response=record.response + 1e-6 * record.time) for record in made]
+    case = Case(("bouc_wen",), (), late, stage.specs({}))
+    first, problem = first_fit(case, 0), case.problem(("drift",))
+    now = fit_at(("drift",), problem, problem.unit_point(first.values | {"drift.tau": 1.0}))
+    resting = {"drift": ("drift.tau",)} if on_bound else {}
+    monkeypatch.setattr(exchange, "own_bounds", lambda fit, effect: resting.get(effect, ()))
+    steps = exchange_limits(case, first, now)
+    assert [(step.added, step.removed) for step in steps] == ([("drift.ramp", "drift")] if on_bound else [])
+    assert all(step.fit.total < 1.01 * now.total for step in steps)

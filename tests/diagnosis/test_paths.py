@@ -52,7 +52,8 @@ def taken_of(several, taken_back, monkeypatch):
     monkeypatch.setattr(paths, "diagnose", lambda case, first: SimpleNamespace())
     monkeypatch.setattr(paths, "first_candidates", lambda case, first, diagnosis: [*range(len(several))])
     monkeypatch.setattr(paths, "climb", climb)
-    monkeypatch.setattr(paths, "exchange_main_mode", lambda *arguments: [])
+    for exchange in ("exchange_main_mode", "exchange_limits"):
+        monkeypatch.setattr(paths, exchange, lambda *arguments: [])
     monkeypatch.setattr(paths, "take_back", take_back)
     monkeypatch.setattr(paths, "find_rivals", lambda *arguments: None)
     monkeypatch.setattr(paths, "conclude", lambda *arguments: None)
