@@ -8,18 +8,18 @@ from numpy.typing import NDArray
 from pzt_ident.data.notation import listed
 from pzt_ident.data.record import Record
 
-HARDLY = 0.1  # of the range of a drive: while it moves no further
-FAR = 0.3  # of its range a response moves after a step only, and
-FASTER = 2.0  # times as far as in any such time later
+HARDLY = 0.1  # of the range of a drive that has hardly moved
+FAR = 0.3  # of the range of a response: no hysteresis moves it as far meanwhile
+FASTER = 2.0  # times as far as it ever moves later in the same time
 
 
 def start_step(record: Record) -> str:
-    """What begins as after a step of which the job says nothing: the axes, and how far they move; empty for none."""
+    """How far which axes move at first, where that is as after a step of which the job says nothing; else empty."""
     if record.rest_at or record.run_in:
         return ""
     moves = {record.axes[axis]: first_move(record.drive[axis], record.response[axis]) for axis in record.measured}
-    stepped = [f"{axis} by {100 * share:.0f} % of its range" for axis, share in moves.items() if share >= FAR]
-    return f"{listed(stepped)} while the drive moves by {100 * HARDLY:.0f} %" if stepped else ""
+    stepped = [f"{axis} moves by {100 * share:.0f} % of its range" for axis, share in moves.items() if share >= FAR]
+    return f"{listed(stepped)} while the drive moves by {100 * HARDLY:.0f} % of its" if stepped else ""
 
 
 def first_move(drive: NDArray[np.float64], response: NDArray[np.float64]) -> float:

@@ -10,6 +10,7 @@ from pzt_ident.data.start_step import start_step
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.history import has_history
 from pzt_ident.diagnosis.locate import locate
 
 
@@ -63,7 +64,7 @@ def start_step_sentence(case: Case, fit: Fit) -> str:
     """A sentence on the records that begin as after a step of the drive, of which neither the job nor the model says
     what was before."""
     stepped = [record.name for record in case.records if start_step(record)]
-    if not stepped or any(block.lead for block in fit.problem.model.blocks):
+    if not stepped or has_history(fit):
         return ""
     begin = "begins" if len(stepped) == 1 else "begin"
     advice = "if the stage rested at another drive until then, `rest_at` in the job lets the model follow the step"

@@ -5,15 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from pzt_ident.diagnosis.budget import PROVING, WHOLE
-from pzt_ident.diagnosis.candidates import (
-    LIMIT_TIE,
-    TIE,
-    is_equal,
-    is_tied,
-    is_twin,
-    rests_on_own_bounds,
-    strangers,
-)
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.fit import Fit, fit_at
@@ -24,6 +15,7 @@ from pzt_ident.diagnosis.refit import refit, refit_beside, start_of
 from pzt_ident.diagnosis.score import applicable, fitting_forms, scorer_of
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explained_share
+from pzt_ident.diagnosis.ties import LIMIT_TIE, TIE, is_equal, is_tied, is_twin, rests_on_own_bounds, strangers
 from pzt_ident.diagnosis.verdict import diagnose
 from pzt_ident.model.registry import blocks, word_of
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from pzt_ident.diagnosis.budget import PROVING
-from pzt_ident.diagnosis.candidates import TIE, Candidate
+from pzt_ident.diagnosis.candidates import Candidate
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, climb
 from pzt_ident.diagnosis.criteria import near_noise, removed_rms, removes_enough
@@ -23,6 +23,7 @@ from pzt_ident.diagnosis.exchange import (
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.proof import Suspect, unproven
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
+from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
 
 FIRST_EFFECTS = 2  # effects that are tried as the first to be added

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from pzt_ident.data.notation import listed
-from pzt_ident.diagnosis.candidates import TIE, strangers
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import (
     DECISIVE,
@@ -23,6 +22,7 @@ from pzt_ident.diagnosis.fit import NO_WORSE, Fit
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.step import effects_without
+from pzt_ident.diagnosis.ties import TIE, strangers
 from pzt_ident.model.chain import Entry
 from pzt_ident.model.registry import blocks, phrase_of, word_of
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 from pzt_ident.diagnosis.bounds import are_decisive, beyond_bounds, brought_back, continued, stands_in
 from pzt_ident.diagnosis.budget import WHOLE
-from pzt_ident.diagnosis.candidates import TIE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms
@@ -19,6 +18,7 @@ from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.paths import SETTLED, best_path, conclude, improve_within
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
+from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.undetermined import (
     Undetermined,
     enough_without_mechanics,

@@ -9,23 +9,14 @@ import numpy as np
 
 from pzt_ident.data.notation import listed
 from pzt_ident.diagnosis.candidates import (
-    LIMIT_TIE,
-    LOOK_ALIKE_TIE,
-    TIE,
-    TWIN,
     Candidate,
-    are_look_alikes,
     choose_forms,
     decide_by_score,
-    generalises,
-    is_tied,
-    is_twin,
     promises_enough,
     refit_all,
     refit_other_forms,
     restart_look_alikes,
     restart_unconfirmed,
-    rests_on_own_bounds,
     score_all,
 )
 from pzt_ident.diagnosis.case import Case
@@ -46,6 +37,17 @@ from pzt_ident.diagnosis.criteria import (
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.refit import refit, step_errors
 from pzt_ident.diagnosis.score import LEAST_SCORE, scorer_of, squared_misfit
+from pzt_ident.diagnosis.ties import (
+    LIMIT_TIE,
+    LOOK_ALIKE_TIE,
+    TIE,
+    TWIN,
+    are_look_alikes,
+    generalises,
+    is_tied,
+    is_twin,
+    rests_on_own_bounds,
+)
 from pzt_ident.diagnosis.wording import percent
 from pzt_ident.model.registry import blocks, phrase_of, word_of
 

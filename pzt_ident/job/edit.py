@@ -109,12 +109,7 @@ def edited(
     _set_effects(document, effects)
     if words is not None:
         document["model"][:] = _items(document["model"], words)
-    for record, source, count in zip(document["records"], job.records, steps, strict=False):
-        if count != source.steps:
-            record["steps"] = count
-    for record, source, quiet in zip(document["records"], job.records, denoised, strict=False):
-        if quiet and not source.denoise_drive:
-            record["denoise_drive"] = True
+    _set_records(document, job, steps, denoised)
     ends = {name: [float(f"{low:.6g}"), float(f"{high:.6g}")] for name, (low, high) in (bounds or {}).items()}
     given = document.get("parameters") or {}
     for name in ends.keys() & given.keys():
@@ -134,6 +129,15 @@ def edited(
     text = StringIO()
     yaml.dump(document, text)
     return text.getvalue()
+
+
+def _set_records(document: Any, job: Job, steps: Sequence[int], denoised: Sequence[bool]) -> None:
+    for record, source, count in zip(document["records"], job.records, steps, strict=False):
+        if count != source.steps:
+            record["steps"] = count
+    for record, source, quiet in zip(document["records"], job.records, denoised, strict=False):
+        if quiet and not source.denoise_drive:
+            record["denoise_drive"] = True
 
 
 def _set_effects(document: Any, effects: Sequence[str]) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from pzt_ident.data.notation import number, quantity, unit, with_error
-from pzt_ident.diagnosis.candidates import differ
+from pzt_ident.diagnosis.ties import differ
 from pzt_ident.files import write_text
 from pzt_ident.report.page import POINTS, rendered, staircase
 from pzt_ident.report.sentences import USE_NAMES, listed, together, verdict

@@ -13,7 +13,7 @@ from pzt_ident.data.notation import spelled, unit
 from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.data.readers.registry import readers
 from pzt_ident.data.signals import Trace
-from pzt_ident.diagnosis.candidates import differ
+from pzt_ident.diagnosis.ties import differ
 from pzt_ident.errors import InputError
 from pzt_ident.model.description import description_of, summary, words
 from pzt_ident.model.registry import blocks, phrase_of, word_of

@@ -15,7 +15,7 @@ STEP = 10 * U * 1e-6 - 20e-6 * np.exp(-T / 0.02)  # from 0 V, through a lag of 2
 
 def test_what_a_lag_leaves_of_a_step_is_told():
     told = start_step(record(U, response=[STEP]))
-    assert told == f"x by {100 * first_move(U, STEP):.0f} % of its range while the drive moves by 10 %"
+    assert told == f"x moves by {100 * first_move(U, STEP):.0f} % of its range while the drive moves by 10 % of its"
     assert first_move(U, STEP) > 0.3
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from pzt_ident.diagnosis import candidates, verdict
 from pzt_ident.diagnosis.budget import Budget
-from pzt_ident.diagnosis.candidates import Candidate, choose_forms, generalises, is_tied, is_twin
+from pzt_ident.diagnosis.candidates import Candidate, choose_forms
 from pzt_ident.diagnosis.criteria import (
     adequate,
     clears_an_axis,
@@ -20,6 +20,7 @@ from pzt_ident.diagnosis.criteria import (
 from pzt_ident.diagnosis.exchange import in_its_limit
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.score import Score, squared_misfit
+from pzt_ident.diagnosis.ties import generalises, is_tied, is_twin
 from pzt_ident.diagnosis.verdict import best_pair, diagnose
 from pzt_ident.model.parameter import Parameter
 

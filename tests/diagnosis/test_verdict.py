@@ -12,7 +12,6 @@ from pzt_ident.diagnosis import budget, refit, starts, threads
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.candidates import (
     Candidate,
-    are_look_alikes,
     decide_by_score,
     refit_all,
     refit_other_forms,
@@ -24,6 +23,7 @@ from pzt_ident.diagnosis.criteria import removed_rms, removes_enough
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer
 from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.diagnosis.ties import are_look_alikes
 from pzt_ident.diagnosis.verdict import diagnose, missing_sentence
 from pzt_ident.engine import work
 from pzt_ident.model.registry import blocks, word_of

@@ -189,12 +189,12 @@ def _notes(source: Source) -> tuple[str, ...]:
 def _start(record: Record) -> list[str]:
     """What the record was at before its first sample, or may have been."""
     each = zip(record.axes, record.rest_at, record.drive_units, strict=False)
-    levels = [f"{axis} at {level / factor(unit):g} {unit}" for axis, level, unit in each if level is not None]
+    levels = [f"{level / factor(unit):g} {unit} on {axis}" for axis, level, unit in each if level is not None]
     if levels:
-        return [f"the stage rested with {listed(levels)} until one sample before the first"]
+        return [f"the stage rested at {listed(levels)} until one sample before the first"]
     if moved := start_step(record):
         advice = "if the stage rested at another drive until then, say so, as by `rest_at: 0 V`"
-        return [f"it begins as after a step, {moved}: {advice}"]
+        return [f"{moved}, as after a step; {advice}"]
     return []
 
 

@@ -83,7 +83,7 @@ def test_the_drive_of_rest_is_ahead_of_the_record(path, read, level, volts):
     record = read(path, rows=(100, 300), rest_at=level and {"x": level})
     assert record.rest_at == ((volts,) if level else ())
     assert record.samples == 200 and record.drive[0, 0] == 100
-    assert [f"x at {volts:g} V" in note for note in record.notes] == ([True] if level else [])
+    assert [f"at {volts:g} V on x" in note for note in record.notes] == ([True] if level else [])
     assert record.levels == [volts if level else 100] and record.ahead == bool(level)
 
 
