@@ -20,6 +20,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=101, help="of phases; below 100 for development")
     parser.add_argument("--out", type=Path, default=Path("results/laid_in"))
     parser.add_argument("--limit", type=float, default=600, help="seconds for each answer")
+    parser.add_argument("--budget", default="", help="as of `pzt-ident improve --budget`; its own where not given")
     parser.add_argument("--on", default="", help="where the answers are found, as of `pzt-ident improve --on`")
     given = parser.parse_args()
     if given.task == "table":
@@ -38,7 +39,7 @@ def main() -> None:
         elif given.task == "cases":
             print(f"{name}: {json.loads((home / 'truth.json').read_text())['size']:.3g}", flush=True)
         else:
-            answer = solve(home, given.limit, given.on)
+            answer = solve(home, given.limit, given.on, given.budget)
             found = (answer["improvement"] or {}).get("effects")
             print(f"{name}: exit {answer['exit']}, named {found}, {answer['cpu']:.0f} s CPU", flush=True)
 
