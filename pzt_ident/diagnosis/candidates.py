@@ -10,7 +10,15 @@ import numpy as np
 
 from pzt_ident.diagnosis.budget import EXPLORING, PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.criteria import DECISIVE, adequate, reaches_noise, removed_rms, removes_enough, threshold
+from pzt_ident.diagnosis.criteria import (
+    DECISIVE,
+    adequate,
+    only_all_counts,
+    reaches_noise,
+    removed_rms,
+    removes_enough,
+    threshold,
+)
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refit, refit_from
@@ -23,6 +31,7 @@ from pzt_ident.model.registry import word_of
 FORM_GAIN = 0.02  # of the misfit, by which another form of an effect explains more than the first one
 PROMISING = 0.75  # of the misfit: what an effect explains by its score, so that it is tried ahead of anything else
 NEARLY_ALL = 0.9  # of the misfit: what explains as much may be a look-alike of what is missing, in another form
+NOT_ALL = 0.3  # of the misfit: an effect that scores less is no account of nearly all of it
 AS_LIKELY = 0.9  # of what the best score explains: what scores as much is refitted as long as others are
 LOOK_ALIKE_STARTS = 8  # starts of a look-alike's own parameters
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
@@ -84,6 +93,11 @@ def worth_other_forms(candidates: Mapping[str, Candidate]) -> list[str]:
     if not best or candidates[best].score.explained_in_bounds < NEARLY_ALL:
         return list(candidates)
     return [word for word in candidates if word == best or are_look_alikes(best, word)]
+
+
+def least_score(case: Case, first: Fit, before: Fit) -> float:
+    """The share of the misfit that an effect must explain by its score to be refitted."""
+    return NOT_ALL if only_all_counts(case, first, before) else LEAST_SCORE
 
 
 def promises_most(case: Case, first: Fit, fit: Fit) -> bool:
@@ -231,7 +245,8 @@ def refit_other_forms(
         itself = [item for item in candidates if word_of(item.score.effect) == word_of(named)]
         wanted = [*itself, *(item for item in candidates if are_look_alikes(named, item.score.effect))]
     else:
-        others = [item for item in candidates if item not in shortlist and item.score.explained > LEAST_SCORE]
+        least = least_score(case, first, before)
+        others = [item for item in candidates if item not in shortlist and item.score.explained > least]
         wanted = [*shortlist, *others] if share < DECISIVE else []
     for candidate in wanted:
         candidate.forms = scorer_of(case, before).scores(word_of(candidate.score.effect))

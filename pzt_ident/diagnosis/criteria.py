@@ -67,6 +67,12 @@ def takes_all(case: Case, without: Fit, now: Fit) -> bool:
     )
 
 
+def only_all_counts(case: Case, first: Fit, fit: Fit) -> bool:
+    """Whether what a fit leaves of the identification records may all be the form of its effects: another one is proven
+    only if it takes up nearly all of it, or leads to the noise of both kinds of records."""
+    return removed_rms(fit.identify, case.floor) <= form_of_others(case, first.identify)
+
+
 def form_of_others(case: Case, given: float) -> float:
     """What the form of other effects may leave of the RMSE of the model as given, root mean square."""
     return min(FORM_OF_OTHERS * misfit.squared_misfit(given, case.floor) ** 0.5, MOST_OF_OTHERS * case.floor)

@@ -12,6 +12,7 @@ from pzt_ident.diagnosis.candidates import (
     Candidate,
     choose_forms,
     decide_by_score,
+    least_score,
     promises_enough,
     refit_all,
     refit_other_forms,
@@ -88,7 +89,8 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     if adequate(case, first, before) and not any(promises_enough(case, first, before, item) for item in candidates):
         decide_by_score(case, first, before, candidates)
         return without_effect(case, first, before, candidates)
-    promising = [item for item in candidates if item.score.explained > LEAST_SCORE][:SHORTLIST]
+    least = least_score(case, first, before)
+    promising = [item for item in candidates if item.score.explained > least][:SHORTLIST]
     shortlist = refit_all(case, first, before, promising)
     refit_other_forms(case, first, before, candidates, shortlist)
     restart_unconfirmed(case, first, shortlist)

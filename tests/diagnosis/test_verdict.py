@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,8 +12,10 @@ import stage
 from pzt_ident.diagnosis import budget, refit, starts, threads
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.candidates import (
+    NOT_ALL,
     Candidate,
     decide_by_score,
+    least_score,
     refit_all,
     refit_other_forms,
     restart_look_alikes,
@@ -342,3 +345,12 @@ def test_beside_what_explains_nearly_all_only_its_look_alikes_are_scored_in_othe
     assert forms["amplifier_lag"] > 1 and forms["sensor_lag"] > 1
     assert forms["rate_dependence"] > 1, "it counts the lag among its look-alikes"
     assert {forms["amplitude_gain"], forms["saturation"], forms["encoder_cyclic_error"]} == {1}
+
+
+@pytest.mark.parametrize(
+    ("given", "left", "least"), [(20, 1.6, NOT_ALL), (20, 2.0, LEAST_SCORE), (2, 1.6, LEAST_SCORE)]
+)
+def test_beside_effects_whose_form_may_leave_all_of_a_rest_only_what_scores_much_of_it_is_refitted(given, left, least):
+    """What takes up less of it cannot be proven."""
+    first, before = (Fit((), None, np.zeros(1), error, None) for error in (given, left))
+    assert least_score(SimpleNamespace(floor=1.0), first, before) == least
