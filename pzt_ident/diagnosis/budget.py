@@ -14,13 +14,15 @@ BEHIND = 0.05  # of the budget: a descent that is then still behind a rival is g
 BESIDE = 0.5  # of what a path has for exploring: other effects beside one that explains most, but for a second one
 EXPLORING = 0.7  # of the budget: the rest is for proving what was found
 PROVING = 0.9  # of the budget: ties, intervals and what promises to explain most of what is left get no more
+WHOLE = 1.0  # of the budget: the fits of a proof end there, settled or not, and those before it at PROVING
+PROOF = 0.05  # of the budget: what a proof has at least, whatever was spent before it
 SLOWER = 1.25  # times a share that CPU time may take of it, where a machine is slow or a model costs more than counted
-WHOLE = 1.0  # of the budget: fits end there, settled or not
+LATER = 1 / 3  # of what a share leaves of the budget: CPU time may take no more of it
 
 
 class Budget:
     """Seconds of work from now on (`engine.work`), so that an answer is the same on any machine that is fast enough.
-    CPU seconds of all threads, but for compiling, end it as well, its shares a quarter later. Infinite where None are
+    CPU seconds of all threads, but for compiling, end it as well, its shares a little later. Infinite where None are
     given. `untried` names what they did not suffice for."""
 
     def __init__(self, seconds: float | None = None) -> None:
@@ -48,8 +50,19 @@ class Budget:
 
     def begin_path(self) -> None:
         """Other effects beside one that explains most get a part of what is left for exploring now."""
-        spent = (work.done() - self._begun) / self.seconds if self.seconds else 1.0
-        self.beside = spent + BESIDE * max(EXPLORING - spent, 0.0)
+        share = self._shares()[0]
+        self.beside = share + BESIDE * max(EXPLORING - share, 0.0)
+        self._end = PROVING
+
+    def begin_proof(self) -> None:
+        """Fits have what was kept for them, and more where little of it is left."""
+        self._end = max(WHOLE, max(self._shares()) + PROOF)
+
+    def _shares(self) -> tuple[float, float]:
+        """What is spent of the budget: by work, and by CPU time."""
+        if not self.seconds:
+            return WHOLE, WHOLE
+        return (work.done() - self._begun) / self.seconds, (computing_time() - self._since) / self.seconds
 
     def allows(self, what: str, share: float = EXPLORING) -> bool:
         """Whether less than a share of the budget is spent; if not, `what` is untried."""
@@ -60,12 +73,12 @@ class Budget:
 
     def spent(self, share: float) -> bool:
         """Whether a share of the budget is spent."""
-        worked, taken = work.done() - self._begun, computing_time() - self._since
-        return worked >= share * self.seconds or taken >= min(SLOWER * share, WHOLE) * self.seconds
+        worked, taken = self._shares()
+        return worked >= share or taken >= min(SLOWER * share, share + LATER * max(WHOLE - share, 0.0))
 
     def lasts(self) -> bool:
         """Whether a fit may go on."""
-        return self.allows("settled fits", WHOLE)
+        return self.allows("settled fits", self._end)
 
     @property
     def sentence(self) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from pzt_ident.diagnosis.bounds import are_decisive, beyond_bounds, stands_in
 from pzt_ident.diagnosis.candidates import Candidate, promises_most
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.criteria import DECISIVE, adequate, clears_an_axis, removes_enough
+from pzt_ident.diagnosis.criteria import DECISIVE, adequate, clears_an_axis, removed_rms, removes_enough
 from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, remove_unneeded, separate_accounts
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
@@ -19,6 +19,7 @@ from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.starts import best_alias, first_fit, restart
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
+from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.undetermined import Undetermined
 from pzt_ident.diagnosis.verdict import Diagnosis, best_pair, diagnose
 from pzt_ident.model.registry import blocks, word_of
@@ -47,11 +48,16 @@ class Staircase:
 
 
 def climb(
-    case: Case, base: Sequence[Step], diagnosis: Diagnosis, candidate: Candidate | None, on_step: StepListener
-) -> Staircase:
+    case: Case,
+    base: Sequence[Step],
+    diagnosis: Diagnosis,
+    candidate: Candidate | None,
+    on_step: StepListener,
+    known: Sequence[Fit] = (),
+) -> Staircase | None:
     """One path: the candidate is added first, then always the best one, within wider bounds where these are a cheaper
     account. Where another effect promises most of what a step leaves, that is tried first, and the step is settled only
-    if the promise is not kept."""
+    if the promise is not kept. known: the fits of other paths; None where it joins one of them."""
     steps, first = [*base], base[-1].fit
     case.budget.begin_path()
     for step in base:
@@ -59,7 +65,7 @@ def climb(
     while (
         len(steps) - len(base) < MOST_STEPS and not stuck(steps) and (candidate or case.budget.allows("more effects"))
     ):
-        new = next_steps(case, first, steps, diagnosis, candidate)
+        new = next_steps(case, first, steps, diagnosis, candidate, known)
         if not new:
             break
         if not adequate(case, first, new[-1].fit):
@@ -69,6 +75,8 @@ def climb(
         new += [] if hurried else settle(case, first, (*steps, *new)[-2].fit, new[-1])
         if frozenset(new[-1].fit.effects) in {frozenset(step.fit.effects) for step in steps}:
             break
+        if joins(case, new[-1].fit, known):
+            return None
         for step in new:
             on_step(step)
         steps += new
@@ -85,6 +93,12 @@ def climb(
         candidate = diagnosis.best
     changed = next((step.case for step in reversed(steps) if step.case), None)
     return Staircase(steps, diagnosis, case=changed)
+
+
+def joins(case: Case, fit: Fit, known: Sequence[Fit]) -> bool:
+    """Whether a fit is of the effects of a known one, and not clearly lower."""
+    same = (other for other in known if {*other.effects} == {*fit.effects})
+    return any(removed_rms(other.total, fit.total) < TIE * case.floor for other in same)
 
 
 def wider_bounds(case: Case, first: Fit, fit: Fit) -> Step | None:
@@ -120,15 +134,23 @@ def fit_anew(case: Case, before: Fit, step: Step, fit: Fit) -> None:
 
 
 def next_steps(
-    case: Case, first: Fit, steps: list[Step], diagnosis: Diagnosis, candidate: Candidate | None
+    case: Case,
+    first: Fit,
+    steps: list[Step],
+    diagnosis: Diagnosis,
+    candidate: Candidate | None,
+    known: Sequence[Fit] = (),
 ) -> list[Step]:
-    """The candidate; without one a pair of effects, else an effect whose fit is restarted, else, once in a path, an
-    effect in the place of another. Empty where the path ends."""
+    """The candidate, or what leads farther where no effect helps a fit that rests astray, but not to a known one;
+    without a candidate a pair of effects, else an effect whose fit is restarted, else, once in a path, an effect in the
+    place of another. Empty where the path ends."""
     now = steps[-1].fit
     if candidate is not None and candidate.fit is not None:
         word, fit = candidate.score.effect, candidate.fit
         for others in other_ways(case, first, now, diagnosis) if is_astray(case, first, now, fit) else ():
-            if others and explained_share(case, now, others[-1].fit) >= DECISIVE and others[-1].fit.total < fit.total:
+            if not others or joins(case, others[-1].fit, known) or others[-1].fit.total >= fit.total:
+                continue
+            if explained_share(case, now, others[-1].fit) >= DECISIVE:
                 return others
         rivals = diagnosis.rivals if candidate is diagnosis.best else {word: fit}
         return [Step(fit, word, None, rivals, explained_share(case, now, fit), candidate.score.explained)]

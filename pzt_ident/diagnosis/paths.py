@@ -26,7 +26,8 @@ from pzt_ident.diagnosis.step import Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
 
-FIRST_EFFECTS = 2  # effects that are tried as the first to be added
+PATHS = 2  # of a model, which differ by the effect that is added first
+FIRST_EFFECTS = 4  # effects that are tried as that one, for paths that do not join
 SETTLED = "adequate", "refused"
 PROVEN = "back to what is proven"  # the step that goes back to an earlier one
 
@@ -37,25 +38,28 @@ def improve_within(
     """The staircase of a case, with its blocks and bounds. base: the steps to the model that effects are added to, the
     model as given first. diagnosis: of the last of them, where there is one.
 
-    Where the best first effect leads to no adequate model, the next best one is tried: the first may have stood in for
+    Where the best first effect leads to no adequate model, another one is tried: the first may have stood in for
     something else. Both are then compared without the effects that they do not prove.
     """
     first = base[-1].fit
     diagnosis = diagnosis or diagnose(case, first)
-    paths: list[Staircase] = []
+    paths, path = list[Staircase](), None
     candidates: list[Candidate | None] = [*first_candidates(case, first, diagnosis)]
     for candidate in candidates or [None]:
-        path = climb(case, base, diagnosis, candidate, on_step)
-        paths.append(path)
-        if path.last.verdict in SETTLED or path.end.identify / case.floor > HOPELESS:
+        known = [step.fit for path in paths for step in path.steps[len(base) :]]
+        path = climb(case, base, diagnosis, candidate, on_step, known)
+        paths += [path] if path else []
+        last = paths[-1]
+        if last.last.verdict in SETTLED or last.end.identify / case.floor > HOPELESS or len(paths) == PATHS:
             break
         if not case.budget.allows("another effect first"):
             break
+    case.budget.begin_proof()
     finished = [best_path(case, paths)] if any(map(is_adequate, paths)) else paths
     climbed = {id(path): len(path.steps) for path in finished}
     doubts = [(path, finish(path.case or case, first, path)) for path in finished]
     best = best_path(case, finished)
-    for step in best.steps[climbed[id(best)] if best is paths[-1] else 0 :]:  # another path is told anew
+    for step in best.steps[climbed[id(best)] if best is path else 0 :]:  # another path than the last is told anew
         on_step(step)
     find_rivals(best.case or case, first, best.steps, on_step)
     for doubted in [fit for path, fit in doubts if path is best and fit]:
@@ -85,7 +89,7 @@ def best_path(case: Case, paths: Sequence[Staircase]) -> Staircase:
 
 
 def first_candidates(case: Case, first: Fit, diagnosis: Diagnosis) -> list[Candidate]:
-    """The best candidate, and the next best one, for which another form of any effect counts too."""
+    """The best candidate, and the next best ones, for which another form of any effect counts too."""
     if not diagnosis.passing:
         return []
     best, *others = diagnosis.passing

@@ -50,7 +50,7 @@ def test_time_changes_nothing_but_on_a_machine_that_is_slower(share, worked, tak
         spent = budget.Budget(60)
         work.add(worked)
         now += taken
-        most = min(share * budget.SLOWER, 1.0) * 60
+        most = min(share * budget.SLOWER, share + budget.LATER * (1 - share)) * 60
         if taken < most - 1e-9:
             assert spent.spent(share) == (worked >= share * 60)
         elif taken > most + 1e-9:
@@ -85,3 +85,20 @@ def test_a_budget_without_end_or_seconds_has_paths_too(seconds):
     work.add(1)
     spent.begin_path()
     assert spent.allows("this", spent.beside) == (seconds is None)
+
+
+@given(st.floats(0, 2), st.floats(0, 2))
+def test_fits_of_a_proof_have_what_those_before_it_left_them_but_never_nothing(worked, taken):
+    now = 1.0
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(budget, "process_time", lambda: now)
+        work.begin(0.0)
+        spent = budget.Budget(60)
+        work.add(60 * worked)
+        now += 60 * taken
+        assert spent.lasts() == (not spent.spent(budget.PROVING))
+        spent.begin_proof()
+        assert spent.lasts()
+        most = max(budget.WHOLE, max(worked, taken) + budget.PROOF)
+        work.add(60 * (most + 1e-9))
+        assert not spent.lasts()

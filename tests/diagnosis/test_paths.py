@@ -40,10 +40,10 @@ def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, mon
 def taken_of(several, taken_back, monkeypatch):
     """The one that is taken of paths, of which some steps are taken back."""
 
-    told = []
+    told, joined = [], object()
 
-    def climb(case, first, diagnosis, number, on_step):
-        told[:] = several[number].steps
+    def climb(case, first, diagnosis, number, on_step, known):
+        told[:] = several[number].steps if several[number] else [joined]
         return several[number]
 
     def take_back(case, first, path):
@@ -60,6 +60,12 @@ def taken_of(several, taken_back, monkeypatch):
     best = improve_within(SimpleNamespace(floor=1.0, budget=Budget()), [Step(SimpleNamespace())], told.append)
     assert told[-len(best.steps) :] == best.steps
     return best
+
+
+def test_a_path_that_joins_another_is_no_path_and_the_next_effect_is_tried_first(monkeypatch):
+    worse, better = (Staircase([Step(ending(2.0, end))], SimpleNamespace(verdict="unexplained")) for end in (3.0, 2.0))
+    assert taken_of([worse, None, better], lambda path: [], monkeypatch) is better
+    assert taken_of([better, None, None], lambda path: [], monkeypatch) is better
 
 
 def test_of_two_paths_that_end_above_the_noise_the_one_is_taken_that_is_lower_with_what_is_proven(monkeypatch):

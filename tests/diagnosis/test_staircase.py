@@ -198,6 +198,19 @@ def test_a_step_is_settled_first_where_no_other_effect_promises_most_of_what_it_
     assert (added[0] in settled) != kept and added[-1] in settled
 
 
+def test_a_path_ends_where_it_joins_a_known_one_that_is_as_low():
+    case = stage.case(stage.EFFECTS["creep"])
+    first = first_fit(case, 0)
+    diagnosis = diagnose(case, first)
+
+    def climbed(known):
+        return climb.climb(case, [Step(first)], diagnosis, diagnosis.best, lambda step: None, known)
+
+    end = climbed([]).end
+    assert end.effects and climbed([end]) is None
+    assert climbed([replace(end, identify=2 * end.identify, validate=2 * end.validate)]).end.total == end.total
+
+
 @pytest.mark.parametrize(
     ("explained", "added", "promised"),
     [(0.8, ("quadratic_gain",), True), (0.7, (), False), (0.8, ("quadratic_gain", "delay"), False), (0.8, (), True)],
