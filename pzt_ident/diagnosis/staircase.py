@@ -12,7 +12,7 @@ from pzt_ident.diagnosis.climb import WIDER, Staircase
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms
 from pzt_ident.diagnosis.drive_noise import QUIET, quiet_behind, with_quiet_drives
 from pzt_ident.diagnosis.fit import Fit
-from pzt_ident.diagnosis.history import BEFORE, at_rest, fits_at_rest, history_behind, with_history
+from pzt_ident.diagnosis.history import BEFORE, at_rest, fits_at_rest, has_history, history_behind, with_history
 from pzt_ident.diagnosis.judges import judged
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.paths import SETTLED, best_path, conclude, improve_within
@@ -232,15 +232,28 @@ def keeps_within(wide: Staircase, case: Case) -> bool:
 
 
 def improve_beyond(case: Case, first: Fit, wide: Case, start: Fit, on_step: StepListener) -> Staircase:
-    """The staircase with wider bounds."""
-    step = Step(start, explained=explained_share(case, first, start), change=WIDER, case=wide)
-    return with_least_bounds(case, improve_within(wide, [Step(first), step], on_step))
+    """The staircase with wider bounds, whose model follows what was before the records, if it must."""
+    steps = [Step(first), Step(start, explained=explained_share(case, first, start), change=WIDER, case=wide)]
+    diagnosis = diagnose(wide, start)
+    told = None if diagnosis.verdict in SETTLED else with_history(wide, start, diagnosis)
+    if told is None:
+        return with_least_bounds(case, improve_within(wide, steps, on_step, diagnosis))
+    on_step(steps[0])
+    aged = improve_aged(wide, start, *told, on_step)
+    return with_least_bounds(case, replace(aged, steps=[*steps, *aged.steps[1:]], case=aged.case or wide))
 
 
 def with_least_bounds(case: Case, staircase: Staircase) -> Staircase:
     """The staircase, within the bounds of the job where its last model is."""
-    if staircase.case is None or brought_back(case, staircase.end) is None:
+    if staircase.case is None:
+        return staircase
+    home = case if staircase.case.words == case.words else case.with_words(staircase.case.words)
+    if brought_back(home, staircase.end) is None:
         return staircase
     kept = [step for step in staircase.steps if step.change != WIDER]
-    steps = [replace(step, fit=brought_back(case, step.fit) or step.fit) for step in kept]
-    return replace(staircase, steps=steps, case=None)
+    homes = [home if has_history(step.fit) else case for step in kept]
+    steps = [
+        replace(step, fit=brought_back(at, step.fit) or step.fit, case=step.case and at)
+        for step, at in zip(kept, homes, strict=True)
+    ]
+    return replace(staircase, steps=steps, case=None if home is case else home)

@@ -7,9 +7,11 @@ import pytest
 
 import rig
 import stage
+from pzt_ident.diagnosis.bounds import Widened, continued
 from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.climb import WIDER
 from pzt_ident.diagnosis.history import BEFORE, has_history, history_sentence, with_history
-from pzt_ident.diagnosis.staircase import improve
+from pzt_ident.diagnosis.staircase import improve, improve_beyond
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.verdict import diagnose
 from pzt_ident.model.registry import word_of
@@ -41,6 +43,19 @@ def test_what_is_missing_is_named_and_nothing_for_the_start(effect):
     assert found.steps[0].change == "" and found.steps[1].change == BEFORE and has_history(end)
     assert case.words_of(end) == ("history", "bouc_wen")
     assert history_sentence(case, end).endswith("did not start at rest, and the model follows what was before.")
+
+
+@pytest.mark.parametrize(("most", "order"), [(0.95, [WIDER, BEFORE]), (1.01, [BEFORE])])
+def test_within_wider_bounds_a_model_follows_what_was_before_and_goes_back_to_those_of_the_job(most, order):
+    gain = 1e6 * stage.STAGE["bouc_wen.gain"]  # um/V
+    case = begun_in_motion("quadratic_gain").with_specs({"bouc_wen.gain": Widened((0.3 * gain, most * gain))})
+    first, wide = first_fit(case, 0), case.with_specs({"bouc_wen.gain": Widened((0.3 * gain, 1.1 * gain))})
+    found = improve_beyond(case, first, wide, continued(wide, first), lambda step: None)
+    assert found.last.verdict == "adequate"
+    assert [step.added or step.change for step in found.steps[1:]] == [*order, "quadratic_gain"]
+    assert has_history(found.end) and found.end.validate == pytest.approx(stage.NOISE, rel=0.2)
+    assert found.case.words == ("history", "bouc_wen")
+    assert found.case.specs["bouc_wen.gain"].bounds[1] == pytest.approx((1.1 if WIDER in order else most) * gain)
 
 
 def test_records_that_start_at_rest_have_nothing_before_them():
