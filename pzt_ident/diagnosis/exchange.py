@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from functools import partial
 
 from pzt_ident.diagnosis.budget import PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
@@ -15,9 +16,9 @@ from pzt_ident.diagnosis.refit import refit, refit_beside, start_of
 from pzt_ident.diagnosis.score import applicable, fitting_forms, scorer_of
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explained_share
-from pzt_ident.diagnosis.ties import LIMIT_TIE, TIE, is_equal, is_tied, is_twin, rests_on_own_bounds, strangers
+from pzt_ident.diagnosis.ties import LIMIT_TIE, TIE, TWIN, is_equal, is_tied, is_twin, rests_on_own_bounds, strangers
 from pzt_ident.diagnosis.verdict import diagnose
-from pzt_ident.model.registry import blocks, word_of
+from pzt_ident.model.registry import blocks, form_of, word_of
 
 COMPARABLE = 0.3  # of the share that an effect explains by its score: what explains less cannot take its place
 LEAST_GAIN = 0.05  # noise floors by which one effect fits better than another: less may be simulation error
@@ -128,12 +129,13 @@ def other_forms(case: Case, now: Fit, effect: str) -> list[str]:
 def look_alikes(
     case: Case, now: Fit, effect: str, tied: Collection[str] = (), in_every_form: bool = False
 ) -> list[str]:
-    """The look-alikes that could be in the place of an effect, each in the first form that fits and in those that were
-    tied with it, or in all that fit."""
+    """The look-alikes that could be in the place of an effect, each in the first form that fits, in that which the
+    effect has and in those that were tied with it, or in all that fit."""
     effects = effects_without(now, effect)
     possible = applicable(case, effects)
     forms = [fitting_forms(case, effects, word) for word in blocks[effect].look_alikes if word in possible]
-    return [item for items in forms for item in items if in_every_form or item == items[0] or item in tied]
+    meant = [{items[0], *tied, *(item for item in items if form_of(item) == form_of(effect))} for items in forms]
+    return [item for items, some in zip(forms, meant, strict=True) for item in items if in_every_form or item in some]
 
 
 def at_noise(case: Case, fit: Fit) -> bool:
@@ -163,7 +165,8 @@ def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str], as_ri
 
 def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener) -> None:
     """Set the rivals of the effects in the last model by refits beside all the other effects, with a step to a tied one
-    that has fewer parameters. Those of a single effect are known where it is the last that was added."""
+    that has fewer parameters, or to the first name of a model that has two. Those of a single effect are known where
+    it is the last that was added."""
     now, last = steps[-1].fit, steps[-1]
     added = now.effects[len(first.effects) :]
     known = added == (last.added,) and last.removed is None
@@ -172,7 +175,7 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
         fits = fits_in_place(case, now, effect, look_alikes(case, now, effect, step.tied), as_rivals=True)
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
         rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
-        taken = min(rivals, key=lambda item: rivals[item].freedom)
+        taken = min(rivals, key=partial(simplicity, case, now, rivals))
         forms = fits_in_place(case, now, effect, other_forms(case, now, effect) if len(tied) < len(fits) else [])
         rivals |= {fit.effects[-1]: fit for fit in fits if is_twin(case, effect, forms, fit)}
         if taken != effect:
@@ -180,6 +183,11 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
             steps.append(step)
         step.rivals = {taken: rivals[taken]} | rivals
         now = rivals[taken]
+
+
+def simplicity(case: Case, now: Fit, rivals: Mapping[str, Fit], item: str) -> tuple[int, bool, str]:
+    """The order in which tied effects are taken: by parameters, then those that are the model of a fit, by name."""
+    return rivals[item].freedom, abs(rivals[item].total - now.total) >= TWIN * case.floor, item
 
 
 def add_rivals_beside(case: Case, first: Fit, steps: Sequence[Step], doubted: Fit) -> None:

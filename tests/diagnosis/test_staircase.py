@@ -280,10 +280,10 @@ def test_beside_other_effects_too_the_simpler_of_tied_look_alikes_is_taken(monke
 
 
 def test_the_rivals_of_an_effect_that_is_alone_again_are_asked_for_anew(monkeypatch):
-    def fitted(*effects):
-        return SimpleNamespace(effects=effects, total=1.1, identify=1.1, freedom=3)
+    def fitted(*effects, total=1.1):
+        return SimpleNamespace(effects=effects, total=total, identify=total, freedom=3)
 
-    alone, rival = fitted("sensor_lag"), fitted("delay")
+    alone, rival = fitted("sensor_lag"), fitted("delay", total=1.11)
     monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect, tied: ["delay"])
     monkeypatch.setattr(exchange, "fits_in_place", lambda case, now, effect, items, **_: [rival])
     case = SimpleNamespace(floor=1.0, budget=Budget())
@@ -308,11 +308,34 @@ def test_what_fits_as_a_form_of_the_effect_itself_does_keeps_its_name(monkeypatc
     assert named.effects == (taken,)
 
 
-@pytest.mark.parametrize("tied", [(), ("cross_coupling.voltage",)])
-def test_the_form_in_which_a_look_alike_was_tied_is_asked_for_again(tied):
+@pytest.mark.parametrize(
+    ("effect", "tied", "asked"),
+    [
+        ("kinematic_coupling", (), ["cross_coupling"]),
+        ("kinematic_coupling", ("cross_coupling.voltage",), ["cross_coupling", "cross_coupling.voltage"]),
+        ("kinematic_coupling.voltage", (), ["cross_coupling", "cross_coupling.voltage"]),
+    ],
+)
+def test_a_look_alike_is_asked_for_in_the_form_of_the_effect_and_that_in_which_it_was_tied(effect, tied, asked):
     case = SimpleNamespace(words=("bouc_wen",), effects=(), ruled_out=(), records=[SimpleNamespace(axes="xy")])
-    now = SimpleNamespace(effects=("kinematic_coupling.voltage",))
-    assert exchange.look_alikes(case, now, now.effects[0], tied) == ["cross_coupling", *tied]
+    assert exchange.look_alikes(case, SimpleNamespace(effects=(effect,)), effect, tied) == asked
+
+
+@pytest.mark.parametrize("first", ["kinematic_coupling.voltage", "cross_coupling.voltage"])
+def test_a_model_that_has_two_names_is_told_by_the_first_of_them(monkeypatch, first):
+    def fitted(word, total=1.1):
+        return SimpleNamespace(effects=("creep", word), total=total, identify=total, freedom=3)
+
+    words = {"kinematic_coupling.voltage", "cross_coupling.voltage"}
+    now, twin, close = fitted(first), fitted(*(words - {first})), fitted("amplitude_gain", 1.11)
+    monkeypatch.setattr(exchange, "look_alikes", lambda *arguments: [])
+    monkeypatch.setattr(exchange, "other_forms", lambda *arguments: [])
+    monkeypatch.setattr(exchange, "fits_in_place", lambda *arguments, **_: [twin, close])
+    monkeypatch.setattr(exchange, "is_tied", lambda *arguments: True)
+    steps = [Step(now, first, "drift")]
+    exchange.find_rivals(SimpleNamespace(floor=1.0, budget=Budget()), SimpleNamespace(effects=("creep",)), steps, repr)
+    assert steps[-1].fit.effects[-1] == "cross_coupling.voltage"
+    assert {*steps[-1].tied} == {*words, "amplitude_gain"}
 
 
 @pytest.mark.parametrize(("total", "left"), [(5.02, ("creep", "friction", "drift")), (9.0, ("creep", "drift"))])
