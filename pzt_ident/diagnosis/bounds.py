@@ -70,8 +70,8 @@ def stands_in(wide: Case, case: Case, fit: Fit) -> bool:
 
 def widened(case: Case, fit: Fit, slip: float = SLIP) -> dict[str, Widened]:
     """Wider bounds, by the names in the job, of the parameters that rest on one: of those that the job gives not beyond
-    those declared, of others by DECADES, and none of mechanics that the data do not determine, which may stand in for
-    anything slow."""
+    those declared, of others by DECADES or, of the amounts of effects, twice as far from the null, and none of
+    mechanics that the data do not determine, which may stand in for anything slow."""
     problem, specs = fit.problem, dict[str, Widened]()
     resting = [i for i in range(problem.dimensions) if rests(case, fit, i)]
     undetermined = undetermined_mechanics(fit) if resting else None
@@ -79,6 +79,9 @@ def widened(case: Case, fit: Fit, slip: float = SLIP) -> dict[str, Widened]:
         name = problem.names[i]
         entry, given = problem.model.entries[problem.free[i]], (float(problem.lower[i]), float(problem.upper[i]))
         key = given_name(case, fit, i)
+        if room := roomier(case, fit, i):
+            specs[name] = room
+            continue
         if entry.block.name == undetermined or not (key or is_guessed(case, entry)):
             continue
         low, high = specs[key].bounds if key in specs else given
@@ -95,6 +98,19 @@ def widened(case: Case, fit: Fit, slip: float = SLIP) -> dict[str, Widened]:
         if (low, high) != given:
             specs[key] = Widened((float(low), float(high)))
     return specs
+
+
+def roomier(case: Case, fit: Fit, i: int) -> Widened | None:
+    """Bounds twice as far from the null where a free parameter rests, if it is an amount of which the job says nothing
+    and no limit is declared, and that has not the wrong sign: the catalogue only expects how large an effect is."""
+    problem, at_low = fit.problem, fit.point[i] < 0.5
+    parameter, low, high = problem.model.entries[problem.free[i]].parameter, problem.lower[i], problem.upper[i]
+    if parameter.null is None or parameter.limit or given_name(case, fit, i):
+        return None
+    below, above = parameter.null - low, high - parameter.null
+    if (below if at_low else above) < max(below, above):  # as far as noise may take it
+        return None
+    return Widened((float(low - below * at_low), float(high + above * (not at_low))))
 
 
 def rests(case: Case, fit: Fit, i: int) -> bool:

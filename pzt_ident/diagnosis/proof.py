@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pzt_ident.data.notation import listed
+from pzt_ident.diagnosis.bounds import continued, roomier
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import (
     DECISIVE,
@@ -29,7 +30,9 @@ from pzt_ident.model.registry import blocks, phrase_of, word_of
 ENOUGH = 3 / 4  # of the misfit as given, of all records together: what the first of several effects must remove
 SINGLE = 0.9  # of it, which one effect must remove that is alone
 EACH = 1 / 2  # of that of the identification and of the validation records
-BESIDE = DECISIVE  # of the misfit beside the others: what each must remove of those that do not remove most of it together
+BESIDE = (
+    DECISIVE  # of the misfit beside the others: what each must remove of those that do not remove most of it together
+)
 ALONE = 1 / 3  # what each must remove of those that do
 
 
@@ -163,6 +166,7 @@ def suspect(
         validate = share_explained(without.validate, now.validate, case.floor)
     identify = share_explained(without.identify, now.identify, case.floor)
     others, on_bounds = strangers(effect, rivals), own_bounds(now, effect)
+    on_bounds = () if on_bounds and settle_beyond(case, now, on_bounds) else on_bounds
     limit = limit_of(now, on_bounds)
     if validate is not None and differs_by_record(effect):
         of_all = share_explained(without.total, now.total, case.floor)
@@ -185,6 +189,14 @@ def own_bounds(fit: Fit, effect: str) -> tuple[str, ...]:
     shapes = [name for name, entry in own.items() if name not in amounts and entry.word not in shown]
     shapes = [name for name in shapes if is_felt(fit, name)]
     return (*shapes, *(sorted(amounts) if amounts <= {*fit.on_bounds} else ()))
+
+
+def settle_beyond(case: Case, fit: Fit, on_bounds: Collection[str]) -> bool:
+    """Whether what ended on bounds are amounts which settle where these are twice as far from the null: an effect that
+    is a little larger than the catalogue expects stands for nothing else."""
+    rooms = {name: roomier(case, fit, fit.problem.names.index(name)) for name in on_bounds}
+    specs = {name: room for name, room in rooms.items() if room}
+    return specs.keys() == rooms.keys() and not {*on_bounds} & {*continued(case.with_specs(specs), fit).on_bounds}
 
 
 def is_felt(fit: Fit, name: str) -> bool:

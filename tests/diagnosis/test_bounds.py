@@ -244,3 +244,14 @@ def test_without_a_budget_for_both_the_wider_bounds_are_kept_that_clear_up_most(
     case.budget.lasts = lambda: True
     assert improve(case, first) is ended
     assert case.budget.untried == ["effects within the bounds of the job"]
+
+
+@pytest.mark.parametrize(("times", "words"), [(1.1, ["quadratic_gain", "wider bounds"]), (0.9, ["quadratic_gain"])])
+def test_what_is_larger_than_the_catalogue_expects_is_told_so_before_another_effect_is_blamed(times, words):
+    size = times * 0.5 / 120  # 1/V: half the gain is gone at 120 V
+    case = stage.case({"quadratic_gain.curvature": -size})
+    found = improve(case, first_fit(case, 0))
+    assert [step.added or step.change for step in found.steps[1:]] == words
+    assert found.last.verdict == "adequate"
+    assert found.end.values["quadratic_gain.curvature"] == pytest.approx(-size, rel=0.01)
+    assert bool(narrow_bounds_sentence(case, found.end)) == (times > 1)

@@ -5,9 +5,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import stage
 from pzt_ident.diagnosis import proof
+from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.fit import Fit
-from pzt_ident.diagnosis.proof import unproven
+from pzt_ident.diagnosis.proof import settle_beyond, unproven
+from pzt_ident.diagnosis.refit import refit
+from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.model.parameter import Parameter
 
 CASE = SimpleNamespace(floor=1.0)
@@ -36,8 +40,9 @@ def fit(identify, validate, effects=(), shapes=None, dimensions=4, felt=True, **
 def taken_out(monkeypatch):
     """The suspects among some effects, given the error of a model without each set of them."""
 
-    def of(errors, validation=None, first=30.0, rivals=None, known=(), shapes=None, sizes=None, **declared):
-        """sizes: the parameters of a model without each effect. declared: of the parameters with shapes."""
+    def of(errors, validation=None, first=30.0, rivals=None, known=(), shapes=None, sizes=None, larger=(), **declared):
+        """sizes: the parameters of a model without each effect. larger: those that would settle beyond their bounds.
+        declared: of the parameters with shapes."""
         validation = validation or errors
 
         def refitted(case, before, effects, guess):
@@ -46,6 +51,8 @@ def taken_out(monkeypatch):
             return fit(errors[left], validation[left], effects, dimensions=size)
 
         monkeypatch.setattr(proof, "refit", refitted)
+        settle = lambda case, fit, names: {name.split(".")[1] for name in names} <= {*larger}  # noqa: E731
+        monkeypatch.setattr(proof, "settle_beyond", settle)
         by_record = proof.differs_by_record
         monkeypatch.setattr(proof, "differs_by_record", lambda effect: len(effect) > 1 and by_record(effect))
         every = max(errors, key=len)
@@ -134,6 +141,28 @@ def test_above_the_noise_what_is_as_large_as_the_bounds_allow_on_all_axes_is_a_s
     taken_out, places, left, suspects
 ):
     assert taken_out(of(none=30, a=left), shapes={"a": places}, null=0) == suspects
+    assert taken_out(of(none=30, a=left), shapes={"a": places}, null=0, larger="a") == []
+
+
+@pytest.mark.parametrize(
+    ("name", "bound", "times", "settles"),
+    [
+        ("quadratic_gain.curvature", 0.5 / 120, 1.1, True),
+        ("quadratic_gain.curvature", 0.5 / 120, 3.0, False),
+        ("sensor_lag.tau", 0.05, 1.4, True),
+        ("sensor_lag.tau", 0.05, 4.0, False),
+        ("creep.ratio", -0.1, 1.4, False),
+    ],
+)
+def test_what_is_a_little_larger_than_the_catalogue_expects_settles_beyond_its_bound_but_not_of_the_wrong_sign(
+    name, bound, times, settles
+):
+    effect = name.split(".")[0]
+    case = stage.case(stage.EFFECTS.get(effect, {}) | {name: times * bound})
+    now = refit(case, first_fit(case, 0), (effect,), {name: 0.9 * bound})
+    assert name in now.on_bounds
+    assert settle_beyond(case, now, [name]) == settles
+    assert not settle_beyond(case.with_specs({name: Widened((min(bound, 0.0), max(bound, 0.0)))}), now, [name])
 
 
 def test_a_shape_that_is_not_felt_is_in_no_limit(taken_out):
