@@ -40,6 +40,7 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
     diagnosis = None if settled else diagnose(case, first)
     told = with_history(case, first, diagnosis) if diagnosis else None
     aged = improve_aged(case, first, *told, on_step) if told else None
+    aged = None if aged and aged.last.verdict == "refused" else aged
     if aged and (aged.last.verdict in SETTLED or not case.budget.allows("records that start at rest", WHOLE)):
         return aged
     judging, fit = judged(case, first)

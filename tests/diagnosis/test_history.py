@@ -7,13 +7,15 @@ import pytest
 
 import rig
 import stage
+from pzt_ident.diagnosis import staircase
 from pzt_ident.diagnosis.bounds import Widened, continued
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.climb import WIDER
+from pzt_ident.diagnosis.climb import WIDER, Staircase
 from pzt_ident.diagnosis.history import BEFORE, has_history, history_sentence, with_history
 from pzt_ident.diagnosis.staircase import improve, improve_beyond
 from pzt_ident.diagnosis.starts import first_fit
-from pzt_ident.diagnosis.verdict import diagnose
+from pzt_ident.diagnosis.step import Step
+from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
 from pzt_ident.model.registry import word_of
 
 LED = rig.path(0, 100, 10, 90, 45, points=60)  # what was before: the hysteresis is far from rest, at 45 V
@@ -71,3 +73,12 @@ def test_a_job_that_follows_what_was_before_is_followed():
     found = improve(case, first)
     assert has_history(first) and found.last.verdict == "adequate" and len(found.steps) == 1
     assert case.words_of(first) == ("history", "bouc_wen")
+
+
+def test_a_path_that_is_refused_with_what_was_before_leaves_that_from_rest(monkeypatch):
+    case = begun_in_motion("quadratic_gain")
+    first = first_fit(case, 0)
+    refused = Staircase([Step(first)], Diagnosis("refused", "halving the step", first, [], []))
+    monkeypatch.setattr(staircase, "improve_aged", lambda *arguments: refused)
+    found = improve(case, first)
+    assert found is not refused and found.last.verdict != "refused"
