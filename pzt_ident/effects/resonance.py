@@ -18,7 +18,7 @@ class SecondMode:
         (-0.8, 0.8),
         "Part of the static response that the second mode carries.",
         null=0,
-        limit="the main mode, and the mechanics of the job stand in for something else",
+        limit="the main mode, and the mechanics of the job, if it has any, stand in for something else",
     )
     frequency = Parameter("Hz", (20, 2e4), "Natural frequency of the second mode.", scale="log")
     damping = Parameter("1", (1e-3, 0.3), "Damping ratio of the second mode, zeta.", scale="log")
