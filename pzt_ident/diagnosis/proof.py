@@ -103,22 +103,29 @@ def unproven(
     rivals that fit as well and are not its look-alikes: what any effect takes up is not that of one. And none may have
     a shape, or all its amounts, on a bound, as a cyclic error whose pitch is as long as the stroke: it stands for what
     it is like there, unless the model is adequate with it. Even then none may be in a limit that is declared to be
-    something else.
+    something else. What takes up enough and only may be something else is a suspect beside which the others are judged:
+    without it what they take up is nothing.
     """
-    suspects: list[Suspect] = []
+    suspects, held = list[Suspect](), list[str]()
     while added := now.effects[len(first.effects) :]:
-        suspected = [suspect(case, first, now, effect, rivals.get(effect, ()), known) for effect in added]
         near, explained = near_noise(case, first, now), adequate(case, first, now)
-        doubtful = [item for item in suspected if item.is_doubtful or (item.on_bounds and not explained)]
-        if near and not doubtful:
+        judged = [suspect(case, first, now, item, rivals.get(item, ()), known) for item in added if item not in held]
+        suspected = [item for item in judged if item.is_doubtful or (item.on_bounds and not explained) or not near]
+        if not suspected:
             break
-        least = least_of(case, doubtful if near else suspected)
-        enough = least.share >= least_share(left_of_allowed(case, first, now, len(added)), len(added))
-        decisive = enough and not least.strangers and not least.on_bounds
-        if not near and least.beyond_form and decisive:
+        least = least_of(case, suspected)
+        needed = near or least.share >= least_share(left_of_allowed(case, first, now, len(added)), len(added))
+        other = least.limit or (least.on_bounds and not explained) or (least.strangers and not near)
+        if least.beyond_form and needed and not other:
             break
-        suspects.append(least)
-        now = least.without
+        if least.beyond_form and needed:
+            held.append(least.effect)
+        else:
+            suspects.append(least)
+            now = least.without
+    for effect in held:
+        suspects.append(suspect(case, first, now, effect, rivals.get(effect, ()), known))
+        now = suspects[-1].without
     return suspects
 
 

@@ -165,6 +165,13 @@ def test_what_is_a_little_larger_than_the_catalogue_expects_settles_beyond_its_b
     assert not settle_beyond(case.with_specs({name: Widened((min(bound, 0.0), max(bound, 0.0)))}), now, [name])
 
 
+@pytest.mark.parametrize(("alone", "suspects"), [(20.0, ["a"]), (5.5, ["b", "a"])])
+def test_beside_what_takes_up_most_and_may_be_something_else_another_effect_is_proven(taken_out, alone, suspects):
+    """Without the first one, the second takes up a hundredth. alone: the error of the first one."""
+    seen = of(ab=5.0, a=alone, b=38.8, none=39.0)
+    assert taken_out(seen, first=39.0, shapes={"a": [1.0], "b": [0.5]}, null=0) == suspects
+
+
 def test_a_shape_that_is_not_felt_is_in_no_limit(taken_out):
     """A Stribeck velocity without stiction."""
     seen = of(ab=5.0, a=20.0, b=25.0, none=300.0)
