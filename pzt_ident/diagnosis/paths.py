@@ -46,7 +46,7 @@ def improve_within(
     paths, path = list[Staircase](), None
     candidates: list[Candidate | None] = [*first_candidates(case, first, diagnosis)]
     for candidate in candidates or [None]:
-        known = [step.fit for path in paths for step in path.steps[len(base) :]]
+        known = [step.fit for other in paths for step in other.steps[len(base) :]]
         path = climb(case, base, diagnosis, candidate, on_step, known)
         paths += [path] if path else []
         last = paths[-1]

@@ -30,10 +30,8 @@ from pzt_ident.model.registry import blocks, phrase_of, word_of
 ENOUGH = 3 / 4  # of the misfit as given, of all records together: what the first of several effects must remove
 SINGLE = 0.9  # of it, which one effect must remove that is alone
 EACH = 1 / 2  # of that of the identification and of the validation records
-BESIDE = (
-    DECISIVE  # of the misfit beside the others: what each must remove of those that do not remove most of it together
-)
-ALONE = 1 / 3  # what each must remove of those that do
+ALONE = 1 / 3  # of the misfit beside the others: what each of several must remove that leave no more than they may
+BESIDE = DECISIVE  # of the same: what each must remove of those that leave much more
 
 
 @dataclass(frozen=True)
