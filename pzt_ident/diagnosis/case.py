@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from dataclasses import replace
 from functools import cached_property
 from itertools import product
@@ -66,6 +67,14 @@ class Case:
     def with_records(self, records: Sequence[Record]) -> Case:
         """The same case, of which other records judge."""
         return self._altered(self.words, self.specs, records)
+
+    def on_axis(self, axis: int | None) -> Case:
+        """The same case with the noise floor of one measured axis alone; the case itself for None."""
+        if axis is None:
+            return self
+        other = copy(self)
+        other.floor = float(self.floors[axis])
+        return other
 
     def _altered(self, words: Sequence[str | Choice], specs: Any, records: Sequence[Record] | None = None) -> Case:
         other = Case(words, self.effects, records or self.records, specs, self.ruled_out, self.shared, self.on_event)

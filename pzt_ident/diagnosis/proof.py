@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -102,17 +103,46 @@ def unproven(
     a shape, or all its amounts, on a bound, as a cyclic error whose pitch is as long as the stroke: it stands for what
     it is like there, unless the model is adequate with it. Even then none may be in a limit that is declared to be
     something else. What takes up enough and only may be something else is a suspect beside which the others are judged:
-    without it what they take up is nothing.
+    without it what they take up is nothing. What is proven on one of several axes is proven, whatever another lacks.
     """
+    judge, added = partial(taken_out, case, first, now, rivals, known), now.effects[len(first.effects) :]
+    suspects, axes = judge(), len(now.problem.model.measured)
+    doubted = [item.effect for item in suspects]
+    for axis in range(axes) if axes > 1 and suspects else ():
+        proven = {*added} - {item.effect for item in judge(axis)}
+        doubted = [effect for effect in doubted if effect not in proven]
+    if len(doubted) == len(suspects):
+        return suspects
+    suspects = []
+    for effect in doubted:
+        suspects.append(suspect(case, first, now, effect, rivals.get(effect, ()), known))
+        now = suspects[-1].without
+    return suspects
+
+
+def taken_out(
+    case: Case,
+    first: Fit,
+    now: Fit,
+    rivals: Mapping[str, Collection[str]],
+    known: Sequence[Fit],
+    axis: int | None = None,
+) -> list[Suspect]:
+    """The same by the errors of all axes together, or of one alone."""
+    seen, view = partial(on_axis, axis=axis), case.on_axis(axis)
+    given = seen(first)
     suspects, held = list[Suspect](), list[str]()
     while added := now.effects[len(first.effects) :]:
-        near, explained = near_noise(case, first, now), adequate(case, first, now)
-        judged = [suspect(case, first, now, item, rivals.get(item, ()), known) for item in added if item not in held]
+        near, explained = near_noise(view, given, seen(now)), adequate(view, given, seen(now))
+        left = left_of_allowed(view, given, seen(now), len(added))
+        judged = [
+            suspect(case, first, now, item, rivals.get(item, ()), known, axis) for item in added if item not in held
+        ]
         suspected = [item for item in judged if item.is_doubtful or (item.on_bounds and not explained) or not near]
         if not suspected:
             break
         least = least_of(case, suspected)
-        needed = near or least.share >= least_share(left_of_allowed(case, first, now, len(added)), len(added))
+        needed = near or least.share >= least_share(left, len(added))
         other = least.limit or (least.on_bounds and not explained) or (least.strangers and not near)
         if least.beyond_form and needed and not other:
             break
@@ -122,9 +152,17 @@ def unproven(
             suspects.append(least)
             now = least.without
     for effect in held:
-        suspects.append(suspect(case, first, now, effect, rivals.get(effect, ()), known))
+        suspects.append(suspect(case, first, now, effect, rivals.get(effect, ()), known, axis))
         now = suspects[-1].without
     return suspects
+
+
+def on_axis(fit: Fit, axis: int | None) -> Fit:
+    """A fit with the errors of one measured axis alone, or as it is."""
+    if axis is None:
+        return fit
+    identify, *validate = map(float, fit.by_use[:, axis])
+    return replace(fit, identify=identify, validate=validate[0] if validate else None)
 
 
 def least_of(case: Case, suspected: Sequence[Suspect]) -> Suspect:
@@ -159,25 +197,32 @@ def least_share(left: float, effects: int) -> float:
 
 
 def suspect(
-    case: Case, first: Fit, now: Fit, effect: str, rivals: Collection[str], known: Sequence[Fit] = ()
+    case: Case,
+    first: Fit,
+    now: Fit,
+    effect: str,
+    rivals: Collection[str],
+    known: Sequence[Fit] = (),
+    axis: int | None = None,
 ) -> Suspect:
-    """What an effect of a fit takes up beside the others, of which a known fit may leave less than the refit that the
-    budget suffices for."""
+    """What an effect of a fit takes up beside the others, on all axes or on one, of which a known fit may leave less
+    than the refit that the budget suffices for."""
     others_only = effects_without(now, effect)
     fits = [refit(case, now, others_only, {}), *(fit for fit in known if {*fit.effects} == {*others_only})]
     without = min(fits, key=lambda fit: fit.total)
-    validate = None
-    if now.validate is not None and without.validate is not None:
-        validate = share_explained(without.validate, now.validate, case.floor)
-    identify = share_explained(without.identify, now.identify, case.floor)
     others, on_bounds = strangers(effect, rivals), own_bounds(now, effect)
     on_bounds = () if on_bounds and settle_beyond(case, now, on_bounds) else on_bounds
     limit = limit_of(now, on_bounds)
+    view, (given, before, after) = case.on_axis(axis), (on_axis(fit, axis) for fit in (first, without, now))
+    validate = None
+    if after.validate is not None and before.validate is not None:
+        validate = share_explained(before.validate, after.validate, view.floor)
+    identify = share_explained(before.identify, after.identify, view.floor)
     if validate is not None and differs_by_record(effect):
-        of_all = share_explained(without.total, now.total, case.floor)
-        clear = removed_rms(without.total, now.total) > form_of_others(case, first.total)
+        of_all = share_explained(before.total, after.total, view.floor)
+        clear = removed_rms(before.total, after.total) > form_of_others(view, given.total)
         return Suspect(effect, identify, validate, without, clear, others, on_bounds, limit, of_all)
-    clear = beyond_form(case, first, without, now)
+    clear = beyond_form(view, given, before, after)
     return Suspect(effect, identify, validate, without, clear, others, on_bounds, limit)
 
 

@@ -9,12 +9,12 @@ import stage
 from pzt_ident.diagnosis import proof
 from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.fit import Fit
-from pzt_ident.diagnosis.proof import settle_beyond, unproven
+from pzt_ident.diagnosis.proof import settle_beyond, taken_out, unproven
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.model.parameter import Parameter
 
-CASE = SimpleNamespace(floor=1.0)
+CASE = SimpleNamespace(floor=1.0, on_axis=lambda axis: CASE)
 
 
 def fit(identify, validate, effects=(), shapes=None, dimensions=4, felt=True, **declared):
@@ -36,8 +36,8 @@ def fit(identify, validate, effects=(), shapes=None, dimensions=4, felt=True, **
     return Fit(tuple(effects), problem, np.array([*places.values()], float), identify, validate)
 
 
-@pytest.fixture
-def taken_out(monkeypatch):
+@pytest.fixture(name="taken_out")
+def suspects_of(monkeypatch):
     """The suspects among some effects, given the error of a model without each set of them."""
 
     def of(errors, validation=None, first=30.0, rivals=None, known=(), shapes=None, sizes=None, larger=(), **declared):
@@ -285,3 +285,21 @@ def test_records_that_were_kept_back_must_show_it_too(taken_out):
 def test_what_is_near_the_noise_is_not_held_against_a_floor_that_may_be_too_low(taken_out):
     assert taken_out(of(ab=1.45, a=2.1, b=5.0, none=30.0)) == []
     assert taken_out(of(ab=1.55, a=1.8, b=5.0, none=30.0)) == ["b"]
+
+
+def test_what_is_proven_on_one_axis_is_proven_whatever_another_lacks():
+    """y wanders, on the records kept back above all, as no effect explains."""
+
+    def wander(record):
+        steps = np.random.default_rng(5).normal(0, 1, record.drive.shape[1])
+        size = {"identify": 5, "validate": 100}[record.use] * stage.NOISE
+        return size * np.interp(np.arange(steps.size), np.arange(0, steps.size, 50), steps[::50])
+
+    bent, wandering = stage.case(stage.EFFECTS["quadratic_gain"]), stage.with_response(stage.case(seed=9), wander)
+    case = stage.beside(bent, wandering)
+    first = first_fit(case, 0)
+    now = refit(case, first, ("quadratic_gain",), {"x.quadratic_gain.curvature": 3e-4})
+    assert [item.effect for item in taken_out(case, first, now, {}, ())] == ["quadratic_gain"]
+    assert unproven(case, first, now, {}) == []
+    alone = refit(case, first, ("drift",), {})
+    assert [item.effect for item in unproven(case, first, alone, {})] == ["drift"]
