@@ -227,7 +227,7 @@ def draw(kind, seed):
             )
             case["job_seed"] = int(rng.integers(2**31))
             return equip(rng, case, effects)
-        except Redraw:
+        except (Redraw, OverflowError):  # of a motion that a fixed step of time does not hold
             continue
     raise RuntimeError(f"{kind} {seed}: no draw could be seen")
 
