@@ -212,20 +212,24 @@ def unexplained(case: Case, first: Fit, found: Diagnosis) -> Diagnosis:
     for candidate in found.candidates:
         candidate.decision = "suspect" if candidate.decision == "missing" else candidate.decision
     reason = found.reason if found.verdict == "unexplained" else nothing_explains(case, found.before)
-    reason += form_sentence(case, first, found.before)
+    reason = with_proven(case, first, found.before, reason)
     return Diagnosis("unexplained", reason, found.before, found.candidates, [], found.passing)
 
 
-def form_sentence(case: Case, first: Fit, fit: Fit) -> str:
-    """What the proven effects explain, and that the rest may be another form of them; empty where there are none."""
-    proven = fit.effects[len(first.effects) :]
+def with_proven(case: Case, first: Fit, fit: Fit, reason: str) -> str:
+    """The reason, with what the proven effects explain ahead of it, and that the rest which no effect explains may be
+    another form of them; as it is where there are none."""
+    proven, rest = fit.effects[len(first.effects) :], nothing_explains(case, fit)
     if not proven:
-        return ""
+        return reason
     left = squared_misfit(case, fit) / squared_misfit(case, first)
-    names = listed(map(phrase_of, proven))
+    verb, them = ("explains", "it") if len(proven) == 1 else ("explain", "them")
+    explained = f"{listed(map(phrase_of, proven))} {verb} {percent(1 - left)} of the initial misfit"
+    if not reason.startswith(rest):
+        return f"{explained}. {reason}"
     return (
-        f" {names} explain{'s' if len(proven) == 1 else ''} {percent(1 - left)} of the initial misfit. The other"
-        f" {percent(left)} may be a form of {'it' if len(proven) == 1 else 'them'} that the catalogue does not have."
+        f"{explained}, and no effect of the catalogue the other {percent(left)}. That is {rmse_phrase(case, fit)}, and"
+        f" may be a form of {them} that the catalogue does not have.{reason.removeprefix(rest)}"
     )
 
 

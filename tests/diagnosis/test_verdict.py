@@ -27,7 +27,7 @@ from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.ties import are_look_alikes
-from pzt_ident.diagnosis.verdict import diagnose, missing_sentence
+from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, missing_sentence, nothing_explains, unexplained
 from pzt_ident.engine import work
 from pzt_ident.model.registry import blocks, word_of
 
@@ -354,3 +354,18 @@ def test_beside_effects_whose_form_may_leave_all_of_a_rest_only_what_scores_much
     """What takes up less of it cannot be proven."""
     first, before = (Fit((), None, np.zeros(1), error, None) for error in (given, left))
     assert least_score(SimpleNamespace(floor=1.0), first, before) == least
+
+
+@pytest.mark.parametrize(
+    ("effects", "begins"), [(("drift",), "drift explains"), (("drift", "creep"), "drift and creep explain")]
+)
+@pytest.mark.parametrize("shown", [False, True])
+def test_what_proven_effects_explain_is_said_ahead_of_what_none_explains(effects, begins, shown):
+    """shown: whether the validation records show what the others do not."""
+    case, first = SimpleNamespace(floor=1.0), Fit((), None, np.zeros(1), 10.0, 10.0)
+    end = Fit(effects, None, np.zeros(1), 2.0, 3.0)
+    reason = "The model leaves what the validation records show." if shown else nothing_explains(case, end) + " More."
+    said = unexplained(case, first, Diagnosis("unexplained", reason, end, [], [])).reason
+    assert said.startswith(f"{begins} 97 % of the initial misfit{'. ' + reason if shown else ', and no effect'}")
+    assert said.count("noise floors") == (0 if shown else 2) and said.endswith("show." if shown else " have. More.")
+    assert unexplained(case, end, Diagnosis("unexplained", reason, end, [], [])).reason == reason
