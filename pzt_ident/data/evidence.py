@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,6 +17,9 @@ LOUDER = 1.5  # times those: above that an estimate has more in it than noise
 UNLIKE = 4.0  # times the quietest one: that far apart they have more than noise in them
 DECAY = 2.0  # of the variance between the halves of a rest: more is a transient, and the later half is taken
 SHAPED = 64  # samples: of shorter periods the changes of their shape would take too much
+FARTHEST = 4.0  # standard deviations of an estimate, by which it may be above the quieter ones of the same noise
+HARDLY = 1.25  # times those: the noise of a sensor may be as much larger elsewhere in its range
+FEWEST = 0.05  # of all that is measured: less, which is quieter than the rest, may be a reading that hung
 MISMATCH = 0.5  # of the noise: more may not come from periods that are no whole number of samples
 
 
@@ -37,9 +42,39 @@ def alike(deviations: Array, seconds: Array) -> bool:
     return bool(kept.max() <= UNLIKE * kept.min())
 
 
-def rest_noise(drive: Array, response: Array, least: int = 100) -> list[tuple[float, int]]:
-    """Standard deviation and number of samples of each rest: the last four fifths of an interval of constant drive, or
-    less where these still settle, less a quartic, which follows creep, and the lines of the mains and the floor."""
+class Estimate(NamedTuple):
+    """Standard deviation of noise, the number of samples that it is of, and its own relative standard deviation."""
+
+    value: float
+    samples: int
+    spread: float
+
+
+def of_one_noise(values: Array, seconds: Array, spreads: Array) -> NDArray[np.bool_]:
+    """Which estimates are of the noise alone: from the quietest on those that are no farther above the quieter ones
+    than these leave open, which are no less than FEWEST of all, and what is up to HARDLY times those. What a stage
+    adds, such as ringing, is louder."""
+    order, least = np.argsort(values), FEWEST * seconds.sum()
+    skipped = np.searchsorted(np.cumsum(seconds[order]), least)
+    groups = [with_quieter(order[begin:], values, spreads) for begin in range(skipped + 1)]
+    core = next((group for group in groups if seconds[group].sum() > least), groups[0])
+    level = np.sqrt(np.average(values[core] ** 2, weights=seconds[core]))
+    return (values >= values[core[0]]) & (values <= max(HARDLY * level, values[core[-1]]))
+
+
+def with_quieter(order: NDArray[np.int_], values: Array, spreads: Array) -> NDArray[np.int_]:
+    """The first of some estimates in rising order, and those after it that may be of the same noise."""
+    for last in range(1, order.size):
+        quieter, weights = order[:last], spreads[order[:last]] ** -2.0
+        level = np.sqrt(np.average(values[quieter] ** 2, weights=weights))
+        if values[order[last]] > level * (1 + FARTHEST * np.hypot(spreads[order[last]], weights.sum() ** -0.5)):
+            return quieter
+    return order
+
+
+def rest_noise(drive: Array, response: Array, least: int = 100) -> list[Estimate]:
+    """The noise of each rest: of the last four fifths of an interval of constant drive, or of less where these still
+    settle, less a quartic, which follows creep, and the lines of the mains and the floor."""
     span = np.ptp(drive, axis=1, keepdims=True)
     still = (np.abs(np.diff(drive, axis=1)) <= 1e-6 * np.maximum(span, 1e-300)).all(axis=0)
     edges = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(int), [0]])))
@@ -48,8 +83,10 @@ def rest_noise(drive: Array, response: Array, least: int = 100) -> list[tuple[fl
         first += (last - first) // 5
         if last - first >= least:
             noise, basis = settled(response[first:last], least)
-            if not rings(noise, basis):
-                estimates.append((deviation(noise, basis), noise.size))
+            memory = memory_in(noise, basis)
+            if memory < MOST_MEMORY:  # what rings or settles is more alike from sample to sample
+                free = 2 * (noise.size - basis.shape[1]) * (1 - memory**2) / (1 + memory**2)
+                estimates.append(Estimate(deviation(noise, basis), noise.size, free**-0.5))
     return estimates
 
 
@@ -63,14 +100,14 @@ def settled(signal: Array, least: int) -> tuple[Array, Array]:
     return noise, basis
 
 
-def rings(noise: Array, basis: Array) -> bool:
-    """Whether it is as alike from sample to sample as what settles or rings."""
+def memory_in(noise: Array, basis: Array) -> float:
+    """The memory of noise that a basis has been projected out of; zero where nothing is left."""
     power = float(noise @ noise)
-    return power > 0 and memory_of(float(noise[1:] @ noise[:-1]) / power, basis) >= MOST_MEMORY
+    return memory_of(float(noise[1:] @ noise[:-1]) / power, basis) if power > 0 else 0.0
 
 
-def period_noise(drive: Array, response: Array, least: int = 3) -> list[tuple[float, int]]:
-    """Standard deviation and number of samples of a periodic record: half the variance of the difference of successive
+def period_noise(drive: Array, response: Array, least: int = 3) -> list[Estimate]:
+    """The noise of a periodic record: half the variance of the difference of successive
     periods, less its straight line, what a change of gain makes of it and lines of the mains, of the quiet ones. None
     where the drive repeats so roughly, as with periods of no whole number of samples, that the response must too."""
     period = period_of(drive)
@@ -89,7 +126,7 @@ def period_noise(drive: Array, response: Array, least: int = 3) -> list[tuple[fl
     scaled = drive / np.maximum(np.ptp(drive, axis=1, keepdims=True), 1e-300)
     mismatch, span = max(float(np.median(np.std(changes(row), axis=1))) for row in scaled), np.ptp(response)
     known = mismatch * span <= max(MISMATCH * quiet_part, ROUNDING * span)
-    return [(quiet_part, response.size)] if known else []
+    return [Estimate(quiet_part, response.size, (2 * response.size) ** -0.5)] if known else []
 
 
 def shape_changes(shape: Array) -> list[Array]:

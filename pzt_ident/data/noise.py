@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.evidence import alike, period_noise, quiet_deviation, rest_noise
+from pzt_ident.data.evidence import alike, of_one_noise, period_noise, rest_noise
 from pzt_ident.data.projections import deviation, without_lines
 from pzt_ident.data.quantiser import common_step, errors_of_readings, with_quantiser
 from pzt_ident.data.record import Record
@@ -45,9 +45,13 @@ def noise_floor(records: list[Record], axis: int) -> Floor:
     for estimate, source in ((rest_noise, "rest segments"), (period_noise, "repeated periods")):
         found = [(part, dt) for drives, response, dt in signals for part in estimate(drives, response)]
         if found:
-            scatters, seconds = np.array([(value, samples * dt) for (value, samples), dt in found]).T
+            scatters, seconds, spreads = np.array(
+                [(part.value, part.samples * dt, part.spread) for part, dt in found]
+            ).T
             values = errors_of_readings(scatters, seconds, step)
-            still = floor_of(quiet_deviation(values, seconds), source, step)
+            kept = of_one_noise(values, seconds, spreads)
+            value = np.sqrt(np.average(values[kept] ** 2, weights=seconds[kept]))
+            still = floor_of(float(value), source, step)
             return still if alike(values, seconds) else min(still, floor_in_windows(signals, step))
     return floor_in_windows(signals, step)
 

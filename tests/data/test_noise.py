@@ -116,13 +116,29 @@ def test_what_is_not_scored_is_no_evidence():
 
 
 def test_rests_count_by_how_long_they_last():
-    """10 s of 1 and 4 s of 1.4: the mean square is (10 + 4 * 1.96) / 14, whatever the samples are."""
+    """10 s of 1 and 4 s of 1.2: the mean square is (10 + 4 * 1.44) / 14, whatever the samples are."""
     long = dataclasses.replace(record(rising(500, 1000), white(1500)), dt=1e-2)
-    short = record(rising(500, 4000), white(4500, 1.4, seed=1))
-    assert noise_floor([short, long], 0).value == pytest.approx(np.sqrt(17.84 / 14), rel=0.05)
+    short = record(rising(500, 4000), white(4500, 1.2, seed=1))
+    assert noise_floor([short, long], 0).value == pytest.approx(np.sqrt(15.76 / 14), rel=0.03)
 
 
 RINGING = np.exp(-np.arange(4000) / 1500) * np.sin(np.arange(4000) / 3)  # a mode that rings through all of a rest
+
+
+@pytest.mark.parametrize("louder", [1.4, 2.0, 5.0])
+@pytest.mark.parametrize("rests", [5, 17])
+def test_rests_that_are_louder_are_no_evidence_beside_the_one_before_the_first_step(rests, louder):
+    """As where a stage rings after each of many steps."""
+    drive = np.repeat(np.append(0.0, np.random.default_rng(rests).uniform(1, 100, rests)), 300)
+    response = drive + white(drive.size) * np.repeat(np.append(1.0, louder * np.linspace(1, 2, rests)), 300)
+    floor = noise_floor([record(drive, response)], 0)
+    assert (floor.source, floor.value) == ("rest segments", pytest.approx(1, rel=0.1))
+
+
+def test_a_reading_that_hung_for_a_moment_is_no_evidence():
+    drive = np.repeat([0.0, 50.0, 10.0], [150, 3000, 3000])
+    response = drive + white(drive.size) * np.repeat([0.1, 1.0, 1.0], [150, 3000, 3000])
+    assert noise_floor([record(drive, response)], 0).value == pytest.approx(1, rel=0.05)
 
 
 @pytest.mark.parametrize("rings", [(), (1,), (1, 3), (0, 1, 2)])
@@ -268,7 +284,7 @@ def test_a_rest_that_is_exactly_constant_has_no_noise(samples):
     drive = np.concatenate([np.linspace(0, 1, 50), np.ones(samples)])[None]
     for level in levels:
         response = np.concatenate([np.linspace(0, level, 50), np.full(samples, level)])
-        assert all(value <= 1e-12 * abs(level) for value, _ in rest_noise(drive, response))
+        assert all(value <= 1e-12 * abs(level) for value, *_ in rest_noise(drive, response))
 
 
 def test_the_noise_of_an_axis_is_estimated_once_for_a_result(monkeypatch):
