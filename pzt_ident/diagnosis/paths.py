@@ -25,6 +25,7 @@ from pzt_ident.diagnosis.proof import Suspect, unproven
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
+from pzt_ident.model.registry import word_of
 
 PATHS = 2  # of a model, which differ by the effect that is added first
 FIRST_EFFECTS = 4  # effects that are tried as that one, for paths that do not join
@@ -116,7 +117,8 @@ def take_back(case: Case, first: Fit, staircase: Staircase) -> Fit | None:
     doubted, suspects = now, unproven_of(case, first, now, staircase.steps)
     end = suspects[-1].without if suspects else now
     proven = proven_before(case, first, end, staircase.steps)
-    staircase.suspects = [item for item in suspects if proven is None or item.effect not in proven.effects]
+    kept = {*map(word_of, (proven or end).effects)}
+    staircase.suspects = [item for item in suspects if word_of(item.effect) not in kept]
     if proven:
         steps.append(Step(proven, explained=explained_share(case, now, proven), change=PROVEN))
     for suspect in suspects if proven is None else []:

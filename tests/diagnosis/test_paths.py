@@ -128,3 +128,16 @@ def test_where_little_is_left_of_the_last_model_the_lowest_one_before_it_that_is
     take_back(case, fits[0], found)
     assert "".join(found.steps[-1].fit.effects) == end
     assert [step.change for step in found.steps[len(steps) :]] == {"abc": [], "": [""]}.get(end, [PROVEN])
+
+
+def test_an_effect_of_the_last_model_is_no_suspect_in_another_form(monkeypatch):
+    fits = [
+        Fit(effects, None, np.zeros(1), total, total) for effects, total in (((), 9.0), (("a",), 5.0), (("a.b",), 4.0))
+    ]
+    suspect = SimpleNamespace(effect="a.b", without=fits[0])
+    monkeypatch.setattr(paths, "unproven_of", lambda case, first, fit, steps: [suspect] if fit is fits[2] else [])
+    monkeypatch.setattr(paths, "near_noise", lambda *arguments: False)
+    monkeypatch.setattr(paths, "drop_outdone_rivals", lambda *arguments: None)
+    found = Staircase([Step(fits[0]), Step(fits[1], "a"), Step(fits[2], "a.b", "a")], None)
+    take_back(SimpleNamespace(floor=1.0, budget=Budget()), fits[0], found)
+    assert (found.end, found.suspects) == (fits[1], [])
