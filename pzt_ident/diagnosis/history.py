@@ -64,7 +64,7 @@ def beside(case: Case, fit: Fit) -> tuple[Case, Fit] | None:
     best: tuple[Case, Fit] | None = None
     for item in blocks.forms(HISTORY) if remembers_reversals(case) else [HISTORY]:
         aged = case.with_words((item, *case.words))
-        if promise(aged, fit) >= PROMISING and case.budget.allows(BEFORE):
+        if case.budget.allows(BEFORE) and promise(aged, fit) >= PROMISING:
             other = refit(aged, fit, fit.effects, {})
             if best is None or removed_rms(best[1].total, other.total) > CLEAR * case.floor:
                 best = aged, other
