@@ -15,7 +15,7 @@ BESIDE = 0.5  # of what a path has for exploring: other effects beside one that 
 EXPLORING = 0.7  # of the budget: the rest is for proving what was found
 PROVING = 0.9  # of the budget: ties, intervals and what promises to explain most of what is left get no more
 WHOLE = 1.0  # of the budget: the fits of a proof end there, settled or not, and those before it at PROVING
-PROOF = 0.05  # of the budget: what a proof has at least, whatever was spent before it
+PROOF = 0.05  # of the budget: what a proof may have beyond it
 SLOWER = 1.25  # times a share that CPU time may take of it, where a machine is slow or a model costs more than counted
 LATER = 1 / 3  # of what a share leaves of the budget: CPU time may take no more of it
 
@@ -55,8 +55,8 @@ class Budget:
         self._end = PROVING
 
     def begin_proof(self) -> None:
-        """Fits have what was kept for them, and more where little of it is left."""
-        self._end = max(WHOLE, max(self._shares()) + PROOF)
+        """Fits have what was kept for them, and a little more where none of it is left."""
+        self._end = WHOLE + PROOF if self.spent(WHOLE) else WHOLE
 
     def _shares(self) -> tuple[float, float]:
         """What is spent of the budget: by work, and by CPU time."""

@@ -88,7 +88,7 @@ def test_a_budget_without_end_or_seconds_has_paths_too(seconds):
 
 
 @given(st.floats(0, 2), st.floats(0, 2))
-def test_fits_of_a_proof_have_what_those_before_it_left_them_but_never_nothing(worked, taken):
+def test_fits_of_a_proof_have_what_those_before_it_left_them_and_a_little_more_if_that_is_nothing(worked, taken):
     now = 1.0
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(budget, "process_time", lambda: now)
@@ -97,8 +97,8 @@ def test_fits_of_a_proof_have_what_those_before_it_left_them_but_never_nothing(w
         work.add(60 * worked)
         now += 60 * taken
         assert spent.lasts() == (not spent.spent(budget.PROVING))
+        late = spent.spent(budget.WHOLE)
         spent.begin_proof()
-        assert spent.lasts()
-        most = max(budget.WHOLE, max(worked, taken) + budget.PROOF)
-        work.add(60 * (most + 1e-9))
+        assert spent.lasts() == (not spent.spent(budget.WHOLE + budget.PROOF * late))
+        work.add(60 * (budget.WHOLE + budget.PROOF))
         assert not spent.lasts()
