@@ -33,7 +33,12 @@ def quiet(deviations: Array, seconds: Array) -> NDArray[np.bool_]:
 def quiet_deviation(deviations: Array, seconds: Array) -> float:
     """Root mean square of the quiet estimates, weighed by their seconds."""
     kept = quiet(deviations, seconds)
-    return float(np.sqrt(np.average(deviations[kept] ** 2, weights=seconds[kept])))
+    return mean_deviation(deviations[kept], seconds[kept])
+
+
+def mean_deviation(deviations: Array, weights: Array) -> float:
+    """Root mean square of estimates of one noise."""
+    return float(np.sqrt(np.average(deviations**2, weights=weights)))
 
 
 def alike(deviations: Array, seconds: Array) -> bool:
@@ -58,7 +63,7 @@ def of_one_noise(values: Array, seconds: Array, spreads: Array) -> NDArray[np.bo
     skipped = np.searchsorted(np.cumsum(seconds[order]), least)
     groups = [with_quieter(order[begin:], values, spreads) for begin in range(skipped + 1)]
     core = next((group for group in groups if seconds[group].sum() > least), groups[0])
-    level = np.sqrt(np.average(values[core] ** 2, weights=seconds[core]))
+    level = mean_deviation(values[core], seconds[core])
     return (values >= values[core[0]]) & (values <= max(HARDLY * level, values[core[-1]]))
 
 
@@ -66,7 +71,7 @@ def with_quieter(order: NDArray[np.int_], values: Array, spreads: Array) -> NDAr
     """The first of some estimates in rising order, and those after it that may be of the same noise."""
     for last in range(1, order.size):
         quieter, weights = order[:last], spreads[order[:last]] ** -2.0
-        level = np.sqrt(np.average(values[quieter] ** 2, weights=weights))
+        level = mean_deviation(values[quieter], weights)
         if values[order[last]] > level * (1 + FARTHEST * np.hypot(spreads[order[last]], weights.sum() ** -0.5)):
             return quieter
     return order
@@ -107,9 +112,9 @@ def memory_in(noise: Array, basis: Array) -> float:
 
 
 def period_noise(drive: Array, response: Array, least: int = 3) -> list[Estimate]:
-    """The noise of a periodic record: half the variance of the difference of successive
-    periods, less its straight line, what a change of gain makes of it and lines of the mains, of the quiet ones. None
-    where the drive repeats so roughly, as with periods of no whole number of samples, that the response must too."""
+    """The noise of a periodic record: half the variance of the difference of successive periods, less its straight
+    line, what a change of gain makes of it and lines of the mains, of the quiet ones. None where the drive repeats so
+    roughly, as with periods of no whole number of samples, that the response must too."""
     period = period_of(drive)
     if not period or response.size < least * period:
         return []

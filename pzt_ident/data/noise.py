@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.evidence import alike, of_one_noise, period_noise, rest_noise
+from pzt_ident.data.evidence import alike, mean_deviation, of_one_noise, period_noise, rest_noise
 from pzt_ident.data.projections import deviation, without_lines
 from pzt_ident.data.quantiser import common_step, errors_of_readings, with_quantiser
 from pzt_ident.data.record import Record
@@ -31,9 +31,9 @@ def noise_floor(records: list[Record], axis: int) -> Floor:
     windows.
 
     The noise is the sensor's, the same in all records, and what a stage adds, such as ringing, only makes an estimate
-    larger: those well above the quietest quarter are left out, and where even these are not alike, windows may know
-    better. A quantiser adds its own. Windows are weak evidence: they take slow noise for signal, and fast signal that
-    does not follow the drive for noise.
+    larger: those that are clearly above the quietest are left out, and where those of the quietest quarter are not
+    alike, windows may know better. A quantiser adds its own. Windows are weak evidence: they take slow noise for
+    signal, and fast signal that does not follow the drive for noise.
     """
     signals = [Signal(r.drive[:, r.settle :], r.response[axis, r.settle :], r.dt) for r in records]
     pairs = [(r, other) for i, r in enumerate(records) for other in records[:i] if is_repeat(r, other, axis)]
@@ -50,8 +50,7 @@ def noise_floor(records: list[Record], axis: int) -> Floor:
             ).T
             values = errors_of_readings(scatters, seconds, step)
             kept = of_one_noise(values, seconds, spreads)
-            value = np.sqrt(np.average(values[kept] ** 2, weights=seconds[kept]))
-            still = floor_of(float(value), source, step)
+            still = floor_of(mean_deviation(values[kept], seconds[kept]), source, step)
             return still if alike(values, seconds) else min(still, floor_in_windows(signals, step))
     return floor_in_windows(signals, step)
 

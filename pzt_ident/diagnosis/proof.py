@@ -128,7 +128,7 @@ def taken_out(
     known: Sequence[Fit],
     axis: int | None = None,
 ) -> list[Suspect]:
-    """The same by the errors of all axes together, or of one alone."""
+    """Those that are not proven by the errors of all axes together, or by those of one alone; see `unproven`."""
     seen, view = partial(on_axis, axis=axis), case.on_axis(axis)
     given = seen(first)
     suspects, held = list[Suspect](), list[str]()
