@@ -18,7 +18,7 @@ UNLIKE = 4.0  # times the quietest one: that far apart they have more than noise
 DECAY = 2.0  # of the variance between the halves of a rest: more is a transient, and the later half is taken
 SHAPED = 64  # samples: of shorter periods the changes of their shape would take too much
 FARTHEST = 4.0  # standard deviations of an estimate, by which it may be above the quieter ones of the same noise
-HARDLY = 1.25  # times those: the noise of a sensor may be as much larger elsewhere in its range
+AS_LOUD = 1.25  # times those: the noise of a sensor may be as much larger elsewhere in its range
 FEWEST = 0.05  # of all that is measured: less, which is quieter than the rest, may be a reading that hung
 MISMATCH = 0.5  # of the noise: more may not come from periods that are no whole number of samples
 
@@ -57,14 +57,14 @@ class Estimate(NamedTuple):
 
 def of_one_noise(values: Array, seconds: Array, spreads: Array) -> NDArray[np.bool_]:
     """Which estimates are of the noise alone: from the quietest on those that are no farther above the quieter ones
-    than these leave open, which are no less than FEWEST of all, and what is up to HARDLY times those. What a stage
+    than these leave open, which are no less than FEWEST of all, and what is up to AS_LOUD times those. What a stage
     adds, such as ringing, is louder."""
     order, least = np.argsort(values), FEWEST * seconds.sum()
     skipped = np.searchsorted(np.cumsum(seconds[order]), least)
     groups = [with_quieter(order[begin:], values, spreads) for begin in range(skipped + 1)]
     core = next((group for group in groups if seconds[group].sum() > least), groups[0])
     level = mean_deviation(values[core], seconds[core])
-    return (values >= values[core[0]]) & (values <= max(HARDLY * level, values[core[-1]]))
+    return (values >= values[core[0]]) & (values <= max(AS_LOUD * level, values[core[-1]]))
 
 
 def with_quieter(order: NDArray[np.int_], values: Array, spreads: Array) -> NDArray[np.int_]:

@@ -24,10 +24,11 @@ from pzt_ident.diagnosis.candidates import (
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import removed_rms, removes_enough
 from pzt_ident.diagnosis.fit import Fit, fit_at
+from pzt_ident.diagnosis.reasons import missing_sentence, nothing_explains
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.ties import are_look_alikes
-from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, missing_sentence, nothing_explains, unexplained
+from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
 from pzt_ident.engine import work
 from pzt_ident.model.registry import blocks, word_of
 
