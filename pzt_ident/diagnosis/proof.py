@@ -20,6 +20,7 @@ from pzt_ident.diagnosis.criteria import (
     reaches_noise,
     removed_rms,
 )
+from pzt_ident.diagnosis.displaced import displaced_operator
 from pzt_ident.diagnosis.fit import NO_WORSE, Fit
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refit
@@ -32,7 +33,7 @@ ENOUGH = 3 / 4  # of the misfit as given, of all records together: what the firs
 SINGLE = 0.9  # of it, which one effect must remove that is alone
 EACH = 1 / 2  # of that of the identification and of the validation records
 ALONE = 1 / 3  # of the misfit beside the others: what each of several must remove that leave no more than they may
-BESIDE = DECISIVE  # of the same: what each must remove of those that leave much more
+BESIDE = DECISIVE  # of the same: the most that is asked of each of several that leave more, in proportion
 
 
 @dataclass(frozen=True)
@@ -40,8 +41,8 @@ class Suspect:
     """What an effect takes up beside the others: the shares of the misfit on the identification and on the validation
     records (None without any), the fit without it, whether that is more than the form of the others may leave, the
     effects of another kind that fitted as well when it was added, its shapes or all its amounts that ended on a bound,
-    what it is there if that is declared, and the share of all records together where each has its own amount of it: one
-    that has little says nothing against it."""
+    what it is there if that is declared, the operator of the model that it takes the place of, and the share of all
+    records together where each has its own amount of it: one that has little says nothing against it."""
 
     effect: str
     identify: float
@@ -51,17 +52,19 @@ class Suspect:
     strangers: tuple[str, ...] = ()
     on_bounds: tuple[str, ...] = ()
     limit: str = ""
+    displaced: str = ""
     of_all: float | None = None
 
     @property
-    def rank(self) -> tuple[bool, bool, bool, float]:
+    def rank(self) -> tuple[bool, bool, bool, bool, float]:
         """The order in which effects are taken out."""
-        return self.beyond_form, not self.strangers, not self.on_bounds, self.share
+        return not self.displaced, self.beyond_form, not self.strangers, not self.on_bounds, self.share
 
     @property
     def is_doubtful(self) -> bool:
-        """Whether it may be less than the form of the others leaves, or is something else in its limit."""
-        return bool(self.limit) or not self.beyond_form
+        """Whether it may be less than the form of the others leaves, is something else in its limit, or displaces the
+        operator."""
+        return bool(self.limit or self.displaced) or not self.beyond_form
 
     @property
     def share(self) -> float:
@@ -78,6 +81,10 @@ class Suspect:
         if self.beyond_form and self.strangers:
             names = listed(map(phrase_of, self.strangers))
             rest = f" of a model that stays above the noise with it, and {names} fitted as well when it was added."
+        elif self.beyond_form and self.displaced:
+            rest = (
+                f" of a model that stays above the noise with it, where it takes the place of {self.displaced}'s loops."
+            )
         elif self.beyond_form and self.limit:
             rest = f", but {listed(self.on_bounds)} ended on a bound, where the effect is {self.limit}."
         elif self.beyond_form and self.on_bounds:
@@ -98,12 +105,14 @@ def unproven(
     stand in for what is not in the catalogue: they must also remove together as much of the misfit as given as if the
     first removed ENOUGH of all records (SINGLE, if it is alone), or DECISIVE where the identification records are at
     the noise, and EACH of either kind of them, and each of the others half of the rest, and each the share ALONE beside
-    the others; of several that leave more than that each must remove more in proportion, up to BESIDE. None may have
-    rivals that fit as well and are not its look-alikes: what any effect takes up is not that of one. And none may have
-    a shape, or all its amounts, on a bound, as a cyclic error whose pitch is as long as the stroke: it stands for what
-    it is like there, unless the model is adequate with it. Even then none may be in a limit that is declared to be
-    something else. What takes up enough and only may be something else is a suspect beside which the others are judged:
-    without it what they take up is nothing. What is proven on one of several axes is proven, whatever another lacks.
+    the others; of several that leave more than that each must remove more in proportion, and none is proven where that
+    is more than BESIDE. None may have rivals that fit as well and are not its look-alikes: what any effect takes up is
+    not that of one. And none may have a shape, or all its amounts, on a bound, as a cyclic error whose pitch is as long
+    as the stroke: it stands for what it is like there, unless the model is adequate with it. Even then none may be in a
+    limit that is declared to be something else. Nor may one take the place of the model's operator, whose loops are
+    gone beside it, unless the model is adequate. What takes up enough and only may be something else is a suspect
+    beside which the others are judged: without it what they take up is nothing. What is proven on one of several axes
+    is proven, whatever another lacks.
     """
     judge, added = partial(taken_out, case, first, now, rivals, known), now.effects[len(first.effects) :]
     suspects, axes = judge(), len(now.problem.model.measured)
@@ -143,10 +152,11 @@ def taken_out(
             break
         least = least_of(case, suspected)
         needed = near or least.share >= least_share(left, len(added))
-        other = least.limit or (least.on_bounds and not explained) or (least.strangers and not near)
+        alike = (least.on_bounds and not explained) or (least.strangers and not near)
+        other = least.limit or least.displaced or alike
         if least.beyond_form and needed and not other:
             break
-        if least.beyond_form and needed:
+        if least.beyond_form and needed and not least.displaced:
             held.append(least.effect)
         else:
             suspects.append(least)
@@ -190,10 +200,10 @@ def left_of_allowed(case: Case, first: Fit, now: Fit, effects: int) -> float:
 
 def least_share(left: float, effects: int) -> float:
     """The share that each of so many effects must remove beside the others: ALONE where no more is left than allowed,
-    in proportion more of several that leave more, and no more than BESIDE. None suffices of a single one."""
-    if effects == 1 and left > 1:
-        return np.inf
-    return min(ALONE * max(left, 1.0), BESIDE)
+    in proportion more of several that leave more, as far as BESIDE. Of those that leave still more, and of a single one
+    that leaves more than allowed, none suffices."""
+    share = ALONE * max(left, 1.0)
+    return share if share <= (ALONE if effects == 1 else BESIDE) else np.inf
 
 
 def suspect(
@@ -214,6 +224,7 @@ def suspect(
     on_bounds = () if on_bounds and settle_beyond(case, now, on_bounds) else on_bounds
     limit = limit_of(now, on_bounds)
     view, (given, before, after) = case.on_axis(axis), (on_axis(fit, axis) for fit in (first, without, now))
+    displaced = "" if adequate(view, given, after) else displaced_operator(case, first, now, effect)
     validate = None
     if after.validate is not None and before.validate is not None:
         validate = share_explained(before.validate, after.validate, view.floor)
@@ -221,9 +232,9 @@ def suspect(
     if validate is not None and differs_by_record(effect):
         of_all = share_explained(before.total, after.total, view.floor)
         clear = removed_rms(before.total, after.total) > form_of_others(view, given.total)
-        return Suspect(effect, identify, validate, without, clear, others, on_bounds, limit, of_all)
+        return Suspect(effect, identify, validate, without, clear, others, on_bounds, limit, displaced, of_all)
     clear = beyond_form(view, given, before, after)
-    return Suspect(effect, identify, validate, without, clear, others, on_bounds, limit)
+    return Suspect(effect, identify, validate, without, clear, others, on_bounds, limit, displaced)
 
 
 def own_bounds(fit: Fit, effect: str) -> tuple[str, ...]:

@@ -16,6 +16,7 @@ class Rubbing:
         "The law of friction, and where it acts.",
     )
     sizes = (0.02, 0.1, 0.5)
+    loops = True
     look_alikes = ("distributed_memory", "delay", "amplifier_lag", "sensor_lag", "viscous_damping")
     separate_by = (
         "Hold the voltage and push the stage by an external force or another axis: only friction has a loop, and a"
