@@ -11,7 +11,7 @@ from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, remove
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.modes import mechanics_at_main_mode
-from pzt_ident.diagnosis.proof import own_bounds
+from pzt_ident.diagnosis.proof import is_limited, own_bounds
 from pzt_ident.diagnosis.refit import refit, refit_beside, start_of
 from pzt_ident.diagnosis.score import applicable, fitting_forms, scorer_of
 from pzt_ident.diagnosis.starts import restart
@@ -103,9 +103,10 @@ def exchange_limits(case: Case, first: Fit, now: Fit) -> list[Step]:
 
 
 def in_its_limit(now: Fit, other: Fit) -> bool:
-    """Whether an effect in the place of another is hardly better and rests on a bound of its own: it may be the limit
-    in which it is that other one."""
-    return now.total < (1 + LIMIT_TIE) * other.total and rests_on_own_bounds(now, other)
+    """Whether an effect in the place of another is in a limit that is declared to be something else, or is hardly
+    better and rests on a bound of its own: it may be the limit in which it is that other one."""
+    hardly_better = now.total < (1 + LIMIT_TIE) * other.total and rests_on_own_bounds(now, other)
+    return hardly_better or is_limited(other)
 
 
 def under_own_name(case: Case, now: Fit, effect: str, best: Fit) -> Fit:

@@ -276,6 +276,11 @@ def limit_of(fit: Fit, on_bounds: Collection[str]) -> str:
     return next(filter(None, declared), "")
 
 
+def is_limited(fit: Fit) -> bool:
+    """Whether the last effect of a fit is in a limit that is declared to be something else."""
+    return bool(limit_of(fit, own_bounds(fit, fit.effects[-1])))
+
+
 def entries_of(fit: Fit) -> dict[str, Entry]:
     """The free parameters of a fit, by name."""
     problem = fit.problem

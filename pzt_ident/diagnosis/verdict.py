@@ -30,6 +30,7 @@ from pzt_ident.diagnosis.criteria import (
     removes_enough,
 )
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.proof import is_limited
 from pzt_ident.diagnosis.reasons import (
     identification_only_sentence,
     missing_sentence,
@@ -123,10 +124,15 @@ def with_effects(
     total = min(fit.total for fit in fits.values())
     close = [item for item in passing if removed_rms(fits[item.score.effect].total, total) < TIE * case.floor]
     lowest = min(close, key=simplicity)
-    least = needed(case, first, lowest, passing)
+    least = out_of_limit(before, needed(case, first, lowest, passing), passing)
     close = close if least is lowest else [least]
     word = least.score.effect
-    alike = [item for item in passing if item in close or is_tied(case, word, fits[word], fits[item.score.effect])]
+    alike = [
+        item
+        for item in passing
+        if item in close
+        or (is_tied(case, word, fits[word], fits[item.score.effect]) and not is_limited(fits[item.score.effect]))
+    ]
     tied = [item for item in alike if item is least or not generalises(fits[item.score.effect], fits[word])]
     best = within_bounds(before, min(tied, key=simplicity), passing)
     tied += [best] if best not in tied else []
@@ -155,6 +161,20 @@ def needed(case: Case, first: Fit, best: Candidate, passing: list[Candidate]) ->
 
     others = [item for item in passing if best.fit and item.fit and suffices(item.fit, best.fit)]
     return min(others, key=lambda item: item.fit.total if item.fit else np.inf, default=best)
+
+
+def out_of_limit(before: Fit, best: Candidate, passing: list[Candidate]) -> Candidate:
+    """The best, or, where that is in a limit which is declared to be something else, the lowest that is in none and
+    removes half as much."""
+
+    def may_stand(item: Candidate) -> bool:
+        fit = item.fit
+        return fit is not None and not is_limited(fit) and before.total**2 - fit.total**2 >= DECISIVE * removed
+
+    if best.fit is None or not is_limited(best.fit):
+        return best
+    removed = before.total**2 - best.fit.total**2
+    return min(filter(may_stand, passing), key=lambda item: item.fit.total if item.fit else np.inf, default=best)
 
 
 def within_bounds(before: Fit, best: Candidate, passing: list[Candidate]) -> Candidate:

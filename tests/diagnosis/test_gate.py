@@ -23,15 +23,19 @@ from pzt_ident.diagnosis.score import Score, squared_misfit
 from pzt_ident.diagnosis.ties import generalises, is_tied, is_twin
 from pzt_ident.diagnosis.verdict import best_pair, diagnose
 from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import word_of
 
 CASE = SimpleNamespace(floor=1.0, floors=np.ones(1), on_event=lambda event: None, budget=Budget())
 FAR = 10.0  # an error that nobody takes for noise
 
 
-def fit(identify, validate=None, effects=(), dimensions=4, own=()):
-    """own: places in their ranges of the parameters that its last effect brought along."""
-    columns = range(len(own))
-    entries = [SimpleNamespace(parameter=Parameter("1", (0, 1), "")) for _ in own]
+def fit(identify, validate=None, effects=(), dimensions=4, own=(), limit=""):
+    """own: places in their ranges of the shapes that its last effect brought along. limit: what it is on their lower
+    bounds."""
+    columns, block = range(len(own)), SimpleNamespace(name=word_of(effects[-1]) if effects else "")
+    entries = [
+        SimpleNamespace(parameter=Parameter("1", (0, 1), "", limit=limit), block=block, word=str(i)) for i in columns
+    ]
     problem = SimpleNamespace(
         dimensions=dimensions,
         names=[f"own_{i}" for i in columns],
@@ -39,6 +43,7 @@ def fit(identify, validate=None, effects=(), dimensions=4, own=()):
         model=SimpleNamespace(entries=entries, measured=(), amounts=(), additions=()),
         physical=np.atleast_2d,
         sizes=np.ones(1),
+        loss=lambda points: np.array([2 * identify]),
         by_axis=lambda points, use: np.array([[{"identify": identify, "validate": validate}[use]]]),
     )
     return Fit(tuple(effects), problem, np.array(own, float), identify, validate)
@@ -299,6 +304,21 @@ def test_nothing_is_exchanged_for_an_effect_on_its_own_bound_that_is_hardly_bett
         fit(4.0, 4.0, ["encoder_cyclic_error"], own=[place]),
     )
     assert in_its_limit(bend, encoder) == in_limit
+
+
+@pytest.mark.parametrize(
+    ("place", "left", "taken"), [(0.0, 21.0, "delay"), (0.0, 22.0, "friction"), (0.5, 21.0, "friction")]
+)
+def test_what_is_in_a_declared_limit_gives_way_to_any_that_removes_half_as_much(judged, place, left, taken):
+    """As the second mode that is the main one, in the place of a delay."""
+    best = fit(6.0, 6.0, ["friction"], own=[place], limit="a play")
+    diagnosis = judged({"friction": best, "delay": fit(left, left, ["delay"])})
+    assert diagnosis.tied == [taken]
+
+
+def test_nothing_is_exchanged_for_an_effect_in_a_declared_limit():
+    bend, friction = fit(6.0, 6.0, ["quadratic_gain"]), fit(2.0, 2.0, ["friction"], own=[0.0], limit="a play")
+    assert in_its_limit(bend, friction)
 
 
 @pytest.mark.parametrize(("dimensions", "taken"), [(5, "delay"), (4, "amplifier_lag"), (3, "amplifier_lag")])
