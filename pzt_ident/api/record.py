@@ -47,8 +47,8 @@ class Record:
     settle: s, or text such as `"20 ms"`, at the start that are simulated but not scored. run_in: how often the drive is
     simulated before the first sample, for a periodic record in steady state. rest_at: the drive at which the stage
     rested until one sample before the first, a number or text such as `"0 V"`, of all axes or by axis.
-    denoise_drive: whether noise of the drive, as of a monitor output, is left out. steps: of the simulation in a
-    sample.
+    denoise_drive: whether noise of the drive, as of a monitor output, is left out. smooth_drive: whether the drive is
+    smooth between its samples, and not linear. steps: of the simulation in a sample.
     Raises InputError where shapes or units do not fit; gaps, time stamps and constant responses are looked at when the
     record is identified from.
     """
@@ -66,12 +66,14 @@ class Record:
         run_in: int = 0,
         rest_at: float | str | Mapping[str, float | str] | None = None,
         denoise_drive: bool = False,
+        smooth_drive: bool = False,
         steps: int = 1,
     ) -> None:
         if not isinstance(name, str):
             raise InputError(f"{name!r} is no text", where="name", remedy="give text such as 'slow'")
         title = name or "record"
-        self.name, self.run_in, self.steps, self.denoise_drive = name, run_in, steps, denoise_drive
+        self.name, self.run_in, self.steps = name, run_in, steps
+        self.denoise_drive, self.smooth_drive = denoise_drive, smooth_drive
         self.settle = seconds(settle, f"{title}: settle")
         self.rate, self.t = rate_or_stamps(t, f"{title}: t")
         samples = None if self.t is None else self.t.size
@@ -153,7 +155,7 @@ class Record:
             for a, unit in zip(record.measured, record.units.values(), strict=True)
         }
         known: dict[str, Any] = {"settle": record.settle * record.dt, "run_in": record.run_in, "steps": record.steps}
-        known["denoise_drive"] = record.denoise_drive
+        known |= {"denoise_drive": record.denoise_drive, "smooth_drive": record.smooth_drive}
         known["rest_at"] = {
             axis: level / factor(drives[axis])
             for axis, level in zip(record.axes, record.rest_at, strict=False)

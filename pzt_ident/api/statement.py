@@ -108,6 +108,7 @@ def uniform(record: Record, axes: Sequence[str]) -> data.Record:
         "run_in": record.run_in,
         "rest_at": {axis: data.Level(level, record.drive[axis]) for axis, level in record.rest_at.items()},
         "denoise_drive": record.denoise_drive,
+        "smooth_drive": record.smooth_drive,
         "steps": record.steps,
     }
     source = data.Source(file_of(record), name=record.name, **settings)
@@ -169,7 +170,8 @@ def _named(each: Sequence[Record], word: str, taken: set[str]) -> Iterator[Recor
 def _record(record: Record, use: str, stamps: bool) -> dict[str, Any]:
     facts: dict[str, Any] = {"file": file_of(record), "use": use, "name": record.name}
     facts |= {} if stamps else {"sample_rate": record.rate}
-    usual = {"settle": 0.0, "run_in": 0, "rest_at": {}, "denoise_drive": False, "steps": 1}
+    usual = {"settle": 0.0, "run_in": 0, "rest_at": {}, "steps": 1}
+    usual |= {"denoise_drive": False, "smooth_drive": False}
     return facts | {key: getattr(record, key) for key, value in usual.items() if getattr(record, key) != value}
 
 

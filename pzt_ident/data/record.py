@@ -51,7 +51,9 @@ class Source:
     the drive is simulated before the first sample, for a periodic record in steady state. rest_at: the drive at which
     the stage rested until one sample before the first, from where it goes there on a line, of all axes or by axis, for
     a record that begins with a step. denoise_drive: whether noise of the recorded drive is left out; it turns where
-    that goes back by more. steps: of the simulation in a sample.
+    that goes back by more. steps: of the simulation in a sample. smooth_drive: whether the drive is smooth between its
+    samples, as behind a filter against aliasing, and not linear: with `run_in` it is the Fourier series of the record,
+    else a cubic spline; steps of 2 and more feel it.
     dataset, table, sheet and index: which part of a file with several ones, and of an array.
 
     `channels` overrides channels in this record, by `time`, `drive`, `response` or, of one axis, `x.drive`:
@@ -69,6 +71,7 @@ class Source:
     run_in: int = 0
     rest_at: Mapping[str, Level] | None = None
     denoise_drive: bool = False
+    smooth_drive: bool = False
     steps: int = 1
     dataset: str | None = None
     table: int | str | None = None
@@ -86,7 +89,8 @@ class Record:
     run_in: how often the drive is simulated before the first sample (a periodic record in steady state).
     rest_at: the drive of each axis at which the stage rested until one sample before the first; None where that is the
     drive of the first sample. Empty where it is on all axes.
-    denoise_drive: whether the drives are without the noise that was recorded.
+    denoise_drive: whether the drives are without the noise that was recorded. smooth_drive: whether they are smooth
+    between their samples.
     steps: simulation steps per sample.
     sha256: of the file as read. rows: the first row of the file that the record holds, and the first after it.
     judges: whether a model is judged by it; a record kept back may show what the others leave open.
@@ -102,6 +106,7 @@ class Record:
     run_in: int = 0
     rest_at: tuple[float | None, ...] = ()
     denoise_drive: bool = False
+    smooth_drive: bool = False
     steps: int = 1
     file: str = ""
     sha256: str = ""

@@ -11,6 +11,7 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms
 from pzt_ident.diagnosis.drive_noise import QUIET, quiet_behind, with_quiet_drives
+from pzt_ident.diagnosis.drive_shape import SMOOTH, smooth_behind, with_smooth_drives
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.history import BEFORE, at_rest, fits_at_rest, has_history, history_behind, with_history
 from pzt_ident.diagnosis.judges import judged
@@ -33,11 +34,13 @@ from pzt_ident.model.registry import word_of
 def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
     """The staircase from the model as given to the one with all effects that are proven, judged by the records that can
     judge it."""
-    quiet = with_quiet_drives(case, first)
-    if quiet:
-        return improve_otherwise(case, first, *quiet, QUIET, on_step)
+    for other_drives, change in ((with_quiet_drives, QUIET), (with_smooth_drives, SMOOTH)):
+        if other := other_drives(case, first):
+            return improve_otherwise(case, first, *other, change, on_step)
     settled = adequate(case, first, first) or needs_wider_bounds(case, first)
     diagnosis = None if settled else diagnose(case, first)
+    if diagnosis and (behind := smooth_behind(case, first, diagnosis.best.fit if diagnosis.best else None)):
+        return improve_otherwise(case, first, *behind, SMOOTH, on_step)
     told = with_history(case, first, diagnosis) if diagnosis else None
     aged = improve_aged(case, first, *told, on_step) if told else None
     aged = None if aged and aged.last.verdict == "refused" else aged
@@ -48,8 +51,8 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
     if judging is not case:
         staircase.case = staircase.case or judging
     if aged is None and staircase.last.verdict not in SETTLED:
-        behind = history_behind(staircase.case or case, first, staircase.end)
-        aged = improve_aged(case, first, *behind, on_step) if behind else None
+        later = history_behind(staircase.case or case, first, staircase.end)
+        aged = improve_aged(case, first, *later, on_step) if later else None
     best = best_path(case, [staircase, aged]) if aged else staircase
     quiet = None if best.last.verdict in SETTLED else quiet_behind(case, first, best.case or case, best.end)
     return best_path(case, [best, improve_otherwise(case, first, *quiet, QUIET, on_step)]) if quiet else best

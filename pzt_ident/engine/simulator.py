@@ -258,7 +258,8 @@ class Simulator:
         return table
 
     def _fine(self, drive: Array) -> Array:
-        return interpolated(drive, self.substeps, bool(self.record.run_in), smooth=self.model.oversample > 1)
+        smooth = self.record.smooth_drive or self.model.oversample > 1
+        return interpolated(drive, self.substeps, bool(self.record.run_in), smooth)
 
 
 def simulate(model: Chain, record: Record, theta: Array) -> Array:

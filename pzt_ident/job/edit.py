@@ -91,14 +91,14 @@ def edited(
     bounds: Mapping[str, tuple[float, float]] | None = None,
     parameters: Mapping[str, Mapping[str, Any]] | None = None,
     sections: Mapping[str, Any] | None = None,
-    denoised: Sequence[bool] = (),
+    switched: Mapping[str, Sequence[bool]] | None = None,
 ) -> str:
     """The job's text with these effects, and with paths relative to another folder.
 
     words: the blocks of the model, where it changes. steps: of the simulation in a sample, for every record.
     values: of parameters that are fixed from now on. bounds: of parameters where they change.
     parameters: what the job says of some from now on, `bounds` or `value`. sections: other sections, whole.
-    denoised: whether noise is taken out of the drive, for every record.
+    switched: settings that are on, for every record, such as `denoise_drive`.
     """
     from ruamel.yaml import YAML
 
@@ -109,7 +109,7 @@ def edited(
     _set_effects(document, effects)
     if words is not None:
         document["model"][:] = _items(document["model"], words)
-    _set_records(document, job, steps, denoised)
+    _set_records(document, job, steps, switched or {})
     ends = {name: [float(f"{low:.6g}"), float(f"{high:.6g}")] for name, (low, high) in (bounds or {}).items()}
     given = document.get("parameters") or {}
     for name in ends.keys() & given.keys():
@@ -131,13 +131,14 @@ def edited(
     return text.getvalue()
 
 
-def _set_records(document: Any, job: Job, steps: Sequence[int], denoised: Sequence[bool]) -> None:
+def _set_records(document: Any, job: Job, steps: Sequence[int], switched: Mapping[str, Sequence[bool]]) -> None:
     for record, source, count in zip(document["records"], job.records, steps, strict=False):
         if count != source.steps:
             record["steps"] = count
-    for record, source, quiet in zip(document["records"], job.records, denoised, strict=False):
-        if quiet and not source.denoise_drive:
-            record["denoise_drive"] = True
+    for word, each in switched.items():
+        for record, source, on in zip(document["records"], job.records, each, strict=False):
+            if on and not getattr(source, word):
+                record[word] = True
 
 
 def _set_effects(document: Any, effects: Sequence[str]) -> None:

@@ -196,5 +196,6 @@ def improved(job: Job, case: Case, end: Fit, folder: Path) -> str:
     values = case.unmeasured_nulls(end.effects) if end.measured_only else {}
     bounds = bounds_that_changed(case, end)
     blocks = None if words == case.words else [item if isinstance(item, str) else item.name for item in words]
-    quiet = [record.denoise_drive for record in end.problem.records]
-    return edited(job, end.effects, folder, blocks, steps=end.steps, values=values, bounds=bounds, denoised=quiet)
+    records = end.problem.records
+    switched = {word: [getattr(record, word) for record in records] for word in ("denoise_drive", "smooth_drive")}
+    return edited(job, end.effects, folder, blocks, steps=end.steps, values=values, bounds=bounds, switched=switched)

@@ -107,6 +107,7 @@ def _record(channels: SourceChannels, axes: Mapping[str, Axis], time: Channel | 
         run_in=source.run_in,
         rest_at=_rest(source, axes, drives, where),
         denoise_drive=source.denoise_drive,
+        smooth_drive=source.smooth_drive,
         steps=source.steps,
         file=source.file,
         sha256=channels.hash(),

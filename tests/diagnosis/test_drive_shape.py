@@ -1,0 +1,105 @@
+"""How drives go between their samples is felt by mechanics and delays, and is no effect of the stage."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import rig
+import stage
+from pzt_ident.diagnosis import drive_shape
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.drive_shape import SMOOTH, smooth_behind, smoothed, with_smooth_drives
+from pzt_ident.diagnosis.staircase import improve
+from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.engine.simulator import Simulator
+from pzt_ident.model.chain import Chain
+from pzt_ident.model.registry import blocks, word_of
+
+RATE, LINES = 200.0, 90  # of 100 up to the Nyquist frequency
+GAIN = 1e-7  # m/V
+
+
+def multisine(seed, size=10.0):
+    """A period of a drive with lines close to its Nyquist frequency: amplitudes and phases of each."""
+    phases = np.random.default_rng(seed).uniform(0, 2 * np.pi, LINES)
+    return size * np.exp(1j * phases) / np.sqrt(LINES)
+
+
+def of_lines(lines, samples=200, delay=0.0):
+    spectrum = np.zeros(samples // 2 + 1, complex)
+    turns = 2j * np.pi * np.arange(1, LINES + 1) * RATE / samples
+    spectrum[1 : LINES + 1] = lines * np.exp(-turns * delay) * samples / 2
+    return np.fft.irfft(spectrum, samples)
+
+
+def records(delay, noise=2e-9):
+    """A stage without hysteresis that follows smooth drives late."""
+    made, random = [], np.random.default_rng(5)
+    for seed, use in enumerate(("identify", "identify", "validate")):
+        lines = multisine(seed)
+        late = GAIN * of_lines(lines, delay=delay)
+        blank = rig.record(of_lines(lines), response=[late + random.normal(0, noise, late.size)], dt=1 / RATE)
+        made.append(replace(blank, use=use, name=f"{use} {seed}", run_in=1, response_units=("um",)))
+    return made
+
+
+LINEAR = stage.specs({"bouc_wen.alpha": 0.0, "bouc_wen.beta": 1.0, "bouc_wen.gamma": 0.0})
+
+
+@pytest.mark.parametrize("delay", [1e-3, 6.3e-3])
+def test_a_smooth_periodic_drive_arrives_late_as_its_fourier_series_does(delay):
+    record = replace(records(delay, noise=0.0)[0], steps=8)
+    chain = Chain(blocks.chain(("bouc_wen", "delay")), ("x",), (0,))
+    values = {"bouc_wen.gain": GAIN, "bouc_wen.alpha": 0.0, "bouc_wen.beta": 1.0, "bouc_wen.gamma": 0.0}
+    theta = np.array([[(values | {"delay.time": delay})[name] for name in chain.names]])
+    errors = [np.std(Simulator(chain, each).errors(theta)) for each in (record, replace(record, smooth_drive=True))]
+    late = np.std(record.response)
+    assert errors[0] > 0.2 * late
+    assert errors[1] < 0.03 * late  # lines between the eight steps of a sample
+
+
+@pytest.mark.parametrize("effect", ["delay", None])
+def test_a_delay_of_smooth_drives_is_named_and_nothing_for_the_lines_between_samples(effect):
+    case = Case(("bouc_wen",), (), records(3e-3 if effect else 0.0), LINEAR)
+    found = improve(case, first_fit(case, 0))
+    end = found.steps[-1].fit
+    assert [*map(word_of, end.effects)] == ([effect] if effect else [])
+    assert (SMOOTH in [step.change for step in found.steps]) == bool(effect)
+    assert all(record.smooth_drive == bool(effect) for record in end.problem.records)
+
+
+def test_drives_that_are_linear_between_samples_stay_so():
+    """Lines between samples, late by half of one, are no smooth curve that is late."""
+    lines = records(0.0)
+    late = [replace(each, response=(each.response + np.roll(each.response, 1, axis=1)) / 2) for each in lines]
+    case = Case(("bouc_wen",), (), late, LINEAR)
+    assert with_smooth_drives(case, first_fit(case, 0)) is None
+
+
+def test_slow_drives_are_the_same_either_way():
+    case = stage.case()
+    assert smoothed(case) is case
+
+
+def test_drives_are_made_smooth_once():
+    smooth = smoothed(Case(("bouc_wen",), (), records(0.0), LINEAR))
+    assert smoothed(smooth) is smooth
+
+
+@pytest.mark.parametrize(("removed", "first_of_all", "behind"), [(0.01, 0, 0), (0.1, 1, 0), (0.6, 1, 1)])
+def test_it_takes_little_of_the_misfit_as_given_and_most_of_what_the_best_effect_leaves(
+    monkeypatch, removed, first_of_all, behind
+):
+    """removed: the share of the mean square that goes with smooth drives."""
+    case = Case(("bouc_wen",), (), records(3e-3), LINEAR)
+    given = replace(first_fit(case, 0), identify=20 * case.floor, validate=20 * case.floor)
+
+    def refitted(home, *more):
+        left = given.identify * (1 - removed * home.records[0].smooth_drive) ** 0.5
+        return replace(given, identify=left, validate=left)
+
+    monkeypatch.setattr(drive_shape, "refit", refitted)
+    assert bool(with_smooth_drives(case, given)) == first_of_all
+    assert bool(smooth_behind(case, given, replace(given))) == behind
+    assert smooth_behind(case, given, None) is None
