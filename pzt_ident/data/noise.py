@@ -17,6 +17,7 @@ from pzt_ident.data.windows import Signal, window_noise
 Array = NDArray[np.float64]
 
 LEAST_SCALE = 5e-3  # of the span of a response
+CHANGED = 3.0  # times the noise at rest: what repeated records differ by more is a stage that changed
 
 
 class Floor(NamedTuple):
@@ -28,7 +29,8 @@ class Floor(NamedTuple):
 
 def noise_floor(records: list[Record], axis: int) -> Floor:
     """Noise of an axis, from the best evidence there is: repeated records, rest segments, repeated periods, else short
-    windows.
+    windows. Where repeated records differ far more than a rest is noisy, the stage changed between them, which a model
+    may explain.
 
     The noise is the sensor's, the same in all records, and what a stage adds, such as ringing, only makes an estimate
     larger: those that are clearly above the quietest are left out, and where those of the quietest quarter are not
@@ -36,12 +38,26 @@ def noise_floor(records: list[Record], axis: int) -> Floor:
     signal, and fast signal that does not follow the drive for noise.
     """
     signals = [Signal(r.drive[:, r.settle :], r.response[axis, r.settle :], r.dt) for r in records]
-    pairs = [(r, other) for i, r in enumerate(records) for other in records[:i] if is_repeat(r, other, axis)]
     step = common_step([r.response[axis] for r in records])
-    if pairs:
-        changes = [(a.response[axis] - b.response[axis])[max(a.settle, b.settle) :] for a, b in pairs]
-        variances = [deviation(*without_lines(change, 1)) ** 2 / 2 for change in changes]
-        return floor_of(with_quantiser(np.sqrt(np.mean(variances)), step), "repeated records", step)
+    repeats, still = floor_of_repeats(records, axis, step), floor_of_rests(signals, step)
+    if repeats and still and repeats.value > CHANGED * still.value:
+        times = repeats.value / still.value
+        return Floor(still.value, f"{still.source}; repeated records differ {times:.2g} times as much")
+    return repeats or still or floor_in_windows(signals, step)
+
+
+def floor_of_repeats(records: list[Record], axis: int, step: float) -> Floor | None:
+    """By the differences of records with the same drives; None where there are none."""
+    pairs = [(r, other) for i, r in enumerate(records) for other in records[:i] if is_repeat(r, other, axis)]
+    if not pairs:
+        return None
+    changes = [(a.response[axis] - b.response[axis])[max(a.settle, b.settle) :] for a, b in pairs]
+    variances = [deviation(*without_lines(change, 1)) ** 2 / 2 for change in changes]
+    return floor_of(with_quantiser(np.sqrt(np.mean(variances)), step), "repeated records", step)
+
+
+def floor_of_rests(signals: list[Signal], step: float) -> Floor | None:
+    """By rests, else by repeated periods; None where there are none."""
     for estimate, source in ((rest_noise, "rest segments"), (period_noise, "repeated periods")):
         found = [(part, dt) for drives, response, dt in signals for part in estimate(drives, response)]
         if found:
@@ -52,7 +68,7 @@ def noise_floor(records: list[Record], axis: int) -> Floor:
             kept = of_one_noise(values, seconds, spreads)
             still = floor_of(mean_deviation(values[kept], seconds[kept]), source, step)
             return still if alike(values, seconds) else min(still, floor_in_windows(signals, step))
-    return floor_in_windows(signals, step)
+    return None
 
 
 def floor_in_windows(signals: list[Signal], step: float) -> Floor:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pzt_ident.diagnosis.bounds import are_decisive, beyond_bounds, stands_in
+from pzt_ident.diagnosis.budget import PROVING
 from pzt_ident.diagnosis.candidates import Candidate, promises_most
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, clears_an_axis, removed_rms, removes_enough
@@ -32,9 +33,9 @@ HOPELESS = 5.0  # noise floors: where the first path ends above that, another or
 
 @dataclass
 class Staircase:
-    """The steps, the model as given first; the diagnosis of the last model; the effects that were added and taken out
-    again, because they are not proven, and the mechanics that the last model does without; the case of the last model,
-    which may have wider bounds or other blocks."""
+    """The steps, the model as given first; the diagnosis of the last model, or of one before it; the effects that were
+    added and taken out again, because they are not proven, and the mechanics that the last model does without; the case
+    of the last model, which may have wider bounds or other blocks."""
 
     steps: list[Step]
     last: Diagnosis
@@ -57,7 +58,8 @@ def climb(
 ) -> Staircase | None:
     """One path: the candidate is added first, then always the best one, within wider bounds where these are a cheaper
     account. Where another effect promises most of what a step leaves, that is tried first, and the step is settled only
-    if the promise is not kept. known: the fits of other paths; None where it joins one of them."""
+    if the promise is not kept. The last model is not diagnosed where no time is left for another. known: the fits of
+    other paths; None where it joins one of them."""
     steps, first = [*base], base[-1].fit
     case.budget.begin_path()
     for step in base:
@@ -84,6 +86,8 @@ def climb(
             case = wider.case
             on_step(wider)
             steps.append(wider)
+        if not adequate(case, first, steps[-1].fit) and not case.budget.allows("more effects", PROVING):
+            break
         diagnosis = diagnose(case, steps[-1].fit, first)
         if hurried and diagnosis.best is None:
             for step in settle(case, first, steps[-2].fit, steps[-1]):

@@ -158,7 +158,7 @@ def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str], as_ri
             continue
         fit = refit_beside(case, (without, now), (*without.effects, score.effect), score.guess, now.identify)
         promised = as_rivals and score.explained >= own and len(score.guess) > 1
-        if promised and not is_tied(case, effect, now, fit) and case.budget.allows("ties", PROVING):
+        if promised and not is_tied(case, effect, now, fit) and case.budget.allows("ties", WHOLE):
             fit = restart(case, fit)
         fits.append(fit)
     return fits
@@ -171,7 +171,7 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
     now, last = steps[-1].fit, steps[-1]
     added = now.effects[len(first.effects) :]
     known = added == (last.added,) and last.removed is None
-    for effect in added if not known and case.budget.allows("ties", PROVING) else ():
+    for effect in added if not known and case.budget.allows("ties", WHOLE) else ():
         step = next(step for step in reversed(steps) if step.added == effect)
         fits = fits_in_place(case, now, effect, look_alikes(case, now, effect, step.tied), as_rivals=True)
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
@@ -195,7 +195,7 @@ def add_rivals_beside(case: Case, first: Fit, steps: Sequence[Step], doubted: Fi
     """Add the look-alikes that are tied with an effect of the last model in a fit that has unproven effects beside it:
     if one of these is there after all, the data cannot tell them apart."""
     added = steps[-1].fit.effects[len(first.effects) :]
-    for effect in added if case.budget.allows("ties", PROVING) else ():
+    for effect in added if case.budget.allows("ties", WHOLE) else ():
         step = next((step for step in reversed(steps) if step.added == effect), None)
         if step is None or effect not in doubted.effects:
             continue
@@ -213,7 +213,7 @@ def drop_outdone_rivals(case: Case, now: Fit, steps: Sequence[Step]) -> None:
         if step.added not in now.effects:
             continue
         others = [item for item in strangers(step.added, step.tied) if word_of(item) not in map(word_of, now.effects)]
-        if not others or not case.budget.allows("ties", PROVING):
+        if not others or not case.budget.allows("ties", WHOLE):
             continue
         equal = [fit.effects[-1] for fit in fits_in_place(case, now, step.added, others) if is_equal(case, now, fit)]
         outdone = {*others} - {*equal}

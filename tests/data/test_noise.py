@@ -296,3 +296,19 @@ def test_the_noise_of_an_axis_is_estimated_once_for_a_result(monkeypatch):
     )
     assert units_and_floors(records)["floor"] == floor
     assert asked == [0, 1]
+
+
+@pytest.mark.parametrize(
+    ("grown", "source"), [(0.0, "repeated records"), (0.02, "repeated records"), (0.5, "rest segments; ")]
+)
+def test_a_stage_that_changed_between_repeats_is_no_noise(grown, source):
+    """grown: by how much its gain did."""
+    drive = rising(2000, rest=1500)
+    first, again = (
+        record(drive, gain * drive + white(drive.size, seed=seed)) for seed, gain in ((0, 1), (1, 1 + grown))
+    )
+    floor = noise_floor([first, again], 0)
+    assert floor.source.startswith(source)
+    assert floor.value == pytest.approx(1, rel=0.2)
+    if grown > 0.1:
+        assert floor.source.endswith("repeated records differ 4.5 times as much")
