@@ -18,9 +18,9 @@ def show_result(result: dict[str, Any], folder: Path) -> None:
     unit, best = result["unit"], result["best"]
     error = f"RMSE{together(result['units'])} [{unit}]"
     table(
-        ("optimizer", "runs", f"best {error}", f"median [{unit}]", f"median polished [{unit}]", "time [s]"),
+        ("optimizer", "runs", *(f"{each} [{unit}]" for each in _LEAGUE.values()), "time [s]"),
         [
-            (row["optimizer"], row["runs"], *(number(row[key]) for key in _LEAGUE), number(row["seconds_median"]))
+            (row["optimizer"], row["runs"], *(number(row.get(key)) for key in _LEAGUE), number(row["seconds_median"]))
             for row in result["league"]
         ],
     )
@@ -33,6 +33,11 @@ def show_result(result: dict[str, Any], folder: Path) -> None:
     )
     click.echo(f"{error}: {rmse_by_use(best['rmse'])} ({best['run']})")
     show_floors(result)
+    times = max(error for error in best["rmse"].values() if error is not None) / result["floor"]
+    if times > MUCH:
+        click.echo(
+            f"It leaves {times:.1f} noise floors: `pzt-ident improve {folder / 'job.yaml'}` says what is missing."
+        )
     show_notes(result["records"])
     for run in result["failed_runs"]:
         click.echo(failure_message(run))
@@ -58,7 +63,13 @@ def show_notes(records: Iterable[dict[str, Any]]) -> None:
             click.echo(f"{record['name']}: {note}")
 
 
-_LEAGUE = ("rmse_best", "rmse_median", "polished_rmse_median")
+_LEAGUE = {
+    "rmse_best": "best",
+    "rmse_median": "median",
+    "polished_rmse_best": "best polished",
+    "polished_rmse_median": "median polished",
+}
+MUCH = 1.5  # noise floors: what a result leaves that is told to be more than noise
 
 
 def rmse_by_use(rmse: dict[str, float | None]) -> str:

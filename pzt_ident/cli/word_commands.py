@@ -8,18 +8,25 @@ import click
 
 from pzt_ident.cli.options import EXISTING, answer, output_options, plugins_option
 
+KINDS = ("blocks", "effects", "optimizers")
+
 
 @click.command("list")
-@click.argument("kind", type=click.Choice(["blocks", "effects", "optimizers"]))
+@click.argument("kind", type=click.Choice(KINDS), required=False)
 @plugins_option
 @output_options
-def list_(kind: str, as_json: bool, quiet: bool) -> None:
-    """List the words that a job may use."""
+def list_(kind: str | None, as_json: bool, quiet: bool) -> None:
+    """List the words that a job may use, of one kind or all."""
     from pzt_ident.cli.table import table
     from pzt_ident.model.description import words
 
-    docs = words(kind)
-    answer(docs, lambda: table(("word", "what it is"), list(docs.items())), as_json, quiet)
+    docs = {each: words(each) for each in ([kind] if kind else KINDS)}
+
+    def show_lists() -> None:
+        for each, some in docs.items():
+            table((each, "what it is"), list(some.items()))
+
+    answer(docs[kind] if kind else docs, show_lists, as_json, quiet)
 
 
 @click.command()

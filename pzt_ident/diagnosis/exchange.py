@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from functools import partial
 
-from pzt_ident.diagnosis.budget import PROVING, WHOLE
+from pzt_ident.diagnosis.budget import PROOF, PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.fit import Fit, fit_at
@@ -171,7 +171,7 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
     now, last = steps[-1].fit, steps[-1]
     added = now.effects[len(first.effects) :]
     known = added == (last.added,) and last.removed is None
-    for effect in added if not known and case.budget.allows("ties", WHOLE) else ():
+    for effect in added if not known and case.budget.allows("ties", WHOLE + PROOF) else ():
         step = next(step for step in reversed(steps) if step.added == effect)
         fits = fits_in_place(case, now, effect, look_alikes(case, now, effect, step.tied), as_rivals=True)
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]

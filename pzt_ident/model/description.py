@@ -7,6 +7,7 @@ import sys
 from dataclasses import asdict, fields
 from typing import Any
 
+from pzt_ident.data.notation import listed
 from pzt_ident.errors import InputError, nearest
 from pzt_ident.model.block import Term
 from pzt_ident.model.parameter import Form, Setting
@@ -47,7 +48,8 @@ def summary(item: type) -> str:
 
 
 def description_of(name: str) -> Facts:
-    """What a block, effect or optimizer declares. Raises InputError with the nearest words for an unknown one."""
+    """What a block, effect or optimizer declares. Raises InputError for an unknown one, with the words that speak of it
+    or else the nearest ones."""
     if word_of(name) in blocks:
         return _block(name)
     if name in optimizers:
@@ -55,7 +57,10 @@ def description_of(name: str) -> Facts:
     terms = _terms()
     if name in terms:
         return {"name": name, "kind": "effect", "doc": terms[name], "parameters": _parameters_of_effect(name)}
-    raise InputError(f"unknown word {name!r}", remedy=nearest(name, [*blocks.words(), *optimizers.words(), *terms]))
+    every = [*blocks.words(), *optimizers.words(), *terms]
+    spoken = [word for word in blocks.words() if name.casefold() in (inspect.getdoc(blocks[word]) or "").casefold()]
+    remedy = f"{listed(spoken)} {'speak' if len(spoken) > 1 else 'speaks'} of it" if spoken else nearest(name, every)
+    raise InputError(f"unknown word {name!r}", remedy=remedy)
 
 
 def _parameters_of_effect(effect: str) -> list[Facts]:

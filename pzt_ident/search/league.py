@@ -63,6 +63,7 @@ def summary_of(optimizer: str, runs: list[dict[str, Any]]) -> dict[str, Any]:
         "rmse_lower_quartile": lower,
         "rmse_upper_quartile": upper,
         "rmse_best": rmse.min(),
+        "polished_rmse_best": min(run["rmse"]["identify"] for run in runs),
         "polished_rmse_median": np.median([run["rmse"]["identify"] for run in runs]),
         "seconds_median": np.median([run["seconds"] for run in runs]),
         "cpu_seconds_median": np.median([run["cpu_seconds"] for run in runs]),

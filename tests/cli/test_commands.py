@@ -43,7 +43,14 @@ RESULT = {
     "units": {"x": "um"},
     "floor": 0.0289,
     "league": [
-        {"optimizer": "pso", "runs": 2, "rmse_best": 0.1234567, "rmse_median": 0.2, "polished_rmse_median": 0.12}
+        {
+            "optimizer": "pso",
+            "runs": 2,
+            "rmse_best": 0.1234567,
+            "rmse_median": 0.2,
+            "polished_rmse_best": 0.11,
+            "polished_rmse_median": 0.12,
+        }
         | {"seconds_median": 0.5}
     ],
     "best": {
@@ -240,6 +247,18 @@ class TestWords:
         assert not set(listed["blocks"]) & set(listed["effects"])
         assert sorted(listed["optimizers"]) == optimizers.words()
         assert all(line for kind in listed.values() for line in kind.values())
+        assert json.loads(call("list", "--json").stdout) == listed
+        assert all(word in call("list").stdout for kind in listed.values() for word in kind)
+
+    def test_a_word_that_only_a_description_has_leads_to_it(self):
+        result = call("show", "preisach")
+        assert result.exit_code != 0 and "homogenized_energy" in result.stderr and "of it" in result.stderr
+
+    def test_settings_are_shown_as_they_are_written_in_a_job(self):
+        assert (
+            "In a job: {name: homogenized_energy, density: lognormal, nodes: 22}"
+            in call("show", "homogenized_energy").stdout
+        )
 
     def test_every_word_is_shown_with_all_that_it_declares(self):
         for word in blocks.words():
