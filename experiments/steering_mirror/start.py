@@ -21,17 +21,17 @@ from pzt_ident.model.first_order_hold import oscillator
 Array = NDArray[np.float64]
 HERE = Path(__file__).parent
 DATA = Path(os.environ.get("PZT_IDENT_DATA", ".")) / "fsm_piezo_mimo"
-RATE = 6400.0
+RATE, STEPS = 6400.0, 4  # Hz, and steps of the simulation in a sample
 PEAKS = np.array([641, 814, 921, 1003, 1324, 1444, 1692, 2133, 2277, 2320, 2552, 2783, 4700.0])
 """Hz, read off the singular values; the last stands for what is above 3 kHz."""
 HEADER = """\
 # Written by start.py from the frequency responses at 100 mV. Three axes, 13 modes, linear: Bouc-Wen at alpha = 0 is a gain.
 name: steering-mirror
 records:
-  - {file: "${PZT_IDENT_DATA}/fsm_piezo_mimo/u_100mV_train.npy", use: identify, name: first, sample_rate: 6400 Hz, run_in: 1, index: [":", ":", 0, 0], channels: {response: {file: "${PZT_IDENT_DATA}/fsm_piezo_mimo/y_100mV_train.npy"}}}
-  - {file: "${PZT_IDENT_DATA}/fsm_piezo_mimo/u_100mV_train.npy", use: identify, name: second, sample_rate: 6400 Hz, run_in: 1, index: [":", ":", 1, 0], channels: {response: {file: "${PZT_IDENT_DATA}/fsm_piezo_mimo/y_100mV_train.npy"}}}
-  - {file: "${PZT_IDENT_DATA}/fsm_piezo_mimo/u_100mV_train.npy", use: identify, name: third, sample_rate: 6400 Hz, run_in: 1, index: [":", ":", 2, 0], channels: {response: {file: "${PZT_IDENT_DATA}/fsm_piezo_mimo/y_100mV_train.npy"}}}
-  - {file: "${PZT_IDENT_DATA}/fsm_piezo_mimo/u_100mV_test.npy", use: validate, name: test, sample_rate: 6400 Hz, run_in: 1, index: [":", ":", 0, 0], channels: {response: {file: "${PZT_IDENT_DATA}/fsm_piezo_mimo/y_100mV_test.npy"}}}
+  - {file: "${PZT_IDENT_DATA}/fsm_piezo_mimo/u_100mV_train.npy", use: identify, name: first, sample_rate: 6400 Hz, run_in: 1, smooth_drive: true, steps: 4, index: [":", ":", 0, 0], channels: {response: {file: "${PZT_IDENT_DATA}/fsm_piezo_mimo/y_100mV_train.npy"}}}
+  - {file: "${PZT_IDENT_DATA}/fsm_piezo_mimo/u_100mV_train.npy", use: identify, name: second, sample_rate: 6400 Hz, run_in: 1, smooth_drive: true, steps: 4, index: [":", ":", 1, 0], channels: {response: {file: "${PZT_IDENT_DATA}/fsm_piezo_mimo/y_100mV_train.npy"}}}
+  - {file: "${PZT_IDENT_DATA}/fsm_piezo_mimo/u_100mV_train.npy", use: identify, name: third, sample_rate: 6400 Hz, run_in: 1, smooth_drive: true, steps: 4, index: [":", ":", 2, 0], channels: {response: {file: "${PZT_IDENT_DATA}/fsm_piezo_mimo/y_100mV_train.npy"}}}
+  - {file: "${PZT_IDENT_DATA}/fsm_piezo_mimo/u_100mV_test.npy", use: validate, name: test, sample_rate: 6400 Hz, run_in: 1, smooth_drive: true, steps: 4, index: [":", ":", 0, 0], channels: {response: {file: "${PZT_IDENT_DATA}/fsm_piezo_mimo/y_100mV_test.npy"}}}
 channels:
   axes:
     x: {drive: {column: 1, unit: V}, response: {column: 1, unit: m}}
@@ -62,17 +62,19 @@ def responses() -> tuple[Array, NDArray[np.complex128]]:
 
 
 def modes(hertz: Array, frequencies: Array, dampings: Array) -> NDArray[np.complex128]:
-    """Response of every mode as the package steps it, its force linear between samples: (lines, modes)."""
-    z, columns = np.exp(2j * np.pi * hertz / RATE), []
+    """Response of every mode as the package steps it, its force linear between the steps: (lines, modes)."""
+    z, columns = np.exp(2j * np.pi * hertz / (RATE * STEPS)), []
     for omega, zeta in zip(2 * np.pi * frequencies, dampings, strict=True):
-        r11, r12, r21, r22, b1, b2 = oscillator(omega, zeta, 1 / RATE)
+        r11, r12, r21, r22, b1, b2 = oscillator(omega, zeta, 1 / (RATE * STEPS))
         columns.append(1 + (z - 1) * ((z - r22) * b1 + r12 * b2) / ((z - r11) * (z - r22) - r12 * r21))
     return np.array(columns).T
 
 
 def delayed(hertz: Array, late: float) -> NDArray[np.complex128]:
-    """Response of a delay of less than a sample, again linear between them: (lines,)."""
-    return 1 - late + late * np.exp(-2j * np.pi * hertz / RATE)
+    """Response of a delay of so many samples, again linear between the steps: (lines,)."""
+    whole, part = divmod(late * STEPS, 1.0)
+    step = np.exp(-2j * np.pi * hertz / (RATE * STEPS))
+    return step**whole * (1 - part + part * step)
 
 
 def fitted(hertz: Array, measured: NDArray[np.complex128]) -> tuple[Array, Array]:
