@@ -107,9 +107,9 @@ def unproven(
     the noise, and EACH of either kind of them, and each of the others half of the rest, and each the share ALONE beside
     the others; of several that leave more than that each must remove more in proportion, and none is proven where that
     is more than BESIDE. None may have rivals that fit as well and are not its look-alikes: what any effect takes up is
-    not that of one. And none may have a shape, or all its amounts, on a bound, as a cyclic error that the stroke
-    does not hold twice: it stands for what it is like there, unless the model is adequate with it. Even then none may be in a
-    limit that is declared to be something else. Nor may one take the place of the model's operator, whose loops are
+    not that of one. And none may have a shape, or all its amounts, on a bound, as a cyclic error that the stroke does
+    not hold twice: it stands for what it is like there, unless the model is adequate with it. Even then none may be in
+    a limit that is declared to be something else. Nor may one take the place of the model's operator, whose loops are
     gone beside it, unless the model is adequate. What takes up enough and only may be something else is a suspect
     beside which the others are judged: without it what they take up is nothing. What is proven on one of several axes
     is proven, whatever another lacks.
