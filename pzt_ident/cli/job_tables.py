@@ -31,6 +31,8 @@ def show_job(facts: Facts) -> None:
         ("parameter", "unit", "bounds", "what it is"),
         [(row["name"], row["unit"], _treatment(row), row["doc"]) for row in grouped_by_range(facts["parameters"])],
     )
+    for note in facts["notes"]:
+        click.echo(note)
     click.echo(f"runs: {' '.join(facts['runs'])}, {facts['evaluations']} evaluations in all")
 
 

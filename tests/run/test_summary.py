@@ -1,0 +1,29 @@
+"""What `check` tells of a job before anything is fitted."""
+
+from pathlib import Path
+
+import pytest
+
+import stage
+from pzt_ident.job.schema import load_job
+from pzt_ident.run.summary import summary_of
+
+
+def notes_of(folder: Path, model: str, parameters: str) -> list[str]:
+    job = stage.JOB.replace("model: [bouc_wen]", f"model: {model}\nparameters: {parameters}")
+    return summary_of(load_job(stage.write(folder, stage.records({}), job)))["notes"]
+
+
+@pytest.mark.parametrize(
+    ("bounds", "told"), [("[0.05, 0.1]", False), ("[5.0e-5, 1.0e-4]", True), ("[50, 100]", True), ("[0, 1000]", False)]
+)
+def test_a_gain_in_another_unit_is_asked_about(tmp_path, bounds, told):
+    """Of a stage that moves by 0.08 um/V."""
+    notes = notes_of(tmp_path, "[bouc_wen]", f"{{bouc_wen.gain: {{bounds: {bounds}}}}}")
+    assert [note.endswith("are the units right?") for note in notes] == [True] * told
+
+
+@pytest.mark.parametrize(("setting", "told"), [("bounds: [0.05, 0.1]", True), ("value: 0.08", False)])
+def test_a_gain_that_is_free_beside_the_shapes_of_modes_is_told(tmp_path, setting, told):
+    notes = notes_of(tmp_path, "[bouc_wen, modal]", f"{{bouc_wen.gain: {{{setting}}}}}")
+    assert ["known only as products" in note for note in notes] == [True] * told
