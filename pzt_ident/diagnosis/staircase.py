@@ -147,7 +147,10 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener, diagnosis: Dia
         return given
     if wide is None and case.budget.allows("wider bounds"):
         wide = improve_beyond(case, first, *beyond, on_step)
-    return wide if wide and (accounts(wide, case, first) or clearly_better(wide, given, case)) else given
+    better = wide and (
+        accounts(wide, case, first) or clearly_better(wide, given, case) or is_cheaper(wide, given, case)
+    )
+    return wide if wide and better else given
 
 
 def fit_behind(case: Case, first: Fit, diagnosis: Diagnosis) -> Fit | None:
@@ -228,6 +231,12 @@ def clearly_better(wide: Staircase, given: Staircase, case: Case) -> bool:
     """Whether wider bounds, none of which is reached, remove most of what the staircase as given leaves."""
     share = share_explained(given.end.total, wide.end.total, case.floor)
     return share >= DECISIVE and keeps_within(wide, case)
+
+
+def is_cheaper(wide: Staircase, given: Staircase, case: Case) -> bool:
+    """Whether wider bounds, none of which is reached, lead as far with fewer effects."""
+    as_far = removed_rms(wide.end.total, given.end.total) < TIE * case.floor
+    return as_far and len(wide.end.effects) < len(given.end.effects) and keeps_within(wide, case)
 
 
 def keeps_within(wide: Staircase, case: Case) -> bool:

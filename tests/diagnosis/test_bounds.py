@@ -26,7 +26,7 @@ from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.paths import improve_within
-from pzt_ident.diagnosis.staircase import bounds_beside, improve
+from pzt_ident.diagnosis.staircase import bounds_beside, improve, is_cheaper
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step
 from pzt_ident.diagnosis.verdict import diagnose
@@ -255,3 +255,27 @@ def test_what_is_larger_than_the_catalogue_expects_is_told_so_before_another_eff
     assert found.last.verdict == "adequate"
     assert found.end.values["quadratic_gain.curvature"] == pytest.approx(-size, rel=0.01)
     assert bool(narrow_bounds_sentence(case, found.end)) == (times > 1)
+
+
+@pytest.mark.parametrize(
+    ("apart", "effects", "within", "cheaper"),
+    [
+        (-1.0, ["distributed_memory"], True, True),
+        (0.1, ["distributed_memory"], True, True),
+        (1.0, ["distributed_memory"], True, False),
+        (-1.0, [], True, False),
+        (-1.0, ["distributed_memory"], False, False),
+    ],
+)
+def test_wider_bounds_without_an_effect_are_the_cheaper_account_of_what_no_effect_explains(
+    monkeypatch, apart, effects, within, cheaper
+):
+    """Above the noise both: a jump at a position, in a job that bounds the gain beside the truth. apart: noise floors,
+    root mean square, by which wider bounds leave more."""
+    case = bounded(0.9, 1.1)
+    first = first_fit(case, 0)
+    given = replace(first, identify=10 * case.floor, validate=10 * case.floor, effects=tuple(effects))
+    left = case.floor * (100 + np.sign(apart) * apart**2) ** 0.5
+    wide = Staircase([Step(replace(first, identify=left, validate=left))], diagnose(case, first))
+    monkeypatch.setattr(staircase, "keeps_within", lambda *arguments: within)
+    assert is_cheaper(wide, Staircase([Step(given)], wide.last), case) == cheaper
