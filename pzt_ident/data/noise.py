@@ -17,6 +17,8 @@ from pzt_ident.data.windows import Signal, window_noise
 Array = NDArray[np.float64]
 
 LEAST_SCALE = 5e-3  # of the span of a response
+COARSE = 2.2  # times the noise at rest: a step of the readings of which a rest sees few or none
+LIKE = 1.5  # times that noise: what windows may say instead, in which the response goes through many steps
 CHANGED = 3.0  # times the noise at rest: what repeated records differ by more is a stage that changed
 
 
@@ -57,7 +59,8 @@ def floor_of_repeats(records: list[Record], axis: int, step: float) -> Floor | N
 
 
 def floor_of_rests(signals: list[Signal], step: float) -> Floor | None:
-    """By rests, else by repeated periods; None where there are none."""
+    """By rests, else by repeated periods, or in windows where steps of the readings are too coarse for a rest to tell;
+    None where there are neither."""
     for estimate, source in ((rest_noise, "rest segments"), (period_noise, "repeated periods")):
         found = [(part, dt) for drives, response, dt in signals for part in estimate(drives, response)]
         if found:
@@ -67,6 +70,9 @@ def floor_of_rests(signals: list[Signal], step: float) -> Floor | None:
             values = errors_of_readings(scatters, seconds, step)
             kept = of_one_noise(values, seconds, spreads)
             still = floor_of(mean_deviation(values[kept], seconds[kept]), source, step)
+            if step > COARSE * still.value:
+                moving = floor_in_windows(signals, step)
+                return moving if moving.value < LIKE * still.value else still
             return still if alike(values, seconds) else min(still, floor_in_windows(signals, step))
     return None
 

@@ -1,6 +1,7 @@
 """The noise floor against noise that was put in."""
 
 import dataclasses
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -312,3 +313,16 @@ def test_a_stage_that_changed_between_repeats_is_no_noise(grown, source):
     assert floor.value == pytest.approx(1, rel=0.2)
     if grown > 0.1:
         assert floor.source.endswith("repeated records differ 4.5 times as much")
+
+
+@pytest.mark.parametrize("size", [0.15, 0.25, 0.35, 0.5])
+@pytest.mark.parametrize("seed", range(4))
+def test_steps_of_the_readings_that_rests_hardly_see_are_in_the_noise(size, seed):
+    """Noise of that size in steps, at three rests anywhere between two of them, and in motion between: with that of the
+    steps, 1 / sqrt(12), it makes the floor."""
+    random = np.random.default_rng(seed)
+    levels = np.cumsum(random.uniform(200, 300, 4))
+    drive = np.concatenate([np.append(np.full(1500, a), np.linspace(a, b, 2000)) for a, b in pairwise(levels)])
+    read = np.round(drive + white(drive.size, size, seed=seed))
+    floor = noise_floor([record(drive, read)], 0)
+    assert floor.value == pytest.approx(np.hypot(size, 1 / 12**0.5), rel=0.12)

@@ -216,7 +216,7 @@ def test_a_mode_scores_as_if_all_its_shapes_were_tried(frequency, damping, monke
     assert found.explained > 0.99 * Scorer(case, fit).score("resonance").explained > 0
 
 
-@pytest.mark.parametrize("pitches", [(2.0, 5.0), (4.1, 1.7)])
+@pytest.mark.parametrize("pitches", [(2.0, 3.4), (3.4, 1.7)])
 def test_every_axis_has_its_own_shape(pitches):
     """Two gratings, which the same trial of both axes does not hold."""
 

@@ -321,7 +321,7 @@ def refitted_words(case, before, first, share):
     return {word_of(item.score.effect) for item in refit_all(case, first, before, shortlist)}
 
 
-@pytest.mark.parametrize(("share", "refitted"), [(0.3, True), (0.85, True), (0.95, False)])
+@pytest.mark.parametrize(("share", "refitted"), [(0.3, True), (0.75, True), (0.95, False)])
 def test_what_promises_most_of_the_rest_is_refitted_while_effects_are_proven(share, refitted):
     case = stage.case(stage.EFFECTS["quadratic_gain"] | stage.EFFECTS["creep"])
     first = first_fit(case, 0)
