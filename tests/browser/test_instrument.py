@@ -145,6 +145,8 @@ NAMES = """() => [...document.querySelectorAll(".stairs text.name")].map((item) 
   return { text: item.textContent, x: Number(item.getAttribute("x")), left, right, angle, size: 11 };
 })"""
 VALUES = "[...document.querySelectorAll('.stairs text.value')].map((item) => item.getBoundingClientRect().toJSON())"
+TICKS = """[...document.querySelectorAll('.stairs text.end')].map((item) =>
+  item.getBoundingClientRect().left - item.closest("svg").getBoundingClientRect().left)"""
 CHANGES = ["+ distributed_memory.even_terms", "+ distributed_memory.odd_terms", "+ friction", "+ rate_dependence"]
 
 
@@ -154,6 +156,9 @@ def test_nothing_is_cut_parted_or_written_over_however_long_it_is(shown, width, 
     def lengthen(state):
         state["headline"]["verdict"] = " ".join(["Effects of the catalogue would explain what is left of it."] * 4)
         (first,) = state["steps"]
+        first |= {"identify": 4e-7, "validate": 5e-7}  # m
+        for facts in filter(None, (state["result"], state["diagnosis"])):
+            facts |= {"floor": 2e-8}
         more = [
             {"number": n, "change": CHANGES[n % 4], "identify": 0.9**n * first["identify"]} for n in range(2, count)
         ]
@@ -167,6 +172,7 @@ def test_nothing_is_cut_parted_or_written_over_however_long_it_is(shown, width, 
         expect(shown.locator("#loop canvas.drawn")).to_be_visible()
         assert shown.evaluate(CUT) == [] and shown.evaluate(PARTED) == []
         names, values = shown.evaluate(NAMES), shown.evaluate(VALUES)
+        assert min(shown.evaluate(TICKS)) >= 0  # of powers of ten too
     shown.set_viewport_size({"width": 1280, "height": 800})
     assert len({name["text"] for name in names}) == min(count - 1, 5)
     for one, other in itertools.pairwise(names):

@@ -4,6 +4,8 @@ import { isPrinting } from "./parts.js";
 import { padded, Scale, tick } from "./scale.js";
 import { lowerBound } from "./signals.js";
 
+const SHORT = 7, LONG = 6.8; // letters beside an axis of usual width, and em for longer ones, as of powers of ten
+
 /** A plot on three canvases: axes and what stays, what moves, and marks with the cursor.
  *
  * A scene has `x` and `y` ({label, range, log}), `series` ({label, xs, ys, colour, width, dash, dots, heat, over}) and
@@ -62,11 +64,16 @@ export class Plot {
     const { x, y } = this.scene;
     const size = this.fontSize();
     this.edge = { left: Math.round(4.2 * size), right: Math.round(0.9 * size), top: Math.round(1.6 * size), bottom: Math.round((x.label ? 2.9 : 0.5) * size) };
-    const { left, right, top, bottom } = this.edge;
-    this.x.set(this.view.x ?? (this.along ? x.range : padded(x.range, x.log)), left, this.width - right, x.log);
+    const { right, top, bottom } = this.edge;
+    const setX = () => this.x.set(this.view.x ?? (this.along ? x.range : padded(x.range, x.log)), this.edge.left, this.width - right, x.log);
+    setX();
     const range = this.view.y ?? (this.along && this.scene.fit ? this.scene.fit(this.x.low, this.x.high) : y.range);
     this.clipped = !this.view.y && range.cut;
     this.y.set(this.view.y ?? padded(range, y.log), this.height - bottom, top, y.log);
+    if (this.y.ticks(3 * size).some((value) => tick(value).length > SHORT)) {
+      this.edge.left = Math.round(LONG * size); // one width for all: plots above each other stay in line
+      setX();
+    }
     this.root.dataset.span = `${this.x.low} ${this.x.high}`;
   }
 

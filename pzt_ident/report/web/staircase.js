@@ -30,10 +30,12 @@ export class Staircase {
     this.drawnSize = `${this.holder.clientWidth} ${this.holder.clientHeight}`;
     const size = Math.max(11, 0.74 * parseFloat(getComputedStyle(document.documentElement).fontSize));
     this.svg = svgElement(this.holder, "svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: content.steps.some(({ href }) => href) ? "group" : "img", "aria-label": description(content), "font-size": size });
-    const pitch = (width - 5 * size) / Math.max(content.steps.length, 1);
-    const texts = namesOf(content.steps, pitch, size, 0.32 * height, getComputedStyle(this.holder).fontFamily);
-    const area = { left: 4.2 * size, right: width - 0.8 * size, top: 2.4 * size, bottom: height - texts.height - 0.6 * size, size };
     this.scale(content);
+    const family = getComputedStyle(this.holder).fontFamily;
+    const left = Math.max(4.2 * size, this.widestTick(height, size, family) + 0.8 * size), right = width - 0.8 * size;
+    const pitch = (right - left) / Math.max(content.steps.length, 1);
+    const texts = namesOf(content.steps, pitch, size, 0.32 * height, family);
+    const area = { left, right, top: 2.4 * size, bottom: height - texts.height - 0.6 * size, size };
     if (this.range) this.axis(area);
     for (const use of USES.toReversed()) this.stairs(use, area, pitch);
     this.values(area, pitch);
@@ -44,6 +46,12 @@ export class Staircase {
     const values = steps.flatMap((step) => USES.flatMap((use) => [step[use], step.promised?.[use]])).filter((value) => value > 0);
     const low = Math.min(...values, floor || Infinity), high = Math.max(...values, floor || 0);
     this.range = values.length || floor ? [low / 1.6, Math.max(high * 1.5, low * 2)] : null;
+  }
+
+  widestTick(height, size, family) {
+    pen.font = `${size}px ${family}`;
+    const values = this.range ? decades(...this.range, height / (2.4 * size)) : [];
+    return Math.max(0, ...values.map((value) => pen.measureText(tick(value)).width));
   }
 
   toY(value, { top, bottom }) {
