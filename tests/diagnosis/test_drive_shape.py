@@ -103,3 +103,10 @@ def test_it_takes_little_of_the_misfit_as_given_and_most_of_what_the_best_effect
     assert bool(with_smooth_drives(case, given)) == first_of_all
     assert bool(smooth_behind(case, given, replace(given))) == behind
     assert smooth_behind(case, given, None) is None
+
+
+@pytest.mark.parametrize(("effects", "ruled_out", "told"), [(("delay",), (), True), ((), ("delay",), False)])
+def test_a_delay_of_the_job_tells_as_well_and_none_is_tried_where_it_is_ruled_out(effects, ruled_out, told):
+    case = Case(("bouc_wen",), effects, records(3e-3), LINEAR, ruled_out)
+    case.floor = 2e-9
+    assert bool(with_smooth_drives(case, first_fit(case, 0))) == told
