@@ -60,10 +60,15 @@ def climb(
     account. Where another effect promises most of what a step leaves, that is tried first, and the step is settled only
     if the promise is not kept. The last model is not diagnosed where no time is left for another. known: the fits of
     other paths; None where it joins one of them."""
-    steps, first = [*base], base[-1].fit
+    steps, first = list[Step](), base[-1].fit
+
+    def take(new: Sequence[Step]) -> None:
+        for step in new:
+            on_step(step)
+            steps.append(step)
+
     case.budget.begin_path()
-    for step in base:
-        on_step(step)
+    take(base)
     while (
         len(steps) - len(base) < MOST_STEPS and not stuck(steps) and (candidate or case.budget.allows("more effects"))
     ):
@@ -79,20 +84,15 @@ def climb(
             break
         if joins(case, new[-1].fit, known):
             return None
-        for step in new:
-            on_step(step)
-        steps += new
+        take(new)
         if (wider := wider_bounds(case, first, steps[-1].fit)) and wider.case:
             case = wider.case
-            on_step(wider)
-            steps.append(wider)
+            take([wider])
         if not adequate(case, first, steps[-1].fit) and not case.budget.allows("more effects", PROVING):
             break
         diagnosis = diagnose(case, steps[-1].fit, first)
         if hurried and diagnosis.best is None:
-            for step in settle(case, first, steps[-2].fit, steps[-1]):
-                on_step(step)
-                steps.append(step)
+            take(settle(case, first, steps[-2].fit, steps[-1]))
             diagnosis = diagnose(case, steps[-1].fit, first)
         candidate = diagnosis.best
     changed = next((step.case for step in reversed(steps) if step.case), None)

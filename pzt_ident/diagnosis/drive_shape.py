@@ -33,8 +33,7 @@ def smooth_behind(case: Case, first: Fit, best: Fit | None) -> tuple[Case, Fit] 
 
 def smooth_beside(case: Case, first: Fit, fit: Fit, least: float) -> tuple[Case, Fit] | None:
     """The same where smooth drives remove that share of what a fit leaves, or one with a delay beside it."""
-    smooth = smoothed(case)
-    if smooth is case or adequate(case, first, fit):
+    if adequate(case, first, fit) or (smooth := smoothed(case)) is case:
         return None
     probed = [(PROBE,)] if PROBE in applicable(case, fit.effects) else []
     for more in ((), *probed):

@@ -147,10 +147,7 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener, diagnosis: Dia
         return given
     if wide is None and case.budget.allows("wider bounds"):
         wide = improve_beyond(case, first, *beyond, on_step)
-    better = wide and (
-        accounts(wide, case, first) or clearly_better(wide, given, case) or is_cheaper(wide, given, case)
-    )
-    return wide if wide and better else given
+    return wide if wide and outdoes(wide, given, case, first) else given
 
 
 def fit_behind(case: Case, first: Fit, diagnosis: Diagnosis) -> Fit | None:
@@ -220,6 +217,11 @@ def improve_own(case: Case, first: Fit, on_step: StepListener) -> Staircase | No
         return None
     own, start = alternative
     return improve_within(own, [Step(first), Step(start, change=OWN, case=own)], on_step)
+
+
+def outdoes(wide: Staircase, given: Staircase, case: Case, first: Fit) -> bool:
+    """Whether wider bounds are the better account than those of the job."""
+    return accounts(wide, case, first) or clearly_better(wide, given, case) or is_cheaper(wide, given, case)
 
 
 def accounts(wide: Staircase, case: Case, first: Fit) -> bool:

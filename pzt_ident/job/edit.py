@@ -123,8 +123,6 @@ def edited(
         document[name] = _flow(content)
     if job.folder.resolve() != folder.resolve():
         _rebase_files(document, job.folder, folder)
-        for i, file in enumerate(document.get("plugins", ())):
-            document["plugins"][i] = _rebased(file, job.folder, folder)
     yaml.indent(**_indents(document))
     text = StringIO()
     yaml.dump(document, text)
@@ -208,7 +206,8 @@ def _indents(document: Any) -> dict[str, int]:
 
 
 def _rebase_files(item: Any, before: Path, after: Path) -> None:
-    """Make every `file` in an item relative to the folder `after`; absolute paths and those with a variable stay."""
+    """Make every `file` in an item, and all `plugins`, relative to the folder `after`; absolute paths and those with a
+    variable stay."""
     if isinstance(item, list):
         for part in item:
             _rebase_files(part, before, after)
@@ -216,6 +215,8 @@ def _rebase_files(item: Any, before: Path, after: Path) -> None:
         for key, value in item.items():
             if key == "file" and isinstance(value, str):
                 item[key] = _rebased(value, before, after)
+            elif key == "plugins":
+                value[:] = [_rebased(file, before, after) for file in value]
             else:
                 _rebase_files(value, before, after)
 
