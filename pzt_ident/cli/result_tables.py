@@ -33,11 +33,10 @@ def show_result(result: dict[str, Any], folder: Path) -> None:
     )
     click.echo(f"{error}: {rmse_by_use(best['rmse'])} ({best['run']})")
     show_floors(result)
-    times = max(error for error in best["rmse"].values() if error is not None) / result["floor"]
-    if times > MUCH:
-        click.echo(
-            f"It leaves {times:.1f} noise floors: `pzt-ident improve {folder / 'job.yaml'}` says what is missing."
-        )
+    worst, floor = max(error for error in best["rmse"].values() if error is not None), result["floor"]
+    if worst > MUCH * floor > 0:
+        job = folder / "job.yaml"
+        click.echo(f"It leaves {worst / floor:.1f} noise floors: `pzt-ident improve {job}` says what is missing.")
     show_notes(result["records"])
     for run in result["failed_runs"]:
         click.echo(failure_message(run))

@@ -25,8 +25,8 @@ def show_word(facts: Facts) -> None:
             ("setting", "default", "from - to", "unit", "what it is"),
             [(row["name"], row["default"], _allowed(row), row["unit"], row["doc"]) for row in facts["settings"]],
         )
-        chosen = ", ".join(f"{row['name']}: {row['default']}" for row in facts["settings"])
-        click.echo(f"In a job: {{name: {facts['name']}, {chosen}}}\n")
+    if written := facts.get("in_a_job"):
+        click.echo(f"In a job: {written}\n")
     if "parameters" in facts:
         table(
             ("parameter", "unit", "bounds", "null", "what it is"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 import sys
 from dataclasses import asdict, fields
 from typing import Any
@@ -14,6 +15,8 @@ from pzt_ident.model.parameter import Form, Setting
 from pzt_ident.model.registry import blocks, optimizers, word_of
 
 Facts = dict[str, Any]
+
+FEW = 4  # descriptions that speak of a word: where more do, it is a common one
 
 
 def words(kind: str) -> dict[str, str]:
@@ -58,8 +61,10 @@ def description_of(name: str) -> Facts:
     if name in terms:
         return {"name": name, "kind": "effect", "doc": terms[name], "parameters": _parameters_of_effect(name)}
     every = [*blocks.words(), *optimizers.words(), *terms]
-    spoken = [word for word in blocks.words() if name.casefold() in (inspect.getdoc(blocks[word]) or "").casefold()]
-    remedy = f"{listed(spoken)} {'speak' if len(spoken) > 1 else 'speaks'} of it" if spoken else nearest(name, every)
+    whole = re.compile(rf"\b{re.escape(name)}\b", re.IGNORECASE)
+    spoken = [word for word in blocks.words() if whole.search(inspect.getdoc(blocks[word]) or "")]
+    verb = "speaks" if len(spoken) == 1 else "speak"
+    remedy = f"{listed(spoken)} {verb} of it" if 0 < len(spoken) <= FEW else nearest(name, every)
     raise InputError(f"unknown word {name!r}", remedy=remedy)
 
 
@@ -80,7 +85,9 @@ def _block(name: str) -> Facts:
     forms = [block, *(block.make(**{word: value}) for word, value in _forms(block))]
     settings = {word: item for form in forms for word, item in form.settings().items() if word != "form"}
     choices = [{"name": word, "default": item.value, "unit": "1"} | _choices(item) for word, item in settings.items()]
-    chosen = {"settings": choices} if choices else {}
+    own = ", ".join(f"{word}: {block.setting(word)}" for word in block.settings() if word != "form")
+    chosen: Facts = {"settings": choices} if choices else {}
+    chosen |= {"in_a_job": f"{{name: {name}, {own}}}"} if own else {}
     rows = _parameters(block) + (_parameters_of_effect(name) if kind == "effects" else [])
     return facts | {"place": block.place.name.lower(), "parameters": rows} | chosen
 

@@ -254,11 +254,16 @@ class TestWords:
         result = call("show", "preisach")
         assert result.exit_code != 0 and "homogenized_energy" in result.stderr and "of it" in result.stderr
 
-    def test_settings_are_shown_as_they_are_written_in_a_job(self):
-        assert (
-            "In a job: {name: homogenized_energy, density: lognormal, nodes: 22}"
-            in call("show", "homogenized_energy").stdout
-        )
+    def test_settings_are_shown_as_a_job_may_have_them(self, folder):
+        shown = {word: json.loads(call("show", word, "--json").stdout).get("in_a_job") for word in blocks.words()}
+        written = {word: item for word, item in shown.items() if item}
+        assert {"homogenized_energy", "domain_wall", "modal"} <= set(written)
+        for word, item in written.items():
+            model = f"[{item}]" if blocks.kind_of(word) == "hysteresis" else f"[bouc_wen, {item}]"
+            job = JOB.replace("model: [bouc_wen]", f"model: {model}").replace("  bouc_wen.gamma: {value: 0.01}\n", "")
+            (folder / "job.yaml").write_text(job.replace("parameters:\n", ""))
+            assert call("check", "job.yaml", "--quiet").exit_code == 0, item
+            assert f"In a job: {item}" in call("show", word).stdout
 
     def test_every_word_is_shown_with_all_that_it_declares(self):
         for word in blocks.words():
