@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
@@ -9,6 +10,8 @@ import numpy as np
 
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.model.block import Modes, Place
+from pzt_ident.model.chain import Entry
+from pzt_ident.model.registry import word_of
 
 COARSE = 8.0  # samples a period: of faster modes the samples may show another one
 SAME = 0.01  # of a frequency: closer ones are one
@@ -53,11 +56,26 @@ def mechanics_without_payload(fit: Fit, kept: Collection[str] = ()) -> Values:
 def main_modes(fit: Fit, values: Values, kept: Collection[str]) -> Iterator[Mode]:
     """The second modes whose share ended on its upper bound, but for those with a parameter that is kept."""
     places = dict(zip(fit.problem.names, fit.point.tolist(), strict=True))
+    for share, mode in second_modes(fit, values):
+        if share.name not in kept and places.get(share.name, 0.0) > 0.5 and share.name in fit.on_bounds:
+            yield mode
+
+
+def second_modes(fit: Fit, values: Values) -> Iterator[tuple[Entry, Mode]]:
+    """The second modes, each with the parameter that is its share."""
     for entry in fit.problem.model.entries:
         block = entry.name.removesuffix("share")
-        is_share = entry.word == "share" and f"{block}frequency" in values and entry.name not in kept
-        if is_share and places.get(entry.name, 0.0) > 0.5 and entry.name in fit.on_bounds:
-            yield Mode(entry.axis, values[f"{block}frequency"], values[f"{block}damping"])
+        if entry.word == "share" and f"{block}frequency" in values:
+            yield entry, Mode(entry.axis, values[f"{block}frequency"], values[f"{block}damping"])
+
+
+def mechanics_at_second_mode(fit: Fit, given: Fit) -> tuple[tuple[str, ...], Values]:
+    """The effects of a fit without its second modes, and the parameters that the oscillator of another fit has there;
+    none where there is no second mode."""
+    modes, values = [*second_modes(fit, values_of(fit))], values_of(given)
+    words = {share.block.name for share, _ in modes}
+    moved = [oscillator_at(given, values, mode) for _, mode in modes]
+    return tuple(item for item in fit.effects if word_of(item) not in words), dict(ChainMap(*moved))
 
 
 def with_aliases(fit: Fit) -> list[Values]:

@@ -15,17 +15,13 @@ from pzt_ident.diagnosis.drive_shape import SMOOTH, smooth_behind, with_smooth_d
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.history import BEFORE, at_rest, fits_at_rest, has_history, history_behind, with_history
 from pzt_ident.diagnosis.judges import judged
+from pzt_ident.diagnosis.lean import improve_lean, settles_for, steps_without
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.paths import SETTLED, best_path, conclude, improve_within
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE
-from pzt_ident.diagnosis.undetermined import (
-    Undetermined,
-    enough_without_mechanics,
-    undetermined_mechanics,
-    without_mechanics,
-)
+from pzt_ident.diagnosis.undetermined import enough_without_mechanics
 from pzt_ident.diagnosis.unmeasured import OWN, own_mechanics, with_own_mechanics
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
 from pzt_ident.model.registry import word_of
@@ -176,36 +172,6 @@ def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, F
     best = min(fits, key=lambda fit: fit.identify, default=first)
     by_far = not passing or share_explained(min(passing), best.identify, case.floor) >= DECISIVE
     return beyond_bounds(case, first, best) if by_far else None
-
-
-def settles_for(case: Case, first: Fit, lean: Staircase) -> bool:
-    """Whether the staircase without mechanics is better than the model as given, and there is no time for another."""
-    return lean.end.total < first.total and not case.budget.allows("effects beside the mechanics", WHOLE)
-
-
-def improve_lean(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListener) -> Staircase | None:
-    """The staircase without mechanics that the data do not determine; None where these determine them, alone or beside
-    the best effect, or where the model needs one effect at most beside them. diagnosis: of the fit `first`."""
-    settled = diagnosis.verdict in SETTLED or any(
-        adequate(case, first, candidate.fit) for candidate in diagnosis.passing if candidate.fit
-    )
-    best = min((item.fit for item in diagnosis.passing if item.fit), key=lambda fit: fit.total, default=first)
-    alternative = None if settled or undetermined_mechanics(best) is None else without_mechanics(case, first)
-    if alternative is None:
-        return None
-    word, lean, start = alternative
-    staircase = improve_within(lean, steps_without(case, first, *alternative), on_step)
-    share = explained_share(case, start, first)
-    staircase.suspects.append(Undetermined(word, share, staircase.end.total / case.floor))
-    return staircase
-
-
-def steps_without(case: Case, first: Fit, word: str, lean: Case, start: Fit) -> list[Step]:
-    """The steps from the model as given to the one without its mechanics."""
-    return [
-        Step(first),
-        Step(start, explained=explained_share(case, first, start), change=f"without {word}", case=lean),
-    ]
 
 
 def improve_own(case: Case, first: Fit, on_step: StepListener) -> Staircase | None:

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import stage
-from pzt_ident.diagnosis import staircase, verdict
+from pzt_ident.diagnosis import lean, staircase, verdict
 from pzt_ident.diagnosis.bounds import Widened
+from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.undetermined import (
     enough_without_mechanics,
@@ -35,8 +36,8 @@ def test_mechanics_that_the_job_knows_are_kept():
     assert undetermined_mechanics(first_fit(known, 0)) is None
 
 
-def fast(drive):
-    return stage.case(model=BLOCKS, drives=[drive, 0.8 * drive], dt=2e-5, steps=1)
+def fast(drive, steps=1):
+    return stage.case(model=BLOCKS, drives=[drive, 0.8 * drive], dt=2e-5, steps=steps)
 
 
 RINGING = np.repeat([0.0, 40.0, 10.0, 60.0, 0.0], 200)
@@ -77,9 +78,9 @@ def test_mechanics_that_are_determined_beside_the_best_effect_are_kept(monkeypat
     first = first_fit(case, 0)
     diagnosis, tried = verdict.diagnose(case, first), []
     best = min(diagnosis.passing, key=lambda item: item.fit.total).fit
-    monkeypatch.setattr(staircase, "undetermined_mechanics", lambda fit: beside if fit is best else "lumped")
-    monkeypatch.setattr(staircase, "without_mechanics", lambda case, first: tried.append(case))
-    assert staircase.improve_lean(case, first, diagnosis, lambda step: None) is None
+    monkeypatch.setattr(lean, "undetermined_mechanics", lambda fit: beside if fit is best else "lumped")
+    monkeypatch.setattr(lean, "without_mechanics", lambda case, first: tried.append(case))
+    assert lean.improve_lean(case, first, diagnosis, lambda step: None) is None
     assert bool(tried) == (beside is not None)
 
 
@@ -106,3 +107,44 @@ def test_mechanics_that_an_effect_of_the_job_acts_in_are_kept(effects):
     case = slow(stage.EFFECTS["sensor_lag"])
     case.effects = effects
     assert without_mechanics(case, first_fit(case, 0)) is None
+
+
+MODE = {"resonance.share": 0.8, "resonance.frequency": 3438.0, "resonance.damping": 0.011}
+KNOWN = stage.STAGE | {"bouc_wen.gain": 0.082}  # um/V
+ELSEWHERE = KNOWN | {"lumped.mass": 10.0, "lumped.damping": 3e3}
+
+
+def fit_at_values(case, effects, values):
+    problem = case.problem(effects)
+    return fit_at(effects, problem, problem.unit_point({name: values[name] for name in problem.names}))
+
+
+@pytest.mark.parametrize("form", [item for item in blocks.forms("resonance") if not item.endswith("voltage")])
+def test_a_second_mode_without_mechanics_is_that_of_the_mechanics(form):
+    case = fast(RINGING, steps=8)
+    end = fit_at_values(case.with_words(["bouc_wen"]), (form,), KNOWN | MODE)
+    found = lean.with_mechanics_moved(case, fit_at_values(case, (), ELSEWHERE), end, lambda step: None)
+    assert [step.change for step in found.steps] == ["", lean.MOVED]
+    assert found.end.effects == () and found.last.verdict == "adequate"
+
+
+def test_effects_beside_that_mode_are_kept():
+    case = fast(RINGING, steps=8)
+    bent = stage.with_response(case, lambda record: 1e-2 * record.response**2 / np.ptp(record.response))
+    values = KNOWN | MODE | {"quadratic_gain.curvature": 3e-4}
+    end = fit_at_values(bent.with_words(["bouc_wen"]), ("quadratic_gain", "resonance"), values)
+    found = lean.with_mechanics_moved(bent, fit_at_values(bent, (), ELSEWHERE), end, lambda step: None)
+    assert [(step.added, step.change) for step in found.steps] == [
+        (None, ""),
+        (None, lean.MOVED),
+        ("quadratic_gain", ""),
+    ]
+
+
+def test_a_mode_beside_a_stiff_stage_is_a_second_one():
+    second = MODE | {"resonance.share": 0.3}
+    case = stage.case(second, model=("bouc_wen", "resonance"), drives=[RINGING, 0.8 * RINGING], dt=2e-5)
+    given = case.with_words(BLOCKS)
+    end = fit_at_values(case.with_words(["bouc_wen"]), ("resonance",), KNOWN | second)
+    assert end.total < 1.5 * case.floor
+    assert lean.with_mechanics_moved(given, fit_at_values(given, (), ELSEWHERE), end, lambda step: None) is None

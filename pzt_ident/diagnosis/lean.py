@@ -1,0 +1,74 @@
+"""The path without mechanics that the data do not determine."""
+
+from __future__ import annotations
+
+from pzt_ident.diagnosis.budget import WHOLE
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.climb import Staircase
+from pzt_ident.diagnosis.criteria import adequate, removed_rms
+from pzt_ident.diagnosis.exchange import find_rivals
+from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.modes import mechanics_at_second_mode
+from pzt_ident.diagnosis.paths import SETTLED, conclude, improve_within
+from pzt_ident.diagnosis.refit import refit
+from pzt_ident.diagnosis.step import Step, StepListener, explained_share
+from pzt_ident.diagnosis.ties import TIE
+from pzt_ident.diagnosis.undetermined import Undetermined, undetermined_mechanics, without_mechanics
+from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
+
+MOVED = "mechanics at another mode"  # the step that puts them where a second mode is
+
+
+def settles_for(case: Case, first: Fit, lean: Staircase) -> bool:
+    """Whether the staircase without mechanics is better than the model as given, and there is no time for another."""
+    return lean.end.total < first.total and not case.budget.allows("effects beside the mechanics", WHOLE)
+
+
+def improve_lean(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListener) -> Staircase | None:
+    """The staircase without mechanics that the data do not determine; None where these determine them, alone or beside
+    the best effect, or where the model needs one effect at most beside them. diagnosis: of the fit `first`."""
+    settled = diagnosis.verdict in SETTLED or any(
+        adequate(case, first, candidate.fit) for candidate in diagnosis.passing if candidate.fit
+    )
+    best = min((item.fit for item in diagnosis.passing if item.fit), key=lambda fit: fit.total, default=first)
+    alternative = None if settled or undetermined_mechanics(best) is None else without_mechanics(case, first)
+    if alternative is None:
+        return None
+    word, lean, start = alternative
+    staircase = improve_within(lean, steps_without(case, first, *alternative), on_step)
+    if moved := with_mechanics_moved(case, first, staircase.end, on_step):
+        return moved
+    share = explained_share(case, start, first)
+    staircase.suspects.append(Undetermined(word, share, staircase.end.total / case.floor))
+    return staircase
+
+
+def steps_without(case: Case, first: Fit, word: str, lean: Case, start: Fit) -> list[Step]:
+    """The steps from the model as given to the one without its mechanics."""
+    return [
+        Step(first),
+        Step(start, explained=explained_share(case, first, start), change=f"without {word}", case=lean),
+    ]
+
+
+def with_mechanics_moved(case: Case, first: Fit, end: Fit, on_step: StepListener) -> Staircase | None:
+    """The staircase with the mechanics of the job where a second mode is that is missing without them: it is theirs.
+    None where there is none, or the model fits worse so. end: the last fit without mechanics."""
+    effects, there = mechanics_at_second_mode(end, first)
+    if not there or not case.budget.allows("mechanics at another mode", WHOLE):
+        return None
+    fit = refit(case, first, effects, end.values | there)
+    if removed_rms(fit.total, end.total) > TIE * case.floor:
+        return None
+    steps = [Step(first)]
+    for number in range(len(first.effects), len(effects) + 1):
+        now = refit(case, fit, effects[:number], {}) if number < len(effects) else fit
+        added = effects[number - 1] if number > len(first.effects) else None
+        share = explained_share(case, steps[-1].fit, now)
+        steps.append(Step(now, added, None, {added: now} if added else {}, share, change="" if added else MOVED))
+    for step in steps:
+        on_step(step)
+    find_rivals(case, first, steps, on_step)
+    staircase = Staircase(steps, diagnose(case, steps[-1].fit, first))
+    conclude(case, first, staircase)
+    return staircase
