@@ -2,6 +2,7 @@
 
 from pzt_ident.model.block import Block
 from pzt_ident.model.first_order_hold import decay, oscillator
+from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.second_order import SecondOrder
 
 
@@ -23,13 +24,19 @@ class Lag(Block):
         return w, u, u + w
 
 
-def second_order(tau, zeta, dt):
-    """Coefficients of y'' / omega^2 + 2 zeta y' / omega + y = u, 2 zeta / omega = tau, for `oscillate`; all zero at
-    tau = 0."""
-    return oscillator(2 * zeta / tau, zeta, dt) if tau != 0 else (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-
-
 class SecondOrderLag(SecondOrder):
-    """A low-pass of second order that lags by tau at low frequency."""
+    """A low-pass of second order that lags by tau at low frequency: with omega = 2 zeta / tau,
+    y'' / omega^2 + 2 zeta y' / omega + y = u. At tau = 0 there is none.
+    """
 
     sizes = Lag.sizes
+    trials = {"damping": 3}
+    damping = Parameter(
+        "1",
+        (0.5, 5),
+        "Damping ratio, zeta: 0.71 of a Butterworth filter, 1 of two equal poles, more of two unequal ones.",
+        scale="log",
+    )
+
+    def prepare(tau, damping, dt):
+        return oscillator(2 * damping / tau, damping, dt) if tau != 0 else (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

@@ -1,6 +1,6 @@
 """Amplifier that charges the stack through its output resistance."""
 
-from pzt_ident.effects._lag import Lag, SecondOrderLag, second_order
+from pzt_ident.effects._lag import Lag, SecondOrderLag
 from pzt_ident.model.block import Place
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
@@ -29,13 +29,10 @@ class AmplifierLag(Charging, Lag):
 
 
 class TwoPoles(Charging, SecondOrderLag):
-    """Two equal stages behind each other: (tau / 2 s + 1)^2 U_a = U, with the same lag at low frequency.
+    """Two stages behind each other: (tau^2 s^2 / (4 zeta^2) + tau s + 1) U_a = U, with the same lag at low frequency.
 
     Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems.
     """
-
-    def prepare(tau, dt):
-        return second_order(tau, 1.0, dt)
 
 
 AmplifierLag.forms = {"two_poles": TwoPoles}

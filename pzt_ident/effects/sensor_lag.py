@@ -1,6 +1,6 @@
 """Sensor that follows the stage through a low-pass filter."""
 
-from pzt_ident.effects._lag import Lag, SecondOrderLag, second_order
+from pzt_ident.effects._lag import Lag, SecondOrderLag
 from pzt_ident.model.block import Place
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
@@ -28,15 +28,11 @@ class SensorLag(Filtering, Lag):
     """
 
 
-class ButterworthFilter(Filtering, SecondOrderLag):
-    """A filter of second order with damping 1 / sqrt(2): (tau^2 s^2 / 2 + tau s + 1) y = x, with the same lag at low
-    frequency.
+class SecondOrderFilter(Filtering, SecondOrderLag):
+    """A filter of second order: (tau^2 s^2 / (4 zeta^2) + tau s + 1) y = x, with the same lag at low frequency.
 
     Fleming (2013), Sensors and Actuators A 190, 106.
     """
 
-    def prepare(tau, dt):
-        return second_order(tau, 0.5**0.5, dt)
 
-
-SensorLag.forms = {"second_order": ButterworthFilter}
+SensorLag.forms = {"second_order": SecondOrderFilter}

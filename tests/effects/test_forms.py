@@ -73,12 +73,17 @@ def test_three_elements_creep_each_at_its_own_time():
     np.testing.assert_allclose(behind("creep.voltage_elements", **named), 0.08 * expected, atol=1e-9)
 
 
+@pytest.mark.parametrize("item", ["amplifier_lag.two_poles", "sensor_lag.second_order"])
 @pytest.mark.parametrize(
-    ("item", "denominator"),
-    [("amplifier_lag.two_poles", [2e-3**2 / 4, 2e-3, 1]), ("sensor_lag.second_order", [2e-3**2 / 2, 2e-3, 1])],
+    ("damping", "denominator"),
+    [
+        (0.5**0.5, [2e-3**2 / 2, 2e-3, 1]),  # Butterworth
+        (1.0, np.polymul([1e-3, 1], [1e-3, 1])),
+        (1.25, np.polymul([1.6e-3, 1], [0.4e-3, 1])),
+    ],
 )
-def test_lags_of_second_order_lag_by_tau(item, denominator):
-    np.testing.assert_allclose(alone(item, tau=2e-3), filtered([1], denominator), atol=1e-8)
+def test_lags_of_second_order_lag_by_tau(item, damping, denominator):
+    np.testing.assert_allclose(alone(item, tau=2e-3, damping=damping), filtered([1], denominator), atol=1e-8)
 
 
 def test_a_second_mode_in_series_or_of_the_voltage():
