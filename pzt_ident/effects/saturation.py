@@ -1,6 +1,6 @@
 """A response that saturates at large voltages."""
 
-from pzt_ident.model.block import Block, Place, expm1
+from pzt_ident.model.block import Block, Place, expm1, log1p
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
@@ -13,7 +13,7 @@ class Saturation(Block):
     """
 
     place = Place.READOUT
-    form = Form("voltage", ("voltage", "displacement", "cubic"), "What saturates, and how.")
+    form = Form("voltage", ("voltage", "displacement", "cubic", "knee", "amplifier"), "What saturates, and how.")
     sizes = (0.1, 0.3, 0.8)
     knee = Parameter("1/drive", (0, 2), "One over the voltage at which the response saturates.", null=0)
     look_alikes = ("quadratic_gain", "cubic_stiffness", "encoder_cyclic_error")
@@ -53,4 +53,37 @@ class Cubic(Saturation):
         return u * (1 - knee * u * (knee * u))
 
 
-Saturation.forms = {"displacement": OfDisplacement, "cubic": Cubic}
+class Knee(OfDisplacement):
+    """The stroke levels off, sharply or softly: y = f / (1 + |f / F|^p)^(1 / p), f = d u - h, knee = 1 / F.
+
+    Rapp (1991), Proc. 2nd European Conf. on Satellite Communications, 179. p = 1.4 is near an arctangent, p = 2.4 near
+    a hyperbolic tangent, and a large p a stop.
+    """
+
+    trials = {"sharpness": 4}
+    sharpness = Parameter("1", (1.2, 40), "How sharply the response turns to its limit, p.", scale="log")
+
+    def prepare(knee, sharpness):
+        return knee, sharpness
+
+    def start(u, knee, sharpness):
+        return ()
+
+    def step(u, knee, sharpness):
+        x = abs(knee * u)
+        far = 1 + expm1(-sharpness * abs(log1p(max(x, 1e-12) - 1)))
+        return u * (1 + expm1(-log1p(far) / sharpness)) / max(x, 1.0)
+
+
+class OfAmplifier(Knee):
+    """The amplifier reaches its rails, ahead of the hysteresis: v = u / (1 + |u / U|^p)^(1 / p), knee = 1 / U.
+
+    Rapp (1991), Proc. 2nd European Conf. on Satellite Communications, 179.
+    """
+
+    place = Place.AMPLIFIER
+    about_rest = False
+    knee = Parameter("1/drive", (0, 2), "One over the voltage of the rail.", null=0)
+
+
+Saturation.forms = {"displacement": OfDisplacement, "cubic": Cubic, "knee": Knee, "amplifier": OfAmplifier}

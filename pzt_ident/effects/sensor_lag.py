@@ -1,6 +1,6 @@
 """Sensor that follows the stage through a low-pass filter."""
 
-from pzt_ident.effects._lag import Lag, SecondOrderLag
+from pzt_ident.effects._lag import Lag, SecondOrderLag, ThirdOrderLag
 from pzt_ident.model.block import Place
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
@@ -10,7 +10,7 @@ class Filtering:
     """What all forms of the sensor's lag declare."""
 
     place = Place.SENSOR
-    form = Form("one_pole", ("one_pole", "second_order"), "Order of the filter.")
+    form = Form("one_pole", ("one_pole", "second_order", "third_order"), "Order of the filter.")
     tau = Parameter("s", (0, 0.05), "Time constant of the sensor's filter.", null=0)
     look_alikes = ("amplifier_lag", "delay", "viscous_damping", "load_mass", "resonance", "creep")
     separate_by = (
@@ -35,4 +35,11 @@ class SecondOrderFilter(Filtering, SecondOrderLag):
     """
 
 
-SensorLag.forms = {"second_order": SecondOrderFilter}
+class ThirdOrderFilter(Filtering, ThirdOrderLag):
+    """A filter of third order: (share tau s + 1) (r^2 s^2 / (4 zeta^2) + r s + 1) y = x, r = (1 - share) tau.
+
+    Fleming (2013), Sensors and Actuators A 190, 106: the output filter of a capacitive sensor.
+    """
+
+
+SensorLag.forms = {"second_order": SecondOrderFilter, "third_order": ThirdOrderFilter}

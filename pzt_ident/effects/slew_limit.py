@@ -17,7 +17,9 @@ class SlewLimit(Block):
     """
 
     place = Place.SLEW
-    form = Form("clip", ("clip", "lag"), "How the voltage approaches the command below the limit.")
+    form = Form(
+        "clip", ("clip", "lag", "two_sided"), "How the voltage approaches the command, and whether up and down alike."
+    )
     sizes = tuple(1.25**-k for k in range(42))
     slowness = Parameter("s/drive", (0, 0.3), "Capacitance over the greatest current.", null=0)
     look_alikes = ("amplifier_lag", "sensor_lag", "delay")
@@ -61,4 +63,29 @@ class SaturatingLag(SlewLimit):
         return y, u, y
 
 
-SlewLimit.forms = {"lag": SaturatingLag}
+class TwoSided(SlewLimit):
+    """An amplifier that sources another current than it sinks: -1 / (ratio slowness) <= dU_a/dt <= 1 / slowness.
+
+    Fleming & Leang (2014), ch. 14: the bridge charges and discharges the load through different transistors.
+    """
+
+    trials = {"ratio": 4}
+    ratio = Parameter("1", (0.2, 5), "Slowness of a falling voltage over that of a rising one.", scale="log")
+
+    def prepare(slowness, ratio, dt):
+        return (dt / slowness, dt / (slowness * ratio)) if slowness != 0 else (inf, inf)
+
+    def start(u, up, down):
+        return u, u
+
+    def step(y, before, u, up, down):
+        sign, toward, away = (1.0, up, down) if before >= y else (-1.0, down, up)
+        back = sign * (before - u)
+        met = min(1.0, abs(before - y) / (toward + abs(back)))
+        most = up if u > y else down
+        follows = u if abs(u - y) <= most else y + (most if u > y else -most)
+        y = y + sign * (toward * met - away * (1 - met)) if back > away else follows
+        return y, u, y
+
+
+SlewLimit.forms = {"lag": SaturatingLag, "two_sided": TwoSided}

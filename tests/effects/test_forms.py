@@ -86,6 +86,20 @@ def test_lags_of_second_order_lag_by_tau(item, damping, denominator):
     np.testing.assert_allclose(alone(item, tau=2e-3, damping=damping), filtered([1], denominator), atol=1e-8)
 
 
+@pytest.mark.parametrize(
+    ("share", "damping", "denominator"),
+    [
+        (0.5, 0.5, np.polymul([1e-3, 1], [1e-6, 1e-3, 1])),  # Butterworth
+        (0.25, 1.25, np.polymul([0.5e-3, 1], np.polymul([1.2e-3, 1], [0.3e-3, 1]))),
+    ],
+)
+def test_a_filter_of_third_order_lags_by_tau(share, damping, denominator):
+    known = {"sensor_lag.tau": 2e-3, "sensor_lag.share": share, "sensor_lag.damping": damping}
+    fine = np.interp(np.arange(0, T[-1] + 1e-6, 1e-5), T, DRIVE)
+    found = response(["sensor_lag.third_order"], known, fine, dt=1e-5)[::100]
+    np.testing.assert_allclose(found, filtered([1], denominator), atol=1e-4)
+
+
 def test_a_second_mode_in_series_or_of_the_voltage():
     known = {"share": 0.2, "frequency": 40.0, "damping": 0.05}
     w = 2 * np.pi * 40

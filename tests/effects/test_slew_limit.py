@@ -1,14 +1,18 @@
 """A slew limit against its closed form and against fine steps."""
 
 import numpy as np
+import pytest
 
 from rig import response
 
 DT = 1e-3
 
 
-def limited(drive, limit, dt=DT):
-    return response(["slew_limit"], {"slew_limit.slowness": 1 / limit}, drive, dt=dt)
+def limited(drive, limit, dt=DT, ratio=None):
+    values = {"slew_limit.slowness": 1 / limit}
+    if ratio is None:
+        return response(["slew_limit"], values, drive, dt=dt)
+    return response(["slew_limit.two_sided"], values | {"slew_limit.ratio": ratio}, drive, dt=dt)
 
 
 def test_nothing_up_to_the_limit():
@@ -30,10 +34,25 @@ def test_a_sine_far_above_the_limit_becomes_a_triangle():
     assert np.count_nonzero(~at_limit) <= 2 * 5
 
 
-def test_sampling_more_often_changes_nothing():
+CORNERS = np.random.default_rng(1).uniform(-3, 3, 300)
+
+
+@pytest.mark.parametrize("ratio", [None, 0.4, 2.5])
+def test_sampling_more_often_changes_nothing(ratio):
     """Also where the command meets the voltage within a sample and leaves it behind again."""
-    corners = np.random.default_rng(1).uniform(-3, 3, 300)
-    fine = np.interp(np.arange(299 * 64 + 1) / 64, np.arange(300), corners)
-    found = limited(fine, 1500, DT / 64)
+    fine = np.interp(np.arange(299 * 64 + 1) / 64, np.arange(300), CORNERS)
+    found = limited(fine, 1500, DT / 64, ratio)
     assert (np.abs(found - fine) > 0.1).mean() > 0.3
-    np.testing.assert_allclose(found[::64], limited(corners, 1500), rtol=0, atol=1e-11)
+    np.testing.assert_allclose(found[::64], limited(CORNERS, 1500, ratio=ratio), rtol=0, atol=1e-11)
+
+
+def test_two_sides_alike_are_one():
+    np.testing.assert_allclose(limited(CORNERS, 1500, ratio=1.0), limited(CORNERS, 1500), rtol=0, atol=1e-12)
+
+
+def test_down_is_as_many_times_slower_as_told():
+    jump = np.repeat([0.0, 10.0, 0.0], 100)
+    found = limited(jump, 400, ratio=2.0)
+    after = np.arange(1, 101)
+    np.testing.assert_allclose(found[100:200], np.minimum(0.4 * after, 10), atol=1e-12)
+    np.testing.assert_allclose(found[200:], np.maximum(10 - 0.2 * after, 0), atol=1e-12)
