@@ -13,16 +13,16 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import (
     DECISIVE,
     adequate,
+    is_enough,
     only_all_counts,
     reaches_noise,
     removed_rms,
     removes_enough,
-    threshold,
 )
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refit, refit_from
-from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, applicable, scorer_of, squared_misfit
+from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, applicable, scorer_of
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.threads import side_by_side
 from pzt_ident.diagnosis.ties import TIE, are_look_alikes
@@ -263,7 +263,7 @@ def refit_other_forms(
 
 def promises_enough(case: Case, first: Fit, before: Fit, candidate: Candidate) -> bool:
     """Whether an effect would remove enough by its score."""
-    return candidate.score.explained * squared_misfit(case, before) > threshold(case, first) ** 2
+    return is_enough(case, first, before, candidate.score.explained)
 
 
 def decide_by_score(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> None:

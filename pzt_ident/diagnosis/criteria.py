@@ -78,9 +78,19 @@ def form_of_others(case: Case, given: float) -> float:
     return min(FORM_OF_OTHERS * misfit.squared_misfit(given, case.floor) ** 0.5, MOST_OF_OTHERS * case.floor)
 
 
+def is_enough(case: Case, first: Fit, before: Fit, share: float) -> bool:
+    """Whether a share of the misfit on the identification records is as much as an effect must remove."""
+    squared = squared_misfit(case, before)
+    removes_all = share >= NEARLY_ALL and squared > (NOT_LITTLE * case.floor) ** 2
+    return removes_all or share * squared > threshold(case, first) ** 2
+
+
 def removes_enough(case: Case, first: Fit, before: Fit, after: Fit) -> bool:
     """Whether an effect removes enough on the identification records and on the validation records; where the latter
-    do not show it, it must bring both down to the noise."""
+    do not show it, it must bring both down to the noise. What takes all of a rest is enough, however far the model as
+    given was from the noise."""
+    if takes_all(case, before, after):
+        return True
     removed, least = removed_rms(before.identify, after.identify), threshold(case, first)
     in_validation = removed_rms(before.validate, after.validate) > least / 2 or not_in_validation(
         case, first, before, after
