@@ -133,20 +133,33 @@ def with_effects(
         if item in close
         or (is_tied(case, word, fits[word], fits[item.score.effect]) and not is_limited(fits[item.score.effect]))
     ]
-    tied = [item for item in alike if item is least or not generalises(fits[item.score.effect], fits[word])]
-    best = within_bounds(before, min(tied, key=simplicity), passing)
+    best = within_bounds(before, min(alike, key=simplicity), passing)
+    tied = [item for item in alike if item is best or in_least_form(case, best, item)]
     tied += [best] if best not in tied else []
-    word = best.score.effect
+    fits, word = {item.score.effect: item.fit for item in passing if item.fit}, best.score.effect
     forms = [fit for item, fit in best.refits.items() if item != word]
-    tied += [item for item in passing if item not in tied and is_twin(case, word, forms, fits[item.score.effect])]
+    others = (item for item in passing if item not in tied and not generalises(fits[item.score.effect], fits[word]))
+    tied += [item for item in others if is_twin(case, word, forms, fits[item.score.effect])]
     for item in tied:
         item.decision = "missing"
     candidates.sort(key=lambda item: (item is not best, item.fit.total if item.fit else np.inf))
     words = [word, *(item.score.effect for item in tied if item is not best)]
     verdict = "missing" if len(words) == 1 else "inconclusive"
-    others = sorted((item for item in passing if item not in tied), key=lambda item: fits[item.score.effect].total)
+    rest = sorted((item for item in passing if item not in tied), key=lambda item: fits[item.score.effect].total)
     reason = missing_sentence(case, first, before, fits[word], words)
-    return Diagnosis(verdict, reason, before, candidates, words, [best, *others])
+    return Diagnosis(verdict, reason, before, candidates, words, [best, *rest])
+
+
+def in_least_form(case: Case, best: Candidate, item: Candidate) -> bool:
+    """Whether a tied candidate has no more parameters than the best has, or is tied in its first form, too, which it
+    then means."""
+    if best.fit is None or item.fit is None or not generalises(item.fit, best.fit):
+        return True
+    usual = item.refits.get(item.forms[0].effect) if item.forms else None
+    if usual is None or generalises(usual, best.fit) or not is_tied(case, best.score.effect, best.fit, usual):
+        return False
+    item.take(item.forms[0].effect)
+    return True
 
 
 def needed(case: Case, first: Fit, best: Candidate, passing: list[Candidate]) -> Candidate:

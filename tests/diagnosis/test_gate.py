@@ -12,6 +12,7 @@ from pzt_ident.diagnosis.candidates import Candidate, choose_forms
 from pzt_ident.diagnosis.criteria import (
     adequate,
     clears_an_axis,
+    is_enough,
     not_in_validation,
     reaches_noise,
     removes_enough,
@@ -109,6 +110,14 @@ def test_an_effect_removes_enough_of_the_records_that_were_fitted(first, share, 
     before, gone = above(1.5, FAR), share * max(0.6, 0.03 * first)
     after = fit(without(before.identify, gone), 0.5 * FAR)
     assert removes_enough(CASE, above(first), before, after) == earned
+
+
+@pytest.mark.parametrize(("left", "unseen", "earned"), [(0.2, 0.2, True), (0.7, 0.2, False), (0.2, 0.7, False)])
+@pytest.mark.parametrize(("before", "much"), [(2.7, True), (0.85, False)])
+def test_what_takes_all_of_a_rest_is_enough_however_far_the_first_model_was(left, unseen, earned, before, much):
+    first, rest = above(200.0, 200.0), above(before, np.hypot(1, before))
+    assert removes_enough(CASE, first, rest, above(left, np.hypot(1, unseen))) == (earned and much)
+    assert is_enough(CASE, first, rest, 1 - (left / before) ** 2) == (left < 0.5 and much)
 
 
 @pytest.mark.parametrize(("share", "earned"), [(0.151, True), (0.149, False)])
@@ -389,6 +398,24 @@ def test_a_form_of_more_parameters_is_meant_only_where_one_effect_is_enough(usua
     assert friction.score.effect == taken
     assert friction.fit is friction.refits[taken]
     assert creep.fit is creep.refits["creep"]
+
+
+def candidate_of(item, *others):
+    """A candidate that means its last form, with the fits of all of them."""
+    forms = {fit.effects[-1]: fit for fit in (item, *others)}
+    candidate = Candidate.of([Score(word, explained=0.9) for word in forms])
+    candidate.refits = forms
+    candidate.take([*forms][-1])
+    return candidate
+
+
+@pytest.mark.parametrize(("usual", "kept"), [(1.05, True), (1.5, False)])
+def test_a_form_of_more_parameters_gives_way_to_the_first_where_that_is_tied(usual, kept):
+    best = candidate_of(fit(1.0, effects=["amplifier_lag"], dimensions=5))
+    more = fit(1.0, effects=["sensor_lag.second_order"], dimensions=6)
+    rival = candidate_of(fit(usual, effects=["sensor_lag"], dimensions=5), more)
+    assert verdict.in_least_form(CASE, best, rival) == kept
+    assert rival.score.effect == ("sensor_lag" if kept else "sensor_lag.second_order")
 
 
 def test_a_form_of_more_parameters_than_the_best_effect_may_contain_it():
