@@ -12,7 +12,7 @@ class Rubbing:
 
     form = Form(
         "lugre",
-        ("lugre", "lugre_viscous", "coulomb", "motion", "coulomb_motion"),
+        ("lugre", "lugre_viscous", "coulomb", "motion", "coulomb_motion", "slip"),
         "The law of friction, and where it acts.",
     )
     sizes = (0.02, 0.1, 0.5)
@@ -143,4 +143,21 @@ class CoulombMotion(Rubbing, Term):
     solvable = False
 
 
-Friction.forms = {"lugre_viscous": LuGreViscous, "coulomb": Coulomb, "motion": Motion, "coulomb_motion": CoulombMotion}
+class Slip(Rubbing, Term):
+    """Elements of the guide stretch, then slip, as the mass moves: m x'' + b x' + k (x + F) = k f, F of four of them.
+
+    Iwan (1966), J. Appl. Mech. 33, 893; Al-Bender, Lampaert & Swevers (2005), IEEE Trans. Autom. Control 50, 1883
+    (generalised Maxwell slip, without Stribeck effect). Reversals within the reach leave closed loops.
+    """
+
+    trials = {"evenness": 2}
+    solvable = False
+
+
+Friction.forms = {
+    "lugre_viscous": LuGreViscous,
+    "coulomb": Coulomb,
+    "motion": Motion,
+    "coulomb_motion": CoulombMotion,
+    "slip": Slip,
+}

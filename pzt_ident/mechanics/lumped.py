@@ -3,7 +3,7 @@
 from math import pi, sqrt
 
 from pzt_ident.mechanics._oscillator import Oscillator, mode
-from pzt_ident.model.bristles import rub, slide
+from pzt_ident.model.bristles import rub, slide, stretch
 from pzt_ident.model.cubic_spring import SOFTEST, cubic_root
 from pzt_ident.model.first_order_hold import oscillate
 from pzt_ident.model.parameter import Parameter
@@ -53,6 +53,21 @@ class Lumped(Oscillator):
         "Speed over which Coulomb friction builds up.",
         scale="log",
         effect="friction.coulomb_motion",
+    )
+
+    slip = Parameter("response", (0, 0.1), "Sliding friction over the stiffness.", null=0, effect="friction.slip")
+    give = Parameter(
+        "response",
+        (1e-3, 0.5),
+        "Displacement at which the last element slips.",
+        scale="log",
+        effect="friction.slip",
+    )
+    evenness = Parameter(
+        "1",
+        (0, 1),
+        "From 0, where all slip at once (Jenkins), to 1, where they slip one by one (Iwan).",
+        effect="friction.slip",
     )
 
     begun = Parameter(
@@ -139,6 +154,37 @@ class Sliding(Lumped):
         return w, v, now, friction, now + w
 
 
+class Slipping(Lumped):
+    """m x'' + b x' + k (x + c x^3 + F) = k f, likewise implicit in x, F the sum of four elements that stretch and slip:
+    dF_i/dx = (slip / 4) / r_i while |F_i| < slip / 4, r_i = give (1 - evenness (1 - i / 4)).
+    """
+
+    def prepare(mass, damping, stiffness, load, extra_damping, cubic, slip, give, evenness, dt):
+        most = slip / 4
+        stiff, lack = most / give, evenness / 4
+        elements = stiff / (1 - 3 * lack), stiff / (1 - 2 * lack), stiff / (1 - lack), stiff
+        return cubic, most, *elements, *mode(mass + load, damping + extra_damping, stiffness, dt)
+
+    def start(u, cubic, most, ka, kb, kc, kd, r11, r12, r21, r22, b1, b2):
+        return 0.0, 0.0, cubic_root(u, cubic, 1.0), 0.0, 0.0, 0.0, 0.0
+
+    def step(w, v, f, a, b, c, d, u, cubic, most, ka, kb, kc, kd, r11, r12, r21, r22, b1, b2):
+        before, held = f + w, a + b + c + d
+        x = cubic_root(u + r11 * w + r12 * v + b1 * (u - f) - (1 + b1) * held, cubic, 1 + b1)
+        chord = max(cubic * (x * x + x * before + before * before), -3 * SOFTEST)
+        share = (1 + b1) / (1 + (1 + b1) * chord)
+        sign = 1.0 if x >= before else -1.0
+        a, b, c, d = sign * a, sign * b, sign * c, sign * d
+        dx = stretch(abs(x - before), a, b, c, d, ka, kb, kc, kd, most, share)
+        a, b, c, d = min(a + ka * dx, most), min(b + kb * dx, most), min(c + kc * dx, most), min(d + kd * dx, most)
+        a, b, c, d = sign * a, sign * b, sign * c, sign * d
+        friction = a + b + c + d
+        x = x - share * (friction - held)
+        now = u - x * max(cubic * x * x, -SOFTEST) - friction
+        w, v = oscillate(w, v, now - f, r11, r12, r21, r22, b1, b2)
+        return w, v, now, a, b, c, d, now + w
+
+
 class Moving(Lumped):
     """m x'' + b x' + k x = k f, under way as a record begins: x(0) = f(0) + begun, x'(0) = omega swing."""
 
@@ -156,6 +202,7 @@ class Moving(Lumped):
 Lumped.forms = {
     "friction.motion": Rubbing,
     "friction.coulomb_motion": Sliding,
+    "friction.slip": Slipping,
     "cubic_stiffness": Stiffening,
     "history": Moving,
 }

@@ -1,4 +1,5 @@
-"""Laws of friction under a spring, stepped implicitly: bristles that bend, then slide (LuGre), and Coulomb's."""
+"""Laws of friction under a spring, stepped implicitly: bristles that bend, then slide (LuGre), Coulomb's, and elements
+that stretch, then slip (Maxwell)."""
 
 from pzt_ident.model.elementary import expm1, log1p, rough_log
 
@@ -54,3 +55,27 @@ def coulomb_step(y, load, push):
 def tanh(y):
     grown = expm1(2 * min(y, 20.0))
     return grown / (grown + 2)
+
+
+def stretch(pull, a, b, c, d, ka, kb, kc, kd, most, share):
+    """|dx| of the root of dx + share (F(dx) - F) = pull, F the sum of four elements of these stiffnesses, which follow
+    dx up to the force `most` of each. a to d are their forces along the pull: F rises ever less steeply, so that each
+    step from below passes a slip or is the root.
+    """
+    push = pull + share * (a + b + c + d)
+    x = stretch_step(0.0, push, a, b, c, d, ka, kb, kc, kd, most, share)
+    for _ in range(4):
+        x = stretch_step(x, push, a, b, c, d, ka, kb, kc, kd, most, share)
+    return x
+
+
+def stretch_step(x, push, a, b, c, d, ka, kb, kc, kd, most, share):
+    """Newton's step for x + share F(x) = push."""
+    held = min(a + ka * x, most) + min(b + kb * x, most) + min(c + kc * x, most) + min(d + kd * x, most)
+    stiff = (
+        (ka if a + ka * x < most else 0.0)
+        + (kb if b + kb * x < most else 0.0)
+        + (kc if c + kc * x < most else 0.0)
+        + (kd if d + kd * x < most else 0.0)
+    )
+    return x + (push - x - share * held) / (1 + share * stiff)
