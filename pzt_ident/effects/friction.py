@@ -146,11 +146,11 @@ class CoulombMotion(Rubbing, Term):
 class Slip(Rubbing, Term):
     """Elements of the guide stretch, then slip, as the mass moves: m x'' + b x' + k (x + F) = k f, F of four of them.
 
-    Iwan (1966), J. Appl. Mech. 33, 893; Al-Bender, Lampaert & Swevers (2005), IEEE Trans. Autom. Control 50, 1883
-    (generalised Maxwell slip, without Stribeck effect). Reversals within the reach leave closed loops.
+    Iwan (1966), J. Appl. Mech. 33, 893; Al-Bender, Lampaert & Swevers (2005), IEEE Trans. Autom. Control 50, 1883: the
+    generalised Maxwell slip model, without Stribeck effect. Reversals within the reach leave closed loops.
     """
 
-    trials = {"evenness": 2}
+    trials = {"spacing": 2}
     solvable = False
 
 

@@ -63,11 +63,13 @@ class Lumped(Oscillator):
         scale="log",
         effect="friction.slip",
     )
-    evenness = Parameter(
+    spacing = Parameter(
         "1",
-        (0, 1),
-        "From 0, where all slip at once (Jenkins), to 1, where they slip one by one (Iwan).",
+        (0.1, 1),
+        "That of each element over that of the next; 1 where all slip at once.",
+        scale="log",
         effect="friction.slip",
+        end="upper",
     )
 
     begun = Parameter(
@@ -156,13 +158,13 @@ class Sliding(Lumped):
 
 class Slipping(Lumped):
     """m x'' + b x' + k (x + c x^3 + F) = k f, likewise implicit in x, F the sum of four elements that stretch and slip:
-    dF_i/dx = (slip / 4) / r_i while |F_i| < slip / 4, r_i = give (1 - evenness (1 - i / 4)).
+    dF_i/dx = (slip / 4) / r_i while |F_i| < slip / 4, r_i = give spacing^(4 - i).
     """
 
-    def prepare(mass, damping, stiffness, load, extra_damping, cubic, slip, give, evenness, dt):
+    def prepare(mass, damping, stiffness, load, extra_damping, cubic, slip, give, spacing, dt):
         most = slip / 4
-        stiff, lack = most / give, evenness / 4
-        elements = stiff / (1 - 3 * lack), stiff / (1 - 2 * lack), stiff / (1 - lack), stiff
+        stiff, near, nearer = most / give, 1 / spacing, 1 / spacing**2
+        elements = stiff * near * nearer, stiff * nearer, stiff * near, stiff
         return cubic, most, *elements, *mode(mass + load, damping + extra_damping, stiffness, dt)
 
     def start(u, cubic, most, ka, kb, kc, kd, r11, r12, r21, r22, b1, b2):
