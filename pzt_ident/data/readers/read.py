@@ -16,7 +16,7 @@ from pzt_ident.data.readers.decimate import decimated
 from pzt_ident.data.readers.signal import Signal
 from pzt_ident.data.readers.source_channels import SourceChannels
 from pzt_ident.data.readers.table import Table
-from pzt_ident.data.readers.timebase import time_slice
+from pzt_ident.data.readers.timebase import Grid, time_slice
 from pzt_ident.data.record import Axis, Channel, Level, Record, Source
 from pzt_ident.data.start_step import start_step
 from pzt_ident.data.units import factor, same_kind, unscaled
@@ -115,7 +115,7 @@ def _record(channels: SourceChannels, axes: Mapping[str, Axis], time: Channel | 
         axes=tuple(axes),
         drive_units=tuple(unscaled(drive.unit) for drive in drives if drive),
         response_units=tuple(unscaled(response.unit) if response else None for response in responses),
-        notes=_notes(source),
+        notes=_notes(source, grid),
     )
     return replace(record, notes=(*record.notes, *_start(record)))
 
@@ -181,10 +181,10 @@ def _quiet(drives: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.array([without_noise(drive) for drive in drives])
 
 
-def _notes(source: Source) -> tuple[str, ...]:
-    if source.decimate == 1:
-        return ()
-    return (f"decimated by {source.decimate} after a zero-phase low-pass, which rounds the corners of the drive",)
+def _notes(source: Source, grid: Grid) -> tuple[str, ...]:
+    rounded = f"time stamps are rounded to {grid.rounded:g} s: the samples are taken as every {grid.dt:.6g} s"
+    thinned = f"decimated by {source.decimate} after a zero-phase low-pass, which rounds the corners of the drive"
+    return (*([rounded] if grid.rounded else []), *([thinned] if source.decimate > 1 else []))
 
 
 def _start(record: Record) -> list[str]:

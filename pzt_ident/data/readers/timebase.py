@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pzt_ident.data.readers.signal import Signal
 from pzt_ident.errors import InputError
@@ -12,13 +13,17 @@ from pzt_ident.errors import InputError
 JITTER = 0.01
 """Largest accepted deviation of a time stamp from the uniform grid, in sample times."""
 
+COARSEST = 0.2
+"""Coarsest decimal that time stamps may be rounded to, in sample times: of coarser ones one may be missing."""
+
 
 @dataclass(frozen=True)
 class Grid:
-    """Sample time and first time stamp, s."""
+    """Sample time and first time stamp, s; the decimal that the stamps are rounded to where that is seen."""
 
     dt: float
     start: float = 0.0
+    rounded: float = 0.0
 
 
 def grid_of_rate(rate: float, where: str) -> Grid:
@@ -31,7 +36,8 @@ def grid_of_rate(rate: float, where: str) -> Grid:
 def grid_of_stamps(stamps: Signal) -> Grid:
     """The uniform grid through the first and the last time stamp.
 
-    Raises InputError where time stands still or runs backward, or where a stamp is off the grid by more than JITTER.
+    Raises InputError where time stands still or runs backward, or where a stamp is off the grid by more than JITTER
+    and by more than its last decimal.
     """
     times, steps = stamps.values, np.diff(stamps.values)
     if steps.size == 0:
@@ -44,14 +50,25 @@ def grid_of_stamps(stamps: Signal) -> Grid:
         remedy = f"remove the row, take what is before it with {rows}, or leave `time` out and give `sample_rate`"
         raise InputError(problem, where=stamps.where, remedy=remedy)
     dt = float(times[-1] - times[0]) / steps.size
-    if np.abs(times - times[0] - dt * np.arange(times.size)).max() > JITTER * dt:
+    off = float(np.abs(times - times[0] - dt * np.arange(times.size)).max())
+    rounded = last_decimal(times) if off > JITTER * dt else 0.0
+    if off > max(JITTER * dt, rounded if rounded <= COARSEST * dt else 0.0):
         usual = float(np.median(steps))
         row = int(np.argmax(np.abs(steps - usual)))
         step = f"{steps[row]:.6g} s, {steps[row] / usual:.4g} times the usual {usual:.6g} s"
         remedy = "resample the record, or leave `time` out and give `sample_rate` if the stamps are only rounded"
         problem = f"time is not uniform: the step after {stamps.place(row)} is {step}"
         raise InputError(problem, where=stamps.where, remedy=remedy)
-    return Grid(dt, float(times[0]))
+    return Grid(dt, float(times[0]), rounded)
+
+
+def last_decimal(times: NDArray[np.float64]) -> float:
+    """The coarsest power of ten, s, of which all time stamps are multiples; 0 where none is."""
+    for exponent in range(13):
+        counts = times * 10.0**exponent
+        if np.abs(counts - np.round(counts)).max() < 1e-3:
+            return 10.0**-exponent
+    return 0.0
 
 
 def check_rate(grid: Grid, rate: float | None, where: str) -> None:
