@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from pzt_ident.data.record import Record, interpolated
+from pzt_ident.diagnosis.budget import WHOLE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit
@@ -41,9 +42,18 @@ def smooth_beside(case: Case, first: Fit, fit: Fit, least: float) -> tuple[Case,
             return None
         on_lines, after = (refit(home, fit, (*fit.effects, *more), half_a_sample(case)) for home in (case, smooth))
         clear = removed_rms(on_lines.total, after.total) > CLEAR * case.floor
-        if clear and share_explained(on_lines.total, after.total, case.floor) >= least:
+        share = share_explained(on_lines.total, after.total, case.floor)
+        if clear and share >= least and not (after.by_use > on_lines.by_use).any():
             return smooth, refit(smooth, first, first.effects, {})
     return None
+
+
+def better_on_lines(case: Case, end: Fit) -> bool:
+    """Whether the last model of a staircase with smooth drives leaves clearly less with drives on lines. case: that of
+    the job."""
+    if adequate(case, end, end) or not case.budget.allows(SMOOTH, WHOLE):
+        return False
+    return removed_rms(end.total, refit(case, end, end.effects, {}).total) > CLEAR * case.floor
 
 
 def half_a_sample(case: Case) -> dict[str, float]:

@@ -11,7 +11,7 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms
 from pzt_ident.diagnosis.drive_noise import QUIET, quiet_behind, with_quiet_drives
-from pzt_ident.diagnosis.drive_shape import SMOOTH, smooth_behind, with_smooth_drives
+from pzt_ident.diagnosis.drive_shape import SMOOTH, better_on_lines, smooth_behind, with_smooth_drives
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.history import BEFORE, at_rest, fits_at_rest, has_history, history_behind, with_history
 from pzt_ident.diagnosis.judges import judged
@@ -30,9 +30,18 @@ from pzt_ident.model.registry import word_of
 def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
     """The staircase from the model as given to the one with all effects that are proven, judged by the records that can
     judge it."""
-    for other_drives, change in ((with_quiet_drives, QUIET), (with_smooth_drives, SMOOTH)):
-        if other := other_drives(case, first):
-            return improve_otherwise(case, first, *other, change, on_step)
+    if quiet := with_quiet_drives(case, first):
+        return improve_otherwise(case, first, *quiet, QUIET, on_step)
+    if smooth := with_smooth_drives(case, first):
+        staircase = improve_otherwise(case, first, *smooth, SMOOTH, on_step)
+        if staircase.case is None or not better_on_lines(case.with_words(staircase.case.words), staircase.end):
+            return staircase
+        return best_path(case, [staircase, improve_on_lines(case, first, on_step)])
+    return improve_on_lines(case, first, on_step)
+
+
+def improve_on_lines(case: Case, first: Fit, on_step: StepListener) -> Staircase:
+    """The same, with drives as they are unless the model with the best effect says otherwise."""
     settled = adequate(case, first, first) or needs_wider_bounds(case, first)
     diagnosis = None if settled else diagnose(case, first)
     if diagnosis and (behind := smooth_behind(case, first, diagnosis.best.fit if diagnosis.best else None)):

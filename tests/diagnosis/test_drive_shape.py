@@ -1,6 +1,7 @@
 """How drives go between their samples is felt by mechanics and delays, and is no effect of the stage."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ import rig
 import stage
 from pzt_ident.diagnosis import drive_shape
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.drive_shape import SMOOTH, smooth_behind, smoothed, with_smooth_drives
+from pzt_ident.diagnosis.drive_shape import SMOOTH, better_on_lines, smooth_behind, smoothed, with_smooth_drives
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.engine.simulator import Simulator
@@ -75,6 +76,24 @@ def test_drives_that_are_linear_between_samples_stay_so():
     late = [replace(each, response=(each.response + np.roll(each.response, 1, axis=1)) / 2) for each in lines]
     case = Case(("bouc_wen",), (), late, LINEAR)
     assert with_smooth_drives(case, first_fit(case, 0)) is None
+
+
+@pytest.mark.parametrize(("identify", "validate", "taken"), [(0.8, 0.8, True), (1.01, 0.5, False), (0.5, 1.01, False)])
+def test_what_is_worse_on_one_kind_of_record_is_no_better_shape(monkeypatch, identify, validate, taken):
+    case = Case(("bouc_wen",), (), records(3e-3), LINEAR)
+    given = SimpleNamespace(total=1.0, effects=(), by_use=np.ones((2, 1)), identify=20 * case.floor, validate=None)
+    left = np.array([[identify], [validate]])
+    after = SimpleNamespace(total=np.sqrt(np.mean(left**2)), by_use=left)
+    monkeypatch.setattr(drive_shape, "refit", lambda home, *more: after if home.records[0].smooth_drive else given)
+    assert bool(with_smooth_drives(case, given)) == taken
+
+
+@pytest.mark.parametrize(("left", "better"), [(0.5, True), (1.0, False), (2.0, False)])
+def test_drives_on_lines_are_gone_back_to_where_the_last_model_leaves_less_so(monkeypatch, left, better):
+    case = Case(("bouc_wen",), (), records(3e-3), LINEAR)
+    end = replace(first_fit(case, 0), identify=20 * case.floor, validate=20 * case.floor)
+    monkeypatch.setattr(drive_shape, "refit", lambda *more: replace(end, identify=left * end.identify))
+    assert better_on_lines(case, end) == better
 
 
 def test_slow_drives_are_the_same_either_way():
