@@ -8,13 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.fit import EDGE, Fit
 from pzt_ident.model.block import Modes, Place
 from pzt_ident.model.chain import Entry
 from pzt_ident.model.registry import word_of
 
 COARSE = 8.0  # samples a period: of faster modes the samples may show another one
 SAME = 0.01  # of a frequency: closer ones are one
+MAIN = 0.8  # of the static response: a mode that carries as much is the main one
 
 Values = dict[str, float]
 
@@ -30,9 +31,9 @@ class Mode(NamedTuple):
 
 
 def mechanics_at_main_mode(fit: Fit, kept: Collection[str] = ()) -> Values:
-    """Parameters of an oscillator, by name, at the second mode that has the largest share which it may have: that is
-    the main one, and the oscillator rests elsewhere, where it stands in for something. Empty where there is none but
-    one with a parameter that is kept, and where the mechanics cannot be put there."""
+    """Parameters of an oscillator, by name, at the second mode that carries most of the response: that is the main one,
+    and the oscillator rests elsewhere, where it stands in for something. Empty where there is none but one with a
+    parameter that is kept, and where the mechanics cannot be put there."""
     values, moved = values_of(fit), Values()
     for mode in main_modes(fit, values, kept):
         moved |= oscillator_at(fit, values, mode)
@@ -54,10 +55,9 @@ def mechanics_without_payload(fit: Fit, kept: Collection[str] = ()) -> Values:
 
 
 def main_modes(fit: Fit, values: Values, kept: Collection[str]) -> Iterator[Mode]:
-    """The second modes whose share ended on its upper bound, but for those with a parameter that is kept."""
-    places = dict(zip(fit.problem.names, fit.point.tolist(), strict=True))
+    """The second modes that carry MAIN of the response or more, but for those with a parameter that is kept."""
     for share, mode in second_modes(fit, values):
-        if share.name not in kept and places.get(share.name, 0.0) > 0.5 and share.name in fit.on_bounds:
+        if share.name in fit.values and share.name not in kept and values[share.name] > MAIN * (1 - EDGE):
             yield mode
 
 

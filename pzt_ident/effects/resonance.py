@@ -54,6 +54,13 @@ class Series(SecondMode, Block):
     """
 
     place = Place.FLEXURE
+    share = Parameter(
+        "1",
+        (-0.8, 1.2),
+        "Part of the force that goes through the second mode: 1 where all of it does.",
+        null=0,
+        limit=SecondMode.share.limit,
+    )
 
     def start(u, share, r11, r12, r21, r22, b1, b2):
         return 0.0, 0.0, u
