@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.evidence import alike, mean_deviation, of_one_noise, period_noise, rest_noise
+from pzt_ident.data.evidence import alike, mean_deviation, of_one_noise, period_noise, quiet_deviation, rest_noise
 from pzt_ident.data.projections import deviation, without_lines
 from pzt_ident.data.quantiser import common_step, errors_of_readings, with_quantiser
 from pzt_ident.data.record import Record
@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 LEAST_SCALE = 5e-3  # of the span of a response
 COARSE = 2.2  # times the noise at rest: a step of the readings of which a rest sees few or none
 LIKE = 1.5  # times that noise: what windows may say instead, in which the response goes through many steps
+SAME_CLOCK = 0.1  # sample times: records that are farther apart at their ends were not sampled alike
 CHANGED = 3.0  # times the noise at rest: what repeated records differ by more is a stage that changed
 
 
@@ -45,7 +46,7 @@ def noise_floor(records: list[Record], axis: int) -> Floor:
     if repeats and still and repeats.value > CHANGED * still.value:
         times = repeats.value / still.value
         return Floor(still.value, f"{still.source}; repeated records differ {times:.2g} times as much")
-    return repeats or still or floor_in_windows(signals, step)
+    return repeats or still or min(floor_of_two_periods(signals, step), floor_in_windows(signals, step))
 
 
 def floor_of_repeats(records: list[Record], axis: int, step: float) -> Floor | None:
@@ -77,6 +78,14 @@ def floor_of_rests(signals: list[Signal], step: float) -> Floor | None:
     return None
 
 
+def floor_of_two_periods(signals: list[Signal], step: float) -> Floor:
+    """By the difference of the only two periods of records, of which the first may have begun elsewhere: the noise is
+    no more than this; infinite where no record has two."""
+    found = [part for drives, response, _ in signals for part in period_noise(drives, response, 2)]
+    values, samples = (np.array([getattr(part, word) for part in found], float) for word in ("value", "samples"))
+    return floor_of(with_quantiser(quiet_deviation(values, samples), step) if found else np.inf, "two periods", step)
+
+
 def floor_in_windows(signals: list[Signal], step: float) -> Floor:
     return floor_of(window_noise(signals, with_quantiser(0.0, step)), "short windows (weak)", step)
 
@@ -88,7 +97,8 @@ def floor_of(value: float, source: str, step: float) -> Floor:
 
 def is_repeat(record: Record, other: Record, axis: int, tolerance: float = 2e-3) -> bool:
     """Whether all drives differ by no more than a share of their spans; the same data listed twice are no repeat."""
-    if record.drive.shape != other.drive.shape or record.dt != other.dt:
+    apart = abs(record.dt - other.dt) * record.samples  # at their ends, where both clocks start together
+    if record.drive.shape != other.drive.shape or apart > SAME_CLOCK * record.dt:
         return False
     if np.array_equal(record.response[axis], other.response[axis]):
         return False

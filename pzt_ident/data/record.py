@@ -47,13 +47,13 @@ class Source:
     """One record as the job names it: `file`, relative to the job, its `use`, and the `name` in results.
 
     sample_rate: Hz, where no column has the time. rows: counted from 0, the end excluded. time: an interval, s. settle:
-    the time at the start that is simulated but not scored, s. decimate: every n-th sample is taken. run_in: how often
-    the drive is simulated before the first sample, for a periodic record in steady state. rest_at: the drive at which
-    the stage rested until one sample before the first, from where it goes there on a line, of all axes or by axis, for
-    a record that begins with a step. denoise_drive: whether noise of the recorded drive is left out; it turns where
-    that goes back by more. steps: of the simulation in a sample. smooth_drive: whether the drive is smooth between its
-    samples, as behind a filter against aliasing, and not linear: with `run_in` it is the Fourier series of the record,
-    else a cubic spline; steps of 2 and more feel it.
+    the time at the start that is simulated but not scored, s. decimate: every n-th sample is taken, after a low-pass.
+    run_in: how often the drive is simulated before the first sample, for a periodic record in steady state. rest_at:
+    the drive at which the stage rested until one sample before the first, from where it goes there on a line, of all
+    axes or by axis, for a record that begins with a step. denoise_drive: whether noise of the recorded drive is left
+    out; it turns where that goes back by more. steps: of the simulation in a sample. smooth_drive: whether the drive is
+    smooth between its samples, as behind a filter against aliasing, and not linear: with `run_in` it is the Fourier
+    series of the record, else a cubic spline; steps of 2 and more feel it.
     dataset, table, sheet and index: which part of a file with several ones, and of an array.
 
     `channels` overrides channels in this record, by `time`, `drive`, `response` or, of one axis, `x.drive`:

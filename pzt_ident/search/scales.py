@@ -23,7 +23,7 @@ def unit_of(model: Chain, entry: Entry, record: Record) -> str:
     first = record.response_units[model.measured[0]]
     response = record.response_units[entry.axis] or first
     units = {"drive": str(record.drive_units[entry.axis]), "response": str(response), "first": str(first)}
-    divisors = {f"/{word}": f"/({unit})" if re.search(r"[/* ]", unit) else f"/{unit}" for word, unit in units.items()}
+    divisors = {f"/{word}": f"/{unit}" if unit.isalpha() else f"/({unit})" for word, unit in units.items()}
     return re.sub(r"/?(drive|response|first)", lambda match: (units | divisors)[match[0]], entry.parameter.unit)
 
 

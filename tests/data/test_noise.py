@@ -45,6 +45,26 @@ def test_without_rest_or_repeats_the_evidence_is_weak(noise):
     assert floor.value == pytest.approx(SIGMA, rel=0.2)
 
 
+@pytest.mark.parametrize(("begun", "source"), [(0.0, "two periods"), (1e-4, "short windows (weak)")])
+def test_two_periods_give_the_noise_unless_the_first_was_another(noise, begun, source):
+    """Of a drive that is full up to half the sample rate, whose response by many modes no window tells from noise."""
+    rng = np.random.default_rng(4)
+    drive, modes = rng.normal(size=3000), rng.normal(size=200)
+    response = np.fft.irfft(np.fft.rfft(drive) * np.fft.rfft(modes, 3000))
+    start = begun * np.exp(-np.arange(6000) / 300) * rng.normal(size=6000)
+    floor = noise_floor([record(np.tile(drive, 2), 1e-8 * np.tile(response, 2) + noise + start)], 0)
+    assert floor.source == source
+    assert floor.value == pytest.approx(SIGMA, rel=0.1) or source != "two periods"
+
+
+@pytest.mark.parametrize("dt", [1e-3, 1e-3 * (1 + 1e-12)])
+def test_records_whose_clock_goes_on_are_measured_again(noise, dt):
+    drive = np.random.default_rng(3).normal(size=3000)
+    first, again = (record(drive, 1e-7 * drive + part) for part in (noise[:3000], noise[3000:]))
+    floor = noise_floor([dataclasses.replace(first, dt=1e-3), dataclasses.replace(again, dt=dt)], 0)
+    assert floor.source == "repeated records"
+
+
 def test_records_measured_again_give_the_noise_of_any_signal(noise):
     """Wide-band signals have neither rest nor a smooth course; a settled offset between both counts for nothing."""
     rng = np.random.default_rng(3)
