@@ -55,6 +55,8 @@ _WORDS = {
     "s": "sec secs second seconds",
     "ms": "msec millisecond milliseconds",
     "us": "usec microsecond microseconds",
+    "min": "minute minutes",
+    "h": "hour hours",
     "V": "volt volts",
     "mV": "millivolt millivolts",
     "kV": "kilovolt kilovolts",
@@ -76,6 +78,7 @@ _SINGLE: dict[str, tuple[float, Dimension]] = {
     "1": (1, _NUMBER),
     "%": (1e-2, _NUMBER),
     "min": (60, TIME),
+    "h": (3600, TIME),
 }
 _SYNONYM = {word: unit for unit, words in _WORDS.items() for word in words.split()}
 _FACTOR = re.compile(
@@ -113,7 +116,7 @@ def duration(text: str) -> float:
     unit = (match and match[2]) or "s"
     seconds = float(match[1]) * factor(unit) if match and is_unit(unit) and same_kind(unit, "s") else 0.0
     if not 0 < seconds < float("inf"):
-        raise InputError(f"{text!r} is no time above zero", remedy="write it as 60s or 5min")
+        raise InputError(f"{text!r} is no time above zero", remedy="write it as 60s, 5min or 1h")
     return seconds
 
 

@@ -1,5 +1,7 @@
 """Memory of many past reversals."""
 
+from math import tanh
+
 from pzt_ident.effects._plays import Plays
 from pzt_ident.model.block import Place, expm1
 from pzt_ident.model.parameter import Form, Parameter
@@ -43,30 +45,33 @@ class FinePlays(DistributedMemory):
 
 
 class BentPlays(DistributedMemory):
-    """Plays whose share levels off, so that equal loops differ with the bias as in a Preisach operator:
-    y = d (u + sum_i w_i tanh(knee F_i[u]) / knee) - h.
+    """Plays whose share levels off about a centre, so that equal loops differ with the bias as in a Preisach operator:
+    y = d (u + sum_i w_i (e(F_i[u] - centre) - e(-centre))) - h, e(v) = tanh(knee v) / knee.
 
     Generalised Prandtl-Ishlinskii operator with envelopes: Al Janaideh, Rakheja & Su (2011), IEEE/ASME Trans.
     Mechatronics 16, 734. For relays with normally distributed interaction fields tanh stands for erf: Smith et al.,
     Model Development for AFM Stage Mechanisms, eq. 7 to 14.
     """
 
-    trials = {"knee": 5}
-    knee = Parameter("1/drive", (0, 10), "One over the voltage at which the share of a play levels off.", null=0)
+    trials = {"knee": 5, "centre": 3}
+    knee = Parameter("1/drive", (0, 10), "One over the voltage over which the share of a play levels off.", null=0)
+    centre = Parameter("drive", (-1, 1), "Voltage about which it levels off.")
 
-    def prepare(weight, reach, knee, branch):
-        return weight, reach * (branch + 1) / PLAYS, knee
+    def prepare(weight, reach, knee, centre, branch):
+        rest = tanh(knee * centre) / knee if knee != 0 else centre
+        return weight, reach * (branch + 1) / PLAYS, knee, centre, rest
 
-    def start(u, weight, half, knee):
+    def start(u, weight, half, knee, centre, rest):
         return (max(u - half, min(u + half, 0.0)),)
 
-    def step(p, u, weight, half, knee):
+    def step(p, u, weight, half, knee, centre, rest):
         p = max(u - half, min(u + half, p))
-        x = knee * p
+        v = p - centre
+        x = knee * v
         grown = expm1(2 * min(max(x, -20.0), 20.0))
-        return p, weight * p * (grown / ((grown + 2) * x) if abs(x) > 1e-3 else 1 - x * x / 3)
+        return p, weight * (v * (grown / ((grown + 2) * x) if abs(x) > 1e-3 else 1 - x * x / 3) + rest)
 
-    def output(u, total, weight, half, knee):
+    def output(u, total, weight, half, knee, centre, rest):
         return u + total
 
 

@@ -41,7 +41,7 @@ def improvement_of(
 ) -> dict[str, Any]:
     """The content of `improvement.json`. proposed: the next experiment, None where there is none. budget: for the
     intervals of the last model, and what was worked of it."""
-    steps, suspects = staircase.steps, staircase.suspects
+    steps, suspects = staircase.steps, sorted(staircase.suspects, key=lambda suspect: -suspect.share)
     reason, end = last["reason"], steps[-1].fit
     added = [effect for effect in end.effects if effect not in job.effects]
     reason += "".join(f" {suspect.why_not}" for suspect in suspects)

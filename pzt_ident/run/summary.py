@@ -10,15 +10,13 @@ import numpy as np
 from pzt_ident.data.record import Record
 from pzt_ident.data.units import factor
 from pzt_ident.job.schema import Job
-from pzt_ident.model.block import Modes, Place
-from pzt_ident.model.chain import Entry
+from pzt_ident.model.block import Modes
 from pzt_ident.run.identify import tasks_of
 from pzt_ident.run.statement import Statement
+from pzt_ident.search.gains import far_off, free_gains
 from pzt_ident.search.problem import Problem
 
 Facts = dict[str, Any]
-
-LITTLE = 0.03  # of what the response moves by over what the drive does: no gain is so small
 
 
 def summary_of(job: Job) -> Facts:
@@ -33,7 +31,7 @@ def summary_of(job: Job) -> Facts:
         "records": [_record(record) for record in records],
         "axes": [_axis(records, axis) for axis in range(len(records[0].axes))],
         "parameters": _parameters(problem),
-        "notes": [*_far_off(problem), *_products(problem)],
+        "notes": [*far_off(problem), *_products(problem)],
         "runs": [task.run for task in tasks],
         "evaluations": sum(task.stop["evaluations"] for task in tasks),
     }
@@ -77,28 +75,8 @@ def _parameters(problem: Problem) -> list[Facts]:
     return found
 
 
-def _gains(problem: Problem) -> Iterator[tuple[int, Entry]]:
-    """The free gains of hysteresis operators, by their number among the free parameters."""
-    for number, column in enumerate(problem.free):
-        entry = problem.model.entries[column]
-        if entry.block.place == Place.OPERATOR and entry.word == "gain" and entry.parameter.unit == "response/drive":
-            yield number, entry
-
-
-def _far_off(problem: Problem) -> Iterator[str]:
-    """A sentence on each gain that the job keeps far from what the response moves by."""
-    for number, entry in _gains(problem):
-        low, high, unit = problem.lower[number], problem.upper[number], problem.units[number]
-        most = problem.declared_bounds(int(problem.free[number]))
-        span = max(map(abs, most)) / max(map(abs, entry.parameter.bounds))
-        if max(abs(low), abs(high)) < LITTLE * span or min(abs(low), abs(high)) > max(map(abs, most)):
-            range_ = f"{low:.4g} to {high:.4g} {unit}"
-            moves = f"{span:.4g} {unit}"
-            yield f"{entry.name} is {range_} in the job, and the response moves by {moves}: are the units right?"
-
-
 def _products(problem: Problem) -> Iterator[str]:
     """A sentence on each gain that is known only together with the shapes of modes."""
     modes = next((block.name for block in problem.model.blocks if issubclass(block, Modes)), None)
-    for _, entry in _gains(problem) if modes else ():
+    for _, entry in free_gains(problem) if modes else ():
         yield f"{entry.name} and the shapes of {modes} are known only as products: give {entry.name} a `value`"

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import stage
+from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.caveats import caveats, start_step_sentence
 from pzt_ident.diagnosis.fit import fit_at
 
@@ -32,6 +33,12 @@ def test_records_that_begin_with_a_step_are_told(which, begins):
     sentence = start_step_sentence(case, fit_of(case))
     assert begins in sentence and bool(sentence) == bool(which) == ("`rest_at`" in sentence)
     assert all((record.name in sentence) == (number in which) for number, record in enumerate(case.records))
+
+
+@pytest.mark.parametrize(("bounds", "asked"), [((0.05, 0.2), False), ((50, 200), True), ((5e-5, 2e-4), True)])
+def test_a_gain_that_no_such_data_have_is_asked_about_beside_the_verdict(bounds, asked):
+    case = stage.case().with_specs({"bouc_wen.gain": Widened(bounds)})
+    assert ("are the units right?" in caveats(case, fit_of(case))) == asked
 
 
 def test_what_the_job_or_the_model_says_is_not_asked_for():

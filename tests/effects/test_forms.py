@@ -157,12 +157,15 @@ def test_the_second_harmonic_of_the_grating():
     np.testing.assert_allclose(alone("encoder_cyclic_error.second", **known), DRIVE + expected, atol=1e-11)
 
 
-def test_plays_are_bent_by_their_knee_and_straight_without():
-    weights = {f"weight_{i + 1}": 0.0 for i in range(10)} | {"weight_5": 0.3, "reach": 40.0}
-    straight = alone("distributed_memory", **weights) - DRIVE
-    np.testing.assert_array_equal(alone("distributed_memory.bent_plays", knee=0.0, **weights) - DRIVE, straight)
+@pytest.mark.parametrize("centre", [0.0, 35.0])
+def test_plays_are_bent_by_their_knee_about_a_centre_and_straight_without(centre):
+    weights = {f"weight_{i + 1}": 0.0 for i in range(10)} | {"weight_5": 0.3, "reach": 40.0, "centre": centre}
+    straight = alone("distributed_memory", **{name: weights[name] for name in weights if name != "centre"}) - DRIVE
+    unbent = alone("distributed_memory.bent_plays", knee=0.0, **weights) - DRIVE
+    np.testing.assert_allclose(unbent, straight, atol=1e-12)
     found = alone("distributed_memory.bent_plays", knee=0.05, **weights) - DRIVE
-    np.testing.assert_allclose(found, 0.3 * np.tanh(0.05 * straight / 0.3) / 0.05, atol=1e-10)
+    bent = np.tanh(0.05 * (straight / 0.3 - centre)) + np.tanh(0.05 * centre)
+    np.testing.assert_allclose(found, 0.3 * bent / 0.05, atol=1e-10)
 
 
 def test_a_loop_that_leans_one_way():

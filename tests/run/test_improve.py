@@ -397,7 +397,7 @@ def test_a_budget_that_is_too_small_says_what_was_not_tried(bent, tmp_path):
 def test_a_budget_is_a_time(bent, budget):
     answer = call("improve", bent, "--budget", budget)
     assert answer.exit_code == 2
-    assert f"{budget!r} is no time above zero: write it as 60s or 5min" in answer.stderr
+    assert f"{budget!r} is no time above zero: write it as 60s, 5min or 1h" in answer.stderr
 
 
 @pytest.mark.parametrize(("samples", "seconds"), [(10, 60), (60_000, 60), (1_000_000, 1000)])
