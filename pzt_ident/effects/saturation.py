@@ -60,8 +60,10 @@ class Knee(OfDisplacement):
     a hyperbolic tangent, and a large p a stop.
     """
 
-    trials = {"sharpness": 4}
-    sharpness = Parameter("1", (1.2, 40), "How sharply the response turns to its limit, p.", scale="log")
+    sizes = tuple(0.24 * 1.09**k for k in range(15))  # a sharp knee shows from where the response comes to it
+    trials = {"sharpness": 3}
+    knee = Parameter("1/response", (0, 4), "One over the displacement at which the response saturates.", null=0)
+    sharpness = Parameter("1", (1.2, 1000), "How sharply the response turns to its limit, p.", scale="log", end="upper")
 
     def prepare(knee, sharpness):
         return knee, sharpness
@@ -83,7 +85,7 @@ class OfAmplifier(Knee):
 
     place = Place.AMPLIFIER
     about_rest = False
-    knee = Parameter("1/drive", (0, 2), "One over the voltage of the rail.", null=0)
+    knee = Parameter("1/drive", (0, 4), "One over the voltage of the rail.", null=0)
 
 
 Saturation.forms = {"displacement": OfDisplacement, "cubic": Cubic, "knee": Knee, "amplifier": OfAmplifier}

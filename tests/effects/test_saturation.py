@@ -24,7 +24,7 @@ def test_the_memory_does_not_saturate():
     np.testing.assert_allclose(response(["bouc_wen"], KNOWN, drive) - found, 0.1 * lost, rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("sharpness", [1.2, 2.0, 40.0])
+@pytest.mark.parametrize("sharpness", [1.2, 2.0, 40.0, 1000.0])
 @pytest.mark.parametrize("item", ["saturation.knee", "saturation.amplifier"])
 def test_a_knee_of_any_sharpness(item, sharpness):
     drive = np.concatenate([np.linspace(-100, 100, 2001), np.geomspace(1e-8, 100, 300)])
