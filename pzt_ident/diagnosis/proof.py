@@ -24,6 +24,7 @@ from pzt_ident.diagnosis.displaced import displaced_operator
 from pzt_ident.diagnosis.fit import NO_WORSE, Fit
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refit
+from pzt_ident.diagnosis.spectral_line import harmonic_of_the_drive, is_own_line
 from pzt_ident.diagnosis.step import effects_without
 from pzt_ident.diagnosis.ties import TIE, strangers
 from pzt_ident.model.chain import Entry
@@ -42,7 +43,8 @@ class Suspect:
     records (None without any), the fit without it, whether that is more than the form of the others may leave, the
     effects of another kind that fitted as well when it was added, its shapes or all its amounts that ended on a bound,
     what it is there if that is declared, the operator of the model that it takes the place of, and the share of all
-    records together where each has its own amount of it: one that has little says nothing against it."""
+    records together where each has its own amount of it: one that has little says nothing against it; and whether it is
+    a line of the spectrum that takes up all of its band."""
 
     effect: str
     identify: float
@@ -54,6 +56,7 @@ class Suspect:
     limit: str = ""
     displaced: str = ""
     of_all: float | None = None
+    is_line: bool = False
 
     @property
     def rank(self) -> tuple[bool, bool, bool, bool, float]:
@@ -86,7 +89,8 @@ class Suspect:
                 f" of a model that stays above the noise with it, where it takes the place of {self.displaced}'s loops."
             )
         elif self.beyond_form and self.limit:
-            rest = f", but {listed(self.on_bounds)} ended on a bound, where the effect is {self.limit}."
+            where = f"{listed(self.on_bounds)} ended on a bound, where the effect" if self.on_bounds else "it"
+            rest = f", but {where} is {self.limit}."
         elif self.beyond_form and self.on_bounds:
             rest = f" of a model that stays above the noise with it, and {listed(self.on_bounds)} ended on a bound."
         elif self.beyond_form:
@@ -101,18 +105,19 @@ def unproven(
 ) -> list[Suspect]:
     """The effects to be taken out again, the least first. known: other fits of the case.
 
-    Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may
-    stand in for what is not in the catalogue: they must also remove together as much of the misfit as given as if the
-    first removed ENOUGH of all records (SINGLE, if it is alone), or DECISIVE where the identification records are at
-    the noise, and EACH of either kind of them, and each of the others half of the rest, and each the share ALONE beside
-    the others; of several that leave more than that each must remove more in proportion, and none is proven where that
-    is more than BESIDE. None may have rivals that fit as well and are not its look-alikes: what any effect takes up is
-    not that of one. And none may have a shape, or all its amounts, on a bound, as a cyclic error that the stroke does
-    not hold twice: it stands for what it is like there, unless the model is adequate with it. Even then none may be in
-    a limit that is declared to be something else. Nor may one take the place of the model's operator, whose loops are
-    gone beside it, unless the model is adequate. What takes up enough and only may be something else is a suspect
-    beside which the others are judged: without it what they take up is nothing. What is proven on one of several axes
-    is proven, whatever another lacks.
+    Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may stand
+    in for what is not in the catalogue: they must also remove together as much of the misfit as given as if the first
+    removed ENOUGH of all records (SINGLE, if it is alone), or DECISIVE where the identification records are at the
+    noise, and EACH of either kind of them, and each of the others half of the rest, and each the share ALONE beside the
+    others; of several that leave more than that each must remove more in proportion, and none is proven where that is
+    more than BESIDE. None may have rivals that fit as well and are not its look-alikes: what any effect takes up is not
+    that of one. And none may have a shape, or all its amounts, on a bound, as a cyclic error that the stroke does not
+    hold twice: it stands for what it is like there, unless the model is adequate with it. Even then none may be in a
+    limit that is declared to be something else, or a low harmonic of the drive. A line of the spectrum that takes up
+    all of its band is proven whatever is left elsewhere. Nor may one take the place of the model's operator, whose
+    loops are gone beside it, unless the model is adequate. What takes up enough and only may be something else is a
+    suspect beside which the others are judged: without it what they take up is nothing. What is proven on one of
+    several axes is proven, whatever another lacks.
     """
     judge, added = partial(taken_out, case, first, now, rivals, known), now.effects[len(first.effects) :]
     suspects, axes = judge(), len(now.problem.model.measured)
@@ -147,7 +152,8 @@ def taken_out(
         judged = [
             suspect(case, first, now, item, rivals.get(item, ()), known, axis) for item in added if item not in held
         ]
-        suspected = [item for item in judged if item.is_doubtful or (item.on_bounds and not explained) or not near]
+        doubted = [item for item in judged if item.is_doubtful or (item.on_bounds and not explained) or not near]
+        suspected = [item for item in doubted if not item.is_line]
         if not suspected:
             break
         least = least_of(case, suspected)
@@ -222,7 +228,8 @@ def suspect(
     without = min(fits, key=lambda fit: fit.total)
     others, on_bounds = strangers(effect, rivals), own_bounds(now, effect)
     on_bounds = () if on_bounds and settle_beyond(case, now, on_bounds) else on_bounds
-    limit = limit_of(now, on_bounds)
+    limit = limit_of(now, on_bounds) or harmonic_of(now, effect)
+    is_line = not limit and is_own_line(case, without, now, effect)
     view, (given, before, after) = case.on_axis(axis), (on_axis(fit, axis) for fit in (first, without, now))
     displaced = "" if adequate(view, given, after) else displaced_operator(case, first, now, effect)
     validate = None
@@ -232,7 +239,7 @@ def suspect(
     if validate is not None and differs_by_record(effect):
         of_all = share_explained(before.total, after.total, view.floor)
         clear = removed_rms(before.total, after.total) > form_of_others(view, given.total)
-        return Suspect(effect, identify, validate, without, clear, others, on_bounds, limit, displaced, of_all)
+        return Suspect(effect, identify, validate, without, clear, others, on_bounds, limit, displaced, of_all, is_line)
     clear = beyond_form(view, given, before, after)
     return Suspect(effect, identify, validate, without, clear, others, on_bounds, limit, displaced)
 
@@ -278,7 +285,14 @@ def limit_of(fit: Fit, on_bounds: Collection[str]) -> str:
 
 def is_limited(fit: Fit) -> bool:
     """Whether the last effect of a fit is in a limit that is declared to be something else."""
-    return bool(limit_of(fit, own_bounds(fit, fit.effects[-1])))
+    last = fit.effects[-1]
+    return bool(limit_of(fit, own_bounds(fit, last)) or harmonic_of(fit, last))
+
+
+def harmonic_of(fit: Fit, effect: str) -> str:
+    """What an effect is that is a line of the spectrum at a low harmonic of all drives; empty for any other."""
+    order = harmonic_of_the_drive(fit, effect)
+    return f"harmonic {order} of the drive, as a nonlinearity of the stage makes it" if order else ""
 
 
 def entries_of(fit: Fit) -> dict[str, Entry]:

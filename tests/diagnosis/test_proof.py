@@ -50,13 +50,18 @@ def suspects_of(monkeypatch):
         sizes=None,
         larger=(),
         instead=(),
+        lines=(),
+        harmonics=(),
         **declared,
     ):
         """sizes: the parameters of a model without each effect. larger: those that would settle beyond their bounds.
-        instead: those that take the place of the operator. declared: of the parameters with shapes."""
+        instead: those that take the place of the operator. lines: those of
+        the spectrum. harmonics: those of the drive. declared: of the parameters with shapes."""
         validation = validation or errors
         operator = lambda case, first, now, effect: "bouc_wen" if effect in instead else ""  # noqa: E731
         monkeypatch.setattr(proof, "displaced_operator", operator)
+        monkeypatch.setattr(proof, "harmonic_of", lambda now, effect: "the drive's" if effect in harmonics else "")
+        monkeypatch.setattr(proof, "is_own_line", lambda case, without, now, effect: effect in lines)
 
         def refitted(case, before, effects, guess):
             left = frozenset(effects)
@@ -331,3 +336,14 @@ def test_what_is_proven_on_one_axis_is_proven_whatever_another_lacks():
     assert unproven(case, first, now, {}) == []
     alone = refit(case, first, ("drift",), {})
     assert [item.effect for item in unproven(case, first, alone, {})] == ["drift"]
+
+
+def test_a_line_of_the_spectrum_is_proven_beside_any_rest(taken_out):
+    errors = of(none=30, a=25, b=27, ab=22)
+    assert {*taken_out(errors)} == {"a", "b"}
+    assert taken_out(errors, lines=["a"]) == ["b"]
+
+
+def test_a_harmonic_of_the_drive_is_none_even_where_the_model_is_adequate(taken_out):
+    assert taken_out(of(none=30, a=1.0)) == []
+    assert taken_out(of(none=30, a=1.0), harmonics=["a"]) == ["a"]

@@ -1,0 +1,76 @@
+"""A line of the spectrum is told from what is left elsewhere, and from the harmonics of the drive."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stage
+from pzt_ident.diagnosis.fit import fit_at
+from pzt_ident.diagnosis.proof import is_limited
+from pzt_ident.diagnosis.refit import refit
+from pzt_ident.diagnosis.spectral_line import is_own_line, order_of
+from pzt_ident.diagnosis.staircase import improve
+from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.model.registry import blocks
+
+HUM = "periodic_disturbance"
+
+
+def others():
+    return tuple({*blocks.effects()} - {HUM})
+
+
+def slow(samples, seed, size):
+    """What no effect of the catalogue explains: noise below a few Hz."""
+    steps = np.random.default_rng(seed).normal(size=samples // 40 + 2)
+    course = np.interp(np.arange(samples), 40 * np.arange(steps.size), steps)
+    return size * course / np.std(course)
+
+
+def hum_of(record, frequency, size, cycles=np.inf):
+    seed = len(record.name)
+    burst = (record.time * frequency) % (3 * cycles) < cycles if np.isfinite(cycles) else 1.0
+    return np.sqrt(2) * size * np.sin(2 * np.pi * frequency * record.time + seed) * burst
+
+
+@pytest.mark.parametrize(("size", "cycles", "named"), [(25e-9, np.inf, True), (0.0, np.inf, False), (40e-9, 20, False)])
+def test_a_hum_beside_what_nothing_explains_is_named(size, cycles, named):
+    """And none that comes and goes, of which a line takes up a part of its band."""
+
+    def change(record):
+        return slow(record.samples, record.samples, 40e-9) + hum_of(record, 31.3, size, cycles)
+
+    case = stage.with_response(stage.case(), change)
+    case.ruled_out = others()
+    found = improve(case, first_fit(case, 0))
+    assert found.end.effects == ((HUM,) if named else ())
+    assert found.last.verdict == "unexplained"
+
+
+def periodic(frequency):
+    """A stage that is driven by a sine of 2 Hz, and a hum."""
+    drive = 50 - 50 * np.cos(4 * np.pi * 5e-3 * np.arange(1000))
+    case = stage.case(drives=[drive, 0.8 * drive])
+    return stage.with_response(case, lambda record: hum_of(record, frequency, 50e-9))
+
+
+@pytest.mark.parametrize(("frequency", "limited"), [(6.0, True), (6.9, False), (50.0, False)])
+def test_a_low_harmonic_of_the_drive_is_as_well_the_stage_itself(frequency, limited):
+    case = periodic(frequency)
+    first = first_fit(case, 0)
+    problem = case.problem((HUM,))
+    point = problem.unit_point(first.values | {f"{HUM}.frequency": frequency})
+    assert is_limited(fit_at((HUM,), problem, point)) == limited
+
+
+def test_a_drive_that_does_not_repeat_has_no_harmonics():
+    record = periodic(6.0).records[0]
+    assert order_of(record, 6.0) == 3
+    assert order_of(replace(record, drive=np.cumsum(record.drive, axis=1)), 6.0) == 0
+
+
+def test_an_effect_without_a_frequency_is_no_line():
+    case = stage.case(stage.EFFECTS["creep"])
+    first = first_fit(case, 0)
+    assert not is_own_line(case, first, refit(case, first, ("creep",), {}), "creep")
