@@ -232,16 +232,15 @@ def suspect(
     is_line = not limit and is_own_line(case, without, now, effect)
     view, (given, before, after) = case.on_axis(axis), (on_axis(fit, axis) for fit in (first, without, now))
     displaced = "" if adequate(view, given, after) else displaced_operator(case, first, now, effect)
-    validate = None
+    validate = of_all = None
     if after.validate is not None and before.validate is not None:
         validate = share_explained(before.validate, after.validate, view.floor)
     identify = share_explained(before.identify, after.identify, view.floor)
+    clear = beyond_form(view, given, before, after)
     if validate is not None and differs_by_record(effect):
         of_all = share_explained(before.total, after.total, view.floor)
         clear = removed_rms(before.total, after.total) > form_of_others(view, given.total)
-        return Suspect(effect, identify, validate, without, clear, others, on_bounds, limit, displaced, of_all, is_line)
-    clear = beyond_form(view, given, before, after)
-    return Suspect(effect, identify, validate, without, clear, others, on_bounds, limit, displaced)
+    return Suspect(effect, identify, validate, without, clear, others, on_bounds, limit, displaced, of_all, is_line)
 
 
 def own_bounds(fit: Fit, effect: str) -> tuple[str, ...]:
