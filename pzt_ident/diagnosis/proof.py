@@ -27,6 +27,7 @@ from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.spectral_line import harmonic_of_the_drive, is_own_line
 from pzt_ident.diagnosis.step import effects_without
 from pzt_ident.diagnosis.ties import TIE, strangers
+from pzt_ident.diagnosis.unequal import differs_in_size
 from pzt_ident.model.chain import Entry
 from pzt_ident.model.registry import blocks, phrase_of, word_of
 
@@ -113,7 +114,8 @@ def unproven(
     more than BESIDE. None may have rivals that fit as well and are not its look-alikes: what any effect takes up is not
     that of one. And none may have a shape, or all its amounts, on a bound, as a cyclic error that the stroke does not
     hold twice: it stands for what it is like there, unless the model is adequate with it. Even then none may be in a
-    limit that is declared to be something else, or a low harmonic of the drive. A line of the spectrum that takes up
+    limit that is declared to be something else, or a low harmonic of the drive, or of
+    another size in each record where it is the device's. A line of the spectrum that takes up
     all of its band is proven whatever is left elsewhere. Nor may one take the place of the model's operator, whose
     loops are gone beside it, unless the model is adequate. What takes up enough and only may be something else is a
     suspect beside which the others are judged: without it what they take up is nothing. What is proven on one of
@@ -228,7 +230,7 @@ def suspect(
     without = min(fits, key=lambda fit: fit.total)
     others, on_bounds = strangers(effect, rivals), own_bounds(now, effect)
     on_bounds = () if on_bounds and settle_beyond(case, now, on_bounds) else on_bounds
-    limit = limit_of(now, on_bounds) or harmonic_of(now, effect)
+    limit = limit_of(now, on_bounds) or harmonic_of(now, effect) or size_of(now, effect)
     is_line = not limit and is_own_line(case, without, now, effect)
     view, (given, before, after) = case.on_axis(axis), (on_axis(fit, axis) for fit in (first, without, now))
     displaced = "" if adequate(view, given, after) else displaced_operator(case, first, now, effect)
@@ -285,13 +287,18 @@ def limit_of(fit: Fit, on_bounds: Collection[str]) -> str:
 def is_limited(fit: Fit) -> bool:
     """Whether the last effect of a fit is in a limit that is declared to be something else."""
     last = fit.effects[-1]
-    return bool(limit_of(fit, own_bounds(fit, last)) or harmonic_of(fit, last))
+    return bool(limit_of(fit, own_bounds(fit, last)) or harmonic_of(fit, last) or size_of(fit, last))
 
 
 def harmonic_of(fit: Fit, effect: str) -> str:
     """What an effect is that is a line of the spectrum at a low harmonic of all drives; empty for any other."""
     order = harmonic_of_the_drive(fit, effect)
     return f"harmonic {order} of the drive, as a nonlinearity of the stage makes it" if order else ""
+
+
+def size_of(fit: Fit, effect: str) -> str:
+    """What an effect is whose size is another one in each record, though it is the device's; empty for any other."""
+    return "of another size in each record, as the device is not" if differs_in_size(fit, effect) else ""
 
 
 def entries_of(fit: Fit) -> dict[str, Entry]:

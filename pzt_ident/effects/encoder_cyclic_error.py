@@ -64,6 +64,7 @@ class Rezeroed(EncoderCyclicError):
     amounts of a record would bend its reading like any curve.
     """
 
+    alike = ("sine", "cosine")
     sine = Parameter("response", (-0.05, 0.05), "Error of a record, odd about x = 0, a.", null=0, per_record=True)
     cosine = Parameter("response", (-0.05, 0.05), "Error of a record, even about x = 0, b.", null=0, per_record=True)
     pitch = Parameter("response", (0.01, 0.25), "Period of the grating's signal, p.", scale="log")

@@ -61,6 +61,7 @@ def suspects_of(monkeypatch):
         operator = lambda case, first, now, effect: "bouc_wen" if effect in instead else ""  # noqa: E731
         monkeypatch.setattr(proof, "displaced_operator", operator)
         monkeypatch.setattr(proof, "harmonic_of", lambda now, effect: "the drive's" if effect in harmonics else "")
+        monkeypatch.setattr(proof, "size_of", lambda now, effect: "")
         monkeypatch.setattr(proof, "is_own_line", lambda case, without, now, effect: effect in lines)
 
         def refitted(case, before, effects, guess):
