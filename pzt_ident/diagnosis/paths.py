@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from pzt_ident.diagnosis.budget import PROVING
+from pzt_ident.diagnosis.bounds import continued, stands_in, widened
+from pzt_ident.diagnosis.budget import PROVING, WHOLE
 from pzt_ident.diagnosis.candidates import Candidate
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, climb
@@ -22,7 +23,8 @@ from pzt_ident.diagnosis.exchange import (
 )
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.proof import Suspect, unproven
-from pzt_ident.diagnosis.step import Step, StepListener, explained_share
+from pzt_ident.diagnosis.refit import refit
+from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explained_share
 from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
 from pzt_ident.model.registry import word_of
@@ -73,7 +75,29 @@ def finish(case: Case, first: Fit, path: Staircase) -> Fit | None:
     """Take back what a path can do without, or does not prove; see `take_back`."""
     path.steps += exchange_main_mode(case, first, path.end)
     path.steps += exchange_limits(case, first, path.end)
+    if wider := exchange_for_bounds(case, first, path.end):
+        path.steps += wider
+        path.case = case = wider[0].case or case
     return take_back(case, first, path)
+
+
+def exchange_for_bounds(case: Case, first: Fit, now: Fit) -> list[Step]:
+    """The steps to wider bounds and from the effect that made up for them, where a model near the noise rests on bounds
+    of the job and fits as well beyond them without one of its effects."""
+    added = now.effects[len(first.effects) :]
+    specs = widened(case, now) if added and near_noise(case, first, now) else {}
+    if not specs or not case.budget.allows("wider bounds", WHOLE):
+        return []
+    wide = case.with_specs(specs)
+    for effect in reversed(added):
+        beyond = refit(wide, now, effects_without(now, effect), {})
+        if removed_rms(beyond.total, now.total) < TIE * case.floor and not stands_in(wide, case, beyond):
+            both = continued(wide, now)
+            return [
+                Step(both, explained=explained_share(case, now, both), change=WIDER, case=wide),
+                Step(beyond, None, effect, {}, explained_share(case, both, beyond)),
+            ]
+    return []
 
 
 def is_adequate(path: Staircase) -> bool:

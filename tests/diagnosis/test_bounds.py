@@ -21,11 +21,12 @@ from pzt_ident.diagnosis.bounds import (
     widened,
 )
 from pzt_ident.diagnosis.budget import Budget
-from pzt_ident.diagnosis.climb import Staircase
+from pzt_ident.diagnosis.climb import WIDER, Staircase
 from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.paths import improve_within
+from pzt_ident.diagnosis.paths import exchange_for_bounds, improve_within
+from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.staircase import bounds_beside, improve, is_cheaper
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step
@@ -279,3 +280,16 @@ def test_wider_bounds_without_an_effect_are_the_cheaper_account_of_what_no_effec
     wide = Staircase([Step(replace(first, identify=left, validate=left))], diagnose(case, first))
     monkeypatch.setattr(staircase, "keeps_within", lambda *arguments: within)
     assert is_cheaper(wide, Staircase([Step(given)], wide.last), case) == cheaper
+
+
+@pytest.mark.parametrize(("low", "stands_in"), [(0.0826, True), (0.05, False)])
+def test_an_effect_that_made_up_for_a_bound_of_the_job_gives_way_to_a_wider_one(low, stands_in):
+    """The gain is 0.082 um/V; a growth of the gain with the amplitude stands for a bound above it."""
+    case = stage.case(stage.EFFECTS["quadratic_gain"]).with_specs({"bouc_wen.gain": Widened((low, 0.2))})
+    first = first_fit(case, 0)
+    now = refit(case, refit(case, first, ("quadratic_gain",), {}), ("quadratic_gain", "amplitude_gain"), {})
+    steps = exchange_for_bounds(case, first, now)
+    assert [(step.change, step.removed) for step in steps] == [(WIDER, None), ("", "amplitude_gain")] * stands_in
+    if steps:
+        assert steps[-1].fit.values["bouc_wen.gain"] == pytest.approx(0.082, rel=0.01)
+        assert steps[0].case.specs["bouc_wen.gain"].bounds[0] < 0.082

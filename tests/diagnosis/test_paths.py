@@ -52,7 +52,7 @@ def taken_of(several, taken_back, monkeypatch):
     monkeypatch.setattr(paths, "diagnose", lambda case, first: SimpleNamespace())
     monkeypatch.setattr(paths, "first_candidates", lambda case, first, diagnosis: [*range(len(several))])
     monkeypatch.setattr(paths, "climb", climb)
-    for exchange in ("exchange_main_mode", "exchange_limits"):
+    for exchange in ("exchange_main_mode", "exchange_limits", "exchange_for_bounds"):
         monkeypatch.setattr(paths, exchange, lambda *arguments: [])
     monkeypatch.setattr(paths, "take_back", take_back)
     monkeypatch.setattr(paths, "find_rivals", lambda *arguments: None)
