@@ -22,14 +22,15 @@ SEEN = 3.0  # noise floors: loops that are narrower say nothing
 
 
 def displaced_operator(case: Case, first: Fit, now: Fit, effect: str) -> str:
-    """The operator of the model whose loops an effect with loops of its own has taken away on a measured axis; empty
-    where there is none."""
+    """The operator of the model whose loops an effect with loops of its own has taken away on all measured axes that
+    have any; empty where there is none."""
     if not blocks[effect].loops:
         return ""
     given, left = loop_widths(first), loop_widths(now)
     seen = given > SEEN * case.floors * first.problem.sizes
     names = [block.name for block in operators_of(now).blocks]
-    return names[0] if names and (seen & (left < REMAINDER * given)).any() else ""
+    gone = bool(seen.any() and (left < REMAINDER * given)[seen].all())
+    return names[0] if names and gone else ""
 
 
 def loop_widths(fit: Fit) -> Array:

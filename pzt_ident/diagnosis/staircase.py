@@ -26,6 +26,8 @@ from pzt_ident.diagnosis.unmeasured import OWN, own_mechanics, with_own_mechanic
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
 from pzt_ident.model.registry import word_of
 
+BESIDE = 4  # of the refits with one effect: those that are gone on with beyond the bounds of the job
+
 
 def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -> Staircase:
     """The staircase from the model as given to the one with all effects that are proven, judged by the records that can
@@ -175,12 +177,20 @@ def only_adds(fit: Fit) -> bool:
 def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fit] | None:
     """The case with the wider bounds that the model with one effect needs, and the fit with it there; None where there
     are none. Only where no effect passes within the bounds of the job, or the one that is best on the identification
-    records leaves there less than half of what the best that passes leaves."""
+    records leaves there less than half of what the best that passes leaves; else that of the BESIDE best which is
+    adequate there, where none is within."""
     fits = [candidate.fit for candidate in diagnosis.candidates if candidate.fit]
     passing = [candidate.fit.identify for candidate in diagnosis.passing if candidate.fit]
     best = min(fits, key=lambda fit: fit.identify, default=first)
     by_far = not passing or share_explained(min(passing), best.identify, case.floor) >= DECISIVE
-    return beyond_bounds(case, first, best) if by_far else None
+    if beyond := beyond_bounds(case, first, best) if by_far else None:
+        return beyond
+    enough = any(adequate(case, first, fit) for fit in fits)
+    for fit in [] if enough else sorted(fits, key=lambda fit: fit.identify)[:BESIDE]:
+        beyond = beyond_bounds(case, first, fit) if case.budget.allows("wider bounds") else None
+        if beyond and adequate(case, first, beyond[1]):
+            return beyond
+    return None
 
 
 def improve_own(case: Case, first: Fit, on_step: StepListener) -> Staircase | None:
