@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from pzt_ident.diagnosis.bounds import are_decisive, beyond_bounds, brought_back, continued, stands_in
+from pzt_ident.diagnosis.bounds import are_decisive, beyond_bounds, brought_back, continued, stands_in, widened
 from pzt_ident.diagnosis.budget import WHOLE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase
@@ -177,8 +177,8 @@ def only_adds(fit: Fit) -> bool:
 def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fit] | None:
     """The case with the wider bounds that the model with one effect needs, and the fit with it there; None where there
     are none. Only where no effect passes within the bounds of the job, or the one that is best on the identification
-    records leaves there less than half of what the best that passes leaves; else that of the BESIDE best which is
-    adequate there, where none is within."""
+    records leaves there less than half of what the best that passes leaves; else that of the next best which is
+    adequate beyond bounds of the job, where none is within."""
     fits = [candidate.fit for candidate in diagnosis.candidates if candidate.fit]
     passing = [candidate.fit.identify for candidate in diagnosis.passing if candidate.fit]
     best = min(fits, key=lambda fit: fit.identify, default=first)
@@ -186,8 +186,9 @@ def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, F
     if beyond := beyond_bounds(case, first, best) if by_far else None:
         return beyond
     enough = any(adequate(case, first, fit) for fit in fits)
-    for fit in [] if enough else sorted(fits, key=lambda fit: fit.identify)[:BESIDE]:
-        beyond = beyond_bounds(case, first, fit) if case.budget.allows("wider bounds") else None
+    for fit in [] if enough else sorted(fits, key=lambda fit: fit.identify)[1:BESIDE]:
+        of_the_job = widened(case, fit).keys() <= case.specs.keys()
+        beyond = beyond_bounds(case, first, fit) if of_the_job and case.budget.allows("wider bounds") else None
         if beyond and adequate(case, first, beyond[1]):
             return beyond
     return None

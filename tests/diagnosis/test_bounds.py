@@ -1,6 +1,7 @@
 """A bound that is too narrow is a cheaper account than an effect, and is told from one."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -293,3 +294,19 @@ def test_an_effect_that_made_up_for_a_bound_of_the_job_gives_way_to_a_wider_one(
     if steps:
         assert steps[-1].fit.values["bouc_wen.gain"] == pytest.approx(0.082, rel=0.01)
         assert steps[0].case.specs["bouc_wen.gain"].bounds[0] < 0.082
+
+
+@pytest.mark.parametrize(
+    ("best", "beyond", "taken"), [(1.8, 1.0, True), (1.0, 1.0, False), (1.8, 1.6, False)], ids=["", "enough", "in vain"]
+)
+def test_another_effect_that_is_adequate_beyond_a_bound_of_the_job_is_gone_on_with(monkeypatch, best, beyond, taken):
+    """In noise floors; the best one rests on no bound."""
+    case = stage.case(fixed={"bouc_wen.alpha": 0.55})
+    first = first_fit(case, 0)
+    lowest, other = (replace(first, identify=left * case.floor, validate=left * case.floor) for left in (best, 2.2))
+    wide = replace(first, identify=beyond * case.floor, validate=beyond * case.floor)
+    passing = [SimpleNamespace(fit=lowest), SimpleNamespace(fit=other)]
+    monkeypatch.setattr(staircase, "widened", lambda case, fit: {"bouc_wen.alpha": None} if fit is other else {})
+    monkeypatch.setattr(staircase, "beyond_bounds", lambda case, first, fit: (case, wide) if fit is other else None)
+    found = bounds_beside(case, first, SimpleNamespace(candidates=passing, passing=passing))
+    assert found == ((case, wide) if taken else None)

@@ -59,3 +59,21 @@ def test_a_polynomial_of_the_drive_is_no_loop():
     drive = np.sin(np.arange(500) / 20) * 3 + 1
     assert beyond_curve(drive, drive**7 - drive**2) < 1e-15 * np.var(drive**7)
     assert beyond_curve(np.ones(9), np.arange(9.0)) == 0
+
+
+@pytest.mark.parametrize(("betas", "displaced"), [((0.0, 0.0), "bouc_wen"), ((0.0, 0.015), "")])
+def test_an_operator_is_displaced_on_all_axes_or_none(plain, betas, displaced):
+    case = stage.beside(plain, plain)
+    given = with_axes(case, ())
+    now = with_axes(
+        case, ("friction",), **{f"{axis}.bouc_wen.beta": beta for axis, beta in zip("xy", betas, strict=True)}
+    )
+    assert displaced_operator(case, given, now, "friction") == displaced
+
+
+def with_axes(case, effects, **changed):
+    """The same of a stage of two axes."""
+    problem = case.problem(effects)
+    known = {f"{axis}.{word}": value for axis in "xy" for word, value in (stage.STAGE | FRICTION).items()} | changed
+    units = dict(zip(problem.names, problem.factors[problem.free], strict=True))
+    return fit_at(effects, problem, problem.unit_point({name: known[name] / units[name] for name in problem.names}))
