@@ -12,13 +12,20 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.history import has_history
 from pzt_ident.diagnosis.locate import locate
+from pzt_ident.diagnosis.refining import refining_sentence
 from pzt_ident.search.gains import far_off
 
 
 def caveats(case: Case, fit: Fit, said: str = "") -> str:
     """The sentences about units, additions, effects on measured axes only, bounds, and records; none that was said."""
     units = "".join(f" {sentence}" for sentence in far_off(fit.problem))
-    of_fit = units, addition_sentences(fit), measured_only_sentence(case, fit), bounds_sentence(fit)
+    of_fit = (
+        units,
+        refining_sentence(fit),
+        addition_sentences(fit),
+        measured_only_sentence(case, fit),
+        bounds_sentence(fit),
+    )
     sentences = *of_fit, start_step_sentence(case, fit), case.caveat
     return "".join(sentence for sentence in sentences if sentence not in said)
 

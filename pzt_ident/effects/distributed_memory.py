@@ -20,6 +20,7 @@ class DistributedMemory(Plays):
 
     place = Place.READOUT
     form = Form("plays", ("plays", "fine_plays", "bent_plays"), "How many plays, and what each adds.")
+    refines = ("prandtl_ishlinskii",)
     branches = PLAYS
     weight = Parameter("1", (-0.5, 0.5), "Weight of the i-th play over the gain.", null=0, count=PLAYS)
     reach = Parameter("drive", (0.05, 1), "Half-width of the widest play.", value=0.4)
@@ -53,6 +54,7 @@ class BentPlays(DistributedMemory):
     Model Development for AFM Stage Mechanisms, eq. 7 to 14.
     """
 
+    refines = ()
     trials = {"knee": 5, "centre": 3}
     knee = Parameter("1/drive", (0, 10), "One over the voltage over which the share of a play levels off.", null=0)
     centre = Parameter("drive", (-1, 1), "Voltage about which it levels off.")

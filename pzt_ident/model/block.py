@@ -84,6 +84,7 @@ class Block:
     forms: ClassVar[Mapping[str, type[Block]]] = {}  # variants, by the word of a `Form` or of an effect in their step
     wrong_way: ClassVar[str] = ""  # the condition under which the output first moves against its input
     about_rest: ClassVar[bool] = False  # whether it is nonlinear in the displacement from rest
+    refines: ClassVar[tuple[str, ...]] = ()  # operators which with it are no more than finer
     alike: ClassVar[tuple[str, ...]] = ()  # parameters of each record that together are as large in all of them
     loops: ClassVar[bool] = False  # whether it is a hysteresis operator of its own, beside the model's
     solvable: ClassVar[bool] = True  # whether `step` has a stable inverse, sample by sample (see control.inverse)

@@ -20,6 +20,7 @@ from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, removed_rms
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.history import history_sentence
 from pzt_ident.diagnosis.misfit import share_explained
+from pzt_ident.diagnosis.refining import refined_operator
 from pzt_ident.diagnosis.ties import TWIN
 from pzt_ident.diagnosis.unmeasured import own_mechanics_sentence
 from pzt_ident.diagnosis.verdict import Diagnosis
@@ -43,7 +44,7 @@ def improvement_of(
     intervals of the last model, and what was worked of it."""
     steps, suspects = staircase.steps, sorted(staircase.suspects, key=lambda suspect: -suspect.share)
     reason, end = last["reason"], steps[-1].fit
-    added = [effect for effect in end.effects if effect not in job.effects]
+    added = [effect for effect in end.effects if effect not in job.effects and not refined_operator(end, effect)]
     reason += "".join(f" {suspect.why_not}" for suspect in suspects)
     reason += prediction_sentence(case, steps)
     undecided = dict.fromkeys(step.tied for step in ties(steps))
