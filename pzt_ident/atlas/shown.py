@@ -53,11 +53,20 @@ class Shown:
         return Stage([blocks[item] for item in items], VALUES | self.fixed)
 
     def _share(self) -> float:
-        """The largest by factors of two at which the change is as small as it should be."""
+        """The largest at which the change is as small as it should be: by factors of two, and closer where that leaves
+        next to nothing."""
         share, least = LARGEST, 1e-3
-        while share > least and not max(self._change(drives()[name], share) for name in SEEN_IN) < VISIBLE:
+        while share > least and not self._largest(share) < VISIBLE:
             share /= 2
+        above = 2 * share
+        while share < LARGEST and self._largest(share) < VISIBLE / 8 and above > 1.01 * share:
+            middle = (share * above) ** 0.5
+            share, above = (middle, above) if self._largest(middle) < VISIBLE else (share, middle)
         return share
+
+    def _largest(self, share: float) -> float:
+        """The largest change of the response over the stroke in any loop or hold."""
+        return max(self._change(drives()[name], share) for name in SEEN_IN)
 
     def _change(self, drive: Drive, share: float) -> float:
         """The largest change of the response over the stroke, NaN where the item at that share cannot be simulated."""

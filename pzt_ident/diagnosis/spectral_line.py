@@ -65,9 +65,9 @@ def power_in(signals: Array, band: NDArray[np.bool_]) -> float:
 
 def harmonic_of_the_drive(fit: Fit, effect: str) -> int:
     """Which low harmonic of the drives a line of the spectrum is, the lowest one; 0 where it is none in one record."""
-    frequencies = frequencies_of(fit, effect)
-    orders = [order_of(record, frequency) for record in fit.problem.records for frequency in frequencies]
-    return min(orders, default=0)
+    if not (frequencies := frequencies_of(fit, effect)):
+        return 0
+    return min(order_of(record, frequency) for record in fit.problem.records for frequency in frequencies)
 
 
 def order_of(record: Record, frequency: float) -> int:

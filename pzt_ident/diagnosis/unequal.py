@@ -18,6 +18,8 @@ def differs_in_size(fit: Fit, effect: str) -> bool:
         for number, entry in enumerate(model.amounts)
         if entry.block.name == word_of(effect) and entry.word in alike
     ]
+    if not own:
+        return False
     theta = fit.problem.parameters(fit.point)
     for axis in {axis for _, axis in own}:
         columns = [len(model.names) + number for number, each in own if each == axis]

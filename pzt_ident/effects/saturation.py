@@ -13,7 +13,7 @@ class Saturation(Block):
     """
 
     place = Place.READOUT
-    form = Form("voltage", ("voltage", "displacement", "cubic", "knee", "amplifier"), "What saturates, and how.")
+    form = Form("voltage", ("voltage", "displacement", "cubic", "knee"), "What saturates, and how.")
     sizes = (0.1, 0.3, 0.8)
     knee = Parameter("1/drive", (0, 2), "One over the voltage at which the response saturates.", null=0)
     look_alikes = ("quadratic_gain", "cubic_stiffness", "encoder_cyclic_error")
@@ -63,7 +63,7 @@ class Knee(OfDisplacement):
     sizes = tuple(0.24 * 1.09**k for k in range(15))  # a sharp knee shows from where the response comes to it
     trials = {"sharpness": 3}
     knee = Parameter("1/response", (0, 4), "One over the displacement at which the response saturates.", null=0)
-    sharpness = Parameter("1", (1.2, 1000), "How sharply the response turns to its limit, p.", scale="log", end="upper")
+    sharpness = Parameter("1", (1.2, 500), "How sharply the response turns to its limit, p.", scale="log", end="upper")
 
     def prepare(knee, sharpness):
         return knee, sharpness
@@ -77,15 +77,4 @@ class Knee(OfDisplacement):
         return u * (1 + expm1(-log1p(far) / sharpness)) / max(x, 1.0)
 
 
-class OfAmplifier(Knee):
-    """The amplifier reaches its rails, ahead of the hysteresis: v = u / (1 + |u / U|^p)^(1 / p), knee = 1 / U.
-
-    Rapp (1991), Proc. 2nd European Conf. on Satellite Communications, 179.
-    """
-
-    place = Place.AMPLIFIER
-    about_rest = False
-    knee = Parameter("1/drive", (0, 4), "One over the voltage of the rail.", null=0)
-
-
-Saturation.forms = {"displacement": OfDisplacement, "cubic": Cubic, "knee": Knee, "amplifier": OfAmplifier}
+Saturation.forms = {"displacement": OfDisplacement, "cubic": Cubic, "knee": Knee}

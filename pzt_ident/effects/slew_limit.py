@@ -70,7 +70,7 @@ class TwoSided(SlewLimit):
     """
 
     trials = {"ratio": 4}
-    ratio = Parameter("1", (0.2, 5), "Slowness of a falling voltage over that of a rising one.", scale="log")
+    ratio = Parameter("1", (0.2, 10), "Slowness of a falling voltage over that of a rising one.", scale="log")
 
     def prepare(slowness, ratio, dt):
         return (dt / slowness, dt / (slowness * ratio)) if slowness != 0 else (inf, inf)
