@@ -47,7 +47,7 @@ class FinePlays(DistributedMemory):
 
 class BentPlays(DistributedMemory):
     """Plays whose share levels off about a centre, so that equal loops differ with the bias as in a Preisach operator:
-    y = d (u + sum_i w_i (e(F_i[u] - centre) - e(-centre))) - h, e(v) = tanh(knee v) / knee.
+    y = d (u + sum_i w_i b_i) - h, b_i = e(F_i[u] - centre) - e(-centre), e(v) = tanh(knee v) / knee.
 
     Generalised Prandtl-Ishlinskii operator with envelopes: Al Janaideh, Rakheja & Su (2011), IEEE/ASME Trans.
     Mechatronics 16, 734. For relays with normally distributed interaction fields tanh stands for erf: Smith et al.,
