@@ -9,9 +9,9 @@ from pzt_ident.diagnosis.budget import PROOF, PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.fit import Fit, fit_at
+from pzt_ident.diagnosis.limit import is_limited, own_bounds
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.modes import mechanics_at_main_mode
-from pzt_ident.diagnosis.proof import is_limited, own_bounds
 from pzt_ident.diagnosis.refit import refit, refit_beside, start_of
 from pzt_ident.diagnosis.score import applicable, fitting_forms, scorer_of
 from pzt_ident.diagnosis.starts import restart

@@ -30,7 +30,7 @@ from pzt_ident.diagnosis.criteria import (
     removes_enough,
 )
 from pzt_ident.diagnosis.fit import Fit
-from pzt_ident.diagnosis.proof import is_limited
+from pzt_ident.diagnosis.limit import is_limited
 from pzt_ident.diagnosis.reasons import (
     identification_only_sentence,
     missing_sentence,

@@ -9,7 +9,8 @@ import stage
 from pzt_ident.diagnosis import proof
 from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.fit import Fit
-from pzt_ident.diagnosis.proof import settle_beyond, taken_out, unproven
+from pzt_ident.diagnosis.limit import settle_beyond
+from pzt_ident.diagnosis.proof import taken_out, unproven
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.model.parameter import Parameter

@@ -7,7 +7,7 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis.fit import fit_at
-from pzt_ident.diagnosis.proof import is_limited
+from pzt_ident.diagnosis.limit import is_limited
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.spectral_line import is_own_line, order_of
 from pzt_ident.diagnosis.staircase import improve

@@ -5,7 +5,7 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis.fit import fit_at
-from pzt_ident.diagnosis.proof import is_limited
+from pzt_ident.diagnosis.limit import is_limited
 from pzt_ident.diagnosis.unequal import differs_in_size
 from pzt_ident.model.registry import blocks
 

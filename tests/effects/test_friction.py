@@ -2,6 +2,7 @@
 equation of motion against that equation, integrated."""
 
 import math
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -112,15 +113,21 @@ def stepped(change, state, force, dt, steps=10):
     return np.array(found)
 
 
+def errors_under_a_chirp(simulated, truth, *steps):
+    """Largest error over the span of the displacement, at each sample time; both of (force, dt)."""
+    errors = []
+    for dt in steps:
+        time = np.arange(0, 0.02, dt)
+        force = 2 * np.sin(2 * np.pi * (200 + 3e4 * time) * time)
+        expected = truth(force, dt)
+        errors.append(np.abs(simulated(force, dt) - expected).max() / np.ptp(expected))
+    return errors
+
+
 @pytest.mark.parametrize("law", [{}, {"cubic": 2e-3}, {"stiction": 0.3, "stribeck": 2e3}, {"reach": 2.0}])
 def test_a_chirp_moves_it_as_the_equation_of_motion_says(law):
     """Error of second order in the sample time."""
-    errors = []
-    for dt in (2e-5, 1e-5):
-        time = np.arange(0, 0.02, dt)
-        force = 2 * np.sin(2 * np.pi * (200 + 3e4 * time) * time)
-        truth = integrated(force, dt, **law)
-        errors.append(np.abs(moved(force, dt, **law) - truth).max() / np.ptp(truth))
+    errors = errors_under_a_chirp(partial(moved, **law), partial(integrated, **law), 2e-5, 1e-5)
     assert errors[1] < 2e-3
     assert errors[1] < 0.4 * errors[0]
 
@@ -143,19 +150,19 @@ def test_ringing_wears_off_within_the_reach():
 @pytest.mark.parametrize(("dry", "speed", "cubic"), [(0.3, 2e3, 0.0), (0.3, 2e3, 2e-3), (1.0, 5e3, 0.0)])
 def test_a_chirp_moves_it_under_coulomb_friction_as_the_equation_of_motion_says(dry, speed, cubic):
     """Error of second order in the sample time."""
-    errors, law = [], {"dry": dry, "speed": speed, "cubic": cubic}
+    law = {"dry": dry, "speed": speed, "cubic": cubic}
 
     def change(f, x, v):
         pull = STIFFNESS * (f - x - cubic * x**3 - dry * math.tanh(v / speed))
         return v, (pull - DAMPING * v) / MASS
 
-    for dt in (1e-5, 5e-6):
-        time = np.arange(0, 0.02, dt)
-        force = 2 * np.sin(2 * np.pi * (200 + 3e4 * time) * time)
-
-        truth = stepped(change, (0.0, 0.0), force, dt)
-        named = {f"lumped.{word}": value for word, value in law.items()}
-        errors.append(np.abs(response(["lumped"], STAGE | named, force, dt=dt) - truth).max() / np.ptp(truth))
+    named = STAGE | {f"lumped.{word}": value for word, value in law.items()}
+    errors = errors_under_a_chirp(
+        lambda force, dt: response(["lumped"], named, force, dt=dt),
+        lambda force, dt: stepped(change, (0.0, 0.0), force, dt),
+        1e-5,
+        5e-6,
+    )
     assert errors[1] < 1e-3
     assert errors[1] < 0.35 * errors[0]
 
@@ -201,12 +208,7 @@ def slipped(force, dt, give=0.4, spacing=0.5, cubic=0.0, steps=40):
 
 @pytest.mark.parametrize("law", [{}, {"spacing": 1.0}, {"cubic": 2e-3}, {"give": 4.0, "spacing": 0.2}])
 def test_a_chirp_moves_elements_that_slip_as_the_equation_of_motion_says(law):
-    errors = []
-    for dt in (2e-5, 1e-5):
-        time = np.arange(0, 0.02, dt)
-        force = 2 * np.sin(2 * np.pi * (200 + 3e4 * time) * time)
-        truth = slipped(force, dt, **law)
-        errors.append(np.abs(slipping(force, dt, **law) - truth).max() / np.ptp(truth))
+    errors = errors_under_a_chirp(partial(slipping, **law), partial(slipped, **law), 2e-5, 1e-5)
     assert errors[1] < 3e-3
     assert errors[1] < 0.5 * errors[0]
 

@@ -1,0 +1,83 @@
+"""What an effect is that ended in a limit, where another name fits it: on its bounds, at a harmonic of the drive, or of
+another size in each record."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+import numpy as np
+
+from pzt_ident.diagnosis.bounds import continued, roomier
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.fit import NO_WORSE, Fit
+from pzt_ident.diagnosis.spectral_line import harmonic_of_the_drive
+from pzt_ident.diagnosis.unequal import differs_in_size
+from pzt_ident.model.chain import Entry
+from pzt_ident.model.registry import blocks, word_of
+
+
+def own_bounds(fit: Fit, effect: str) -> tuple[str, ...]:
+    """The shapes of an effect, its parameters without a null, that ended on a bound on every axis and are felt there,
+    and its amounts if they all did: what one axis shows is that of the effect."""
+    own = {
+        name: entry
+        for name, entry in entries_of(fit).items()
+        if word_of(effect) in (entry.block.name, word_of(entry.parameter.effect or ""))
+    }
+    amounts = {name for name, entry in own.items() if entry.parameter.null is not None}
+    shown = {entry.word for name, entry in own.items() if name not in amounts and name not in fit.on_bounds}
+    shapes = [name for name, entry in own.items() if name not in amounts and entry.word not in shown]
+    shapes = [name for name in shapes if is_felt(fit, name)]
+    return (*shapes, *(sorted(amounts) if amounts <= {*fit.on_bounds} else ()))
+
+
+def settle_beyond(case: Case, fit: Fit, on_bounds: Collection[str]) -> bool:
+    """Whether what ended on bounds are amounts which settle where these are twice as far from the null: an effect that
+    is a little larger than the catalogue expects stands for nothing else."""
+    rooms = {name: roomier(case, fit, fit.problem.names.index(name)) for name in on_bounds}
+    specs = {name: room for name, room in rooms.items() if room}
+    return specs.keys() == rooms.keys() and not {*on_bounds} & {*continued(case.with_specs(specs), fit).on_bounds}
+
+
+def is_felt(fit: Fit, name: str) -> bool:
+    """Whether the model is worse with a parameter in the middle of its range: that of a Stribeck velocity without
+    stiction is not."""
+    moved = np.where(np.array(fit.problem.names) == name, 0.5, fit.point)
+    return not float(fit.problem.loss(moved)[0]) <= (1 + NO_WORSE) * fit.identify
+
+
+def limit_of(fit: Fit, on_bounds: Collection[str]) -> str:
+    """What an effect is whose shapes ended on these lower bounds, or whose amounts did on any, as it is declared; empty
+    where nothing else."""
+    entries, places = entries_of(fit), dict(zip(fit.problem.names, fit.point, strict=True))
+    parameters = {name: entries[name].parameter for name in on_bounds}
+    declared = [item.limit for name, item in parameters.items() if item.null is not None or places[name] < 0.5]
+    return next(filter(None, declared), "")
+
+
+def is_limited(fit: Fit) -> bool:
+    """Whether the last effect of a fit is in a limit that is declared to be something else."""
+    last = fit.effects[-1]
+    return bool(limit_of(fit, own_bounds(fit, last)) or harmonic_of(fit, last) or size_of(fit, last))
+
+
+def harmonic_of(fit: Fit, effect: str) -> str:
+    """What an effect is that is a line of the spectrum at a low harmonic of all drives; empty for any other."""
+    order = harmonic_of_the_drive(fit, effect)
+    return f"harmonic {order} of the drive, as a nonlinearity of the stage makes it" if order else ""
+
+
+def size_of(fit: Fit, effect: str) -> str:
+    """What an effect is whose size is another one in each record, though it is the device's; empty for any other."""
+    return "of another size in each record, as the device is not" if differs_in_size(fit, effect) else ""
+
+
+def entries_of(fit: Fit) -> dict[str, Entry]:
+    """The free parameters of a fit, by name."""
+    problem = fit.problem
+    return {name: problem.model.entries[column] for name, column in zip(problem.names, problem.free, strict=True)}
+
+
+def differs_by_record(effect: str) -> bool:
+    """Whether each record has its own amount of an effect."""
+    return any(parameter.per_record for parameter in blocks[effect].parameters().values())
