@@ -123,8 +123,8 @@ class Linear:
     """The columns of theta that are solved for, as a function of the other columns.
 
     changes: theta (candidates, parameters) -> (rows, candidates), the residual of the first and how that of each other
-    differs from it, rotated so that a few rows are left. units: (linear,), typical size of each parameter with the
-    sign that it may have. passes: of linearisation, at most.
+    differs from it, rotated so that a few rows are left. units: (linear,), a change of each parameter that is small
+    beside its typical size, with the sign that it may have. passes: of linearisation, at most.
     """
 
     def __init__(
@@ -169,24 +169,39 @@ class Linear:
             theta[:, self.columns] = values
             return self._changes(theta)
 
-        return solve(changes, self.units, self._curves, row[self._weights], self.passes)
+        def begin() -> Array:
+            return self.solved(plain).values
+
+        plain = self._without_effects(row)
+        bends = None if self._key(plain) == raw else begin
+        return solve(changes, self.units, self._curves, row[self._weights], self.passes, bends)
+
+    def _without_effects(self, row: Array) -> Array:
+        nulls = [entry.parameter.null for entry in self.model.entries]
+        return np.array([value if null is None else null for value, null in zip(row, nulls, strict=True)])
 
 
 def solve(
-    changes: Changes, units: Array, curves: Sequence[Indices], weights: ArrayLike, passes: int = MAX_PASSES
+    changes: Changes,
+    units: Array,
+    curves: Sequence[Indices],
+    weights: ArrayLike,
+    passes: int = MAX_PASSES,
+    begin: Callable[[], Array] | None = None,
 ) -> LinearSolution:
     """Non-negative least squares in multiples of `units`, with squared second differences as a smoothness prior.
 
-    changes: (candidates, linear) -> (rows, candidates), see `Linear`. units: (linear,), size and sign of each
-    parameter. curves: indices of the parameters of each smooth curve, in order. weights: of the squared second
-    differences of each curve relative to the squared errors. Lawson & Hanson (1974), Solving Least Squares Problems,
-    ch. 23; linearised again, `passes` in all, where the response is not linear, which half of a step tells, and how
-    much is left after it, from the best place on the way there. Values are NaN where the residuals are not finite.
+    changes, units: as of `Linear`. curves: indices of the parameters of each smooth curve, in order. weights: of the
+    squared second differences of each curve relative to the squared errors. Lawson & Hanson (1974), Solving Least
+    Squares Problems, ch. 23; linearised again, `passes` in all, where the response is not linear, which half of a step
+    tells, and how much is left after it, from the best place on the way there. The first pass begins at zero, where a
+    cyclic error is a slope; the next one at the values of `begin` if these leave less. Values are NaN where the
+    residuals are not finite.
     """
     from scipy.optimize import nnls
 
     values = np.zeros(units.size)
-    for _ in range(passes):
+    for number in range(passes):
         residual, columns = np.split(changes(values + np.vstack([np.zeros(units.size), np.diag(units)])), [1], axis=1)
         if not np.isfinite(columns).all():
             unknown = np.full(units.size, np.nan)
@@ -203,13 +218,21 @@ def solve(
         multiples[visible] = solution / sizes[visible]
         expected = np.linalg.norm(residual[:, 0] + columns @ (multiples - values / units))
         tried = values + STEPS[:, None] * (multiples * units - values)
-        residual, *shorter = changes(tried).T
-        left = np.linalg.norm([residual, *(residual + change for change in shorter)], axis=1)
+        changed = changes(tried).T
+        left = norms_of(changed)
         values = tried[np.argmin(np.hypot(left, np.linalg.norm((tried / units) @ prior.T, axis=1)))]
-        bend = np.linalg.norm(2 * shorter[0] - shorter[-1])
+        bend = np.linalg.norm(2 * changed[1] - changed[-1])
         if 2 * bend <= LINEAR * expected and abs(left[0] - expected) <= LINEAR * expected:
             break
+        if number == 0 and begin is not None:
+            both = np.array([values, begin()])
+            values = both[int(np.nan_to_num(norms_of(changes(both).T), nan=np.inf).argmin())]
     return LinearSolution(values, columns, prior, units)
+
+
+def norms_of(changed: Array) -> Array:
+    """Of the residual of a first candidate, and of those of others that are given as how they differ from it."""
+    return np.linalg.norm(np.vstack([changed[:1], changed[:1] + changed[1:]]), axis=1)
 
 
 def second_differences(sizes: Array, curves: Sequence[Indices], weights: Array) -> Array:

@@ -23,6 +23,7 @@ from pzt_ident.search.stencil import DIFFERENCE, forward, half_widths, stencil
 
 Array = NDArray[np.float64]
 ALIKE = 1e-8  # of the loss, where it has half of its digits
+SMALL = 1e-3  # of the typical size of what is solved for: a change that a response which is bent follows as its tangent
 FEW = 2  # points beside another one, for which amounts of the records are settled
 Squares = Callable[[Simulator, Array], Array]
 
@@ -63,7 +64,7 @@ class Problem(Cube):
         entries = [self.model.entries[column] for column in linear]
         signs = [np.sign(drive_correlation(identify, entry.axis)) or 1.0 for entry in entries]
         units = np.array(
-            [sign * size_of(self.model, entry, identify) for sign, entry in zip(signs, entries, strict=True)]
+            [sign * SMALL * size_of(self.model, entry, identify) for sign, entry in zip(signs, entries, strict=True)]
         )
         self.linear = Linear(self.model, linear, units, self._changes)
         self._tangent: Tangent | None = None

@@ -160,6 +160,21 @@ def test_what_is_bent_behind_is_relinearised():
     np.testing.assert_allclose(found.values, truth, rtol=1e-3)
 
 
+@pytest.mark.parametrize("periods", [3, 6, 12])
+def test_a_grating_behind_is_read_where_the_stage_is_and_not_by_its_slope_at_rest(measured, periods):
+    """The error is as steep as six tenths of the reading: a candidate that has it leaves little more than the noise."""
+    stroke = np.ptp(measured.response[0])
+    pitch, sine = stroke / periods, 0.6 * stroke / (2 * np.pi * periods)
+    read = measured.response + sine * np.sin(2 * np.pi * measured.response / pitch)
+    made = problem(dataclasses.replace(measured, response=read), "encoder_cyclic_error")
+    known = {"sine": sine, "cosine": 0.0, "pitch": pitch}
+    point = made.unit_point(
+        {"homogenized_energy.interaction": 6120}
+        | {f"encoder_cyclic_error.{word}": value for word, value in known.items()}
+    )
+    assert made.loss(point)[0] < 3 * NOISE
+
+
 @pytest.mark.parametrize("bend", [0.3, 1.0, 3.0, -0.3, -1.0])
 def test_a_pass_that_goes_too_far_is_shortened(bend):
     """y = q + bend q^2 of ten columns that are nearly the same: what is left falls with every pass."""
