@@ -75,12 +75,8 @@ def climb(
         new = next_steps(case, first, steps, diagnosis, candidate, known)
         if not new:
             break
-        if not adequate(case, first, new[-1].fit):
-            fit_anew(case, (*steps, *new)[-2].fit, new[-1], best_alias(case, new[-1].fit))
-        new += separate_accounts(case, first, new[-1].fit)
-        hurried = not adequate(case, first, new[-1].fit) and promises_most(case, first, new[-1].fit)
-        new += [] if hurried else settle(case, first, (*steps, *new)[-2].fit, new[-1])
-        if frozenset(new[-1].fit.effects) in {frozenset(step.fit.effects) for step in steps}:
+        hurried = complete(case, first, steps, new)
+        if {*new[-1].fit.effects} in [{*step.fit.effects} for step in steps]:
             break
         if joins(case, new[-1].fit, known):
             return None
@@ -97,6 +93,16 @@ def climb(
         candidate = diagnosis.best
     changed = next((step.case for step in reversed(steps) if step.case), None)
     return Staircase(steps, diagnosis, case=changed)
+
+
+def complete(case: Case, first: Fit, steps: Sequence[Step], new: list[Step]) -> bool:
+    """Add to new steps what settles them; whether that is put off, since another effect promises most of the rest."""
+    if not adequate(case, first, new[-1].fit):
+        fit_anew(case, (*steps, *new)[-2].fit, new[-1], best_alias(case, new[-1].fit))
+    new += separate_accounts(case, first, new[-1].fit)
+    hurried = not adequate(case, first, new[-1].fit) and promises_most(case, first, new[-1].fit)
+    new += [] if hurried else settle(case, first, (*steps, *new)[-2].fit, new[-1])
+    return hurried
 
 
 def joins(case: Case, fit: Fit, known: Sequence[Fit]) -> bool:
