@@ -1,7 +1,10 @@
-"""Effects that are lines of the spectrum: seen in their own band whatever is left elsewhere, or harmonics of the drive,
-which the stage itself may make."""
+"""Effects that are lines of the spectrum, over time or over the displacement: seen in their own band whatever is left
+elsewhere, or harmonics of the drive, which the stage itself may make."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,62 +15,73 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import CLEAR, removed_rms
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.modes import values_of
-from pzt_ident.model.registry import blocks, word_of
+from pzt_ident.model.registry import word_of
 
 Array = NDArray[np.float64]
 
-NEAR = 4  # frequencies of a record on either side of a line that are its band
+NEAR = 4  # frequencies of a record on either side of a line that are its band, and at most half of its own
 OWN = 0.9  # of the misfit of its band: what a line takes up that is one
 LOUD = 10.0  # times the noise in its band: a line that is told from it
+FEWEST = 3  # periods of a line in a record that shows it
 LOWEST = 8  # harmonics of a drive up to this one are those that a stage makes
 
 
+@dataclass(frozen=True)
+class Line:
+    """A line of the spectrum of what is measured on an axis. row: of the axis among the measured ones. wave: periods in
+    a second, or in a metre of displacement."""
+
+    row: int
+    wave: float
+    over_time: bool
+
+
 def is_own_line(case: Case, without: Fit, now: Fit, effect: str) -> bool:
-    """Whether an effect is a line of the spectrum, takes up nearly all of the misfit of its band on the identification
-    and on the validation records, and the stage moves less there: nothing else is in the place of that."""
-    frequencies = frequencies_of(now, effect)
-    if not frequencies or removed_rms(without.identify, now.identify) < CLEAR * case.floor:
+    """Whether an effect is a line of the spectrum, over time or displacement, and takes up nearly all of the misfit of
+    its band on the identification and on the validation records: nothing else is in the place of that. Over time the
+    stage itself moves less there."""
+    lines = lines_of(now, effect)
+    if not lines or removed_rms(without.identify, now.identify) < CLEAR * case.floor:
         return False
-    before, noise, moved = in_band(case, without, frequencies)
-    after, _, _ = in_band(case, now, frequencies)
-    seen = before > LOUD * noise
-    left = np.maximum(after - noise, 0)
-    return bool((seen & (left < (1 - OWN) * (before - noise)) & (moved < before)).all())
+    before, after = in_band(case, without, lines), in_band(case, now, lines)
+    if before.shape[1] < len({record.use for record in case.records}):
+        return False
+    (left, noise, moved), rest = before, np.maximum(after[0] - after[1], 0)
+    return bool(((left > LOUD * noise) & (rest < (1 - OWN) * (left - noise)) & (moved < left)).all())
 
 
-def in_band(case: Case, fit: Fit, frequencies: list[float]) -> Array:
-    """Mean squares in the bands of some frequencies of what a fit leaves, of the noise, and of the response of its
-    model, in units of the loss: (3, uses)."""
+def in_band(case: Case, fit: Fit, lines: Sequence[Line]) -> Array:
+    """Mean squares a frequency in the bands of some lines of what a fit leaves, of the noise, and, of lines over time,
+    of the response of its model, in units of the loss: (3, uses that show a line)."""
     powers: dict[str, list[list[float]]] = {}
     for record, errors in fit.problem.errors(fit.point):
-        sizes, measured = fit.problem.sizes[:, None], list(record.measured)
-        left = errors[:, record.settle :] / sizes
-        moved = record.response[measured][:, record.settle :] / sizes + left
-        band = bands(record, left.shape[1], frequencies)
-        noise = float(np.mean(case.floors**2)) * float(np.mean(band))
-        powers.setdefault(record.use, []).append([power_in(left, band), noise, power_in(moved, band)])
-    return np.array([np.mean(rows, axis=0) for rows in powers.values()]).T
+        left = errors[:, record.settle :] / fit.problem.sizes[:, None]
+        moved = (record.response[[*record.measured]] + errors)[:, record.settle :]
+        for line in lines:
+            course = record.time[record.settle :] if line.over_time else moved[line.row]
+            if np.ptp(course) * line.wave >= FEWEST:
+                own = moved[line.row] / fit.problem.sizes[line.row] if line.over_time else np.zeros(course.size)
+                found = power_near(np.array([left[line.row], own]), course, line.wave)
+                row = [float(found[0]), float(case.floors[line.row] ** 2), float(found[1])]
+                powers.setdefault(record.use, []).append(row)
+    return np.array([np.mean(rows, axis=0) for rows in powers.values()]).reshape(-1, 3).T
 
 
-def bands(record: Record, samples: int, frequencies: list[float]) -> NDArray[np.bool_]:
-    """Which frequencies of a record are near some others."""
-    lines = np.fft.rfftfreq(samples, record.dt)
-    width = NEAR / (samples * record.dt)
-    return np.asarray(np.any([np.abs(lines - frequency) <= width for frequency in frequencies], axis=0))
-
-
-def power_in(signals: Array, band: NDArray[np.bool_]) -> float:
-    """Mean square of signals, (signals, samples), in a band."""
-    window = np.hanning(signals.shape[1])
-    lines = np.fft.rfft((signals - signals.mean(axis=1, keepdims=True)) * window, axis=1)[:, band]
-    return float(2 * np.mean((np.abs(lines) ** 2).sum(axis=1)) / (signals.shape[1] * (window**2).sum()))
+def power_near(signals: Array, course: Array, wave: float) -> Array:
+    """Mean square a frequency of signals (signals, samples) in the band of a line over a course, (samples,), of which
+    each stretch counts as it is long, in a Hann window; that of white noise is its mean square."""
+    span, places = np.ptp(course), np.arange(-NEAR, NEAR + 1)
+    waves = wave + places[np.abs(places) <= span * wave / 2] / span
+    weights = np.abs(np.gradient(course)) * np.sin(np.pi * (course - course.min()) / span) ** 2
+    centred = signals - np.average(signals, axis=1, weights=weights)[:, None]
+    lines = (centred * weights) @ np.exp(-2j * np.pi * np.outer(course, waves))
+    return np.asarray(np.mean(np.abs(lines) ** 2, axis=1) / np.sum(weights**2))
 
 
 def harmonic_of_the_drive(fit: Fit, effect: str) -> int:
     """Which low harmonic of the drives a line of the spectrum is, the lowest one; 0 where it is none in one record."""
-    if not (frequencies := frequencies_of(fit, effect)):
-        return 0
-    return min(order_of(record, frequency) for record in fit.problem.records for frequency in frequencies)
+    frequencies = [line.wave for line in lines_of(fit, effect) if line.over_time]
+    return min((order_of(record, frequency) for record in fit.problem.records for frequency in frequencies), default=0)
 
 
 def order_of(record: Record, frequency: float) -> int:
@@ -78,10 +92,11 @@ def order_of(record: Record, frequency: float) -> int:
     return round(order) if near and round(order) <= LOWEST else 0
 
 
-def frequencies_of(fit: Fit, effect: str) -> list[float]:
-    """The frequencies of an effect with an amount of its own in each record, Hz, one an axis; none for another one."""
-    if not any(parameter.per_record for parameter in blocks[effect].parameters().values()):
-        return []
-    own = [entry for entry in fit.problem.model.entries if entry.block.name == word_of(effect)]
-    values = values_of(fit)
-    return [values[entry.name] for entry in own if entry.word == "frequency"]
+def lines_of(fit: Fit, effect: str) -> list[Line]:
+    """The lines that an effect is, one a measured axis; none for another one."""
+    model, values, lines = fit.problem.model, values_of(fit), []
+    for entry in model.entries:
+        if entry.block.name == word_of(effect) and entry.word == entry.block.line and entry.axis in model.measured:
+            over_time, value = entry.parameter.unit == "Hz", values[entry.name]
+            lines.append(Line(model.measured.index(entry.axis), value if over_time else 1 / value, over_time))
+    return lines

@@ -17,6 +17,7 @@ class EncoderCyclicError(Block):
     place = Place.SENSOR
     form = Form("first", ("first", "second", "rezeroed"), "Up to which harmonic of the grating, and from which zero.")
     trials = {"pitch": 120}
+    line = "pitch"
     sine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, odd about x = 0, a.", null=0)
     cosine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, even about x = 0, b.", null=0)
     pitch = Parameter(

@@ -19,6 +19,7 @@ class Line:
 
     form = Form("sine", ("sine", "harmonics", "ripple"), "The course of the disturbance, and where it enters.")
     frequency = Parameter("Hz", (1, 1000), "Frequency of the disturbance, f.", scale="log")
+    line = "frequency"
     look_alikes = ()
     separate_by = "Record at constant voltage, then with the driver off: a line that stays is not the drive's."
     remedy = "Ground and shield against hum, isolate the stage from the floor, or filter the line out."

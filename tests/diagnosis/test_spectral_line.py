@@ -9,16 +9,19 @@ import stage
 from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.limit import is_limited
 from pzt_ident.diagnosis.refit import refit
-from pzt_ident.diagnosis.spectral_line import is_own_line, order_of
+from pzt_ident.diagnosis.spectral_line import is_own_line, order_of, power_near
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
-from pzt_ident.model.registry import blocks
+from pzt_ident.model.registry import blocks, word_of
 
 HUM = "periodic_disturbance"
 
 
-def others():
-    return tuple({*blocks.effects()} - {HUM})
+GRATING = "encoder_cyclic_error"
+
+
+def others(word=HUM):
+    return tuple({*blocks.effects()} - {word})
 
 
 def slow(samples, seed, size):
@@ -48,6 +51,33 @@ def test_a_hum_beside_what_nothing_explains_is_named(size, cycles, named):
     assert found.last.verdict == "unexplained"
 
 
+@pytest.mark.parametrize(
+    ("size", "pitch", "named"), [(25e-9, 0.7e-6, True), (0.0, 0.7e-6, False), (25e-9, 8e-6, False)]
+)
+def test_a_grating_beside_what_nothing_explains_is_named(size, pitch, named):
+    """And none whose period the stroke does not hold often: that is any curve."""
+
+    def change(record):
+        error = np.sqrt(2) * size * np.sin(2 * np.pi * record.response / pitch)
+        return slow(record.samples, record.samples, 40e-9) + error
+
+    case = stage.with_response(stage.case(), change)
+    case.ruled_out = others(GRATING)
+    found = improve(case, first_fit(case, 0))
+    assert list(map(word_of, found.end.effects)) == [GRATING] * named
+    assert found.last.verdict == "unexplained"
+
+
+@pytest.mark.parametrize("course", [np.linspace(0, 3, 4000), 3 - np.linspace(0, 3, 4000) ** 2 / 3])
+def test_a_band_is_that_of_its_course_whatever_its_pace(course):
+    """A sine of the course is in its band, and white noise has its mean square everywhere."""
+    noise = np.random.default_rng(2).normal(size=(400, course.size))
+    assert np.mean(power_near(noise, course, 20.0)) == pytest.approx(1, rel=0.1)
+    line = np.sin(2 * np.pi * 20 * course)[None]
+    there, elsewhere = power_near(line, course, 20.0)[0], power_near(line, course, 10.0)[0]
+    assert elsewhere < 1e-3 * there
+
+
 def periodic(frequency):
     """A stage that is driven by a sine of 2 Hz, and a hum."""
     drive = 50 - 50 * np.cos(4 * np.pi * 5e-3 * np.arange(1000))
@@ -68,6 +98,13 @@ def test_a_drive_that_does_not_repeat_has_no_harmonics():
     record = periodic(6.0).records[0]
     assert order_of(record, 6.0) == 3
     assert order_of(replace(record, drive=np.cumsum(record.drive, axis=1)), 6.0) == 0
+
+
+@pytest.mark.parametrize(
+    "item", [item for word in blocks.effects() for item in blocks.forms(word) if blocks[item].line]
+)
+def test_a_line_has_a_frequency_or_a_period(item):
+    assert blocks[item].parameters()[blocks[item].line].unit in ("Hz", "response")
 
 
 def test_an_effect_without_a_frequency_is_no_line():
