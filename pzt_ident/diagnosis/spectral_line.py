@@ -15,7 +15,7 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import CLEAR, removed_rms
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.modes import values_of
-from pzt_ident.model.registry import word_of
+from pzt_ident.model.registry import blocks, word_of
 
 Array = NDArray[np.float64]
 
@@ -81,7 +81,8 @@ def power_near(signals: Array, course: Array, wave: float) -> Array:
 def harmonic_of_the_drive(fit: Fit, effect: str) -> int:
     """Which low harmonic of the drives a line of the spectrum is, the lowest one; 0 where it is none in one record."""
     frequencies = [line.wave for line in lines_of(fit, effect) if line.over_time]
-    return min((order_of(record, frequency) for record in fit.problem.records for frequency in frequencies), default=0)
+    orders = (order_of(record, frequency) for frequency in frequencies for record in fit.problem.records)
+    return min(orders, default=0)
 
 
 def order_of(record: Record, frequency: float) -> int:
@@ -94,9 +95,11 @@ def order_of(record: Record, frequency: float) -> int:
 
 def lines_of(fit: Fit, effect: str) -> list[Line]:
     """The lines that an effect is, one a measured axis; none for another one."""
-    model, values, lines = fit.problem.model, values_of(fit), []
-    for entry in model.entries:
-        if entry.block.name == word_of(effect) and entry.word == entry.block.line and entry.axis in model.measured:
+    name, model = blocks[effect].line, fit.problem.model
+    own = [entry for entry in model.entries if name and entry.block.name == word_of(effect) and entry.word == name]
+    values, lines = values_of(fit) if own else {}, []
+    for entry in own:
+        if entry.axis in model.measured:
             over_time, value = entry.parameter.unit == "Hz", values[entry.name]
             lines.append(Line(model.measured.index(entry.axis), value if over_time else 1 / value, over_time))
     return lines

@@ -117,9 +117,10 @@ def with_effects(
     """The diagnosis where candidates remove enough: the best of them, of tied ones the simplest, and its ties."""
     fits = {item.score.effect: item.fit for item in passing if item.fit}
 
-    def simplicity(item: Candidate) -> tuple[int, float, str]:
-        fit = fits[item.score.effect]
-        return fit.freedom, round(fit.total / (TWIN * case.floor)), item.score.effect  # of two names of one model
+    def simplicity(item: Candidate) -> tuple[int, float, int, str]:
+        """Of two names of one model that which acts nearest to the reading."""
+        word = item.score.effect
+        return fits[word].freedom, round(fits[word].total / (TWIN * case.floor)), -blocks[word].place, word
 
     total = min(fit.total for fit in fits.values())
     close = [item for item in passing if removed_rms(fits[item.score.effect].total, total) < TIE * case.floor]

@@ -337,6 +337,13 @@ def test_of_look_alikes_that_are_tied_the_simpler_one_is_taken(judged, dimension
     assert (diagnosis.verdict, diagnosis.tied[0]) == ("inconclusive", taken)
 
 
+@pytest.mark.parametrize(("one", "other"), [("cross_coupling", "kinematic_coupling"), ("amplifier_lag", "sensor_lag")])
+@pytest.mark.parametrize(("apart", "nearest"), [(0.0, True), (0.01, False), (-0.01, True)])
+def test_of_two_names_of_one_model_that_which_acts_nearest_to_the_reading_is_taken(judged, one, other, apart, nearest):
+    diagnosis = judged({one: fit(2.0, 2.0, [one]), other: fit(2.0 + apart, 2.0 + apart, [other])})
+    assert diagnosis.tied[0] == (other if nearest else one)
+
+
 @pytest.mark.parametrize("confirmed", [False, True])
 def test_what_other_records_do_not_confirm_is_started_anew_where_nothing_is_adequate(monkeypatch, confirmed):
     """A mode that only the others make ring may rest anywhere."""
