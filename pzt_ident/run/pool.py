@@ -80,6 +80,20 @@ def without_working_folder() -> Iterator[None]:
                 os.environ["PYTHONSAFEPATH"] = flag
 
 
+@contextmanager
+def without_script() -> Iterator[None]:
+    """Started inside, a process does not run the user's script again: nothing that a worker needs is in it."""
+    with _starting:
+        script = sys.modules["__main__"]
+        hidden = {name: getattr(script, name) for name in ("__file__", "__spec__") if hasattr(script, name)}
+        vars(script).pop("__file__", None)
+        script.__spec__ = None
+        try:
+            yield
+        finally:
+            vars(script).update(hidden)
+
+
 @dataclass(eq=False)
 class Worker:
     """A process, our end of its pipe, and the task that it is at: the name and the arguments."""
@@ -135,7 +149,7 @@ class Pool:
         starting = context()
         ours, theirs = starting.Pipe()
         process = starting.Process(target=serve, args=(self.entry, self.common, theirs, self.scratch.name), daemon=True)
-        with without_working_folder():
+        with without_working_folder(), without_script():
             process.start()
         theirs.close()
         return Worker(process, ours)

@@ -1,5 +1,8 @@
 """A fleet as an object."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -31,6 +34,16 @@ def test_it_has_the_table_the_broken_and_the_fit_of_a_device(lot):
 def test_it_draws_its_report(lot):
     assert lot.report(processes=1) == lot.folder / "report.html"
     assert "could not be identified" in (lot.folder / "report.html").read_text(encoding="utf-8")
+
+
+def test_it_needs_no_guard_in_a_script(lot, tmp_path):
+    """The processes that it starts do not run the script again."""
+    place = lot.folder.parent
+    call = f"pzt_ident.fleet({str(place / 'job.yaml')!r}, '{place}/lot/*/', 'out')"
+    (tmp_path / "script.py").write_text(f"import pzt_ident\n\nprint('once')\nprint({call})\n")
+    done = subprocess.run([sys.executable, "script.py"], cwd=tmp_path, capture_output=True, text=True, check=True)
+    assert done.stdout.startswith("once\n2 of 3 devices identified, 1 broken.")
+    assert "Traceback" not in done.stderr
 
 
 def test_mistakes_are_told_with_a_remedy(lot, tmp_path):
