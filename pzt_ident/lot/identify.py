@@ -60,8 +60,24 @@ def fleet(
     if not (folder / "fleet.json").is_file():
         make_empty(folder, job.text)
     with alone_in(folder):
+        tell_other(folder, job, improve, listen)
         orders = orders_of(job, patterns, improve, budget, folder)
         return Identification(folder, devices, job, orders, listen).identify(place)
+
+
+def tell_other(folder: Path, job: Job, improve: bool, listen: Listen) -> None:
+    """Say that the fleet in a folder had another job. Raises InputError where what it took longest for would go: the
+    improvements of its devices."""
+    try:
+        stated = read_statement(folder)
+    except InputError:
+        return
+    if stated["improve"] and not improve and any(folder.glob("devices/*/improved")):
+        remedy = "give --improve, or another folder with --out"
+        problem = "holds a fleet made with --improve, whose improvements would be lost"
+        raise InputError(problem, where=str(folder), remedy=remedy)
+    if stated["job_hash"] != job.hash:
+        listen({"event": "other", "said": f"the job is not that of before in {folder}: every device is done again"})
 
 
 def orders_of(job: Job, patterns: Sequence[str], improve: bool, budget: float | None, folder: Path) -> Orders:
@@ -116,6 +132,7 @@ class Identification:
     by_name: dict[str, Device] = field(init=False)
     sha256: dict[str, str] = field(default_factory=dict)  # of the data of devices that are at work
     done: int = 0
+    kept: int = 0
     broken: int = 0
 
     def identify(self, place: Place) -> Path:
@@ -132,6 +149,9 @@ class Identification:
             raise
         shutil.rmtree(self.folder / "devices" / ".new", ignore_errors=True)
         write_table(self.folder, self.devices)
+        if self.kept:
+            said = f"{self.kept} of {len(self.devices)} devices were done before and are as they were"
+            self.listen({"event": "kept", "said": said})
         if not has_parquet():
             self.listen({"event": "table", "said": f"the table is not written as Parquet: that needs {FOR_PARQUET}"})
         return self.folder
@@ -151,19 +171,22 @@ class Identification:
     def tasks(self, place: Place) -> Iterator[tuple[str, tuple[Any, ...]]]:
         """The devices that are not done, read one by one as there is room for them."""
         for device in self.devices:
+            home = folder_of(self.folder, device.name)
             try:
                 if device.fault:
                     raise InputError(device.fault)
                 contents = {file: read(path) for file, path in device.files.items()}
             except InputError as error:
-                self.break_(device.name, str(error))
+                if self.is_done(home):
+                    self.keep_old(f"{device.name}: {in_a_line(str(error))}; what was identified before is kept")
+                else:
+                    self.break_(device.name, str(error))
                 continue
             self.sha256[device.name] = sha256_of(contents.values())
             key = self.key(self.sha256[device.name])
-            home = folder_of(self.folder, device.name)
-            if self.is_done(home, key):
-                self.done += 1
+            if self.is_done(home, self.sha256[device.name]):
                 del self.sha256[device.name]
+                self.keep_old()
                 continue
             given = Given(
                 device.name,
@@ -175,13 +198,21 @@ class Identification:
             )
             yield device.name, (given,)
 
-    def is_done(self, home: Path, key: str) -> bool:
-        """Whether a device was identified with this key; where its results are damaged, that is told."""
+    def keep_old(self, said: str = "") -> None:
+        """Leave the results of a device as they are; said: why it was not looked at."""
+        self.done += 1
+        self.kept += 1
+        if said:
+            self.listen({"event": "stale", "said": printable(said)})
+
+    def is_done(self, home: Path, data: str | None = None) -> bool:
+        """Whether a device was identified as it is asked, on these data, by their hash, or on any; where its results
+        are damaged, that is told."""
         if not home.exists():
             return False
         try:
             row = read_row(home)
-            if row["key"] != key or row["state"] != "done":
+            if row["state"] != "done" or row["key"] != self.key(data or row["sha256"]):
                 return False
             check_whole(home, row)
         except DamagedError as error:

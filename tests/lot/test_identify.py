@@ -166,6 +166,33 @@ def test_what_was_done_is_not_done_again_unless_data_or_job_changed(lot, identif
     assert again == {*done, mended}
 
 
+def test_what_was_identified_is_kept_where_the_data_are_gone_and_that_is_said(lot, identified, tmp_path):
+    copy, out = copied(lot, identified, tmp_path)
+    done, events = [row["device"] for row in read_lot(out).done], []
+    before = essence(out / "devices" / done[0])
+    shutil.rmtree(copy / "lot" / done[0])
+    assert done_again(out, lambda: resume(out, place=Local(1), listen=events.append)) == set()
+    assert differences(before, essence(out / "devices" / done[0])) == []
+    said = {event["event"]: event["said"] for event in events if "said" in event}
+    assert said["stale"].startswith(f"{done[0]}: ") and said["stale"].endswith("what was identified before is kept")
+    assert said["kept"] == f"{len(done)} of 16 devices were done before and are as they were"
+
+
+def test_another_job_is_said_and_improvements_are_not_given_up_for_one_without(lot, identified, tmp_path):
+    copy, out = copied(lot, identified, tmp_path)
+    stated, events = read_sealed(out / "fleet.json"), []
+    write_sealed(out / "fleet.json", stated | {"job_hash": "another"})
+    resume(out, place=Local(1), listen=events.append)
+    assert [event["said"] for event in events if event["event"] == "other"] == [
+        f"the job is not that of before in {out}: every device is done again"
+    ]
+    done = next(row["device"] for row in read_lot(out).done)
+    (out / "devices" / done / "improved").mkdir()
+    write_sealed(out / "fleet.json", stated | {"improve": True})
+    with pytest.raises(InputError, match="give --improve, or another folder"):
+        fleet(load_job(copy / "job.yaml"), [str(copy / "lot.csv")], out, place=Local(1))
+
+
 FILES = ("device.json", "result.json", "signals.nc", "history.csv", "job.yaml")
 """Of a device."""
 
