@@ -6,6 +6,7 @@ import csv
 import math
 import os
 import re
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from io import StringIO
@@ -13,7 +14,7 @@ from pathlib import Path
 
 from pzt_ident.data.formats._layout import COMMENTS, GAPS
 from pzt_ident.data.formats.text import decode
-from pzt_ident.errors import InputError
+from pzt_ident.errors import InputError, printable
 from pzt_ident.job.files import record_files
 from pzt_ident.job.schema import Job
 from pzt_ident.lot.devices import Device, Value, channels_beside, device_at, fault_of, names_of
@@ -21,6 +22,7 @@ from pzt_ident.lot.devices import Device, Value, channels_beside, device_at, fau
 SUFFIXES = (".csv", ".tsv", ".txt")
 NAMES = ("device", "name")
 PLACES = ("file", "folder", "path", "filename", "directory")
+FEW = 8  # times as many cells are numbers as those that may be a typing error
 BEGINNING = 65536  # bytes that hold the header of a list
 WORDS = {"none"}  # a gap among numbers, and a word among words
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?", re.IGNORECASE)
@@ -162,7 +164,15 @@ def _known(listing: Listing, places: Sequence[int]) -> list[Mapping[str, Value]]
         listing.header[place] or f"column {place + 1}": [row[place] for _, row in listing.rows] for place in places
     }
     shown = {name for name in cells if name in listing.header or any(map(str.strip, cells[name]))}
-    columns = {name: values_of(cells[name], decimal=".," if listing.delimiter != "," else ".") for name in shown}
+    decimal = ".," if listing.delimiter != "," else "."
+    columns = {name: values_of(cells[name], decimal) for name in shown}
+    for name in sorted(shown):
+        for place in odd_cells(cells[name], decimal):
+            where = printable(f"{listing.path}:{listing.rows[place][0]}")
+            said = (
+                f"{where}: {printable(cells[name][place])!r} under {printable(name)!r} is no number, as the others are"
+            )
+            warnings.warn(f"{said}: the column is taken as words", stacklevel=2)
     return [{name: columns[name][row] for name in cells if name in shown} for row in range(len(listing.rows))]
 
 
@@ -174,6 +184,15 @@ def values_of(cells: Sequence[str], decimal: str = ".") -> list[Value]:
     if any(number is not None and math.isfinite(number) for number in numbers) and math.nan not in numbers:
         return list(numbers)
     return [None if text.lower() in GAPS - WORDS else text for text in texts]
+
+
+def odd_cells(cells: Sequence[str], decimal: str = ".") -> list[int]:
+    """Which cells keep a column from being one of numbers, where these are few: a typing error."""
+    known = {
+        place: _number(cell.strip(), decimal) for place, cell in enumerate(cells) if cell.strip().lower() not in GAPS
+    }
+    odd = [place for place, number in known.items() if math.isnan(number)]
+    return odd if FEW * len(odd) <= len(known) else []
 
 
 def _number(text: str, decimal: str) -> float:

@@ -19,7 +19,7 @@ from pzt_ident.lot.devices import Device
 from pzt_ident.lot.figures import plates
 from pzt_ident.lot.identify import in_a_line
 from pzt_ident.lot.outcome import Lot, read_lot
-from pzt_ident.lot.statistics import Quantity
+from pzt_ident.lot.statistics import Difference, Quantity
 from pzt_ident.lot.table import FOR_PARQUET, Row, folder_of, tables_in, write_table
 from pzt_ident.report.figures import Plate, write_plate
 from pzt_ident.report.inline import inline
@@ -36,9 +36,10 @@ if TYPE_CHECKING:
 
     Figures = Mapping[str | None, list[tuple[Plate, Markup]]]  # by their sections
 
+MOST_GROUPS = 4  # of which a sentence names each median
 MOST_PAGES = 500
 MOST_LINES = 2000
-"""Devices in the table of the page; above that it shows those that stand out alone."""
+"""Devices in the table of the page: those that stand out first."""
 
 
 class Served(NamedTuple):
@@ -214,8 +215,7 @@ def findings(lot: Lot) -> Iterator[str]:
     for difference in lot.group_differences:
         if difference.clear:
             quantity = next(quantity for quantity in lot.quantities if quantity.name == difference.quantity)
-            medians = [f"{word} {number(value)}" for word, value in difference.medians.items()]
-            yield f"{quantity.name} differs by {difference.column}: {', '.join(medians)} {unit(quantity.unit)}."
+            yield f"{quantity.name} differs by {difference.column}: {groups_of(difference, unit(quantity.unit))}."
     for names in lot.same_data:
         yield f"{listed(names)} have the same data: is one of them a copy?"
     undetermined = [
@@ -225,6 +225,18 @@ def findings(lot: Lot) -> Iterator[str]:
     ]
     if undetermined:
         yield f"The data of most devices do not determine {listed(undetermined)}."
+
+
+def groups_of(difference: Difference, shown: str) -> str:
+    """The medians of the groups; of many groups that which stands out."""
+    medians = [f"{word} {number(value)}" for word, value in difference.medians.items()]
+    if len(medians) <= MOST_GROUPS:
+        return f"{', '.join(medians)} {shown}".rstrip()
+    furthest, usual = difference.medians[difference.furthest], difference.usual
+    where = (
+        f"{percent(abs(furthest / usual - 1))} {'above' if furthest > usual else 'below'}" if usual > 0 else "not at"
+    )
+    return f"{difference.furthest} is {where} the median of all, {number(furthest)} {shown}".rstrip()
 
 
 def _distinct(trends: Iterable[Any]) -> list[Any]:
@@ -270,16 +282,22 @@ def header(lot: Lot) -> list[str]:
     return ["device", *columns, "verdict", *(["effects"] if lot.statement["improve"] else []), *shown]
 
 
+def shown_devices(lot: Lot) -> set[str]:
+    """The devices in the table of the page: all, or of many those that stand out and the first of the others."""
+    far = [finding.device for finding in lot.findings]
+    above = [row["device"] for row in lot.done if row["verdict"] != "adequate"]
+    return {*list(dict.fromkeys([*far, *above, *(row["device"] for row in lot.done)]))[:MOST_LINES]}
+
+
 def device_lines(lot: Lot) -> Iterator[dict[str, Any]]:
     """A line a device: its cells, and which of them are out of line."""
     columns = dict.fromkeys(name for row in lot.rows for name in row["columns"])
     outside = {(finding.device, finding.quantity) for finding in lot.findings}
-    many = len(lot.rows) > MOST_LINES
-    stands_out = {device for device, _ in outside}
+    shown = shown_devices(lot)
     place = {row["device"]: index for index, row in enumerate(lot.done)}
     for row in lot.rows:
         name, index = row["device"], place.get(row["device"])
-        if index is None or (many and name not in stands_out):
+        if index is None or name not in shown:
             continue
         words = [row["verdict"], *([", ".join(row["effects"])] if lot.statement["improve"] else [])]
         values = [

@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -19,11 +20,12 @@ Array = NDArray[np.float64]
 MAD = 1.4826  # times the median absolute deviation is the standard deviation of a normal distribution
 MEAN = 1.2533  # times the mean absolute deviation is, too
 LEAST = 1e-6  # of the median: a spread below it is of no consequence
-FAR = 3.5  # spreads from the median: Iglewicz and Hoaglin (1993), How to Detect and Handle Outliers
+FAR = 3.5  # spreads from the median, at least: Iglewicz and Hoaglin (1993), How to Detect and Handle Outliers
+CHANCE = 0.05  # that anything is found in a lot where nothing is: devices out of line, trends, differences of groups
+WORTH = 0.37  # of a normal deviate is one in a median absolute deviation, as it is in a standard deviation
 FEWEST = 8  # devices that tell what is usual
 WORSE = 1.5  # times the usual error: less is of no consequence
-CLEAR = 0.5  # correlation of ranks from which a trend is followed
-CERTAIN = 3.0  # standard errors of a correlation of ranks
+CLEAR = 0.5  # correlation of ranks from which a trend is followed, or spreads from which groups differ
 
 DAY_FIRST = re.compile(r"^([0-9]{1,2})\.([0-9]{1,2})\.([0-9]{4})\b")
 YEAR_FIRST = re.compile(r"[0-9]{4}-[0-9]{2}")
@@ -64,40 +66,42 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Trend:
-    """A quantity against a column of numbers: a line by the medians of slopes (Theil-Sen), and Spearman's correlation
-    of ranks."""
+    """A quantity against a column of numbers: a line by the medians of slopes (Theil-Sen), Spearman's correlation of
+    ranks, and the chance that one of all pairs of quantity and column has such a one where none depends on another."""
 
     quantity: str
     column: str
     slope: float
     level: float
     correlation: float
-    devices: int
+    chance: float
 
     def at(self, x: Array) -> Array:
         return self.level + self.slope * x
 
     @property
     def clear(self) -> bool:
-        """Whether chance would hardly give it."""
-        return abs(self.correlation) > max(CLEAR, CERTAIN / np.sqrt(max(self.devices - 1, 1)))
+        """Whether chance would hardly give it, and it matters."""
+        return self.chance < CHANCE and abs(self.correlation) > CLEAR
 
 
 @dataclass(frozen=True)
 class Difference:
-    """A quantity by the groups of a column: the medians, the furthest of them in spreads of single devices, and in
-    standard errors of a median."""
+    """A quantity by the groups of a column: the medians, that of all devices, the group that is furthest from it, in
+    spreads of single devices, and the chance as of a `Trend` (Kruskal and Wallis 1952)."""
 
     quantity: str
     column: str
     medians: Mapping[str, float]
+    usual: float
+    furthest: str
     distance: float
-    certainty: float
+    chance: float
 
     @property
     def clear(self) -> bool:
         """Whether chance would hardly give it, and it matters beside the spread of single devices."""
-        return self.certainty > CERTAIN + 1 and self.distance > 0.5
+        return self.chance < CHANCE and self.distance > CLEAR
 
 
 @dataclass(frozen=True)
@@ -123,22 +127,23 @@ def spread(values: Array) -> float:
 
 def trends(quantities: Sequence[Quantity], columns: Mapping[str, Sequence[Any]]) -> list[Trend]:
     """Each quantity against each column of numbers, the clearest first."""
-    trends = []
+    pairs = []
     for quantity in quantities:
         for name, x in numeric(columns).items():
             known = quantity.usable & np.isfinite(x)
             if known.sum() >= FEWEST and np.ptp(x[known]) > 0 and np.ptp(quantity.values[known]) > 0:
-                trends.append(_trend(quantity, name, x[known], quantity.values[known]))
-    return sorted(trends, key=lambda trend: -abs(trend.correlation))
+                pairs.append((quantity, name, x[known], quantity.values[known]))
+    return sorted((_trend(*pair, len(pairs)) for pair in pairs), key=lambda trend: -abs(trend.correlation))
 
 
-def _trend(quantity: Quantity, column: str, x: Array, y: Array) -> Trend:
+def _trend(quantity: Quantity, column: str, x: Array, y: Array, pairs: int) -> Trend:
     from scipy.stats import spearmanr, theilslopes
 
     few = np.random.default_rng(0).permutation(x.size)[:1000]  # slopes are taken of all pairs
     slope = float(theilslopes(y[few], x[few])[0])
     level = float(np.median(y - slope * x))
-    return Trend(quantity.name, column, slope, level, float(spearmanr(x, y)[0]), x.size)
+    correlation, chance = spearmanr(x, y)
+    return Trend(quantity.name, column, slope, level, float(correlation), float(chance) * pairs)
 
 
 def numeric(columns: Mapping[str, Sequence[Any]]) -> dict[str, Array]:
@@ -186,23 +191,28 @@ def groups(columns: Mapping[str, Sequence[Any]], devices: int) -> dict[str, dict
 
 def differences(quantities: Sequence[Quantity], columns: Mapping[str, Sequence[Any]], devices: int) -> list[Difference]:
     """Each quantity by each column that sorts the devices into groups, the most certain first."""
-    differences = []
+    pairs = []
     for quantity in quantities:
         for name, members in groups(columns, devices).items():
             inside = {word: quantity.values[quantity.usable & group] for word, group in members.items()}
             inside = {word: values for word, values in inside.items() if values.size >= 3}
-            within = (
-                np.concatenate([values - np.median(values) for values in inside.values()]) if inside else np.empty(0)
-            )
-            if len(inside) > 1 and (size := spread(within)) > 0:
-                far = {word: np.median(values) - quantity.median for word, values in inside.items()}
-                word = max(far, key=lambda key: abs(far[key]) * np.sqrt(inside[key].size))
-                error = 1.25 * size / np.sqrt(inside[word].size)  # of a median
-                medians = {key: float(np.median(values)) for key, values in inside.items()}
-                differences.append(
-                    Difference(quantity.name, name, medians, abs(far[word]) / size, abs(far[word]) / error)
-                )
-    return sorted(differences, key=lambda difference: -difference.certainty)
+            if len(inside) > 1 and np.ptp(np.concatenate([*inside.values()])) > 0:
+                pairs.append((quantity, name, inside))
+    made = (_difference(*pair, len(pairs)) for pair in pairs)
+    return sorted((item for item in made if item), key=lambda item: (item.chance, -item.distance))
+
+
+def _difference(quantity: Quantity, column: str, inside: Mapping[str, Array], pairs: int) -> Difference | None:
+    from scipy.stats import kruskal
+
+    size = spread(np.concatenate([values - np.median(values) for values in inside.values()]))
+    if not size > 0:
+        return None
+    medians = {word: float(np.median(values)) for word, values in inside.items()}
+    furthest = max(medians, key=lambda word: abs(medians[word] - quantity.median) * np.sqrt(inside[word].size))
+    distance = abs(medians[furthest] - quantity.median) / size
+    chance = float(kruskal(*inside.values())[1]) * pairs
+    return Difference(quantity.name, column, medians, quantity.median, furthest, distance, chance)
 
 
 def out_of_line(
@@ -211,35 +221,44 @@ def out_of_line(
     known: Sequence[Trend],
     columns: Mapping[str, Sequence[Any]] | None = None,
 ) -> list[Finding]:
-    """Devices further from the median than FAR spreads, the furthest first. Where a quantity clearly depends on a
-    column, the median is that of devices with the same value in it."""
-    findings = []
-    for quantity in quantities:
-        if quantity.usable.sum() < FEWEST:
-            continue
-        usual, beside = _usual(quantity, known, numeric(columns or {}))
-        off = quantity.values - usual
-        size = max(spread(off[quantity.usable & np.isfinite(off)]), quantity.own_error, LEAST * abs(quantity.median))
-        distance = off / size if size > 0 else np.zeros(off.size)
-        far = (distance > FAR) & (quantity.values > WORSE * usual) if quantity.one_sided else np.abs(distance) > FAR
+    """Devices further from the median than chance takes one of so many, the furthest first. Where a quantity clearly
+    depends on a column, the median is that of devices with the same value in it."""
+    findings, judged = [], [quantity for quantity in quantities if quantity.usable.sum() >= FEWEST]
+    for quantity in judged:
+        usual, size, beside = _usual(quantity, known, numeric(columns or {}))
+        distance = np.divide(quantity.values - usual, size, out=np.zeros(usual.size), where=size > 0)
+        limit = farthest(int(quantity.usable.sum()), len(judged))
+        far = (distance > limit) & (quantity.values > WORSE * usual) if quantity.one_sided else np.abs(distance) > limit
         for place in np.flatnonzero(far & quantity.usable).tolist():
-            sentence = sentence_of(
-                quantity, float(quantity.values[place]), float(usual[place]), float(distance[place]), beside
-            )
-            findings.append(
-                Finding(devices[place], quantity.name, float(distance[place]), sentence, quantity.one_sided)
-            )
+            value, level, spreads = (float(each[place]) for each in (quantity.values, usual, distance))
+            sentence = sentence_of(quantity, value, level, spreads, beside[place])
+            findings.append(Finding(devices[place], quantity.name, spreads, sentence, quantity.one_sided))
     return sorted(findings, key=lambda finding: -abs(finding.distance))
 
 
-def _usual(quantity: Quantity, known: Sequence[Trend], columns: Mapping[str, Array]) -> tuple[Array, str]:
-    """What is usual for each device, and the column that it depends on."""
-    usual = np.full(quantity.values.size, quantity.median)
-    for trend in known:
-        if trend.quantity == quantity.name and trend.clear and trend.column in columns:
-            line = trend.at(columns[trend.column])
-            return np.where(np.isfinite(line) & ((line > 0) | (not quantity.one_sided)), line, usual), trend.column
-    return usual, ""
+@cache
+def farthest(devices: int, quantities: int) -> float:
+    """How many spreads from the median one of so many devices is by CHANCE, in one of so many quantities, but FAR at
+    least: few devices tell their spread badly. By Student's distribution of the degrees of freedom that a median
+    absolute deviation has."""
+    from scipy.stats import t
+
+    return max(FAR, float(t.isf(CHANCE / (2 * devices * quantities), WORTH * (devices - 1))))
+
+
+def _usual(quantity: Quantity, known: Sequence[Trend], columns: Mapping[str, Array]) -> tuple[Array, Array, list[str]]:
+    """What is usual for each device, its spread, and the column that it depends on: of a device of which the column
+    says nothing it is that of all."""
+    usual, beside = np.full(quantity.values.size, quantity.median), np.zeros(quantity.values.size, bool)
+    clear = (trend for trend in known if trend.quantity == quantity.name and trend.clear and trend.column in columns)
+    if trend := next(clear, None):
+        line = trend.at(columns[trend.column])
+        beside = np.isfinite(line) & ((line > 0) | (not quantity.one_sided))
+        usual[beside] = line[beside]
+    least = max(quantity.own_error, LEAST * abs(quantity.median))
+    near = max(spread((quantity.values - usual)[quantity.usable & beside]), least) if beside.any() else least
+    size = np.where(beside, near, max(quantity.spread, least))
+    return usual, size, [trend.column if trend and told else "" for told in beside]
 
 
 def sentence_of(quantity: Quantity, value: float, usual: float, distance: float, beside: str) -> str:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from lot.test_devices import ONE, TWO, here, job, touch
 from pzt_ident.errors import InputError
 from pzt_ident.lot.devices import devices_of
-from pzt_ident.lot.listed import is_table, values_of
+from pzt_ident.lot.listed import is_table, odd_cells, values_of
 
 __all__ = ["here"]
 LONG = 200_000  # characters, above the limit of a field of Python's csv
@@ -139,6 +139,14 @@ def test_a_column_holds_numbers_or_words(cells, values):
 def test_decimals_may_have_a_comma_where_cells_have_none(cells):
     assert values_of(cells, ".,") == [None if cell == "-" else float(cell.replace(",", ".")) for cell in cells]
     assert values_of(["1.234,5"], ".,") == ["1.234,5"]
+
+
+@pytest.mark.parametrize(("odd", "told"), [("29O.1", [3]), ("1.000,5", [3]), ("", []), ("n/a", []), ("300", [])])
+def test_a_typing_error_among_numbers_is_told(odd, told):
+    cells = ["290", "291.5", "292", odd, *map(str, range(293, 300))]
+    assert odd_cells(cells) == told
+    assert odd_cells(["A7", "B8", *cells]) == []
+    assert odd_cells(["B7", "B8", "B9"]) == []
 
 
 @given(st.lists(st.floats(allow_nan=False, allow_infinity=False).map(repr), min_size=1))

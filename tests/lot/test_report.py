@@ -10,6 +10,7 @@ import pytest
 from cut_texts import cut_texts
 from pzt_ident.errors import InputError
 from pzt_ident.files import read_sealed, write_sealed
+from pzt_ident.lot import report
 from pzt_ident.lot.figures import NAMED, bars, plates
 from pzt_ident.lot.outcome import read_lot
 from pzt_ident.lot.report import write_fleet_report
@@ -107,6 +108,14 @@ def test_an_unfinished_fleet_has_a_report(identified, tmp_path):
         shutil.rmtree(out / "devices" / row["device"])
     text = write_fleet_report(out, place=Local(1)).read_text(encoding="utf-8")
     assert f"{len(lot.done) - 1} devices are not done" in text
+
+
+def test_of_many_devices_the_table_has_those_that_stand_out_and_the_first_of_the_others(identified, monkeypatch):
+    lot = read_lot(identified[0])
+    monkeypatch.setattr(report, "MOST_LINES", 4)
+    far = list(dict.fromkeys(finding.device for finding in lot.findings))
+    shown = [line["device"] for line in report.device_lines(lot)]
+    assert len(shown) == 4 and {*far[:4]} <= {*shown}
 
 
 def test_names_from_a_table_are_no_markup(identified, tmp_path):

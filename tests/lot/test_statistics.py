@@ -67,6 +67,38 @@ def test_what_is_usual_of_an_error_is_more_than_nothing():
     assert trends([noise], columns)[0].at(kelvin)[-1] < 0 < float(finding.sentence.split()[-4])
 
 
+@pytest.mark.parametrize("devices", [8, 16, 40])
+def test_of_healthy_lots_few_have_a_finding_however_many_columns_and_quantities(devices):
+    """Five in a hundred of each kind, less where the limit is that of large lots."""
+    rng, lots = np.random.default_rng(devices), 40
+    found = np.zeros((lots, 3), bool)
+    for lot in range(lots):
+        quantities = [quantity(1 + 0.01 * rng.standard_normal(devices), name=f"q{i}") for i in range(6)]
+        columns = {f"number {i}": rng.standard_normal(devices).tolist() for i in range(4)}
+        columns |= {f"word {i}": rng.choice(["a", "b", "c"], devices).tolist() for i in range(4)}
+        known = trends(quantities, columns)
+        groups = differences(quantities, columns, devices)
+        far = out_of_line(NAMES[:devices], quantities, [], columns)
+        found[lot] = bool(far), any(item.clear for item in known), any(item.clear for item in groups)
+    assert found.mean(axis=0).max() <= 0.15
+
+
+def test_a_device_that_is_far_out_is_found_in_a_small_lot_too():
+    values = 1 + 0.01 * np.random.default_rng(5).standard_normal(16)
+    values[3] = 1.3
+    assert [finding.device for finding in out_of_line(NAMES[:16], [quantity(values)], [], {})] == ["d3"]
+
+
+def test_a_device_of_which_a_column_says_nothing_is_judged_as_if_nothing_hung_on_it():
+    kelvin = np.linspace(280, 340, N)
+    gain = quantity(1 + 0.002 * (kelvin - 310) + 0.001 * np.clip(NORMAL, -3, 3))
+    columns = {"temperature [K]": [None, *kelvin[1:].tolist()]}
+    assert out_of_line(NAMES, [gain], trends([gain], columns), columns) == []
+    gain.values[0] = 2.0
+    (finding,) = out_of_line(NAMES, [gain], trends([gain], columns), columns)
+    assert "usual 1." in finding.sentence
+
+
 def test_few_devices_do_not_tell_what_is_usual():
     assert out_of_line(NAMES[:7], [quantity(np.array([1, 1, 1, 1, 1, 1, 9.0]))], [], {}) == []
 
