@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.modes import mechanics_at_main_mode, mechanics_without_payload
-from pzt_ident.engine.simulator import Simulator
+from pzt_ident.search.halving import change_by_halving
 from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
@@ -121,13 +121,10 @@ def refine_steps(
 def step_errors(case: Case, fit: Fit, numbers: Iterable[int] | None = None) -> Array:
     """Change of the response of records, by default of all, when the simulation step is halved, root mean square, in
     units of the loss: (records,)."""
-    problem, errors = fit.problem, []
-    theta = problem.parameters(fit.point)
+    problem, theta = fit.problem, fit.problem.parameters(fit.point)
+    errors = []
     for number in range(len(problem.records)) if numbers is None else numbers:
         record = problem.records[number]
-        simulator = problem.simulator_of(record)
-        finer = Simulator(problem.model, case.record_with_steps(number, 2 * record.steps))
-        complete = simulator.amounts.complete(theta)
-        change = (finer.simulate(complete) - simulator.simulate(complete))[0, :, record.settle :]
-        errors.append(np.sqrt(np.mean(np.var(change / problem.sizes[:, None], axis=1))))
+        change = change_by_halving(problem, record, case.record_with_steps(number, 2 * record.steps), theta)
+        errors.append(np.sqrt(np.mean(np.square(change / problem.sizes))))
     return np.array(errors)

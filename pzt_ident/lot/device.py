@@ -166,6 +166,7 @@ def row_of(given: Given, result: dict[str, Any], improvement: dict[str, Any]) ->
         "rmse": best["rmse"],
         "rmse_improved": last["rmse"] if improvement else None,
         "noise_floor": floor,
+        "step_change": max(record["step_change"] for record in result["records"]),
         "parameters": {
             name: interval(parameter) | {"verdict": parameter["verdict"]}
             for name, parameter in best["parameters"].items()

@@ -13,7 +13,7 @@ import numpy as np
 from pzt_ident.data.notation import listed, number
 from pzt_ident.data.notation import quantity as in_words
 from pzt_ident.lot.outcome import Lot
-from pzt_ident.lot.statistics import FAR, Quantity, Trend, groups, numeric
+from pzt_ident.lot.statistics import Quantity, Trend, groups, numeric
 from pzt_ident.report.figures import Plate
 from pzt_ident.report.style import MODEL, QUIET, SHADE, Frame, label, log_ticks, name_panel, panels, width_of
 
@@ -35,8 +35,8 @@ def plates(lot: Lot) -> Iterator[Plate]:
         yield Plate(
             "spreads",
             "spreads",
-            f"Number of devices by the value of each quantity that their data determine. Shaded: {FAR:g} spreads to "
-            "either side of the median. Marked below: devices out of line.",
+            "Number of devices by the value of each quantity that their data determine. Shaded: as far as chance takes "
+            "one of so many devices. Marked below: devices out of line.",
             partial(_height, count=len(shown)),
             partial(_draw_spreads, lot=lot, shown=shown),
             bars(lot, shown),
@@ -123,7 +123,7 @@ def _draw_spreads(figure: Figure, lot: Lot, shown: Sequence[Quantity]) -> None:
     parts = bars(lot, shown)
     for place, (axes, quantity) in enumerate(zip(_grid(figure, len(shown)), shown, strict=True)):
         values, far = quantity.values[quantity.usable], _far(lot, quantity)[quantity.usable]
-        middle, half = quantity.median, FAR * quantity.spread
+        middle, half = quantity.median, lot.reach(quantity) * quantity.spread
         low, high, edges = np.min(values), np.max(values), _edges(quantity)
         below = max(middle - half, low) if quantity.one_sided else middle - half
         axes.set_gid(f"panel-{place}")

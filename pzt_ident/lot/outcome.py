@@ -12,7 +12,17 @@ import numpy as np
 
 from pzt_ident.errors import DamagedError, InputError
 from pzt_ident.lot.identify import read_statement
-from pzt_ident.lot.statistics import Difference, Finding, Quantity, Trend, differences, out_of_line, trends
+from pzt_ident.lot.statistics import (
+    FEWEST,
+    Difference,
+    Finding,
+    Quantity,
+    Trend,
+    differences,
+    farthest,
+    out_of_line,
+    trends,
+)
 from pzt_ident.lot.table import Row, in_unit, read_devices, rows_of, some
 
 DETERMINED = "determined"
@@ -36,12 +46,13 @@ class Lot:
 
     @cached_property
     def quantities(self) -> list[Quantity]:
-        """What is compared between devices: the parameters, and what the model leaves."""
-        names = list(dict.fromkeys(name for row in self.done for name in row["parameters"]))
+        """What is compared between devices: the parameters, and what the model leaves; of the improved model where
+        there is one."""
+        names = list(dict.fromkeys(name for row in self.done for name in parameters_of(row)))
         return [*(self._parameter(name) for name in names), *self._errors()]
 
     def _parameter(self, name: str) -> Quantity:
-        parameters = [row["parameters"].get(name) for row in self.done]
+        parameters = [parameters_of(row).get(name) for row in self.done]
         shown = next(parameter["unit"] for parameter in parameters if parameter)
 
         def column(key: str) -> np.ndarray:
@@ -49,7 +60,7 @@ class Lot:
                 [_number(parameter and in_unit(parameter[key], parameter["unit"], shown)) for parameter in parameters]
             )
 
-        known = np.array([bool(parameter) and parameter["verdict"] == DETERMINED for parameter in parameters])
+        known = np.array([bool(parameter) and is_determined(parameter) for parameter in parameters])
         return Quantity(name, shown, column("value"), column("low"), column("high"), known)
 
     def _errors(self) -> list[Quantity]:
@@ -83,10 +94,15 @@ class Lot:
         """Devices out of line, the furthest first."""
         return out_of_line([row["device"] for row in self.done], self.quantities, self.trends, self.columns)
 
+    def reach(self, quantity: Quantity) -> float:
+        """How many spreads from the median chance takes one of the devices."""
+        judged = sum(int(other.usable.sum()) >= FEWEST for other in self.quantities)
+        return farthest(int(quantity.usable.sum()), max(judged, 1))
+
     @property
     def ill_fitted(self) -> list[str]:
         """The devices that the model fits worse than usual and than the noise, the worst first."""
-        at_noise = {row["device"] for row in self.done if row["verdict"] == "adequate" and not row["effects"]}
+        at_noise = {row["device"] for row in self.done if row["verdict"] == "adequate"}
         names = dict.fromkeys(finding.device for finding in self.findings if finding.of_fit)
         return [name for name in names if name not in at_noise]
 
@@ -148,9 +164,19 @@ class Lot:
         return lines
 
 
+def parameters_of(row: Row) -> dict[str, Any]:
+    """Those of a device's last model."""
+    return row.get("improved") or row["parameters"]
+
+
+def is_determined(parameter: Any) -> bool:
+    """Whether the data hold a parameter; of an improved model that is whether it has an interval."""
+    return parameter["verdict"] == DETERMINED if "verdict" in parameter else parameter["low"] is not None
+
+
 ERRORS = {
-    "identification RMSE": lambda row: row["rmse"]["identify"],
-    "validation RMSE": lambda row: row["rmse"]["validate"],
+    "identification RMSE": lambda row: (row["rmse_improved"] or row["rmse"])["identify"],
+    "validation RMSE": lambda row: (row["rmse_improved"] or row["rmse"])["validate"],
     "noise floor": lambda row: row["noise_floor"],
 }
 

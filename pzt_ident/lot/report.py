@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import quote
 
+import numpy as np
+
 from pzt_ident.data.notation import listed, number, percent, spelled, unit
 from pzt_ident.errors import InputError
 from pzt_ident.files import write_text
@@ -27,6 +29,7 @@ from pzt_ident.report.page import environment as page_environment
 from pzt_ident.report.page import web_file
 from pzt_ident.report.style import COLUMN, PAGE
 from pzt_ident.report.words import atlas_beside, named
+from pzt_ident.run.collect import MOST_OF_THE_NOISE
 from pzt_ident.run.events import Listen, nobody
 from pzt_ident.run.place import HERE, Place
 
@@ -181,8 +184,7 @@ def lead(lot: Lot) -> str:
         return f"None of {total} devices {'is done yet' if unfinished(lot) else 'could be identified'}."
     fit = [f"is adequate for {len(adequate) - more or 'none'} of {total} devices"]
     fit += [f"with effects added for {more} more"] * bool(more)
-    as_given = "as given " * bool(lot.statement["improve"])
-    fit += [f"{as_given}fits {len(lot.ill_fitted)} worse than usual"] * bool(lot.ill_fitted)
+    fit += [f"fits {len(lot.ill_fitted)} worse than usual"] * bool(lot.ill_fitted)
     text = f"The model {listed(fit)}."
     if lot.odd:
         text += f" {len(lot.odd)} more {'is' if len(lot.odd) == 1 else 'are'} out of line."
@@ -200,7 +202,13 @@ def findings(lot: Lot) -> Iterator[str]:
     """What a reader must know beside that."""
     above = lot.verdicts.get("above the noise", 0)
     if above and not lot.statement["improve"]:
-        yield f"{above} are above the noise: the same command with --improve says which effect they miss."
+        yield f"{above} are above the noise: the same command with --improve says why."
+    coarse = [row["device"] for row in lot.done if row.get("step_change", 0.0) > MOST_OF_THE_NOISE]
+    if coarse and not lot.statement["improve"]:
+        yield (
+            f"The step of the simulation costs {len(coarse)} of {len(lot.done)} devices more than a fifth of the noise:"
+            " give the records of the job more `steps`."
+        )
     for effect, names in lot.effects.items():
         yield f"{effect} is missing in {len(names)} of {len(lot.done)} devices ({percent(len(names) / len(lot.done))})."
     for trend in _distinct(lot.trends):
@@ -221,7 +229,7 @@ def findings(lot: Lot) -> Iterator[str]:
     undetermined = [
         quantity.name
         for quantity in lot.quantities
-        if not quantity.one_sided and quantity.usable.sum() < len(lot.done) / 2
+        if not quantity.one_sided and quantity.usable.sum() < np.isfinite(quantity.values).sum() / 2
     ]
     if undetermined:
         yield f"The data of most devices do not determine {listed(undetermined)}."
@@ -254,8 +262,15 @@ def far(lot: Lot) -> list[tuple[str, str, str]]:
     for finding in lot.findings:
         why.setdefault(finding.device, []).append(spelled(finding.sentence))
     rows = {row["device"]: row for row in lot.done}
-    kinds = [(name, "parameters") for name in lot.odd] + [(name, _misfit(rows[name])) for name in lot.ill_fitted]
+    noisy = {name for name in lot.odd if all(finding.of_fit for finding in lot.findings if finding.device == name)}
+    kinds = [(name, "noise" if name in noisy else _odd(rows[name])) for name in lot.odd]
+    kinds += [(name, _misfit(rows[name])) for name in lot.ill_fitted]
     return [(name, kind, "; ".join(why[name])) for name, kind in kinds]
+
+
+def _odd(row: Row) -> str:
+    """What is known of a device that the model fits with unusual parameters."""
+    return f"parameters, misses {listed(row['effects'])}" if row["effects"] else "parameters"
 
 
 def _misfit(row: Row) -> str:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from pzt_ident.data.noise import units_and_floors
+from pzt_ident.data.noise import noise_floor, units_and_floors
 from pzt_ident.data.record import Record
 from pzt_ident.data.signals import write_signals
 from pzt_ident.data.units import factor
@@ -20,9 +22,12 @@ from pzt_ident.run.misfit import write_misfits
 from pzt_ident.run.start import START
 from pzt_ident.run.statement import Statement
 from pzt_ident.run.task import Task, read_result
+from pzt_ident.search.halving import change_by_halving
 from pzt_ident.search.league import rank
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.uncertainty import judged
+
+MOST_OF_THE_NOISE = 0.2  # that half the step of a simulation may change, before it is said
 
 
 def collect(
@@ -44,13 +49,14 @@ def collect(
     point = np.array(best["point"])
     write_text(folder / "history.csv", history_text(searches, histories))
     write_signals(folder / "signals.nc", problem.errors(point))
+    floors = [noise_floor(records, axis).value for axis in records[0].measured]
     result = {
         "name": job.name,
         **units_and_floors(records),
         "seed": job.seed,
         "command": read_environment(folder)["command"],
         "created": datetime.now().astimezone().isoformat(timespec="seconds"),
-        "records": [facts_of(record, problem, point) for record in records],
+        "records": [facts_of(record, problem, point, floors) for record in records],
         "league": league,
         "best": best,
         "runs": [{key: value for key, value in run.items() if key != "correlation"} for run in runs],
@@ -63,9 +69,11 @@ def collect(
     return result
 
 
-def facts_of(record: Record, problem: Problem, point: np.ndarray) -> dict[str, Any]:
-    """What is to be known of a record, and what the model leaves of it."""
-    simulator = problem.simulator_of(record)
+def facts_of(record: Record, problem: Problem, point: np.ndarray, floors: Sequence[float]) -> dict[str, Any]:
+    """What is to be known of a record, and what the model leaves of it. floors: noise of each measured axis, SI."""
+    theta = problem.parameters(point)
+    changes = change_by_halving(problem, record, replace(record, steps=2 * record.steps), theta)
+    change = float(np.max(changes / np.maximum(floors, np.finfo(float).tiny)))
     return {
         **errors_in(record, problem, point),
         "file": record.file,
@@ -74,8 +82,16 @@ def facts_of(record: Record, problem: Problem, point: np.ndarray) -> dict[str, A
         "sample_rate": 1 / record.dt,
         "settle": record.settle * record.dt,
         "axes": [record.axes[a] for a in record.measured],
-        "notes": [*record.notes, *simulator.violations(problem.parameters(point))],
+        "step_change": change,
+        "notes": [*record.notes, *problem.simulator_of(record).violations(theta), *coarse(record, change)],
     }
+
+
+def coarse(record: Record, change: float) -> Iterator[str]:
+    """The note on a simulation whose step costs much of the noise. change: of the response in half steps, in floors."""
+    if change > MOST_OF_THE_NOISE:
+        how = f"give the record `steps: {4 * record.steps}`"
+        yield f"half the step of the simulation changes the response by {change:.2g} noise floors: {how}"
 
 
 def errors_in(record: Record, problem: Problem, point: np.ndarray) -> dict[str, Any]:
