@@ -41,8 +41,15 @@ def fleet() -> None:
     """
 
 
-@fleet.command("JOB", hidden=True)
-@click.argument("job", type=EXISTING)
+class Identify(click.Command):
+    """A command whose first argument is its name."""
+
+    def collect_usage_pieces(self, ctx: click.Context) -> list[str]:
+        return [piece for piece in super().collect_usage_pieces(ctx) if piece]
+
+
+@fleet.command("JOB", cls=Identify, hidden=True)
+@click.argument("job", metavar="", type=EXISTING)
 @click.argument("patterns", metavar="PATTERN...", nargs=-1, required=True)
 @click.option("--out", type=EXISTING, help="Folder for the results; results/<name>/fleet if not given.")
 @click.option("--improve", is_flag=True, help="Diagnose each device, and add what its model misses.")
