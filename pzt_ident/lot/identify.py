@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from pzt_ident.errors import DamagedError, InputError, LostError, printable
-from pzt_ident.files import read_sealed, write_sealed, write_text
+from pzt_ident.files import read_sealed, write_files, write_sealed, write_text
 from pzt_ident.job.files import Template
 from pzt_ident.job.schema import Job
 from pzt_ident.lot.device import Given, Orders, identify_device
@@ -231,9 +231,7 @@ class Identification:
         del self.sha256[name]
         home = folder_of(self.folder, name)
         new = self.folder / "devices" / ".new" / home.name
-        for file, content in files.items():
-            (new / file).parent.mkdir(parents=True, exist_ok=True)
-            (new / file).write_bytes(content)
+        write_files(new, files)
         shutil.rmtree(home, ignore_errors=True)
         home.parent.mkdir(parents=True, exist_ok=True)
         new.rename(home)
