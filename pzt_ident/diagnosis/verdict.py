@@ -41,6 +41,7 @@ from pzt_ident.diagnosis.reasons import (
 )
 from pzt_ident.diagnosis.refit import refit, step_errors
 from pzt_ident.diagnosis.score import LEAST_SCORE, scorer_of, squared_misfit
+from pzt_ident.diagnosis.spectral_line import is_own_line
 from pzt_ident.diagnosis.ties import (
     LIMIT_TIE,
     LOOK_ALIKE_TIE,
@@ -107,8 +108,10 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
 
 
 def is_account(case: Case, first: Fit, before: Fit, fit: Fit) -> bool:
-    """Whether an effect removes enough, or most of what one of several axes lacks."""
-    return removes_enough(case, first, before, fit) or clears_an_axis(case, first, before, fit)
+    """Whether an effect removes enough, or most of what one of several axes lacks, or of its own band of the
+    spectrum."""
+    enough = removes_enough(case, first, before, fit) or clears_an_axis(case, first, before, fit)
+    return enough or is_own_line(case, before, fit, fit.effects[-1])
 
 
 def with_effects(
