@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from pzt_ident.lot.sentences import groups_of
 from pzt_ident.lot.statistics import Quantity, differences, groups, numeric, out_of_line, spread, trends
 
 RNG = np.random.default_rng(0)
@@ -140,6 +141,14 @@ def test_groups_that_differ_are_found():
     (difference,) = differences([quantity(values)], {"batch": batch, "serial": NAMES}, N)
     assert difference.clear
     assert difference.medians == {"A": pytest.approx(1.0, abs=0.003), "B": pytest.approx(1.02, abs=0.003)}
+
+
+def test_of_many_groups_that_which_stands_out_is_named():
+    batch = [f"B{i % 10}" for i in range(N)]
+    values = 1 + 0.01 * NORMAL + 0.3 * (np.array(batch) == "B7")
+    (difference,) = differences([quantity(values)], {"batch": batch}, N)
+    assert difference.clear and difference.furthest == "B7"
+    assert groups_of(difference, "um").startswith("B7 is 31\u00a0% above the median of all, 1.30")
 
 
 def test_dates_are_days_and_words_are_groups():
