@@ -83,10 +83,9 @@ def groups_of(difference: Difference, shown: str) -> str:
     if len(medians) <= MOST_GROUPS:
         return f"{', '.join(medians)} {shown}".rstrip()
     furthest, usual = difference.medians[difference.furthest], difference.usual
-    where = (
-        f"{percent(abs(furthest / usual - 1))} {'above' if furthest > usual else 'below'}" if usual > 0 else "not at"
-    )
-    return f"{difference.furthest} is {where} the median of all, {number(furthest)} {shown}".rstrip()
+    where = "above" if furthest > usual else "below"
+    far = f"{percent(abs(furthest / usual - 1))} {where}" if usual else where
+    return f"{difference.furthest} has {f'{number(furthest)} {shown}'.rstrip()}, {far} the median of all"
 
 
 def _distinct(trends: Iterable[Any]) -> list[Any]:

@@ -148,7 +148,7 @@ def test_of_many_groups_that_which_stands_out_is_named():
     values = 1 + 0.01 * NORMAL + 0.3 * (np.array(batch) == "B7")
     (difference,) = differences([quantity(values)], {"batch": batch}, N)
     assert difference.clear and difference.furthest == "B7"
-    assert groups_of(difference, "um").startswith("B7 is 31\u00a0% above the median of all, 1.30")
+    assert groups_of(difference, "um") == "B7 has 1.307 um, 31\u00a0% above the median of all"
 
 
 def test_dates_are_days_and_words_are_groups():
