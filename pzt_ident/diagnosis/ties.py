@@ -7,6 +7,7 @@ from collections.abc import Collection
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import removed_rms
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.model.block import Place
 from pzt_ident.model.registry import blocks, form_of, word_of
 
 TIE = 0.2  # noise floors between two refits: less does not distinguish them; of look-alikes twice that
@@ -52,6 +53,12 @@ def rests_on_own_bounds(before: Fit, fit: Fit) -> bool:
     """Whether a parameter that an effect brought along ended on a bound: the effect may be the limit in which it is
     another one, as friction that is smoothed over all speeds is a lag."""
     return bool(set(fit.on_bounds) - set(before.problem.names))
+
+
+def nearness_of(effect: str) -> int:
+    """How near to the reading an effect acts; one in the equation of an operator or of mechanics is between what acts
+    on the drive and what acts on the displacement."""
+    return getattr(blocks[effect], "place", Place.OPERATOR)
 
 
 def generalises(rival: Fit, fit: Fit) -> bool:

@@ -51,6 +51,7 @@ from pzt_ident.diagnosis.ties import (
     generalises,
     is_tied,
     is_twin,
+    nearness_of,
     rests_on_own_bounds,
 )
 from pzt_ident.model.registry import blocks, word_of
@@ -123,7 +124,7 @@ def with_effects(
     def simplicity(item: Candidate) -> tuple[int, float, int, str]:
         """Of two names of one model that which acts nearest to the reading."""
         word = item.score.effect
-        return fits[word].freedom, round(fits[word].total / (TWIN * case.floor)), -blocks[word].place, word
+        return fits[word].freedom, round(fits[word].total / (TWIN * case.floor)), -nearness_of(word), word
 
     total = min(fit.total for fit in fits.values())
     close = [item for item in passing if removed_rms(fits[item.score.effect].total, total) < TIE * case.floor]

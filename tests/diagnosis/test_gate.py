@@ -24,7 +24,7 @@ from pzt_ident.diagnosis.score import Score, squared_misfit
 from pzt_ident.diagnosis.ties import generalises, is_tied, is_twin
 from pzt_ident.diagnosis.verdict import best_pair, diagnose
 from pzt_ident.model.parameter import Parameter
-from pzt_ident.model.registry import word_of
+from pzt_ident.model.registry import blocks, word_of
 
 CASE = SimpleNamespace(floor=1.0, floors=np.ones(1), on_event=lambda event: None, budget=Budget())
 FAR = 10.0  # an error that nobody takes for noise
@@ -342,6 +342,12 @@ def test_of_look_alikes_that_are_tied_the_simpler_one_is_taken(judged, dimension
 def test_of_two_names_of_one_model_that_which_acts_nearest_to_the_reading_is_taken(judged, one, other, apart, nearest):
     diagnosis = judged({one: fit(2.0, 2.0, [one]), other: fit(2.0 + apart, 2.0 + apart, [other])})
     assert diagnosis.tied[0] == (other if nearest else one)
+
+
+@pytest.mark.parametrize("word", blocks.effects())
+def test_every_effect_may_be_one_of_two_names(judged, word):
+    diagnosis = judged({"creep": fit(2.0, 2.0, ["creep"]), word: fit(2.0, 2.0, [word])})
+    assert diagnosis.tied[0] in ("creep", word)
 
 
 @pytest.mark.parametrize("confirmed", [False, True])
