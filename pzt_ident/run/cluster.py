@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from distributed import Client, Future
     from distributed.deploy import Cluster as DaskCluster
 
+NO_PROFILES = "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED=False"  # a worker's memory would be filled with them
 AHEAD = 2
 """Tasks that are on their way to each thread of the cluster."""
 ATTEMPTS = 3
@@ -103,7 +104,8 @@ class Slurm(Cluster):
         from dask_jobqueue import SLURMCluster
 
         memory = dask.config.get("jobqueue.slurm.memory", None) or "2 GB"
-        return SLURMCluster(queue=self.partition, cores=1, processes=1, memory=memory)
+        prologue = [*(dask.config.get("jobqueue.slurm.job-script-prologue", None) or []), f"export {NO_PROFILES}"]
+        return SLURMCluster(queue=self.partition, cores=1, processes=1, memory=memory, job_script_prologue=prologue)
 
     @contextmanager
     def client(self) -> Iterator[Client]:

@@ -152,6 +152,7 @@ def test_slurm_is_asked_for_jobs_of_one_core(monkeypatch):
     assert place.jobs == 8
     assert "#SBATCH -p long.q" in script
     assert "--nthreads 1" in script
+    assert script.index("PROFILE__ENABLED=False") < script.index("--nthreads 1")
 
 
 @pytest.mark.parametrize(
