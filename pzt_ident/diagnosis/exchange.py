@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from functools import partial
+from itertools import permutations
 
 from pzt_ident.diagnosis.budget import PROOF, PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
@@ -16,7 +17,18 @@ from pzt_ident.diagnosis.refit import refit, refit_beside, start_of
 from pzt_ident.diagnosis.score import applicable, fitting_forms, scorer_of
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explained_share
-from pzt_ident.diagnosis.ties import LIMIT_TIE, TIE, TWIN, is_equal, is_tied, is_twin, rests_on_own_bounds, strangers
+from pzt_ident.diagnosis.ties import (
+    LIMIT_TIE,
+    TIE,
+    TWIN,
+    are_look_alikes,
+    is_equal,
+    is_tied,
+    is_twin,
+    nearness_of,
+    rests_on_own_bounds,
+    strangers,
+)
 from pzt_ident.diagnosis.verdict import diagnose
 from pzt_ident.model.registry import blocks, form_of, word_of
 
@@ -55,7 +67,22 @@ def exchange_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
             best = under_own_name(case, now, effect, best)
             steps += [exchange_step(case, now, best, effect), *remove_unneeded(case, first, best)]
             now = steps[-1].fit
-    return steps
+    return [*steps, *join_look_alikes(case, first, now)]
+
+
+def join_look_alikes(case: Case, first: Fit, now: Fit) -> list[Step]:
+    """The steps that take out one of two look-alikes and put another form in the place of the other, where that alone
+    does as well: a lag of two poles is a lag and a delay."""
+    for one, other in permutations(now.effects[len(first.effects) :], 2):
+        items = other_forms(case, now, one) if are_look_alikes(one, other) else []
+        if not items or not case.budget.allows("other forms", PROVING):
+            continue
+        without = refit(case, now, effects_without(now, other), {})
+        for alone in fits_in_place(case, without, one, items):
+            if removed_rms(alone.total, now.total) < TIE * case.floor and not own_bounds(alone, alone.effects[-1]):
+                taken_out = Step(without, None, other, {}, explained_share(case, now, without))
+                return [taken_out, exchange_step(case, without, alone, one)]
+    return []
 
 
 def separate_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
@@ -186,9 +213,11 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
         now = rivals[taken]
 
 
-def simplicity(case: Case, now: Fit, rivals: Mapping[str, Fit], item: str) -> tuple[int, bool, str]:
-    """The order in which tied effects are taken: by parameters, then those that are the model of a fit, by name."""
-    return rivals[item].freedom, abs(rivals[item].total - now.total) >= TWIN * case.floor, item
+def simplicity(case: Case, now: Fit, rivals: Mapping[str, Fit], item: str) -> tuple[int, bool, int, str]:
+    """The order in which tied effects are taken: by parameters, then those that are the model of a fit, of two names
+    of one model that which acts nearest to the reading."""
+    other = abs(rivals[item].total - now.total) >= TWIN * case.floor
+    return rivals[item].freedom, other, -nearness_of(item), item
 
 
 def add_rivals_beside(case: Case, first: Fit, steps: Sequence[Step], doubted: Fit) -> None:

@@ -7,7 +7,7 @@ import pytest
 import stage
 from pzt_ident.diagnosis import exchange
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.exchange import exchange_limits, parts_of, separate_accounts
+from pzt_ident.diagnosis.exchange import exchange_limits, join_look_alikes, parts_of, separate_accounts
 from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.starts import first_fit
@@ -39,6 +39,25 @@ def test_a_delay_that_viscous_friction_stood_in_for_is_told_beside_friction():
 def test_viscous_friction_is_one_effect():
     case, first, now = with_viscous_friction({"friction.viscous": 0.02})
     assert separate_accounts(case, first, now) == []
+
+
+@pytest.mark.parametrize(
+    ("stage_has", "values", "joined"),
+    [
+        (("amplifier_lag.two_poles",), {"amplifier_lag.tau": 0.03, "amplifier_lag.damping": 1.0}, True),
+        (("amplifier_lag", "delay"), {"amplifier_lag.tau": 0.01, "delay.time": 0.03}, False),
+    ],
+)
+def test_a_lag_of_two_poles_is_one_effect_and_a_lag_behind_a_delay_is_two(stage_has, values, joined):
+    made = stage.records(values, model=("bouc_wen", *stage_has), noise=stage.NOISE / 2, effects={})
+    case = Case(("bouc_wen",), (), made, {})
+    problem = case.problem(())
+    first = fit_at((), problem, case.descend(problem, problem.unit_point(stage.STAGE)))
+    now = refit(case, first, ("amplifier_lag", "delay"), {"amplifier_lag.tau": 0.02, "delay.time": 0.01})
+    steps = join_look_alikes(case, first, now)
+    told = [(None, "delay"), ("amplifier_lag.two_poles", "amplifier_lag")]
+    assert [(step.added, step.removed) for step in steps] == (told if joined else [])
+    assert not joined or steps[-1].fit.total < now.total
 
 
 @pytest.mark.parametrize("item", [item for word in blocks.effects() for item in blocks.forms(word)])
