@@ -47,7 +47,8 @@ def mechanics_without_payload(fit: Fit, kept: Collection[str] = ()) -> Values:
     for entry in fit.problem.model.entries:
         block = entry.name.removesuffix(entry.word)
         mass = f"{block}{entry.parameter.adds_to}"
-        if entry.parameter.adds_to == "mass" and entry.name not in kept and mass not in fit.values:
+        known = mass in values and mass not in fit.values
+        if entry.parameter.adds_to == "mass" and entry.name not in kept and known:
             lighter = values[mass] / (values[mass] + values[entry.name])
             names = (f"{block}{word}" for word in ("damping", "stiffness"))
             moved |= {name: values[name] * lighter for name in names if name in fit.values}

@@ -9,10 +9,13 @@ import rig
 import stage
 from pzt_ident.diagnosis.bounds import bounds_that_changed
 from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.fit import fit_at
+from pzt_ident.diagnosis.refit import values_in
+from pzt_ident.diagnosis.score import fits
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.unmeasured import OWN, own_mechanics, own_mechanics_sentence
-from pzt_ident.model.registry import word_of
+from pzt_ident.model.registry import blocks, word_of
 
 DT, MODEL = 1e-3, ("bouc_wen", "lumped")
 STIFFNESS = 5e4  # N/m of y, three times that of x: 92 against 53 Hz
@@ -59,6 +62,25 @@ def test_an_axis_that_is_like_the_measured_one_is_taken_for_it():
     assert {*map(word_of, found.steps[-1].fit.effects)} <= {"kinematic_coupling", "cross_coupling"}
     assert bounds_that_changed(case, found.steps[-1].fit) == {}
     assert own_mechanics_sentence(case, found.steps[-1].fit) == ""
+
+
+@pytest.fixture(scope="module")
+def beside():
+    """A stage with an axis of each kind, and its fit with a coupling."""
+    case = coupled(STIFFNESS)
+    problem = case.problem(("cross_coupling",))
+    return case, fit_at(("cross_coupling",), problem, np.full(problem.dimensions, 0.5))
+
+
+@pytest.mark.parametrize("item", [item for word in blocks.effects() for item in blocks.forms(word)])
+@pytest.mark.parametrize("measured_only", [False, True])
+def test_from_any_effect_on_either_axis_a_model_without_it_is_gone_on_with(beside, item, measured_only):
+    case, fit = beside
+    if not fits(case, fit.effects, item):
+        return
+    problem = case.problem((*fit.effects, item), fit.steps, measured_only)
+    ended = fit_at((*fit.effects, item), problem, np.full(problem.dimensions, 0.4), measured_only=measured_only)
+    assert values_in(fit.problem, ended).keys() >= {*fit.problem.names}
 
 
 @pytest.mark.parametrize(
