@@ -431,6 +431,16 @@ def test_a_form_of_more_parameters_gives_way_to_the_first_where_that_is_tied(usu
     assert rival.score.effect == ("sensor_lag" if kept else "sensor_lag.second_order")
 
 
+@pytest.mark.parametrize(("apart", "kept"), [(0.11, True), (0.09, False)])
+def test_a_form_of_more_parameters_that_fits_better_is_in_the_class(apart, kept):
+    best = candidate_of(fit(np.hypot(1.0, apart), effects=["delay"], dimensions=5))
+    rival = candidate_of(
+        fit(1.5, effects=["sensor_lag"], dimensions=5), fit(1.0, effects=["sensor_lag.second_order"], dimensions=6)
+    )
+    assert verdict.in_least_form(CASE, best, rival) == kept
+    assert rival.score.effect == "sensor_lag.second_order"
+
+
 def test_a_form_of_more_parameters_than_the_best_effect_may_contain_it():
     lag = fit(1.0, effects=["amplifier_lag"], dimensions=5)
     assert generalises(fit(1.0, effects=["slew_limit.lag"], dimensions=6), lag)
