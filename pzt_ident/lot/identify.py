@@ -60,14 +60,14 @@ def fleet(
     if not (folder / "fleet.json").is_file():
         make_empty(folder, job.text)
     with alone_in(folder):
-        tell_other(folder, job, improve, listen)
+        tell_other(folder, job, improve, budget, listen)
         orders = orders_of(job, patterns, improve, budget, folder)
         return Identification(folder, devices, job, orders, listen).identify(place)
 
 
-def tell_other(folder: Path, job: Job, improve: bool, listen: Listen) -> None:
-    """Say that the fleet in a folder had another job. Raises InputError where what it took longest for would go: the
-    improvements of its devices."""
+def tell_other(folder: Path, job: Job, improve: bool, budget: float | None, listen: Listen) -> None:
+    """Say that something else was asked of the fleet in a folder. Raises InputError where what it took longest for
+    would go: the improvements of its devices."""
     try:
         stated = read_statement(folder)
     except InputError:
@@ -76,8 +76,9 @@ def tell_other(folder: Path, job: Job, improve: bool, listen: Listen) -> None:
         remedy = "give --improve, or another folder with --out"
         problem = "holds a fleet made with --improve, whose improvements would be lost"
         raise InputError(problem, where=str(folder), remedy=remedy)
-    if stated["job_hash"] != job.hash:
-        listen({"event": "other", "said": f"the job is not that of before in {folder}: every device is done again"})
+    before = stated["job_hash"], stated["improve"], stated["budget"]
+    if before != (job.hash, improve, budget):
+        listen({"event": "other", "said": f"this is not what was asked before in {folder}: every device is done again"})
 
 
 def orders_of(job: Job, patterns: Sequence[str], improve: bool, budget: float | None, folder: Path) -> Orders:

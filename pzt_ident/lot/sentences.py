@@ -45,7 +45,7 @@ def findings(lot: Lot) -> Iterator[str]:
     above = lot.verdicts.get("above the noise", 0)
     if above and not lot.statement["improve"]:
         yield f"{above} are above the noise: the same command with --improve says why."
-    coarse = [row["device"] for row in lot.done if row.get("step_change", 0.0) > MOST_OF_THE_NOISE]
+    coarse = [row["device"] for row in lot.done if (row.get("step_change") or 0.0) > MOST_OF_THE_NOISE]
     if coarse and not lot.statement["improve"]:
         yield (
             f"The step of the simulation costs {len(coarse)} of {len(lot.done)} devices more than a fifth of the noise:"

@@ -184,7 +184,7 @@ def test_another_job_is_said_and_improvements_are_not_given_up_for_one_without(l
     write_sealed(out / "fleet.json", stated | {"job_hash": "another"})
     resume(out, place=Local(1), listen=events.append)
     assert [event["said"] for event in events if event["event"] == "other"] == [
-        f"the job is not that of before in {out}: every device is done again"
+        f"this is not what was asked before in {out}: every device is done again"
     ]
     done = next(row["device"] for row in read_lot(out).done)
     (out / "devices" / done / "improved").mkdir()
