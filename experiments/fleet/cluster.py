@@ -6,6 +6,8 @@ import subprocess
 import sys
 import time
 
+from pzt_ident.run.cluster import NO_PROFILES
+
 
 def free_port() -> int:
     with socket.socket() as probe:
@@ -38,6 +40,7 @@ class TCP:
     def start(program: str, *options: str) -> subprocess.Popen:
         line = [sys.executable, "-m", f"distributed.cli.{program}", *options]
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(place for place in sys.path if place)}
+        environment |= dict([NO_PROFILES.split("=")])
         return subprocess.Popen(line, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     @staticmethod

@@ -49,7 +49,7 @@ REMEDIES = (
     (r"see `pzt-ident list blocks`", "under “Choose blocks”"),
     (r"missing key '(drive|response)'", r"there is no \1"),
     (r"add `(drive|response): \.\.\.`", r"choose its column"),
-    (r"the same command with --improve says which effect they miss", "improve one to see which effect it misses"),
+    (r"the same command with --improve says why", "improve one to see why"),
     (r"or give --rate", "or type the rate"),
     (r"give more with --budget", "give more CPU time under “Optimizers”"),
     (r"under `limits`", "in the job file"),
