@@ -73,9 +73,9 @@ def power_near(signals: Array, course: Array, wave: float) -> Array:
     span, places = np.ptp(course), np.arange(-NEAR, NEAR + 1)
     waves = wave + places[np.abs(places) <= span * wave / 2] / span
     weights = np.abs(np.gradient(course)) * np.sin(np.pi * (course - course.min()) / span) ** 2
-    centred = signals - np.average(signals, axis=1, weights=weights)[:, None]
-    lines = (centred * weights) @ np.exp(-2j * np.pi * np.outer(course, waves))
-    return np.asarray(np.mean(np.abs(lines) ** 2, axis=1) / np.sum(weights**2))
+    weighted = (signals - np.average(signals, axis=1, weights=weights)[:, None]) * weights
+    lines = np.array([weighted @ np.exp(-2j * np.pi * line * course) for line in waves])  # one by one: records are long
+    return np.asarray(np.mean(np.abs(lines) ** 2, axis=0) / np.sum(weights**2))
 
 
 def harmonic_of_the_drive(fit: Fit, effect: str) -> int:
