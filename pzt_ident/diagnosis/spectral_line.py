@@ -60,9 +60,9 @@ def in_band(case: Case, fit: Fit, lines: Sequence[Line]) -> Array:
         for line in lines:
             course = record.time[record.settle :] if line.over_time else moved[line.row]
             if np.ptp(course) * line.wave >= FEWEST:
-                own = moved[line.row] / fit.problem.sizes[line.row] if line.over_time else np.zeros(course.size)
-                found = power_near(np.array([left[line.row], own]), course, line.wave)
-                row = [float(found[0]), float(case.floors[line.row] ** 2), float(found[1])]
+                motion = moved[line.row] / fit.problem.sizes[line.row] if line.over_time else np.zeros(course.size)
+                rest, motion_power = power_near(np.array([left[line.row], motion]), course, line.wave).tolist()
+                row = [rest, float(case.floors[line.row] ** 2), motion_power]
                 powers.setdefault(record.use, []).append(row)
     return np.array([np.mean(rows, axis=0) for rows in powers.values()]).reshape(-1, 3).T
 
@@ -96,9 +96,9 @@ def order_of(record: Record, frequency: float) -> int:
 def lines_of(fit: Fit, effect: str) -> list[Line]:
     """The lines that an effect is, one a measured axis; none for another one."""
     name, model = blocks[effect].line, fit.problem.model
-    own = [entry for entry in model.entries if name and entry.block.name == word_of(effect) and entry.word == name]
-    values, lines = values_of(fit) if own else {}, []
-    for entry in own:
+    entries = [entry for entry in model.entries if name and entry.block.name == word_of(effect) and entry.word == name]
+    values, lines = values_of(fit) if entries else {}, []
+    for entry in entries:
         if entry.axis in model.measured:
             over_time, value = entry.parameter.unit == "Hz", values[entry.name]
             lines.append(Line(model.measured.index(entry.axis), value if over_time else 1 / value, over_time))

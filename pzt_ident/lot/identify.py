@@ -151,8 +151,8 @@ class Identification:
         shutil.rmtree(self.folder / "devices" / ".new", ignore_errors=True)
         write_table(self.folder, self.devices)
         if self.kept:
-            said = f"{self.kept} of {len(self.devices)} devices were done before and are as they were"
-            self.listen({"event": "kept", "said": said})
+            sentence = f"{self.kept} of {len(self.devices)} devices were done before and are as they were"
+            self.listen({"event": "kept", "said": sentence})
         if not has_parquet():
             self.listen({"event": "table", "said": f"the table is not written as Parquet: that needs {FOR_PARQUET}"})
         return self.folder
@@ -199,12 +199,12 @@ class Identification:
             )
             yield device.name, (given,)
 
-    def keep_old(self, said: str = "") -> None:
-        """Leave the results of a device as they are; said: why it was not looked at."""
+    def keep_old(self, reason: str = "") -> None:
+        """Leave the results of a device as they are. reason: why its data were not looked at."""
         self.done += 1
         self.kept += 1
-        if said:
-            self.listen({"event": "stale", "said": printable(said)})
+        if reason:
+            self.listen({"event": "stale", "said": printable(reason)})
 
     def is_done(self, home: Path, data: str | None = None) -> bool:
         """Whether a device was identified as it is asked, on these data, by their hash, or on any; where its results

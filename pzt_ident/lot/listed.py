@@ -169,10 +169,10 @@ def _known(listing: Listing, places: Sequence[int]) -> list[Mapping[str, Value]]
     for name in sorted(shown):
         for place in odd_cells(cells[name], decimal):
             where = printable(f"{listing.path}:{listing.rows[place][0]}")
-            said = (
+            sentence = (
                 f"{where}: {printable(cells[name][place])!r} under {printable(name)!r} is no number, as the others are"
             )
-            warnings.warn(f"{said}: the column is taken as words", stacklevel=2)
+            warnings.warn(f"{sentence}: the column is taken as words", stacklevel=2)
     return [{name: columns[name][row] for name in cells if name in shown} for row in range(len(listing.rows))]
 
 

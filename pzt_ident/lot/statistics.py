@@ -230,7 +230,7 @@ def out_of_line(
         limit = farthest(int(quantity.usable.sum()), len(judged))
         far = (distance > limit) & (quantity.values > WORSE * usual) if quantity.one_sided else np.abs(distance) > limit
         for place in np.flatnonzero(far & quantity.usable).tolist():
-            value, level, spreads = (float(each[place]) for each in (quantity.values, usual, distance))
+            value, level, spreads = (float(column[place]) for column in (quantity.values, usual, distance))
             sentence = sentence_of(quantity, value, level, spreads, beside[place])
             findings.append(Finding(devices[place], quantity.name, spreads, sentence, quantity.one_sided))
     return sorted(findings, key=lambda finding: -abs(finding.distance))
@@ -258,7 +258,7 @@ def _usual(quantity: Quantity, known: Sequence[Trend], columns: Mapping[str, Arr
     least = max(quantity.own_error, LEAST * abs(quantity.median))
     near = max(spread((quantity.values - usual)[quantity.usable & beside]), least) if beside.any() else least
     size = np.where(beside, near, max(quantity.spread, least))
-    return usual, size, [trend.column if trend and told else "" for told in beside]
+    return usual, size, [trend.column if trend and depends else "" for depends in beside]
 
 
 def sentence_of(quantity: Quantity, value: float, usual: float, distance: float, beside: str) -> str:

@@ -198,8 +198,6 @@ def solve(
     cyclic error is a slope; the next one at the values of `begin` if these leave less. Values are NaN where the
     residuals are not finite.
     """
-    from scipy.optimize import nnls
-
     values = np.zeros(units.size)
     for number in range(passes):
         residual, columns = np.split(changes(values + np.vstack([np.zeros(units.size), np.diag(units)])), [1], axis=1)
@@ -210,12 +208,7 @@ def solve(
         visible = sizes > NEGLIGIBLE * sizes.max(initial=0)
         columns[:, ~visible] = 0
         prior = second_differences(np.where(visible, sizes, 0), curves, np.asarray(weights))
-        scaled = np.column_stack([columns[:, visible] / sizes[visible], columns @ (values / units) - residual[:, 0]])
-        triangle = np.asarray(np.linalg.qr(scaled, mode="r"))
-        system = np.vstack([triangle[:, :-1], prior[:, visible] / sizes[visible]])
-        multiples = np.zeros(units.size)
-        solution = nnls(system, np.append(triangle[:, -1], np.zeros(len(prior))), maxiter=100 * units.size)[0]
-        multiples[visible] = solution / sizes[visible]
+        multiples = non_negative(columns, columns @ (values / units) - residual[:, 0], prior, visible)
         expected = np.linalg.norm(residual[:, 0] + columns @ (multiples - values / units))
         tried = values + STEPS[:, None] * (multiples * units - values)
         changed = changes(tried).T
@@ -228,6 +221,20 @@ def solve(
             both = np.array([values, begin()])
             values = both[int(np.nan_to_num(norms_of(changes(both).T), nan=np.inf).argmin())]
     return LinearSolution(values, columns, prior, units)
+
+
+def non_negative(columns: Array, target: Array, prior: Array, visible: NDArray[np.bool_]) -> Array:
+    """Multiples of the columns, (rows, linear), that lead next to a target, (rows,), and keep to a prior; zero of those
+    that are not visible."""
+    from scipy.optimize import nnls
+
+    sizes = np.linalg.norm(columns[:, visible], axis=0)
+    triangle = np.asarray(np.linalg.qr(np.column_stack([columns[:, visible] / sizes, target]), mode="r"))
+    system = np.vstack([triangle[:, :-1], prior[:, visible] / sizes])
+    multiples = np.zeros(visible.size)
+    rows = np.append(triangle[:, -1], np.zeros(len(prior)))
+    multiples[visible] = nnls(system, rows, maxiter=100 * visible.size)[0] / sizes
+    return multiples
 
 
 def norms_of(changed: Array) -> Array:
