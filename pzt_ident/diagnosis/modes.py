@@ -41,17 +41,20 @@ def mechanics_at_main_mode(fit: Fit, kept: Collection[str] = ()) -> Values:
 
 
 def mechanics_without_payload(fit: Fit, kept: Collection[str] = ()) -> Values:
-    """Stiffness and damping, by name, with which mechanics whose mass is fixed move as with a payload that is not kept:
-    m x'' + b x' + k x = k f has the same solution for all three in proportion."""
+    """Stiffness and damping, by name, with which mechanics whose mass is fixed, or has a bound below the whole, move as
+    with a payload that is not kept: m x'' + b x' + k x = k f has the same solution for all three in proportion."""
     values, moved = values_of(fit), Values()
+    most = dict(zip(fit.problem.names, fit.problem.upper.tolist(), strict=True))
     for entry in fit.problem.model.entries:
         block = entry.name.removesuffix(entry.word)
-        mass = f"{block}{entry.parameter.adds_to}"
-        known = mass in values and mass not in fit.values
-        if entry.parameter.adds_to == "mass" and entry.name not in kept and known:
-            lighter = values[mass] / (values[mass] + values[entry.name])
+        mass = f"{block}mass"
+        if entry.parameter.adds_to != "mass" or entry.name in kept or mass not in values:
+            continue
+        whole = values[mass] + values[entry.name]
+        held = most.get(mass, values[mass])
+        if held < whole:
             names = (f"{block}{word}" for word in ("damping", "stiffness"))
-            moved |= {name: values[name] * lighter for name in names if name in fit.values}
+            moved |= {name: values[name] * held / whole for name in names if name in fit.values}
     return moved
 
 

@@ -24,7 +24,8 @@ from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.undetermined import enough_without_mechanics
 from pzt_ident.diagnosis.unmeasured import OWN, own_mechanics, with_own_mechanics
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
-from pzt_ident.model.registry import word_of
+from pzt_ident.model.block import Coupling
+from pzt_ident.model.registry import blocks, word_of
 
 BESIDE = 4  # of the refits with one effect: those that are gone on with beyond the bounds of the job
 
@@ -145,12 +146,9 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener, diagnosis: Dia
     given = with_least_bounds(case, improve_within(case, [Step(first)], on_step, diagnosis))
     if lean and given.last.verdict != "adequate" and lean.end.total < given.end.total:
         given = lean
-    if given.last.verdict == "adequate":
-        return given
-    own = improve_own(case, first, on_step)
-    if own and (own.last.verdict == "adequate" or own.end.total < given.end.total):
+    if own := own_account(case, first, given, on_step):
         return own
-    if not beyond:
+    if given.last.verdict == "adequate" or not beyond:
         return given
     if wide is None and case.budget.allows("wider bounds"):
         wide = improve_beyond(case, first, *beyond, on_step)
@@ -194,6 +192,17 @@ def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, F
     return None
 
 
+def own_account(case: Case, first: Fit, given: Staircase, on_step: StepListener) -> Staircase | None:
+    """The staircase where axes without a response have a resonance of their own, if that is the better account: of one
+    that leads to the noise, if that takes other effects beside a coupling."""
+    arrived = given.last.verdict == "adequate"
+    added = given.end.effects[len(first.effects) :]
+    alone = len(added) < 2 or not any(issubclass(blocks[effect], Coupling) for effect in added)
+    own = None if arrived and alone else improve_own(case, first, on_step)
+    better = own and (takes_fewer(own, given, case) if arrived else reaches_farther(own, given))
+    return own if better else None
+
+
 def improve_own(case: Case, first: Fit, on_step: StepListener) -> Staircase | None:
     """The staircase where axes without a response have a resonance of their own; None where nothing speaks for it."""
     if not own_mechanics(case) or not case.budget.allows("axes without a response that are unlike the others", WHOLE):
@@ -223,8 +232,18 @@ def clearly_better(wide: Staircase, given: Staircase, case: Case) -> bool:
 
 def is_cheaper(wide: Staircase, given: Staircase, case: Case) -> bool:
     """Whether wider bounds, none of which is reached, lead as far with fewer effects."""
-    as_far = removed_rms(wide.end.total, given.end.total) < TIE * case.floor
-    return as_far and len(wide.end.effects) < len(given.end.effects) and keeps_within(wide, case)
+    return takes_fewer(wide, given, case) and keeps_within(wide, case)
+
+
+def takes_fewer(other: Staircase, given: Staircase, case: Case) -> bool:
+    """Whether another account leads as far with fewer effects."""
+    as_far = removed_rms(other.end.total, given.end.total) < TIE * case.floor
+    return as_far and len(other.end.effects) < len(given.end.effects)
+
+
+def reaches_farther(other: Staircase, given: Staircase) -> bool:
+    """Whether another account leads to the noise, or farther."""
+    return other.last.verdict == "adequate" or other.end.total < given.end.total
 
 
 def keeps_within(wide: Staircase, case: Case) -> bool:

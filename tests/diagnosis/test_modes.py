@@ -15,6 +15,7 @@ from pzt_ident.diagnosis.refit import refit, start_of
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import best_alias
 from pzt_ident.job.sections import Choice
+from pzt_ident.search.cube import FixedValue
 
 SECOND = {"resonance.share": 0.8, "resonance.frequency": 300.0, "resonance.damping": 0.02}
 SLOW = {"lumped.mass": 0.1, "lumped.damping": 3e3, "lumped.stiffness": 1e6}
@@ -113,8 +114,9 @@ def ringing():
     return stage.case(SOFT, fixed, model=("bouc_wen", "lumped"), drives=chirps, dt=1e-3, steps=1)
 
 
-def test_a_payload_on_a_known_mass_is_a_softer_stage():
-    case = ringing()
+@pytest.mark.parametrize("mass", [FixedValue(SOFT["lumped.mass"]), Widened((0.25, 0.5))])
+def test_a_payload_on_a_mass_that_is_known_or_bounded_is_a_softer_stage(mass):
+    case = ringing().with_specs({"lumped.mass": mass})
     heavy = SOFT | {"lumped.load": 2.7, "lumped.stiffness": 10 * SOFT["lumped.stiffness"], "lumped.damping": 68.0}
     fit = fit_with(case, heavy, "load_mass")
     problem = case.problem(())

@@ -45,15 +45,17 @@ def coupled(stiffness, known=None):
     return Case(MODEL, (), made, stage.specs({"lumped.mass": X["lumped.mass"]} | (known or {})))
 
 
-def test_a_coupling_shows_the_stiffness_of_an_axis_without_a_response():
-    case = coupled(STIFFNESS)
+@pytest.mark.parametrize("stiffness", [STIFFNESS, 1.15 * X["lumped.stiffness"]])
+def test_a_coupling_shows_the_stiffness_of_an_axis_without_a_response(stiffness):
+    """A resonance that is a little higher is no second mode of the measured axis."""
+    case = coupled(stiffness)
     found = improve(case, first_fit(case, 0))
     end = found.steps[-1].fit
     assert found.last.verdict == "adequate" and [*map(word_of, end.effects)] == ["kinematic_coupling"]
     assert [step.change for step in found.steps] == ["", OWN, ""]
-    assert end.values["y.lumped.stiffness"] == pytest.approx(STIFFNESS, rel=0.01)
+    assert end.values["y.lumped.stiffness"] == pytest.approx(stiffness, rel=0.01)
     assert "y.lumped.stiffness" in bounds_that_changed(case, end)
-    assert "y.lumped.stiffness is 5" in own_mechanics_sentence(case, end)
+    assert f"y.lumped.stiffness is {str(stiffness)[0]}" in own_mechanics_sentence(case, end)
 
 
 def test_an_axis_that_is_like_the_measured_one_is_taken_for_it():
