@@ -26,10 +26,9 @@ DRAWS = 240  # points along the directions of the curvature, each as far as the 
 
 
 def judged(case: Case, fit: Fit) -> tuple[Case, Fit]:
-    """The case of which only those records judge that can, and the fit in it; as they are where all can, or none."""
+    """The case of which only those records judge that can, and the fit in it; as they are where all can."""
     open_records = left_open(case, fit)
-    kept = [record for record in case.records if record.use == "validate"]
-    if not 0 < len(open_records) < len(kept):
+    if not open_records:
         return case, fit
     names = listed([record.name for record in open_records])
     case.caveat = (
