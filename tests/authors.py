@@ -91,6 +91,9 @@ class Pass(Coupling):
     def prepare(ratio):
         return (ratio,)
 
+    def start(other, ratio):
+        return ()
+
     def step(y, other, ratio):
         return y + ratio * other
 '''

@@ -106,13 +106,13 @@ class Scorer:
         return (self.left**2 - left**2) / self.misfit
 
     def scores(self, effect: str, in_every_form: bool = True) -> list[Score]:
-        """The scores of an effect, the first form first, and of its other forms; of one with many trials or amounts of
-        each record only where the first explains some, and near the shapes with which it does."""
+        """The scores of an effect, the first form first, and of its other forms; of what is costly only where the first
+        explains some, and near the shapes with which it does."""
         usual, *others = fitting_forms(self.case, self.fit.effects, effect)
         others = others if in_every_form else []
-        first, block = self.score(usual), blocks[effect]
-        if first.explained <= LEAST_SCORE and (block.amounts() or has_many_trials(block)):
-            others = []
+        first = self.score(usual)
+        if first.explained <= LEAST_SCORE:
+            others = [item for item in others if not is_costly(blocks[effect]) and not is_costly(blocks[item])]
         return [first, *(self.score(item, first.shapes) for item in others)]
 
     def score(self, effect: str, near: Sequence[Mapping[str, float]] = ()) -> Score:
@@ -284,6 +284,11 @@ def scales_of(amounts: Array) -> Array:
 def has_many_trials(block: type[Block]) -> bool:
     """Whether there are many values of an effect's shape parameters to try."""
     return prod(block.trials.values()) > MANY_TRIALS
+
+
+def is_costly(block: type[Block]) -> bool:
+    """Whether a score takes long: of an effect with many trials, or with amounts of each record."""
+    return bool(block.amounts()) or has_many_trials(block)
 
 
 def on_bound(problem: Problem, guess: Mapping[str, float]) -> bool:

@@ -1,6 +1,9 @@
 """Force of one axis that moves another one through the stiffness of the guide."""
 
+from math import pi
+
 from pzt_ident.model.block import Coupling, Place
+from pzt_ident.model.first_order_hold import oscillate, oscillator
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
@@ -14,7 +17,7 @@ class CrossCoupling(Coupling):
     """
 
     place = Place.COUPLING
-    form = Form("force", ("force", "voltage"), "What of the other axis acts.")
+    form = Form("force", ("force", "voltage", "displacement", "linear_displacement"), "What of the other axis acts.")
     ratio = Parameter("1", (-5, 5), "Stiffness coupling k12 / k11 from the other axis.", null=0)
     look_alikes = ("kinematic_coupling",)
     separate_by = (
@@ -25,6 +28,9 @@ class CrossCoupling(Coupling):
 
     def prepare(ratio):
         return (ratio,)
+
+    def start(other, ratio):
+        return ()
 
     def step(y, other, ratio):
         return y + ratio * other
@@ -41,4 +47,41 @@ class OfVoltage(CrossCoupling):
     ratio = Parameter("1", (-5, 5), "Share of the other axis' voltage that acts on this axis.", null=0)
 
 
-CrossCoupling.forms = {"voltage": OfVoltage}
+class OfDisplacement(CrossCoupling):
+    """The other axis' displacement acts, with the resonance of that axis: f1 <- f1 + ratio G2 f2,
+    G2 = 1 / (s^2/w^2 + 2 zeta s/w + 1), solved exactly for f2 linear on each step.
+
+    A guide that is sheared, or a sensor's target that is pulled along, ahead of this axis' own mechanics: Yong,
+    Moheimani, Kenton & Leang (2012), Rev. Sci. Instrum. 83, 121101.
+    """
+
+    trials = {"frequency": 160, "damping": 3}
+    frequency = Parameter("Hz", (20, 2e4), "Natural frequency of the other axis.", scale="log")
+    damping = Parameter("1", (1e-3, 0.3), "Damping ratio of the other axis, zeta.", scale="log")
+
+    def prepare(ratio, frequency, damping, dt):
+        return ratio, *oscillator(2 * pi * frequency, damping, dt)
+
+    def start(other, ratio, r11, r12, r21, r22, b1, b2):
+        return 0.0, 0.0, other
+
+    def step(w, v, before, y, other, ratio, r11, r12, r21, r22, b1, b2):
+        w, v = oscillate(w, v, other - before, r11, r12, r21, r22, b1, b2)
+        return w, v, other, y + ratio * (other + w)
+
+
+class OfLinearDisplacement(OfDisplacement):
+    """The other axis' displacement acts, which has no hysteresis: f1 <- f1 + d1 ratio G2 u2.
+
+    A second axis with charge drive: Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems.
+    """
+
+    place = Place.READOUT
+    ratio = OfVoltage.ratio
+
+
+CrossCoupling.forms = {
+    "voltage": OfVoltage,
+    "displacement": OfDisplacement,
+    "linear_displacement": OfLinearDisplacement,
+}

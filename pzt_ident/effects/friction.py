@@ -1,7 +1,7 @@
 """Dry friction in the guide."""
 
 from pzt_ident.model.block import Block, Place, Term, expm1
-from pzt_ident.model.bristles import rub
+from pzt_ident.model.bristles import PLAY, rub
 from pzt_ident.model.first_order_hold import decay
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
@@ -51,7 +51,8 @@ class Friction(Ahead, Block):
         (1e-3, 0.5),
         "Displacement over which friction builds up.",
         scale="log",
-        limit="a play, as a backlash between stage and sensor is",
+        limit=PLAY,
+        small_to="force",
     )
     stiction = Parameter(
         "1", (0, 0.5), "Excess of the break-away force over sliding friction, as a share of it.", null=0

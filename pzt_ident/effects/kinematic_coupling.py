@@ -25,6 +25,9 @@ class KinematicCoupling(Coupling):
     def prepare(ratio):
         return (ratio,)
 
+    def start(other, ratio):
+        return ()
+
     def step(y, other, ratio):
         return y + ratio * other
 

@@ -317,7 +317,8 @@ class Modes(Block):
 
 
 class Coupling(Block):
-    """Acts across axes: step(y, other, *coefficients) -> y, once for each other axis; `other` and the first y are the
-    inputs of the block. There is one set of parameters for each ordered pair of axes."""
+    """Acts across axes: step(*states, y, other, *coefficients) -> (*states, y), once for each other axis; `other` and
+    the first y are the inputs of the block; start(other, *coefficients) -> states under the first input of that axis.
+    There is one set of parameters for each ordered pair of axes."""
 
     kind = "coupling"

@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
+from scipy.signal import lsim, lti
 
 import lin_lin
 from pzt_ident.engine.simulator import simulate
 from rig import candidates, model, record, response, triangle
 
 CHAIN = ("bouc_wen", "cross_coupling", "lumped")
+BOUC_WEN = {"gain": 0.08, "alpha": 0.4, "beta": 0.04, "gamma": -0.01}
 RATIOS = {"x.cross_coupling.ratio": -0.046, "y.cross_coupling.ratio": 0.054}
 
 
@@ -28,6 +30,22 @@ def test_displacement_of_another_axis_comes_with_its_hysteresis():
     both, one = response(CHAIN, known, x, y), response(CHAIN, known, x, 0 * y)
     other = response(CHAIN, known | {"y.cross_coupling.ratio": 0.0}, 0 * x, y)[1]
     np.testing.assert_allclose(both[0] - one[0], known["x.cross_coupling.ratio"] * other, rtol=0, atol=3e-5)
+
+
+@pytest.mark.parametrize("item", ["displacement", "linear_displacement"])
+def test_displacement_of_another_axis_comes_with_its_resonance(item):
+    """Against a solver of its own: lsim of G2, with the other axis at rest on its first value."""
+    x, y = triangle(130), triangle(90) + 5
+    mode = {"ratio": 0.05, "frequency": 40.0, "damping": 0.1}
+    known = {f"x.cross_coupling.{name}": value for name, value in mode.items()}
+    known |= {f"y.cross_coupling.{name}": value for name, value in (mode | {"ratio": 0.0}).items()}
+    known |= {f"{axis}.bouc_wen.{name}": value for axis in "xy" for name, value in BOUC_WEN.items()}
+    both, alone = response(["bouc_wen", f"cross_coupling.{item}"], known, x, y), response(["bouc_wen"], known, x, y)
+    pace = 2 * np.pi * 40
+    other = alone[1] if item == "displacement" else BOUC_WEN["gain"] * y
+    moved = lsim(lti([pace**2], [1, 2 * 0.1 * pace, pace**2]), other - other[0], 1e-3 * np.arange(y.size))[1] + other[0]
+    np.testing.assert_allclose(both[0] - alone[0], 0.05 * moved, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(both[1], alone[1], rtol=0, atol=1e-14)
 
 
 @pytest.mark.parametrize("word", ["amplitude_gain.running", "creep.voltage", "quadratic_gain", "saturation"])

@@ -30,6 +30,9 @@ class Turn(Coupling):
     def prepare(size):
         return (size,)
 
+    def start(other, size):
+        return ()
+
     def step(y, other, size):
         return y + size * y * other
 

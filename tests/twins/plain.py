@@ -73,8 +73,12 @@ def couple(block, model, record, theta, before):
         values = parameters(model, block, record, axis, other, theta)
         if values is not None:
             numbers = asking(block.prepare, values)
-            pairs = zip(after[axis], before[other], strict=True)
-            after[axis] = np.array([block.step(y, f, *numbers) for y, f in pairs])
+            states, moved = block.start(before[other][0], *numbers), []
+            for y, f in zip(after[axis], before[other], strict=True):
+                result = block.step(*states, y, f, *numbers)
+                *states, y = result if isinstance(result, tuple) else (result,)
+                moved.append(y)
+            after[axis] = np.array(moved)
     return after
 
 

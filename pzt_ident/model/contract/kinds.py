@@ -44,7 +44,8 @@ KINDS = {
     "beside": STEPPED | {"start": "f, *coefficients -> *states", "step": "*states, x, f, *coefficients -> *states, y"},
     "addition": {"basis": "t, own parameters -> *amounts", "guess?": "times, drives, residuals, low, high"},
     "modes": PREPARED | {"start": "p, *coefficients -> +states", "step": "*states, p, *coefficients -> *states, q"},
-    "coupling": PREPARED | {"step": "y, other, *coefficients -> y"},
+    "coupling": PREPARED
+    | {"start": "other, *coefficients -> *states", "step": "*states, y, other, *coefficients -> *states, y"},
 }
 """By kind of block: function name -> "arguments -> results". `?`: the function is optional. `*`: all values of a group,
 as many as the function that returns it returns; `+`: one or more; `(...)`: a tuple of one or more; a comma at the end:
