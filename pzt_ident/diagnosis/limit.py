@@ -13,22 +13,31 @@ from pzt_ident.diagnosis.fit import NO_WORSE, Fit
 from pzt_ident.diagnosis.spectral_line import harmonic_of_the_drive
 from pzt_ident.diagnosis.unequal import differs_in_size
 from pzt_ident.model.chain import Entry
+from pzt_ident.model.parameter import SMALL
 from pzt_ident.model.registry import blocks, word_of
 
 
 def own_bounds(fit: Fit, effect: str) -> tuple[str, ...]:
-    """The shapes of an effect, its parameters without a null, that ended on a bound on every axis and are felt there,
-    and its amounts if they all did: what one axis shows is that of the effect."""
+    """The shapes of an effect, its parameters without a null, that ended on a bound or next to nothing on every axis
+    and are felt there, and its amounts if they all did: what one axis shows is that of the effect."""
     own = {
         name: entry
         for name, entry in entries_of(fit).items()
         if word_of(effect) in (entry.block.name, word_of(entry.parameter.effect or ""))
     }
     amounts = {name for name, entry in own.items() if entry.parameter.null is not None}
-    shown = {entry.word for name, entry in own.items() if name not in amounts and name not in fit.on_bounds}
+    limits = {*fit.on_bounds, *small_shapes(fit)}
+    shown = {entry.word for name, entry in own.items() if name not in amounts and name not in limits}
     shapes = [name for name, entry in own.items() if name not in amounts and entry.word not in shown]
     shapes = [name for name in shapes if is_felt(fit, name)]
     return (*shapes, *(sorted(amounts) if amounts <= {*fit.on_bounds} else ()))
+
+
+def small_shapes(fit: Fit) -> list[str]:
+    """The shapes that are next to nothing beside the amount by which they are judged."""
+    values, entries = fit.values, entries_of(fit)
+    amounts = {name: name.removesuffix(entry.word) + str(entry.parameter.small_to) for name, entry in entries.items()}
+    return [name for name, amount in amounts.items() if values[name] <= SMALL * values.get(amount, 0.0)]
 
 
 def settle_beyond(case: Case, fit: Fit, on_bounds: Collection[str]) -> bool:

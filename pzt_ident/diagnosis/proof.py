@@ -12,6 +12,7 @@ from pzt_ident.data.notation import listed
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import (
     DECISIVE,
+    MOST_OF_OTHERS,
     adequate,
     beyond_form,
     form_of_others,
@@ -33,6 +34,7 @@ ENOUGH = 3 / 4  # of the misfit as given, of all records together: what the firs
 SINGLE = 0.9  # of it, which one effect must remove that is alone
 EACH = 1 / 2  # of that of the identification and of the validation records
 ALONE = 1 / 3  # of the misfit beside the others: what each of several must remove that leave no more than they may
+SHADED = 1 / 2  # root mean square, of what an effect removes that is something else: less may be its form
 BESIDE = DECISIVE  # of the same: the most that is asked of each of several that leave more, in proportion
 
 
@@ -88,7 +90,7 @@ class Suspect:
                 f" of a model that stays above the noise with it, where it takes the place of {self.displaced}'s loops."
             )
         elif self.beyond_form and self.limit:
-            where = f"{listed(self.on_bounds)} ended on a bound, where the effect" if self.on_bounds else "it"
+            where = f"{listed(self.on_bounds)} ended at a limit, where the effect" if self.on_bounds else "it"
             rest = f", but {where} is {self.limit}."
         elif self.beyond_form and self.on_bounds:
             rest = f" of a model that stays above the noise with it, and {listed(self.on_bounds)} ended on a bound."
@@ -116,15 +118,16 @@ def unproven(
     another size in each record where it is the device's. A line of the spectrum that takes up
     all of its band is proven whatever is left elsewhere. Nor may one take the place of the model's operator, whose
     loops are gone beside it, unless the model is adequate. What takes up enough and only may be something else is a
-    suspect beside which the others are judged: without it what they take up is nothing. What is proven on one of
-    several axes is proven, whatever another lacks.
+    suspect beside which the others are judged: without it what they take up is nothing; of those that remove little
+    beside what is in a limit none is proven. What is proven on one of
+    several axes, and clear there, is proven, whatever another lacks.
     """
-    judge, added = partial(taken_out, case, first, now, rivals, known), now.effects[len(first.effects) :]
+    judge = partial(taken_out, case, first, now, rivals, known)
     suspects, axes = judge(), len(now.problem.model.measured)
     doubted = [item.effect for item in suspects]
     for axis in range(axes) if axes > 1 and suspects else ():
-        proven = {*added} - {item.effect for item in judge(axis)}
-        doubted = [effect for effect in doubted if effect not in proven]
+        unsure = {item.effect for item in judge(axis)}
+        doubted = [effect for effect in doubted if effect in unsure or not is_clear(case, now, effect, axis)]
     if len(doubted) == len(suspects):
         return suspects
     suspects = []
@@ -132,6 +135,12 @@ def unproven(
         suspects.append(suspect(case, first, now, effect, rivals.get(effect, ()), known))
         now = suspects[-1].without
     return suspects
+
+
+def is_clear(case: Case, now: Fit, effect: str, axis: int) -> bool:
+    """Whether an effect takes up more of what is measured on an axis than the form of any other may leave."""
+    before = on_axis(refit(case, now, effects_without(now, effect), {}), axis)
+    return removed_rms(before.identify, on_axis(now, axis).identify) > MOST_OF_OTHERS * case.on_axis(axis).floor
 
 
 def taken_out(
@@ -145,7 +154,7 @@ def taken_out(
     """Those that are not proven by the errors of all axes together, or by those of one alone; see `unproven`."""
     seen, view = partial(on_axis, axis=axis), case.on_axis(axis)
     given = seen(first)
-    suspects, held = list[Suspect](), list[str]()
+    suspects, held, judged = list[Suspect](), list[str](), list[Suspect]()
     while added := now.effects[len(first.effects) :]:
         near, explained = near_noise(view, given, seen(now)), adequate(view, given, seen(now))
         left = left_of_allowed(view, given, seen(now), len(added))
@@ -167,10 +176,19 @@ def taken_out(
         else:
             suspects.append(least)
             now = least.without
-    for effect in held:
+    doubtful = [suspect(case, first, now, item, rivals.get(item, ()), known, axis) for item in held]
+    for effect in [*in_the_shade(now, judged, doubtful), *held]:
         suspects.append(suspect(case, first, now, effect, rivals.get(effect, ()), known, axis))
         now = suspects[-1].without
     return suspects
+
+
+def in_the_shade(now: Fit, judged: Sequence[Suspect], held: Sequence[Suspect]) -> list[str]:
+    """The effects that remove less than half as much, root mean square, as one beside them which is declared to be
+    something else there: they may be what its form leaves of that."""
+    most = max((removed_rms(item.without.total, now.total) for item in held if item.limit), default=0.0)
+    small = (item for item in judged if removed_rms(item.without.total, now.total) < SHADED * most)
+    return [item.effect for item in small if not item.is_line]
 
 
 def on_axis(fit: Fit, axis: int | None) -> Fit:

@@ -3,7 +3,7 @@
 from math import pi, sqrt
 
 from pzt_ident.mechanics._oscillator import Oscillator, mode
-from pzt_ident.model.bristles import rub, slide, stretch
+from pzt_ident.model.bristles import PLAY, rub, slide, stretch
 from pzt_ident.model.cubic_spring import SOFTEST, cubic_root
 from pzt_ident.model.first_order_hold import oscillate
 from pzt_ident.model.parameter import Parameter
@@ -31,7 +31,13 @@ class Lumped(Oscillator):
     )
     friction = Parameter("response", (0, 0.1), "Sliding friction over the stiffness.", null=0, effect="friction.motion")
     reach = Parameter(
-        "response", (1e-3, 0.5), "Displacement over which friction builds up.", scale="log", effect="friction.motion"
+        "response",
+        (1e-3, 0.5),
+        "Displacement over which friction builds up.",
+        scale="log",
+        effect="friction.motion",
+        limit=PLAY,
+        small_to="friction",
     )
     stiction = Parameter(
         "1", (0, 0.5), "Excess of the break-away force, as a share of friction.", null=0, effect="friction.motion"
@@ -62,6 +68,8 @@ class Lumped(Oscillator):
         "Displacement at which the last element slips.",
         scale="log",
         effect="friction.slip",
+        limit=PLAY,
+        small_to="slip",
     )
     spacing = Parameter(
         "1",

@@ -3,6 +3,8 @@ that stretch, then slip (Maxwell)."""
 
 from pzt_ident.model.elementary import expm1, log1p, rough_log
 
+PLAY = "a play, as a backlash between stage and sensor is"  # friction that does not give before it slides
+
 
 def rub(friction, pull, force, reach, stiction, fast, share):
     """Friction F after a step dx, the root of dx + share (F(dx) - F) = pull, pull being dx if F stayed as it was.

@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 from pzt_ident.errors import InputError, nearest
 
+SMALL = 0.15  # of an amount: a shape in its limit
 NOTHING_BEYOND = "its range ends there"  # what is said of a bound where it does
 
 
@@ -23,6 +24,7 @@ class Parameter:
     `end` is the value at which the range of a shape ends of itself, such as 0 for a spread, or the bound beyond which
     nothing changes, or both, as of a time constant that is far longer than a record; None if there is none.
     `limit` tells what else an effect is whose shape is on its lower bound, or whose amount is on any: "a play".
+    `small_to` names the amount of the block of which a shape is at most SMALL in that limit, too.
     `effect` names the effect that the parameter belongs to; unless the job lists it, the parameter stays at its null.
     `count` makes one parameter for each branch of the block, `weight_1`, `weight_2`, ...; a number, or the name of the
     setting that holds it. `per` tells what has a value of its own: every axis, the whole stage, or every axis after the
@@ -50,6 +52,7 @@ class Parameter:
     smooth: str | None = None
     end: float | Literal["lower", "upper", "both"] | None = None
     limit: str | None = None
+    small_to: str | None = None
     name: str = ""
 
     def __set_name__(self, owner: type, name: str) -> None:

@@ -223,7 +223,7 @@ def test_the_limit_is_told():
     now = fit(1.0, 1.0, ["friction"])
     item = proof.Suspect("friction", 0.99, 0.98, now, on_bounds=("friction.reach",), limit="a play")
     assert item.why_not.endswith(
-        "98 % on the validation records, but friction.reach ended on a bound, where the effect is a play."
+        "98 % on the validation records, but friction.reach ended at a limit, where the effect is a play."
     )
 
 
@@ -322,20 +322,22 @@ def test_what_is_near_the_noise_is_not_held_against_a_floor_that_may_be_too_low(
     assert taken_out(of(ab=1.55, a=1.8, b=5.0, none=30.0)) == ["b"]
 
 
-def test_what_is_proven_on_one_axis_is_proven_whatever_another_lacks():
-    """y wanders, on the records kept back above all, as no effect explains."""
+@pytest.mark.parametrize(("curvature", "suspects"), [(stage.EFFECTS["quadratic_gain"], []), (8e-5, ["quadratic_gain"])])
+def test_what_is_clear_on_one_axis_is_proven_whatever_another_lacks(curvature, suspects):
+    """y wanders, on the records kept back above all, as no effect explains; a little of x may be anything."""
 
     def wander(record):
         steps = np.random.default_rng(5).normal(0, 1, record.drive.shape[1])
         size = {"identify": 5, "validate": 100}[record.use] * stage.NOISE
         return size * np.interp(np.arange(steps.size), np.arange(0, steps.size, 50), steps[::50])
 
-    bent, wandering = stage.case(stage.EFFECTS["quadratic_gain"]), stage.with_response(stage.case(seed=9), wander)
+    size = curvature if isinstance(curvature, dict) else {"quadratic_gain.curvature": curvature}
+    bent, wandering = stage.case(size), stage.with_response(stage.case(seed=9), wander)
     case = stage.beside(bent, wandering)
     first = first_fit(case, 0)
     now = refit(case, first, ("quadratic_gain",), {"x.quadratic_gain.curvature": 3e-4})
     assert [item.effect for item in taken_out(case, first, now, {}, ())] == ["quadratic_gain"]
-    assert unproven(case, first, now, {}) == []
+    assert [item.effect for item in unproven(case, first, now, {})] == suspects
     alone = refit(case, first, ("drift",), {})
     assert [item.effect for item in unproven(case, first, alone, {})] == ["drift"]
 
@@ -349,3 +351,11 @@ def test_a_line_of_the_spectrum_is_proven_beside_any_rest(taken_out):
 def test_a_harmonic_of_the_drive_is_none_even_where_the_model_is_adequate(taken_out):
     assert taken_out(of(none=30, a=1.0)) == []
     assert taken_out(of(none=30, a=1.0), harmonics=["a"]) == ["a"]
+
+
+@pytest.mark.parametrize(("alone", "suspects"), [(4.0, ["b", "a"]), (20.0, ["a"])])
+def test_what_is_little_beside_something_else_may_be_what_its_form_leaves(taken_out, alone, suspects):
+    """alone: the error beside a play, of 30 noise floors, without the second effect."""
+    seen = of(ab=1.2, a=alone, b=30.0, none=30.0 if alone < 10 else 36.0)
+    assert taken_out(seen, shapes={"a": [0.0]}, limit="a play", first=60.0) == suspects
+    assert taken_out(seen, shapes={"a": [0.0]}, limit="a play", first=60.0, lines=["b"]) == ["a"]

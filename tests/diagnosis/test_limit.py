@@ -1,0 +1,28 @@
+"""What an effect is that ended in a limit, where another name fits it."""
+
+import numpy as np
+import pytest
+
+import stage
+from pzt_ident.diagnosis import limit
+from pzt_ident.diagnosis.fit import fit_at
+from pzt_ident.diagnosis.limit import entries_of, is_limited, own_bounds, small_shapes
+from pzt_ident.model.parameter import SMALL
+
+MODEL = ("bouc_wen", "lumped")
+
+
+@pytest.mark.parametrize("item", ["friction", "friction.lugre_viscous", "friction.motion", "friction.slip"])
+@pytest.mark.parametrize(("share", "limited"), [(0.9 * SMALL, True), (1.5 * SMALL, False)])
+def test_friction_that_gives_little_before_it_slides_is_a_play(item, share, limited, monkeypatch):
+    """Any reach that is next to nothing beside the friction, wherever its bounds are."""
+    monkeypatch.setattr(limit, "is_felt", lambda fit, name: True)
+    case = stage.case(model=MODEL)
+    problem = case.problem((item,))
+    middle = fit_at((item,), problem, np.full(problem.dimensions, 0.5))
+    (shape, entry) = next(pair for pair in entries_of(middle).items() if pair[1].parameter.small_to)
+    values = middle.values
+    values[shape] = share * values[shape.removesuffix(entry.word) + entry.parameter.small_to]
+    fit = fit_at((item,), problem, problem.unit_point(values))
+    assert small_shapes(fit) == ([shape] if limited else [])
+    assert (shape in own_bounds(fit, item)) == is_limited(fit) == limited
