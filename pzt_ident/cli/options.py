@@ -13,7 +13,7 @@ from typing import Any
 
 import click
 
-from pzt_ident.errors import InputError, RunError
+from pzt_ident.errors import InputError, RunError, nearest
 
 Command = Callable[..., None]
 
@@ -34,6 +34,24 @@ class Interrupted(click.ClickException):
 
 class Group(click.Group):
     """Prints an error as one line. Exit code 2 for bad input, 1 for a failure, 130 for an interrupt."""
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        try:
+            return super().resolve_command(ctx, args)
+        except click.UsageError as error:
+            raise click.UsageError(f"{error.message} {self.remedy(args[0])}", ctx) from None
+
+    def remedy(self, word: str) -> str:
+        """What is meant by a word that is no command: one that a command takes, or the commands that are nearest."""
+        taking = (
+            f"Write `pzt-ident {name} {word}`."
+            for name, command in self.commands.items()
+            for parameter in command.params
+            if isinstance(parameter.type, click.Choice) and word in parameter.type.choices
+        )
+        return next(taking, nearest(word, self.commands).capitalize())
 
     def invoke(self, ctx: click.Context) -> Any:
         warnings.formatwarning = lambda message, *location, **options: f"Warning: {message}\n"

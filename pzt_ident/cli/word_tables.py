@@ -36,8 +36,13 @@ def show_word(facts: Facts) -> None:
             ],
         )
         if any("drive" in row["unit"] or "response" in row["unit"] for row in facts["parameters"]):
-            click.echo("Bounds in units of drive and response are multiples of the data's own peak-to-peak values,")
-            click.echo("those of response/drive with either sign where the response does not rise with the drive.")
+            click.echo(
+                "Numbers in units of drive and response are multiples of the data's own peak-to-peak values; in a job"
+            )
+            click.echo(
+                "they are in volts and micrometres, or whatever the files have. Bounds of response/drive have either sign"
+            )
+            click.echo("where the response does not rise with the drive.")
     for title, key in (("Leaves the same trace as", "look_alikes"), ("To tell", "separate_by"), ("To do", "remedy")):
         if text := facts.get(key):
             click.echo(f"\n{title}: {text if isinstance(text, str) else ', '.join(text)}")
@@ -54,7 +59,7 @@ def _number(value: float | None) -> str:
 
 def _meaning(row: Facts) -> str:
     """What a parameter is, and when it is searched for."""
-    fixed = "" if row["value"] is None else f" Fixed at {row['value']:g} unless the job gives bounds."
+    fixed = "" if row["value"] is None else f" Fixed at {row['value']:g} unless the job gives bounds or another value."
     effect = "" if row["effect"] is None else f" With `{row['effect']}` only."
     per_record = " Each record has its own." if row["per_record"] else ""
     form = f" With `{row['form']}` only." if row["form"] else ""

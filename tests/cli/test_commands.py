@@ -190,6 +190,15 @@ def with_gap(table):
     return table
 
 
+@pytest.mark.parametrize(
+    ("word", "remedy"),
+    [("effects", "Write `pzt-ident list effects`."), ("improv", "Did you mean 'improve'"), ("xyz", "Known: add, ")],
+)
+def test_a_word_that_is_no_command_has_a_remedy(word, remedy):
+    result = call(word)
+    assert result.exit_code == 2 and f"No such command '{word}'. {remedy}" in result.stderr
+
+
 @pytest.mark.parametrize("command", ["run", "check"])
 @pytest.mark.parametrize("message", DATA_FAULTS)
 def test_bad_input_ends_with_2_and_writes_nothing(folder, command, message):
@@ -278,7 +287,10 @@ class TestWords:
     def test_another_form_is_shown_with_what_it_has_beside(self):
         shown = call("show", "homogenized_energy").stdout
         assert "\ndensity " in shown and "lognormal or free" in shown and "\nnodes " in shown
-        assert "Fixed at 0.001 unless the job gives bounds. With `density: free` or `density: shared` only." in shown
+        assert (
+            "Fixed at 0.001 unless the job gives bounds or another value. With `density: free` or `density: shared` only."
+            in shown
+        )
         assert "Median of the coercive fields. With `density: lognormal` only." in shown
         assert "\nweight_1 to weight_22 " in shown and "\nweight_2 " not in shown
 
