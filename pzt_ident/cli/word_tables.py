@@ -40,7 +40,7 @@ def show_word(facts: Facts) -> None:
                 "Numbers in units of drive and response are multiples of the data's own peak-to-peak values; in a job"
             )
             click.echo(
-                "they are in volts and micrometres, or whatever the files have. Bounds of response/drive have either sign"
+                "they are in volts and micrometres, or what the files have. Bounds of response/drive have either sign"
             )
             click.echo("where the response does not rise with the drive.")
     for title, key in (("Leaves the same trace as", "look_alikes"), ("To tell", "separate_by"), ("To do", "remedy")):

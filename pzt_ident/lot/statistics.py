@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from functools import cache
 from typing import Any
 
@@ -14,6 +12,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.notation import number
 from pzt_ident.data.notation import quantity as in_words
+from pzt_ident.lot.dates import dates_of
 
 Array = NDArray[np.float64]
 
@@ -26,9 +25,6 @@ WORTH = 0.37  # of a normal deviate is one in a median absolute deviation, as it
 FEWEST = 8  # devices that tell what is usual
 WORSE = 1.5  # times the usual error: less is of no consequence
 CLEAR = 0.5  # correlation of ranks from which a trend is followed, or spreads from which groups differ
-
-DAY_FIRST = re.compile(r"^([0-9]{1,2})\.([0-9]{1,2})\.([0-9]{4})\b")
-YEAR_FIRST = re.compile(r"[0-9]{4}-[0-9]{2}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,23 +155,12 @@ def numeric(columns: Mapping[str, Sequence[Any]]) -> dict[str, Array]:
 
 
 def _days(values: Sequence[Any]) -> Array | None:
-    """Days since the first of dates such as 2026-03-02, 02.03.2026 or 2026-03-02T14:05+01:00; None where a value is
-    none. One without a time zone is taken as UTC."""
-    try:
-        dates = [None if value is None else _date(str(value)) for value in values]
-    except ValueError:
+    """Days since the first of some dates; None where a value is none."""
+    dates = dates_of(values)
+    if dates is None:
         return None
     first = min(date for date in dates if date is not None)
     return np.array([np.nan if date is None else (date - first).total_seconds() / 86400 for date in dates])
-
-
-def _date(text: str) -> datetime:
-    """Raises ValueError where the text is no date."""
-    text = DAY_FIRST.sub(lambda match: f"{match[3]}-{match[2]:0>2}-{match[1]:0>2}", text.strip())
-    if not YEAR_FIRST.match(text):
-        raise ValueError(text)
-    date = datetime.fromisoformat(f"{text}-01" if YEAR_FIRST.fullmatch(text) else text)
-    return date if date.tzinfo else date.replace(tzinfo=UTC)
 
 
 def groups(columns: Mapping[str, Sequence[Any]], devices: int) -> dict[str, dict[str, NDArray[np.bool_]]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path
@@ -13,6 +13,7 @@ from urllib.parse import quote
 from pzt_ident.data.units import factor, same_kind
 from pzt_ident.errors import DamagedError
 from pzt_ident.files import check_digest, damaged, read_sealed, replaced, write_sealed
+from pzt_ident.lot.dates import dates_of
 from pzt_ident.lot.devices import Device, Value
 
 if TYPE_CHECKING:
@@ -82,12 +83,21 @@ def write_table(folder: Path, devices: Sequence[Device]) -> None:
     write_devices(folder, devices)
     frame = frame_of(rows_of(folder, {device.name: device.columns for device in devices}))
     if has_parquet():
+        known = {name for device in devices for name in device.columns}
         with replaced(folder / PARQUET) as path:
-            frame.to_parquet(path, index=False, engine="pyarrow")
+            with_dates(frame, known).to_parquet(path, index=False, engine="pyarrow")
     else:
         (folder / PARQUET).unlink(missing_ok=True)  # an older one would say otherwise than the CSV
     with replaced(folder / CSV) as path:
         frame.to_csv(path, index=False, lineterminator="\n")
+
+
+def with_dates(frame: pd.DataFrame, known: Collection[str]) -> pd.DataFrame:
+    """The table with times in the columns of dates among those that were known of the devices."""
+    cells = frame.astype(object).where(frame.notna(), None)
+    headings = [heading for heading in frame if str(heading).removesuffix(GIVEN) in known]
+    dates = {heading: found for heading in headings if (found := dates_of(cells[heading].tolist()))}
+    return frame.assign(**dates)  # type: ignore[arg-type]
 
 
 def rows_of(folder: Path, known: dict[str, Any]) -> Iterator[Row]:

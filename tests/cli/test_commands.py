@@ -288,7 +288,7 @@ class TestWords:
         shown = call("show", "homogenized_energy").stdout
         assert "\ndensity " in shown and "lognormal or free" in shown and "\nnodes " in shown
         assert (
-            "Fixed at 0.001 unless the job gives bounds or another value. With `density: free` or `density: shared` only."
+            "Fixed at 0.001 unless the job gives bounds or another value. With `density: free` or `density: shared`"
             in shown
         )
         assert "Median of the coercive fields. With `density: lognormal` only." in shown

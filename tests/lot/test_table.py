@@ -9,7 +9,7 @@ import pandas as pd
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from pzt_ident.lot.table import folder_of, frame_of, line_of
+from pzt_ident.lot.table import folder_of, frame_of, line_of, with_dates
 
 NAMES = st.text(max_size=300) | st.text(st.sampled_from("./\\%~ \0\n\x1b"), max_size=8) | st.text(min_size=200)
 FLEET = Path("/fleet")
@@ -71,3 +71,15 @@ def test_the_table_keeps_what_was_given_and_what_was_found(rows):
     content = BytesIO()
     frame.to_parquet(content, engine="pyarrow")
     assert list(pd.read_parquet(content).columns) == list(frame.columns)
+
+
+def test_parquet_has_times_where_the_lot_has_dates():
+    made = [("A", "02.03.2026"), ("B", None), ("C", "2026-03-05T01:00+01:00")]
+    known = {name: {"made": date, "batch": "2026", "verdict": date} for name, date in made}
+    frame = frame_of(row_of(name, columns=columns) for name, columns in known.items())
+    times = pd.read_parquet(BytesIO(with_dates(frame, {"made", "batch", "verdict"}).to_parquet(index=False)))
+    for heading in ("made", "verdict (given)"):
+        first, none, last = times[heading]
+        assert (last - first).days == 3 and pd.isna(none)
+    assert [*times["verdict"]] == ["adequate"] * 3 and [*times["batch"]] == ["2026"] * 3
+    assert [*frame["made"].dropna()] == [date for _, date in made if date]
