@@ -36,7 +36,11 @@ def own_bounds(fit: Fit, effect: str) -> tuple[str, ...]:
 def small_shapes(fit: Fit) -> list[str]:
     """The shapes that are next to nothing beside the amount by which they are judged."""
     values, entries = fit.values, entries_of(fit)
-    amounts = {name: name.removesuffix(entry.word) + str(entry.parameter.small_to) for name, entry in entries.items()}
+    amounts = {
+        name: f"{name.removesuffix(entry.word)}{entry.parameter.small_to}"
+        for name, entry in entries.items()
+        if entry.parameter.small_to
+    }
     return [name for name, amount in amounts.items() if values[name] <= SMALL * values.get(amount, 0.0)]
 
 

@@ -7,7 +7,9 @@ import stage
 from pzt_ident.diagnosis import limit
 from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.limit import entries_of, is_limited, own_bounds, small_shapes
+from pzt_ident.model.block import Coupling
 from pzt_ident.model.parameter import SMALL
+from pzt_ident.model.registry import blocks
 
 MODEL = ("bouc_wen", "lumped")
 
@@ -26,3 +28,14 @@ def test_friction_that_gives_little_before_it_slides_is_a_play(item, share, limi
     fit = fit_at((item,), problem, problem.unit_point(values))
     assert small_shapes(fit) == ([shape] if limited else [])
     assert (shape in own_bounds(fit, item)) == is_limited(fit) == limited
+
+
+@pytest.mark.parametrize("item", [item for word in blocks.effects() for item in blocks.forms(word)])
+def test_a_shape_that_no_amount_is_held_against_is_small_to_none(item):
+    """At the lower bounds, which may be below zero."""
+    axes = 2 if issubclass(blocks[item], Coupling) else 1
+    case = stage.case(model=MODEL) if axes == 1 else stage.beside(stage.case(model=MODEL), stage.case(model=MODEL))
+    problem = case.problem((item,))
+    fit = fit_at((item,), problem, np.zeros(problem.dimensions))
+    declared = {name for name, entry in entries_of(fit).items() if entry.parameter.small_to}
+    assert {*small_shapes(fit)} <= declared
