@@ -226,7 +226,8 @@ def joined(client: Client, words: str) -> Event:
     shared = " of several threads, which wait for each other: start them with --nthreads 1" * (
         max(threads.values(), default=1) > 1
     )
-    count = f"{len(threads)} workers" if threads else "jobs that wait for their turn"
+    workers = f"{len(threads)} worker{'s' * (len(threads) > 1)}"
+    count = workers if threads else "jobs that wait for their turn"
     sentence = f"{count}{shared} at {words}; Dask's dashboard: {client.dashboard_link}"
     return {"event": "cluster", "said": sentence, "workers": len(threads), "dashboard": client.dashboard_link}
 
