@@ -51,8 +51,8 @@ class OfDisplacement(CrossCoupling):
     """The other axis' displacement acts, with the resonance of that axis: f1 <- f1 + ratio G2 f2,
     G2 = 1 / (s^2/w^2 + 2 zeta s/w + 1), solved exactly for f2 linear on each step.
 
-    A guide that is sheared, or a sensor's target that is pulled along, ahead of this axis' own mechanics: Yong,
-    Moheimani, Kenton & Leang (2012), Rev. Sci. Instrum. 83, 121101.
+    A guide that the other axis shears pushes ahead of this axis' own mechanics: Yong, Moheimani, Kenton & Leang (2012),
+    Rev. Sci. Instrum. 83, 121101.
     """
 
     trials = {"frequency": 160, "damping": 3}
