@@ -36,6 +36,19 @@ def test_a_delay_that_viscous_friction_stood_in_for_is_told_beside_friction():
     assert end.identify < now.identify / 2
 
 
+@pytest.mark.parametrize("tau", [3e-3, 3e-4])
+def test_a_form_that_holds_a_lag_begins_with_it(tau, monkeypatch):
+    """To a factor of three, however small the lag is beside what the catalogue has for friction."""
+    values = stage.STAGE | RUBBING | {"sensor_lag.tau": tau}
+    made = stage.records(values, model=("bouc_wen", "friction", "sensor_lag"), dt=1e-4, effects={})
+    case = Case(("bouc_wen",), (), made, {})
+    problem, begun = case.problem(("friction", "sensor_lag")), {}
+    now = fit_at(("friction", "sensor_lag"), problem, problem.unit_point(values))
+    monkeypatch.setattr(exchange, "refit", lambda case, now, effects, guess: begun.update(guess))
+    exchange.fit_holding(case, now, (VISCOUS,))
+    assert tau / 3 <= begun["friction.viscous"] <= 3 * tau
+
+
 def test_viscous_friction_is_one_effect():
     case, first, now = with_viscous_friction({"friction.viscous": 0.02})
     assert separate_accounts(case, first, now) == []
