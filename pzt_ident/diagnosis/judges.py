@@ -16,6 +16,7 @@ from pzt_ident.data.notation import listed
 from pzt_ident.data.record import Record
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import Fit, fit_at
+from pzt_ident.diagnosis.undetermined import mechanics_of
 
 Array = NDArray[np.float64]
 
@@ -54,13 +55,16 @@ def left_open(case: Case, fit: Fit) -> list[Record]:
 
 
 def as_good(fit: Fit) -> Array:
-    """(points, dimensions) within the bounds that fit the identification records as well."""
+    """(points, dimensions) within the bounds that fit the identification records as well: along the directions of the
+    curvature, and with any mechanics, of which a fit may rest on one of many that no record shows."""
     jacobian, _ = fit.problem.equations(fit.point, central=False)
     _, sizes, directions = np.linalg.svd(jacobian, full_matrices=False)
     growth = np.sqrt(AS_WELL**2 - 1) * fit.identify
     lengths = np.minimum(growth / np.maximum(sizes, np.finfo(float).tiny), 1.0)
-    parts = np.random.default_rng(0).uniform(-1, 1, size=(DRAWS, lengths.size))
-    points = np.clip(fit.point + parts * lengths @ directions, 0, 1)
+    rng = np.random.default_rng(0)
+    parts, any_place = rng.uniform(-1, 1, size=(DRAWS, lengths.size)), rng.uniform(size=(DRAWS, fit.point.size))
+    near = np.clip(fit.point + parts * lengths @ directions, 0, 1)
+    points = np.vstack([near, np.where(np.isin(fit.problem.free, [*mechanics_of(fit)]), any_place, fit.point)])
     return points[fit.problem.loss(points) <= AS_WELL * fit.identify]
 
 

@@ -61,6 +61,19 @@ def test_points_that_fit_as_well_do():
     assert np.ptp(points[:, fit.problem.names.index("lumped.mass")]) > 0.2
 
 
+def test_any_mechanics_fit_as_well_that_no_record_shows():
+    """A mode far above all drives may be anywhere, also from where it has no damping."""
+    made_slow = made(SLOW, USES[:2])
+    case = Case(MODEL, (), made_slow.records, {})
+    problem = case.problem(())
+    values = stage.STAGE | {"bouc_wen.gain": 0.08, "lumped.mass": 1, "lumped.stiffness": 1e7, "lumped.damping": 0}
+    fit = fit_at((), problem, problem.unit_point(values))
+    points = as_good(fit)
+    assert fit.problem.loss(points).max() <= 1.1 * fit.identify
+    for name in ("lumped.mass", "lumped.damping"):
+        assert np.ptp(points[:, fit.problem.names.index(name)]) > 0.5
+
+
 @pytest.mark.parametrize(
     ("drives", "uses", "mass"),
     [
