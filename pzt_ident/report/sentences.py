@@ -61,12 +61,16 @@ def remaining_error(results: Results) -> str:
     """RMSE of the last model on the validation records, else on the identification records, beside the noise floor."""
     rmse = results.rmse
     use = "identify" if rmse["validate"] is None else "validate"
-    records = {
-        "validate": "on the validation records",
-        "identify": "on the identification records, and there is no validation record",
-    }[use]
+    none = "none of those kept back can judge it" if is_unjudged(results) else "there is no validation record"
+    records = {"validate": "on the validation records", "identify": f"on the identification records, and {none}"}[use]
     size = f"{quantity(rmse[use], results.unit, 3)}{together(results.units)}"
     return f"The RMSE is {size} {records}{over_noise(results, use)}."
+
+
+def is_unjudged(results: Results) -> bool:
+    """Whether there are records kept back, of which none can judge the model."""
+    kept = any(record["use"] == "validate" for record in results.records)
+    return kept and results.rmse["validate"] is None
 
 
 def findings(results: Results) -> list[str]:
@@ -89,6 +93,8 @@ def next_step(results: Results) -> str:
         return f"Measure again with the drive in {proposal['file']}: it tells {listed(proposal['splits'])} apart."
     if best:
         return f"Add {best.get('item', best['effect'])} to the model and identify it again."
+    if verdict == "adequate" and is_unjudged(results):
+        return "Measure a record to identify that is like the one kept back: nothing unseen has judged the model."
     if verdict == "adequate":
         return "Put the model to work: compute the drive for a reference, or export it for a controller."
     return "See below where the model fails, and which effects come near to an explanation."

@@ -13,7 +13,15 @@ from pzt_ident.data.notation import listed
 from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.model.parameter import NOTHING_BEYOND
 from pzt_ident.report.page import write_report
-from pzt_ident.report.sentences import findings, headline, next_step, over_noise, printed_reason, verdict
+from pzt_ident.report.sentences import (
+    findings,
+    headline,
+    next_step,
+    over_noise,
+    printed_reason,
+    remaining_error,
+    verdict,
+)
 from pzt_ident.run.misfit import compare
 from pzt_ident.run.results import read_results
 from run_folders import WEIRD, make_run
@@ -263,3 +271,14 @@ def test_the_next_step_follows_from_the_verdict(plain, verdict, decision, senten
     diagnosis = {"verdict": verdict, "candidates": [{"effect": "creep", "decision": decision}], "next_experiment": None}
     assert sentence in next_step(replace(results, diagnosis=diagnosis))
     assert "Diagnose the model" in next_step(replace(results, diagnosis={}))
+
+
+@pytest.mark.parametrize("use", ["identify", "validate"])
+def test_a_model_that_no_record_kept_back_can_judge_is_not_put_to_work(plain, use):
+    results = read_results(plain)
+    last = {"rmse": {"identify": 1e-3, "validate": None}, "records": [{"name": "chirp", "use": use, "rmse": {}}]}
+    diagnosis = {"verdict": "adequate", "candidates": [], "next_experiment": None}
+    results = replace(results, diagnosis=diagnosis, improvement={"steps": [last]})
+    kept = use == "validate"
+    assert next_step(results).startswith("Measure a record to identify" if kept else "Put the model to work")
+    assert ("none of those kept back can judge it" if kept else "no validation record") in remaining_error(results)
