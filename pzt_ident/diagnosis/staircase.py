@@ -22,7 +22,14 @@ from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.undetermined import enough_without_mechanics
-from pzt_ident.diagnosis.unmeasured import OWN, own_mechanics, with_own_mechanics
+from pzt_ident.diagnosis.unmeasured import (
+    OWN,
+    OWN_LOOPS,
+    own_hysteresis,
+    own_mechanics,
+    with_own_hysteresis,
+    with_own_mechanics,
+)
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
 from pzt_ident.model.block import Coupling
 from pzt_ident.model.registry import blocks, word_of
@@ -193,25 +200,31 @@ def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, F
 
 
 def own_account(case: Case, first: Fit, given: Staircase, on_step: StepListener) -> Staircase | None:
-    """The staircase where axes without a response have a resonance of their own, if that is the better account: of one
-    that leads to the noise, if that takes other effects beside a coupling."""
+    """The staircase where axes without a response have a resonance, or else a hysteresis, of their own, if that is the
+    better account: of one that leads to the noise, if that takes other effects beside a coupling."""
     arrived = given.last.verdict == "adequate"
     added = given.end.effects[len(first.effects) :]
-    alone = len(added) < 2 or not any(issubclass(blocks[effect], Coupling) for effect in added)
-    own = None if arrived and alone else improve_own(case, first, on_step)
-    better = own and (takes_fewer(own, given, case) if arrived else reaches_farther(own, given))
-    return own if better else None
-
-
-def improve_own(case: Case, first: Fit, on_step: StepListener) -> Staircase | None:
-    """The staircase where axes without a response have a resonance of their own; None where nothing speaks for it."""
-    if not own_mechanics(case) or not case.budget.allows("axes without a response that are unlike the others", WHOLE):
+    tried = added if arrived else [step.added for step in given.steps if step.added]
+    coupled = any(issubclass(blocks[effect], Coupling) for effect in tried)
+    if arrived and not (coupled and len(added) > 1):
         return None
-    alternative = with_own_mechanics(case, first)
+    for own, free in ((OWN, own_mechanics(case)), (OWN_LOOPS, own_hysteresis(case, first) if coupled else {})):
+        if not free or not case.budget.allows("axes without a response that are unlike the others", WHOLE):
+            continue
+        other = improve_own(case, first, own, on_step)
+        if other and (takes_fewer(other, given, case) if arrived else reaches_farther(other, given)):
+            return other
+    return None
+
+
+def improve_own(case: Case, first: Fit, change: str, on_step: StepListener) -> Staircase | None:
+    """The staircase where axes without a response have a resonance or a hysteresis of their own; None where nothing
+    speaks for it."""
+    alternative = with_own_mechanics(case, first) if change == OWN else with_own_hysteresis(case, first)
     if alternative is None:
         return None
     own, start = alternative
-    return improve_within(own, [Step(first), Step(start, change=OWN, case=own)], on_step)
+    return improve_within(own, [Step(first), Step(start, change=change, case=own)], on_step)
 
 
 def outdoes(wide: Staircase, given: Staircase, case: Case, first: Fit) -> bool:

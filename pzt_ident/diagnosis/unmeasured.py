@@ -6,15 +6,17 @@ from itertools import product
 
 import numpy as np
 
+from pzt_ident.data.notation import listed
 from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.score import applicable, scorer_of
-from pzt_ident.model.block import Coupling
+from pzt_ident.model.block import Coupling, Place
 from pzt_ident.model.registry import blocks
 
 OWN = "mechanics of each axis"  # the step after which axes without a response have a resonance of their own
+OWN_LOOPS = "hysteresis of each axis"  # after which they have a hysteresis of their own, but for its gain
 STIFFNESS, DAMPING = "stiffness", "damping"
 REACH, TRIED = 30.0, 41  # times the stiffness of the measured axis, down and up; so many between
 
@@ -66,6 +68,41 @@ def own_mechanics(case: Case) -> dict[str, Widened]:
     return found
 
 
+def own_hysteresis(case: Case, first: Fit) -> dict[str, Widened]:
+    """The shapes of the hysteresis of axes without a response, with the bounds that they have on the measured one."""
+    ends = zip(first.problem.lower.tolist(), first.problem.upper.tolist(), strict=True)
+    bounds = dict(zip(first.problem.names, ends, strict=True))
+    return {name: Widened(bounds[like]) for name, like in loops_alike(case, first).items()}
+
+
+def with_own_hysteresis(case: Case, first: Fit) -> tuple[Case, Fit]:
+    """The case in which axes without a response have a hysteresis of their own, and the fit as given in it."""
+    own = case.with_specs(own_hysteresis(case, first))
+    problem, values = own.problem(first.effects, first.steps), first.values
+    values |= {name: values[like] for name, like in loops_alike(case, first).items()}
+    return own, fit_at(first.effects, problem, problem.unit_point(values), first.converged)
+
+
+def loops_alike(case: Case, first: Fit) -> dict[str, str]:
+    """The parameters of the hysteresis of axes without a response, and those of the first measured one which they have
+    until a coupling shows them: what is free there, but for gains, which are the coupling's, and what each branch has.
+    Only of axes with the same unit of the drive, and of which the job says nothing."""
+    record, problem, found = case.records[0], first.problem, dict[str, str]()
+    main = record.measured[0]
+    silent = [
+        axis
+        for number, axis in enumerate(record.axes)
+        if number not in record.measured and record.drive_units[number] == record.drive_units[main]
+    ]
+    for like, column in zip(problem.names, problem.free, strict=True):
+        entry = problem.model.entries[column]
+        shape = entry.parameter.unit != "response/drive" and entry.parameter.count is None
+        if entry.block.place == Place.OPERATOR and entry.axis == main and shape:
+            names = (f"{axis}.{entry.block.name}.{entry.word}" for axis in silent)
+            found |= {name: like for name in names if name not in case.specs}
+    return found
+
+
 def alike(fit: Fit, name: str) -> float:
     """The parameter of the measured axis after which an axis without a response is modelled."""
     _, _, plain = name.partition(".")
@@ -86,5 +123,19 @@ def own_mechanics_sentence(case: Case, fit: Fit) -> str:
             text += (
                 f" No response of {name.partition('.')[0]} is measured, and it does not resonate where the measured"
                 f" axis does: {name} is {value:.4g} {units[name]} by what the coupling shows of it."
+            )
+    return text + own_hysteresis_sentence(case, fit)
+
+
+def own_hysteresis_sentence(case: Case, fit: Fit) -> str:
+    """A sentence about each axis without a response whose hysteresis a coupling shows; empty where there is none."""
+    record, text = case.records[0], ""
+    for number, axis in enumerate(record.axes):
+        own = [name for name in fit.problem.names if name.startswith(f"{axis}.") and name not in case.specs]
+        loops = [name for name in own if name in loops_alike(case, fit)]
+        if number not in record.measured and loops:
+            text += (
+                f" No response of {axis} is measured, and its hysteresis is not that of the measured axis:"
+                f" {listed(loops)} {'are' if len(loops) > 1 else 'is'} its own by what the coupling shows."
             )
     return text

@@ -14,7 +14,14 @@ from pzt_ident.diagnosis.refit import values_in
 from pzt_ident.diagnosis.score import fits
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
-from pzt_ident.diagnosis.unmeasured import OWN, own_mechanics, own_mechanics_sentence
+from pzt_ident.diagnosis.unmeasured import (
+    OWN,
+    OWN_LOOPS,
+    own_hysteresis,
+    own_mechanics,
+    own_mechanics_sentence,
+    with_own_hysteresis,
+)
 from pzt_ident.model.registry import blocks, word_of
 
 DT, MODEL = 1e-3, ("bouc_wen", "lumped")
@@ -28,21 +35,23 @@ def chirp(low, high, reach, start):
     return 50 + reach * np.sin(2 * np.pi * (low + (high - low) * t / t[-1] / 2) * t + start)
 
 
-def coupled(stiffness, known=None):
-    """A stage whose y moves with this stiffness and is not measured."""
+def coupled(stiffness, known=None, loops=None, model=MODEL, share=SHARE):
+    """A stage whose y moves with this stiffness, and with hysteresis parameters of its own, and is not measured."""
     truth, noise, made = {f"x.{name}": value for name, value in X.items()}, np.random.default_rng(3), []
     truth |= {f"y.{name}": value for name, value in X.items()} | {"y.lumped.stiffness": stiffness}
-    truth |= {"x.kinematic_coupling.ratio": SHARE, "y.kinematic_coupling.ratio": 0.0}
+    truth |= {f"y.{name}": value for name, value in (loops or {}).items()}
+    truth |= {"x.kinematic_coupling.ratio": share, "y.kinematic_coupling.ratio": 0.0}
     for use, x, y in (
         ("identify", chirp(2, 20, 40, 0), chirp(20, 130, 30, 0)),
         ("identify", chirp(10, 90, 30, 1), chirp(1, 5, 40, 0)),
         ("validate", chirp(5, 60, 30, 0), chirp(30, 120, 35, 1)),
     ):
-        response = rig.response([*MODEL, "kinematic_coupling"], truth, x, y, dt=DT)[0]
+        response = rig.response([*model, "kinematic_coupling"], truth, x, y, dt=DT)[0]
         response += noise.normal(0, 5 * stage.NOISE, response.size)
         record = rig.record(x, y, response=[response, 0 * response], measured=[0], dt=DT)
         made.append(replace(record, use=use, name=f"{use} {len(made)}", response_units=("um", None)))
-    return Case(MODEL, (), made, stage.specs({"lumped.mass": X["lumped.mass"]} | (known or {})))
+    mass = {"lumped.mass": X["lumped.mass"]} if model is MODEL else {}
+    return Case(model, (), made, stage.specs(mass | (known or {})))
 
 
 @pytest.mark.parametrize("stiffness", [STIFFNESS, 1.15 * X["lumped.stiffness"]])
@@ -56,6 +65,30 @@ def test_a_coupling_shows_the_stiffness_of_an_axis_without_a_response(stiffness)
     assert end.values["y.lumped.stiffness"] == pytest.approx(stiffness, rel=0.01)
     assert "y.lumped.stiffness" in bounds_that_changed(case, end)
     assert f"y.lumped.stiffness is {str(stiffness)[0]}" in own_mechanics_sentence(case, end)
+
+
+@pytest.mark.parametrize("share", [0.5, 1.0])
+def test_a_coupling_shows_the_hysteresis_of_an_axis_without_a_response(share):
+    """It is no second coupling, by the voltage."""
+    case = coupled(STIFFNESS, loops={"bouc_wen.alpha": 0.3}, model=("bouc_wen",), share=share)
+    case.ruled_out = tuple({*blocks.effects()} - {"kinematic_coupling", "cross_coupling", "creep"})
+    found = improve(case, first_fit(case, 0))
+    end = found.steps[-1].fit
+    assert found.last.verdict == "adequate" and [*map(word_of, end.effects)] == ["kinematic_coupling"]
+    assert [step.change for step in found.steps] == ["", OWN_LOOPS, ""]
+    assert "y.bouc_wen.alpha" in bounds_that_changed(case, end)
+    assert "y.bouc_wen.gamma are its own" in own_mechanics_sentence(case, end)
+
+
+def test_a_hysteresis_of_its_own_has_the_shapes_that_the_measured_axis_has_free():
+    case = coupled(STIFFNESS, {"bouc_wen.gamma": stage.STAGE["bouc_wen.gamma"], "y.bouc_wen.beta": 0.02})
+    first = fit_at((), case.problem(()), np.full(case.problem(()).dimensions, 0.5))
+    assert [*own_hysteresis(case, first)] == ["y.bouc_wen.alpha"]
+    fit = with_own_hysteresis(case, first)[1]
+    assert fit.values["y.bouc_wen.alpha"] == pytest.approx(first.values["bouc_wen.alpha"])
+    assert fit.identify == pytest.approx(first.identify, rel=1e-9)
+    other = [replace(record, drive_units=("V", "kV")) for record in case.records]
+    assert own_hysteresis(case.with_records(other), first) == {}
 
 
 def test_an_axis_that_is_like_the_measured_one_is_taken_for_it():
