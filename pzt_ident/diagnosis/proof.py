@@ -106,21 +106,21 @@ def unproven(
 ) -> list[Suspect]:
     """The effects to be taken out again, the least first. known: other fits of the case.
 
-    Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may stand
-    in for what is not in the catalogue: they must also remove together as much of the misfit as given as if the first
-    removed ENOUGH of all records (SINGLE, if it is alone), or DECISIVE where the identification records are at the
-    noise, and EACH of either kind of them, and each of the others half of the rest, and each the share ALONE beside the
-    others; of several that leave more than that each must remove more in proportion, and none is proven where that is
-    more than BESIDE. None may have rivals that fit as well and are not its look-alikes: what any effect takes up is not
-    that of one. And none may have a shape, or all its amounts, on a bound, as a cyclic error that the stroke does not
-    hold twice: it stands for what it is like there, unless the model is adequate with it. Even then none may be in a
-    limit that is declared to be something else, or a low harmonic of the drive, or of
-    another size in each record where it is the device's. A line of the spectrum that takes up
-    all of its band is proven whatever is left elsewhere. Nor may one take the place of the model's operator, whose
-    loops are gone beside it, unless the model is adequate. What takes up enough and only may be something else is a
-    suspect beside which the others are judged: without it what they take up is nothing; of those that remove little
-    beside what is in a limit none is proven. What is proven on one of
-    several axes, and clear there, is proven, whatever another lacks.
+    Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may
+    stand in for what is not in the catalogue: they must also remove together as much of the misfit as given as if
+    the first removed ENOUGH of all records (SINGLE, if it is alone), or DECISIVE where the identification records
+    are at the noise, and EACH of either kind of them, and each of the others half of the rest, and each the share
+    ALONE beside the others; of several that leave more than that each must remove more in proportion, and none is
+    proven where that is more than BESIDE. None may have rivals that fit as well and are not its look-alikes: what
+    any effect takes up is not that of one. And none may have a shape, or all its amounts, on a bound, as a cyclic
+    error that the stroke does not hold twice: it stands for what it is like there, unless the model is adequate
+    with it. Even then none may be in a limit that is declared to be something else, or a low harmonic of the drive,
+    or of another size in each record where it is the device's. A line of the spectrum that takes up all of its band
+    is proven whatever is left elsewhere. Nor may one take the place of the model's operator, whose loops are gone
+    beside it, unless the model is adequate. What takes up enough and only may be something else is a suspect beside
+    which the others are judged: without it what they take up is nothing; of those that remove little beside what is
+    in a limit none is proven. What is proven on one of several axes, and clear there, is proven, whatever another
+    lacks.
     """
     judge = partial(taken_out, case, first, now, rivals, known)
     suspects, axes = judge(), len(now.problem.model.measured)
