@@ -31,6 +31,7 @@ LEAST_TRACE = 1e-9  # of the residual: less is rounding
 LEAST_SCORE = 0.02  # of the misfit: an effect that scores less is not refitted
 KEPT = 4  # scorers
 MANY_TRIALS = 50  # values of the shape parameters
+MOST_SIMULATIONS = 2000  # of a form beside the first
 FINER, MOST_SCALES = 0.93, 40  # from multiple to multiple of a trial's steps
 AS_GOOD, MOST_GUESSES = 0.9, 4  # of the share explained by the best guess of a disturbance; guesses that are kept
 
@@ -107,9 +108,9 @@ class Scorer:
 
     def scores(self, effect: str, in_every_form: bool = True) -> list[Score]:
         """The scores of an effect, the first form first, and of its other forms; of what is costly only where the first
-        explains some, and near the shapes with which it does."""
+        explains some, and near the shapes with which it does, and none that takes MOST_SIMULATIONS."""
         usual, *others = fitting_forms(self.case, self.fit.effects, effect)
-        others = others if in_every_form else []
+        others = [item for item in others if in_every_form and simulations(self.case, item) < MOST_SIMULATIONS]
         first = self.score(usual)
         if first.explained <= LEAST_SCORE:
             others = [item for item in others if not is_costly(blocks[effect]) and not is_costly(blocks[item])]
@@ -284,6 +285,13 @@ def scales_of(amounts: Array) -> Array:
 def has_many_trials(block: type[Block]) -> bool:
     """Whether there are many values of an effect's shape parameters to try."""
     return prod(block.trials.values()) > MANY_TRIALS
+
+
+def simulations(case: Case, item: str) -> int:
+    """How many a score takes: one for each amplitude, of an axis or of a pair of axes, and value of the shapes."""
+    block, record = blocks[item], case.records[0]
+    inputs = len(record.axes) - 1 if issubclass(block, Coupling) else 1
+    return prod(block.trials.values()) * len(record.measured) * inputs
 
 
 def is_costly(block: type[Block]) -> bool:

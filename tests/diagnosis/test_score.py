@@ -9,7 +9,16 @@ import stage
 from pzt_ident.diagnosis import score as scoring
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.refit import refit, refit_from
-from pzt_ident.diagnosis.score import KEPT, Scorer, applicable, fitting_forms, scorer_of, squared_misfit
+from pzt_ident.diagnosis.score import (
+    KEPT,
+    MOST_SIMULATIONS,
+    Scorer,
+    applicable,
+    fitting_forms,
+    scorer_of,
+    simulations,
+    squared_misfit,
+)
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.trials import planned_trials
 from pzt_ident.job.sections import Setting
@@ -329,3 +338,24 @@ def test_a_limit_that_is_just_exceeded_is_guessed_where_it_is(over, slowness):
     case = Case(("bouc_wen",), (), stage.records(hidden, drives=drives, dt=1e-4, effects=["slew_limit"]), {})
     score = scored(case, "slew_limit")
     assert score.guess["slew_limit.slowness"] == pytest.approx(slowness, rel=0.03)
+
+
+@pytest.mark.parametrize("axes", [2, 3])
+def test_a_form_that_takes_too_many_simulations_is_not_scored_beside_the_first(axes):
+    """A resonance for each pair of three measured axes: six pairs at 480 shapes."""
+    pair, one = stage.beside(stage.case(), stage.case(seed=2)), stage.case(seed=3)
+    records = [
+        replace(
+            record,
+            axes=("x", "y", "z"),
+            drive=np.vstack([record.drive, alone.drive]),
+            response=np.vstack([record.response, alone.response]),
+            drive_units=("V",) * 3,
+            response_units=("um",) * 3,
+        )
+        for record, alone in zip(pair.records, one.records, strict=True)
+    ]
+    case = pair if axes == 2 else Case(pair.words, (), records, pair.specs)
+    most = max(simulations(case, item) for item in blocks.forms("cross_coupling"))
+    assert (most < MOST_SIMULATIONS) == (axes == 2)
+    assert all(simulations(case, word) < MOST_SIMULATIONS for word in ("resonance", "encoder_cyclic_error"))
