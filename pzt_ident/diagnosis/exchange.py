@@ -6,8 +6,6 @@ from collections.abc import Collection, Mapping, Sequence
 from functools import partial
 from itertools import permutations
 
-import numpy as np
-
 from pzt_ident.diagnosis.budget import PROOF, PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
@@ -15,7 +13,7 @@ from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.limit import is_limited, own_bounds
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.modes import mechanics_at_main_mode
-from pzt_ident.diagnosis.refit import refit, refit_beside, start_of
+from pzt_ident.diagnosis.refit import refit, refit_beside, refit_holding, start_of
 from pzt_ident.diagnosis.score import applicable, fitting_forms, scorer_of
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explained_share
@@ -35,7 +33,6 @@ from pzt_ident.diagnosis.verdict import diagnose
 from pzt_ident.model.registry import blocks, form_of, word_of
 
 COMPARABLE = 0.3  # of the share that an effect explains by its score: what explains less cannot take its place
-SHARES = 0.5 ** np.arange(15)  # of a range, at which the amount of a part is tried
 LEAST_GAIN = 0.05  # noise floors by which one effect fits better than another: less may be simulation error
 
 
@@ -82,24 +79,14 @@ def join_look_alikes(case: Case, first: Fit, now: Fit) -> list[Step]:
             continue
         without = refit(case, now, effects_without(now, other), {})
         others = effects_without(without, one)
-        holding = (fit_holding(case, now, (*others, item)) for item in items if word_of(other) in blocks[item].contains)
+        holding = (
+            refit_holding(case, now, (*others, item)) for item in items if word_of(other) in blocks[item].contains
+        )
         for alone in (*holding, *fits_in_place(case, without, one, items)):
             if removed_rms(alone.total, now.total) < TIE * case.floor and not own_bounds(alone, alone.effects[-1]):
                 taken_out = Step(without, None, other, {}, explained_share(case, now, without))
                 return [taken_out, exchange_step(case, without, alone, one)]
     return []
-
-
-def fit_holding(case: Case, now: Fit, effects: tuple[str, ...]) -> Fit:
-    """The refit with a form that holds what another effect did, from the parameters of a fit with both: the amounts
-    that it has beside these begin at the share of their ranges, of some decades, that leaves least."""
-    problem = case.problem(effects, now.steps)
-    columns = zip(problem.names, problem.free, problem.upper.tolist(), strict=True)
-    nulls = {name: (problem.model.entries[column].parameter.null, most) for name, column, most in columns}
-    ends = {name: most for name, (null, most) in nulls.items() if name not in now.values and null is not None}
-    guesses = [{name: float(share * most) for name, most in ends.items()} for share in SHARES]
-    losses = problem.loss(np.array([start_of(problem, now, guess) for guess in guesses]))
-    return refit(case, now, effects, guesses[int(np.argmin(losses))])
 
 
 def separate_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:

@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 
 STEP_TOLERANCE = 0.05  # of what a fit leaves, but at least of the noise: a step is halved where that changes more
 FINEST = 8  # steps per sample
+SHARES = 0.5 ** np.arange(15)  # of a range, at which the amount of a part is tried
 
 
 def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, float], rival: float = np.inf) -> Fit:
@@ -50,6 +51,18 @@ def refit_beside(
     problem = case.problem(effects, fits[0].steps)
     losses = problem.loss(np.array([start_of(problem, fit, guess) for fit in fits]))
     return refit(case, fits[int(np.argmin(losses))], effects, guess, rival)
+
+
+def refit_holding(case: Case, now: Fit, effects: tuple[str, ...]) -> Fit:
+    """The refit with a form that holds what another effect did, from the parameters of a fit with both: the amounts
+    that it has beside these begin at the share of their ranges, of some decades, that leaves least."""
+    problem = case.problem(effects, now.steps)
+    columns = zip(problem.names, problem.free, problem.upper.tolist(), strict=True)
+    nulls = {name: (problem.model.entries[column].parameter.null, most) for name, column, most in columns}
+    ends = {name: most for name, (null, most) in nulls.items() if name not in now.values and null is not None}
+    guesses = [{name: float(share * most) for name, most in ends.items()} for share in SHARES]
+    losses = problem.loss(np.array([start_of(problem, now, guess) for guess in guesses]))
+    return refit(case, now, effects, guesses[int(np.argmin(losses))])
 
 
 def start_of(problem: Problem, before: Fit, guess: dict[str, float]) -> Array:

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain
-from math import prod
 from operator import itemgetter
 
 import numpy as np
@@ -17,10 +16,11 @@ from numpy.typing import NDArray
 
 from pzt_ident.diagnosis import misfit
 from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.cost import MOST_SIMULATIONS, has_many_trials, is_costly, simulations
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.projection import Projection, Sets, Split
 from pzt_ident.diagnosis.trials import MOST_SHAPES, ShapesByAxis, Trial, parameter_grid, planned_trials, trials_beside
-from pzt_ident.model.block import Block, Coupling, Term
+from pzt_ident.model.block import Coupling, Term
 from pzt_ident.model.registry import blocks, word_of
 from pzt_ident.search.problem import Problem
 
@@ -30,8 +30,6 @@ BATCH = 48  # candidates that are simulated together
 LEAST_TRACE = 1e-9  # of the residual: less is rounding
 LEAST_SCORE = 0.02  # of the misfit: an effect that scores less is not refitted
 KEPT = 4  # scorers
-MANY_TRIALS = 50  # values of the shape parameters
-MOST_SIMULATIONS = 2000  # of a form beside the first
 FINER, MOST_SCALES = 0.93, 40  # from multiple to multiple of a trial's steps
 AS_GOOD, MOST_GUESSES = 0.9, 4  # of the share explained by the best guess of a disturbance; guesses that are kept
 
@@ -280,23 +278,6 @@ def scales_of(amounts: Array) -> Array:
     shrunk = np.where((amounts > 0) & (amounts < 1), amounts, 1.0)
     count = min(1 + int(np.log(shrunk.min()) / np.log(FINER)), MOST_SCALES)
     return np.vstack([amounts, shrunk ** np.linspace(0, 1, count, endpoint=False)[:, None]])
-
-
-def has_many_trials(block: type[Block]) -> bool:
-    """Whether there are many values of an effect's shape parameters to try."""
-    return prod(block.trials.values()) > MANY_TRIALS
-
-
-def simulations(case: Case, item: str) -> int:
-    """How many a score takes: one for each amplitude, of an axis or of a pair of axes, and value of the shapes."""
-    block, record = blocks[item], case.records[0]
-    inputs = len(record.axes) - 1 if issubclass(block, Coupling) else 1
-    return prod(block.trials.values()) * len(record.measured) * inputs
-
-
-def is_costly(block: type[Block]) -> bool:
-    """Whether a score takes long: of an effect with many trials, or with amounts of each record."""
-    return bool(block.amounts()) or has_many_trials(block)
 
 
 def on_bound(problem: Problem, guess: Mapping[str, float]) -> bool:

@@ -208,23 +208,18 @@ def own_account(case: Case, first: Fit, given: Staircase, on_step: StepListener)
     coupled = any(issubclass(blocks[effect], Coupling) for effect in tried)
     if arrived and not (coupled and len(added) > 1):
         return None
-    for own, free in ((OWN, own_mechanics(case)), (OWN_LOOPS, own_hysteresis(case, first) if coupled else {})):
+    for change, free, alternative in (
+        (OWN, own_mechanics(case), with_own_mechanics),
+        (OWN_LOOPS, own_hysteresis(case, first) if coupled else {}, with_own_hysteresis),
+    ):
         if not free or not case.budget.allows("axes without a response that are unlike the others", WHOLE):
             continue
-        other = improve_own(case, first, own, on_step)
-        if other and (takes_fewer(other, given, case) if arrived else reaches_farther(other, given)):
-            return other
+        if found := alternative(case, first):
+            own, start = found
+            other = improve_within(own, [Step(first), Step(start, change=change, case=own)], on_step)
+            if takes_fewer(other, given, case) if arrived else reaches_farther(other, given):
+                return other
     return None
-
-
-def improve_own(case: Case, first: Fit, change: str, on_step: StepListener) -> Staircase | None:
-    """The staircase where axes without a response have a resonance or a hysteresis of their own; None where nothing
-    speaks for it."""
-    alternative = with_own_mechanics(case, first) if change == OWN else with_own_hysteresis(case, first)
-    if alternative is None:
-        return None
-    own, start = alternative
-    return improve_within(own, [Step(first), Step(start, change=change, case=own)], on_step)
 
 
 def outdoes(wide: Staircase, given: Staircase, case: Case, first: Fit) -> bool:

@@ -6,6 +6,7 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis import exchange
+from pzt_ident.diagnosis import refit as refitting
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.exchange import exchange_limits, join_look_alikes, parts_of, separate_accounts
 from pzt_ident.diagnosis.fit import fit_at
@@ -44,8 +45,8 @@ def test_a_form_that_holds_a_lag_begins_with_it(tau, monkeypatch):
     case = Case(("bouc_wen",), (), made, {})
     problem, begun = case.problem(("friction", "sensor_lag")), {}
     now = fit_at(("friction", "sensor_lag"), problem, problem.unit_point(values))
-    monkeypatch.setattr(exchange, "refit", lambda case, now, effects, guess: begun.update(guess))
-    exchange.fit_holding(case, now, (VISCOUS,))
+    monkeypatch.setattr(refitting, "refit", lambda case, now, effects, guess: begun.update(guess))
+    refitting.refit_holding(case, now, (VISCOUS,))
     assert tau / 3 <= begun["friction.viscous"] <= 3 * tau
 
 

@@ -6,17 +6,16 @@ import numpy as np
 import pytest
 
 import stage
-from pzt_ident.diagnosis import score as scoring
+from pzt_ident.diagnosis import cost
 from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.cost import MOST_SIMULATIONS, simulations
 from pzt_ident.diagnosis.refit import refit, refit_from
 from pzt_ident.diagnosis.score import (
     KEPT,
-    MOST_SIMULATIONS,
     Scorer,
     applicable,
     fitting_forms,
     scorer_of,
-    simulations,
     squared_misfit,
 )
 from pzt_ident.diagnosis.starts import first_fit
@@ -221,7 +220,7 @@ def test_a_mode_scores_as_if_all_its_shapes_were_tried(frequency, damping, monke
     case = Case(("bouc_wen",), (), records, {})
     fit = first_fit(case, 0)
     found = Scorer(case, fit).score("resonance")
-    monkeypatch.setattr(scoring, "MANY_TRIALS", 1000)
+    monkeypatch.setattr(cost, "MANY_TRIALS", 1000)
     assert found.explained > 0.99 * Scorer(case, fit).score("resonance").explained > 0
 
 
