@@ -228,10 +228,12 @@ def non_negative(columns: Array, target: Array, prior: Array, visible: NDArray[n
     that are not visible."""
     from scipy.optimize import nnls
 
+    multiples = np.zeros(visible.size)
+    if not visible.any():
+        return multiples
     sizes = np.linalg.norm(columns[:, visible], axis=0)
     triangle = np.asarray(np.linalg.qr(np.column_stack([columns[:, visible] / sizes, target]), mode="r"))
     system = np.vstack([triangle[:, :-1], prior[:, visible] / sizes])
-    multiples = np.zeros(visible.size)
     rows = np.append(triangle[:, -1], np.zeros(len(prior)))
     multiples[visible] = nnls(system, rows, maxiter=100 * visible.size)[0] / sizes
     return multiples

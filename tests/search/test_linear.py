@@ -296,6 +296,12 @@ def test_each_curve_is_smoothed_by_its_own_weight():
     np.testing.assert_allclose(solution.values[3:], measured[3:])
 
 
+def test_what_nothing_shows_is_zero():
+    """As where a block behind the density lets nothing through."""
+    found = solve(changes(lambda values: np.ones((len(values), 5))), np.ones(6), [np.arange(3), np.arange(3, 6)], [1, 1])
+    np.testing.assert_array_equal(found.values, 0)
+
+
 def test_a_free_density_on_two_axes_has_a_smoothness_of_each():
     block = blocks["homogenized_energy"].make(density="free")
     chain = Chain([block], ["x", "y"], [0, 1])
