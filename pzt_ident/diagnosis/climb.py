@@ -15,13 +15,11 @@ from pzt_ident.diagnosis.criteria import DECISIVE, adequate, clears_an_axis, rem
 from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, remove_unneeded, separate_accounts
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.proof import Suspect
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.starts import best_alias, first_fit, restart
-from pzt_ident.diagnosis.step import Step, StepListener, explained_share
+from pzt_ident.diagnosis.step import Doubt, Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE
-from pzt_ident.diagnosis.undetermined import Undetermined
 from pzt_ident.diagnosis.verdict import Diagnosis, best_pair, diagnose
 from pzt_ident.model.registry import blocks, word_of
 
@@ -34,12 +32,12 @@ HOPELESS = 5.0  # noise floors: where the first path ends above that, another or
 @dataclass
 class Staircase:
     """The steps, the model as given first; the diagnosis of the last model, or of one before it; the effects that were
-    added and taken out again, because they are not proven, and the mechanics that the last model does without; the case
-    of the last model, which may have wider bounds or other blocks."""
+    added and taken out again, because they are not proven, the mechanics that the last model does without, and faults
+    of the set-up; the case of the last model, which may have wider bounds or other blocks."""
 
     steps: list[Step]
     last: Diagnosis
-    suspects: list[Suspect | Undetermined] = field(default_factory=list)
+    suspects: list[Doubt] = field(default_factory=list)
     case: Case | None = None
 
     @property

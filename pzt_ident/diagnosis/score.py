@@ -61,10 +61,11 @@ class Score:
         return self.guesses[0] if self.guesses else {}
 
 
-def applicable(case: Case, effects: tuple[str, ...]) -> list[str]:
-    """The effects that can be added to this model, which has `effects`."""
+def applicable(case: Case, effects: tuple[str, ...], in_setup: bool = False) -> list[str]:
+    """The effects of the stage that can be added to this model, which has `effects`, or the faults of its set-up."""
     present = (*map(word_of, effects), *case.ruled_out)
-    return [word for word in blocks.effects() if word not in present and fitting_forms(case, effects, word)]
+    words = (word for word in blocks.effects() if blocks[word].in_setup == in_setup)
+    return [word for word in words if word not in present and fitting_forms(case, effects, word)]
 
 
 def fitting_forms(case: Case, effects: tuple[str, ...], word: str) -> list[str]:

@@ -12,6 +12,7 @@ from pzt_ident.diagnosis.climb import WIDER, Staircase
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms
 from pzt_ident.diagnosis.drive_noise import QUIET, quiet_behind, with_quiet_drives
 from pzt_ident.diagnosis.drive_shape import SMOOTH, better_on_lines, smooth_behind, with_smooth_drives
+from pzt_ident.diagnosis.faults import fault_instead
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.history import BEFORE, at_rest, fits_at_rest, has_history, history_behind, with_history
 from pzt_ident.diagnosis.judges import judged
@@ -52,8 +53,11 @@ def improve(case: Case, first: Fit, on_step: StepListener = lambda step: None) -
 
 def improve_on_lines(case: Case, first: Fit, on_step: StepListener) -> Staircase:
     """The same, with drives as they are unless the model with the best effect says otherwise."""
-    settled = adequate(case, first, first) or needs_wider_bounds(case, first)
-    diagnosis = None if settled else diagnose(case, first)
+    good = adequate(case, first, first)
+    if mended := None if good else fault_instead(case, first):
+        on_step(mended.steps[0])
+        return mended
+    diagnosis = None if good or needs_wider_bounds(case, first) else diagnose(case, first)
     if diagnosis and (behind := smooth_behind(case, first, diagnosis.best.fit if diagnosis.best else None)):
         return improve_otherwise(case, first, *behind, SMOOTH, on_step)
     told = with_history(case, first, diagnosis) if diagnosis else None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Protocol
 
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import Fit
@@ -28,6 +29,17 @@ class Step:
     @property
     def tied(self) -> tuple[str, ...]:
         return tuple(self.rivals)
+
+
+class Doubt(Protocol):
+    """What takes up a share of the misfit and is not in the last model, and a sentence on why."""
+
+    @property
+    def effect(self) -> str: ...
+    @property
+    def share(self) -> float: ...
+    @property
+    def why_not(self) -> str: ...
 
 
 StepListener = Callable[[Step], None]

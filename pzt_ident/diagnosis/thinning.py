@@ -16,6 +16,7 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.drive_noise import quieted
 from pzt_ident.diagnosis.drive_shape import smoothed
+from pzt_ident.diagnosis.faults import with_faults, without_outdone
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.judges import judged
 from pzt_ident.diagnosis.paths import PROVEN
@@ -48,16 +49,16 @@ def improve(
     if thin is not None:
         staircase = on_all_samples(case, thin, stairs.improve(thin, first(thin), on_step(thin)))
         if staircase is not None:
-            return staircase
+            return without_outdone(case, staircase)
         case.budget.begin_again()
-    return stairs.improve(case, first(case), on_step(case))
+    return without_outdone(case, stairs.improve(case, first(case), on_step(case)))
 
 
 def diagnosed(case: Case, first: First) -> Diagnosis:
     """The diagnosis of the model as given; where the records are long, that of fewer samples, if it holds on all."""
     thin = thinned(case)
     if thin is not None:
-        diagnosis = diagnose(*judged(thin, first(thin)))
+        diagnosis = diagnosed_in(thin, first(thin))
         kept = on_all_samples(case, thin, Staircase([stairs.Step(diagnosis.before)], diagnosis))
         missing = [item for item in diagnosis.candidates if item.fit and item.decision == "missing"]
         fits = [on_all(case, item.fit) for item in missing if item.fit]
@@ -68,7 +69,13 @@ def diagnosed(case: Case, first: First) -> Diagnosis:
                 item.fit = item.refits[item.score.effect] = fit
             return kept.last
         case.budget.begin_again()
-    return diagnose(*judged(case, first(case)))
+    return diagnosed_in(case, first(case))
+
+
+def diagnosed_in(case: Case, first: Fit) -> Diagnosis:
+    """The diagnosis of a fit, by the records that can judge it."""
+    judging, fit = judged(case, first)
+    return with_faults(judging, diagnose(judging, fit))
 
 
 def thinned(case: Case) -> Case | None:

@@ -245,7 +245,7 @@ def test_without_a_budget_for_both_the_wider_bounds_are_kept_that_clear_up_most(
     case.budget = Budget(0.0)
     case.budget.lasts = lambda: True
     assert improve(case, first) is ended
-    assert case.budget.untried == ["effects within the bounds of the job"]
+    assert case.budget.untried == ["faults of the set-up", "effects within the bounds of the job"]
 
 
 @pytest.mark.parametrize(("times", "words"), [(1.1, ["quadratic_gain", "wider bounds"]), (0.9, ["quadratic_gain"])])

@@ -298,7 +298,9 @@ def test_each_curve_is_smoothed_by_its_own_weight():
 
 def test_what_nothing_shows_is_zero():
     """As where a block behind the density lets nothing through."""
-    found = solve(changes(lambda values: np.ones((len(values), 5))), np.ones(6), [np.arange(3), np.arange(3, 6)], [1, 1])
+    found = solve(
+        changes(lambda values: np.ones((len(values), 5))), np.ones(6), [np.arange(3), np.arange(3, 6)], [1, 1]
+    )
     np.testing.assert_array_equal(found.values, 0)
 
 

@@ -1,0 +1,129 @@
+"""Faults of the set-up, which are mended and not modelled: whether one alone accounts for what a model lacks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from pzt_ident.data.notation import listed
+from pzt_ident.diagnosis.budget import WHOLE
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.climb import Staircase
+from pzt_ident.diagnosis.criteria import adequate, removed_rms
+from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.misfit import share_explained
+from pzt_ident.diagnosis.proof import SINGLE, suspect
+from pzt_ident.diagnosis.reasons import nothing_explains
+from pzt_ident.diagnosis.refit import refit
+from pzt_ident.diagnosis.score import applicable, scorer_of
+from pzt_ident.diagnosis.starts import restart
+from pzt_ident.diagnosis.step import Step, explained_share
+from pzt_ident.diagnosis.ties import TIE
+from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
+from pzt_ident.model.registry import blocks, phrase_of
+
+LIKELY = 0.2  # of the misfit: a fault that scores less is not fitted
+MENDED = "back to the model as given"  # the step that takes out what a fault of the set-up does better
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A fault of the set-up that alone accounts for what a model lacks: its share of the misfit, what it leaves in
+    noise floors, and the effects that leave more."""
+
+    effect: str
+    share: float
+    left: float
+    outdone: tuple[str, ...] = ()
+
+    @property
+    def why_not(self) -> str:
+        """A sentence on why it is not in the last model."""
+        beside = f", where {listed(map(phrase_of, self.outdone))} would leave more" if self.outdone else ""
+        return (
+            f"{self.effect} alone takes up {self.share:.0%}".replace("%", " %")
+            + f" of the misfit and leaves {self.left:.3g} noise floors{beside}: a fault of the set-up, which is mended"
+            f" and not modelled. {blocks[self.effect].remedy} To have it in the model nevertheless, add it by hand."
+        )
+
+
+def faults_of(case: Case, first: Fit) -> Iterator[tuple[str, Fit]]:
+    """The faults that score, each with the fit of the model as given with it, from elsewhere too where that is not at
+    the noise."""
+    for word in applicable(case, first.effects, in_setup=True):
+        if not case.budget.allows("faults of the set-up", WHOLE):
+            return
+        score = scorer_of(case, first).score(word)
+        if score.explained > LIKELY:
+            fit = refit(case, first, (*first.effects, word), score.guess)
+            yield word, fit if adequate(case, first, fit) else restart(case, fit)
+
+
+def fault_instead(case: Case, first: Fit) -> Staircase | None:
+    """The staircase of the model as given where a fault of the set-up alone leads to the noise, and any effect leaves
+    clearly more."""
+    at_noise = [(word, fit) for word, fit in faults_of(case, first) if adequate(case, first, fit)]
+    if not at_noise:
+        return None
+    word, fit = min(at_noise, key=lambda account: account[1].total)
+    diagnosis = diagnose(case, first)
+    if any(item.fit and not leaves_less(case, fit, item.fit) for item in diagnosis.candidates):
+        return None
+    return Staircase([Step(first)], of_none(case, first, diagnosis), [fault_in(case, first, word, fit)])
+
+
+def with_faults(case: Case, diagnosis: Diagnosis) -> Diagnosis:
+    """The diagnosis of a model, of which a fault of the set-up that alone leads to the noise is the account if any
+    effect leaves clearly more."""
+    settled = diagnosis.verdict in ("adequate", "refused")
+    mended = None if settled else fault_instead(case, diagnosis.before)
+    if mended is None:
+        return diagnosis
+    return replace(mended.last, reason=f"{mended.last.reason} {mended.suspects[0].why_not}")
+
+
+def leaves_less(case: Case, fit: Fit, other: Fit) -> bool:
+    """Whether a fit leaves clearly less than another one."""
+    return removed_rms(other.total, fit.total) > TIE * case.floor
+
+
+def without_outdone(case: Case, staircase: Staircase) -> Staircase:
+    """The staircase back at the model as given, where a fault of the set-up alone leaves clearly less than the effects
+    that were added; as it is where none does."""
+    home, end = staircase.case or case, staircase.end
+    as_given = staircase.steps[0].fit.effects
+    added = end.effects[len(as_given) :]
+    known = any(isinstance(item, Fault) for item in staircase.suspects)
+    if known or not (added or staircase.last.verdict == "unexplained"):
+        return staircase
+    first = refit(home, end, as_given, {}) if added else end
+    accounts = [
+        (word, fit)
+        for word, fit in faults_of(home, first)
+        if share_explained(first.total, fit.total, home.floor) >= SINGLE and leaves_less(home, fit, end)
+    ]
+    if not accounts:
+        return staircase
+    word, fit = min(accounts, key=lambda account: account[1].total)
+    staircase.suspects = [
+        *(replace(suspect(home, first, end, item, (word,)), strangers=(word,)) for item in added),
+        *staircase.suspects,
+        fault_in(home, first, word, fit, added),
+    ]
+    staircase.last = of_none(home, first, staircase.last)
+    if added:
+        staircase.steps.append(Step(first, explained=explained_share(home, end, first), change=MENDED))
+    return staircase
+
+
+def fault_in(case: Case, first: Fit, word: str, fit: Fit, outdone: tuple[str, ...] = ()) -> Fault:
+    """What a fault accounts for of what the model as given leaves."""
+    share = share_explained(first.total, fit.total, case.floor)
+    return Fault(word, share, fit.total / case.floor, outdone)
+
+
+def of_none(case: Case, first: Fit, diagnosis: Diagnosis) -> Diagnosis:
+    """The diagnosis of the model as given, of which no effect is the account."""
+    for candidate in diagnosis.candidates:
+        candidate.decision = "suspect" if candidate.decision == "missing" else candidate.decision
+    return Diagnosis("unexplained", nothing_explains(case, first), first, diagnosis.candidates, [])

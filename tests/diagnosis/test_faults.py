@@ -1,0 +1,108 @@
+"""A fault of the set-up is told where it alone accounts for the misfit, and is never added."""
+
+import numpy as np
+import pytest
+
+import rig
+import stage
+from pzt_ident.diagnosis import thinning
+from pzt_ident.diagnosis.budget import Budget
+from pzt_ident.diagnosis.faults import Fault, fault_instead, without_outdone
+from pzt_ident.diagnosis.refit import refit
+from pzt_ident.diagnosis.score import applicable
+from pzt_ident.diagnosis.staircase import improve
+from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.diagnosis.step import Step
+from pzt_ident.model.registry import blocks
+
+FAULTS = [word for word in blocks.effects() if blocks[word].in_setup]
+GAP = 0.12e-6  # m
+RUBBING = {"friction.force": GAP, "friction.reach": GAP, "friction.stiction": 0.0, "friction.stribeck": 1.0}
+
+
+def followed(x, gap=GAP):
+    """The place of a target in a clearance of 2 gap, from the middle of it."""
+    y = [x[0]]
+    for place in x[1:]:
+        y.append(place - gap if place - gap > y[-1] else place + gap if place + gap < y[-1] else y[-1])
+    return np.array(y)
+
+
+def loose(**more):
+    """Records of a stage whose sensor is linked with a clearance."""
+    return stage.with_response(stage.case(**more), in_gap)
+
+
+def in_gap(record):
+    x = rig.response(["bouc_wen"], {k: v for k, v in stage.STAGE.items() if "bouc" in k}, record.drive[0], dt=record.dt)
+    return followed(x) - x
+
+
+@pytest.fixture(scope="module")
+def improved():
+    case = loose()
+    case.budget = Budget(60)
+    return thinning.improve(case, lambda case: first_fit(case, 0))
+
+
+def test_a_backlash_is_told_with_its_remedy_and_never_added(improved):
+    assert improved.last.verdict == "unexplained"
+    assert improved.end.effects == () and improved.end is improved.last.before
+    (told,) = (item for item in improved.suspects if isinstance(item, Fault))
+    assert told.effect == "backlash" and told.share == pytest.approx(1, abs=0.01) and told.left < 1.1
+    assert blocks["backlash"].remedy in told.why_not
+
+
+def test_the_gap_is_found():
+    case = loose()
+    first = first_fit(case, 0)
+    fit = refit(case, first, ("backlash",), {"backlash.clearance": 0.1})
+    assert fit.values["backlash.clearance"] == pytest.approx(GAP * 1e6, rel=0.02)
+
+
+def test_it_spares_the_search_for_effects(improved):
+    """Beside the model as given nothing was tried that leads through another effect."""
+    assert len(improved.steps) == 1
+
+
+def test_a_diagnosis_tells_it_too():
+    found = thinning.diagnosed(loose(), lambda case: first_fit(case, 0))
+    assert found.verdict == "unexplained" and "backlash alone takes up" in found.reason
+    assert not [item for item in found.candidates if item.decision == "missing"]
+
+
+def test_friction_that_gives_before_it_slides_is_no_backlash():
+    case = stage.case(RUBBING, effects=())
+    case.records = stage.records(RUBBING, effects=stage.EFFECTS | {"friction": {}})
+    found = thinning.improve(case, lambda case: first_fit(case, 0))
+    assert [word.partition(".")[0] for word in found.end.effects] == ["friction"]
+    assert not [item for item in found.suspects if isinstance(item, Fault)]
+
+
+@pytest.mark.parametrize("name", stage.EFFECTS)
+def test_no_effect_is_taken_for_a_fault(name):
+    case = stage.case(stage.EFFECTS[name])
+    assert fault_instead(case, first_fit(case, 0)) is None
+
+
+@pytest.mark.parametrize("word", FAULTS)
+def test_a_fault_is_no_candidate_and_may_be_ruled_out(word):
+    case = stage.case()
+    assert word not in applicable(case, ()) and word in applicable(case, (), in_setup=True)
+    case.ruled_out = (word,)
+    assert word not in applicable(case, (), in_setup=True)
+
+
+def test_effects_that_leave_more_than_a_fault_are_taken_back():
+    case = loose()
+    first = first_fit(case, 0)
+    case.ruled_out = tuple({*blocks.effects()} - {"quadratic_gain", "creep"})
+    added = improve(case, first)
+    with_creep = refit(case, first, ("creep",), {})
+    added.steps.append(Step(with_creep, "creep"))
+    case.ruled_out = tuple({*blocks.effects()} - {"backlash"})
+    back = without_outdone(case, added)
+    assert back.end.effects == () and back.last.before is back.end and back.last.verdict == "unexplained"
+    assert {item.effect for item in back.suspects} >= {"creep", "backlash"}
+    told = next(item for item in back.suspects if item.effect == "backlash")
+    assert "where creep would leave more" in told.why_not
