@@ -183,7 +183,7 @@ def test_a_bound_that_the_job_does_not_give_is_a_guess_and_no_payload(effect):
     chirps = [50 + reach * np.sin(2 * np.pi * (10 + 20 * t) * t) for reach in (30, 20)]
     known = SOFT | stage.EFFECTS.get(effect, {})
     case = stage.case(known, {"lumped.mass": MASS}, model=("bouc_wen", "lumped"), drives=chirps, dt=1e-3, steps=1)
-    first = first_fit(case, 0)
+    first = first_fit(stage.considering(case, "load_mass", "viscous_damping", "quadratic_gain", "resonance"), 0)
     least, most = first.problem.declared_bounds(first.problem.model.names.index("lumped.stiffness"))
     assert known["lumped.stiffness"] < least
     found = improve(case, first)
@@ -251,7 +251,7 @@ def test_without_a_budget_for_both_the_wider_bounds_are_kept_that_clear_up_most(
 @pytest.mark.parametrize(("times", "words"), [(1.1, ["quadratic_gain", "wider bounds"]), (0.9, ["quadratic_gain"])])
 def test_what_is_larger_than_the_catalogue_expects_is_told_so_before_another_effect_is_blamed(times, words):
     size = times * 0.5 / 120  # 1/V: half the gain is gone at 120 V
-    case = stage.case({"quadratic_gain.curvature": -size})
+    case = stage.considering(stage.case({"quadratic_gain.curvature": -size}), "quadratic_gain", "saturation", "creep")
     found = improve(case, first_fit(case, 0))
     assert [step.added or step.change for step in found.steps[1:]] == words
     assert found.last.verdict == "adequate"

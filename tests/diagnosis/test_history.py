@@ -76,7 +76,7 @@ def test_a_job_that_follows_what_was_before_is_followed():
 
 
 def test_a_path_that_is_refused_with_what_was_before_leaves_that_from_rest(monkeypatch):
-    case = begun_in_motion("quadratic_gain")
+    case = stage.considering(begun_in_motion("quadratic_gain"), "quadratic_gain")
     first = first_fit(case, 0)
     refused = Staircase([Step(first)], Diagnosis("refused", "halving the step", first, [], []))
     monkeypatch.setattr(staircase, "improve_aged", lambda *arguments: refused)
