@@ -43,6 +43,14 @@ def bounded(low, high, effects=(), **more):
     return stage.case(hidden, **more).with_specs({"bouc_wen.gain": Widened((low * GAIN, high * GAIN))})
 
 
+def lifted():
+    """A curvature that lifts the gain which is fitted without it, far from the bound that keeps out the true one."""
+    case = stage.considering(
+        stage.case({"quadratic_gain.curvature": 2e-3}), "quadratic_gain", "cubic_stiffness", "creep"
+    )
+    return case.with_specs({"bouc_wen.gain": Widened((1.05 * GAIN, 1.6 * GAIN))})
+
+
 @pytest.mark.parametrize("low", [1.05, 1.1, 1.25])
 def test_a_gain_beside_its_bounds_is_the_bound_and_no_effect(low):
     case = bounded(low, 1.3)
@@ -80,10 +88,7 @@ def test_an_effect_that_is_small_beside_what_a_narrow_bound_leaves_is_found():
 
 
 def test_a_bound_that_only_the_first_effect_reaches_is_widened_before_a_second_one_is_blamed():
-    """The curvature lifts the gain that is fitted without it, far from the bound that keeps out the true one."""
-    case = stage.case({"quadratic_gain.curvature": 2e-3}).with_specs(
-        {"bouc_wen.gain": Widened((1.05 * GAIN, 1.6 * GAIN))}
-    )
+    case = lifted()
     first = first_fit(case, 0)
     assert first.on_bounds == ()
     found = improve(case, first)
@@ -95,9 +100,7 @@ def test_a_bound_that_only_the_first_effect_reaches_is_widened_before_a_second_o
 @pytest.mark.parametrize(("left", "widened"), [(None, True), (10.0, True), (1.0, False)])
 def test_where_no_effect_passes_that_does_as_well_the_bounds_that_the_best_one_reaches_are_widened(left, widened):
     """left: what the effect that passes leaves, in what the best one leaves."""
-    case = stage.case({"quadratic_gain.curvature": 2e-3}).with_specs(
-        {"bouc_wen.gain": Widened((1.05 * GAIN, 1.6 * GAIN))}
-    )
+    case = lifted()
     first = first_fit(case, 0)
     diagnosis = diagnose(case, first)
     assert bounds_beside(case, first, diagnosis) is None
@@ -113,9 +116,7 @@ def test_where_no_effect_passes_that_does_as_well_the_bounds_that_the_best_one_r
 
 @pytest.mark.parametrize("leads", [True, False])
 def test_bounds_that_lead_to_the_noise_beside_one_effect_are_widened_before_other_effects_are_tried(monkeypatch, leads):
-    case = stage.case({"quadratic_gain.curvature": 2e-3}).with_specs(
-        {"bouc_wen.gain": Widened((1.05 * GAIN, 1.6 * GAIN))}
-    )
+    case = lifted()
     first, tried = first_fit(case, 0), []
     wide, after = beyond_bounds(case, first, diagnose(case, first).best.fit)
     after = after if leads else replace(after, identify=10 * after.identify)
@@ -209,7 +210,8 @@ def test_wider_bounds_that_help_too_little_are_no_account():
 def test_bounds_that_keep_out_one_axis_are_widened_though_the_other_lacks_more():
     curved = stage.case({"quadratic_gain.curvature": -4e-3})
     beyond = stage.case({"bouc_wen.gain": 1.04 * stage.STAGE["bouc_wen.gain"]}, seed=9)
-    case = stage.beside(curved, beyond).with_specs({"bouc_wen.gain": Widened((0.3 * GAIN, 1.01 * GAIN))})
+    both = stage.considering(stage.beside(curved, beyond), "quadratic_gain", "saturation", "creep")
+    case = both.with_specs({"bouc_wen.gain": Widened((0.3 * GAIN, 1.01 * GAIN))})
     first = first_fit(case, 0)
     _, wide = beyond_bounds(case, first, first)
     assert share_explained(first.total, wide.total, case.floor) < 0.5

@@ -32,7 +32,7 @@ def begun_in_motion(effect=None, words=("bouc_wen",)):
     made = stage.records(KNOWN.get(effect, {}), drives=whole)
     since = LED.size + 2
     cut = [replace(each, drive=each.drive[:, since:], response=each.response[:, since:]) for each in made]
-    return Case(words, (), cut, stage.specs({}))
+    return stage.considering(Case(words, (), cut, stage.specs({})), *KNOWN, "asymmetry", "sensor_lag", "creep")
 
 
 @pytest.mark.parametrize("effect", [None, *KNOWN])
