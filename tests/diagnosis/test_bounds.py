@@ -261,6 +261,14 @@ def test_what_is_larger_than_the_catalogue_expects_is_told_so_before_another_eff
     assert bool(narrow_bounds_sentence(case, found.end)) == (times > 1)
 
 
+@pytest.fixture(scope="module")
+def unbent():
+    """A case with bounds beside the truth, its first fit, and the diagnosis of that."""
+    case = bounded(0.9, 1.1)
+    first = first_fit(case, 0)
+    return case, first, diagnose(case, first)
+
+
 @pytest.mark.parametrize(
     ("apart", "effects", "within", "cheaper"),
     [
@@ -272,15 +280,14 @@ def test_what_is_larger_than_the_catalogue_expects_is_told_so_before_another_eff
     ],
 )
 def test_wider_bounds_without_an_effect_are_the_cheaper_account_of_what_no_effect_explains(
-    monkeypatch, apart, effects, within, cheaper
+    monkeypatch, unbent, apart, effects, within, cheaper
 ):
     """Above the noise both: a jump at a position, in a job that bounds the gain beside the truth. apart: noise floors,
     root mean square, by which wider bounds leave more."""
-    case = bounded(0.9, 1.1)
-    first = first_fit(case, 0)
+    case, first, diagnosis = unbent
     given = replace(first, identify=10 * case.floor, validate=10 * case.floor, effects=tuple(effects))
     left = case.floor * (100 + np.sign(apart) * apart**2) ** 0.5
-    wide = Staircase([Step(replace(first, identify=left, validate=left))], diagnose(case, first))
+    wide = Staircase([Step(replace(first, identify=left, validate=left))], diagnosis)
     monkeypatch.setattr(staircase, "keeps_within", lambda *arguments: within)
     assert is_cheaper(wide, Staircase([Step(given)], wide.last), case) == cheaper
 
