@@ -102,7 +102,7 @@ def triangle(amplitude, cycles=3, points=500):
 
 def rounding(made, measured, theta):
     """What a last digit of the parameters does to the response: much, where a candidate runs away."""
-    return simulate(made, measured, theta * (1 + 1e-14)) - simulate(made, measured, theta)
+    return np.subtract(*np.split(simulate(made, measured, np.vstack([theta * (1 + 1e-14), theta])), 2))
 
 
 def assert_close(found, expected, rounding=0.0, close=1e-12):

@@ -7,6 +7,7 @@ import numpy as np
 import measured
 import rig
 from pzt_ident.diagnosis.case import Case
+from pzt_ident.model.registry import blocks
 from pzt_ident.search.cube import FixedValue
 
 NOISE = 5e-9  # m
@@ -56,6 +57,12 @@ def case(parameters=None, fixed=None, effects=(), model=("bouc_wen",), **more):
 
 def specs(fixed):
     return {name: FixedValue(value) for name, value in fixed.items()}
+
+
+def considering(made, *effects):
+    """The same case, in which only these effects may be missing."""
+    made.ruled_out = tuple({*blocks.effects()} - {*effects})
+    return made
 
 
 def with_response(made, change):

@@ -17,8 +17,8 @@ from pzt_ident.search import uncertainty
 ROOT = Path(__file__).parents[1]
 CONFIGS = sorted(ROOT.glob("configs/*.yaml"))
 EXPERIMENTS = sorted(ROOT.glob("experiments/*/*.yaml"))
-SAMPLES = 1000  # of a record, behind what is not scored
-TINY = {"stop": Stopping(evaluations=48), "repeats": 1, "polish": False}
+SAMPLES = 300  # of a record, behind what is not scored
+TINY = {"stop": Stopping(evaluations=24), "repeats": 1, "polish": False}
 
 
 @pytest.fixture(autouse=True)
@@ -46,7 +46,7 @@ def check(job: Job, folder: Path) -> None:
     for task in tasks_of(statement, folder):
         search(task, statement, lambda event: None)
         found = read_result(task)
-        assert found["evaluations"] <= 48
+        assert found["evaluations"] <= 24
         assert 0 < found["rmse"]["identify"] < float("inf")
 
 

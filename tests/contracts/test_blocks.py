@@ -56,6 +56,7 @@ BESIDE_OTHERS = [
 CHAINS = [*ALONE, *BESIDE_OTHERS]
 SPAN = np.array([0.0, 100.0])
 LANES = WIDTH + 4  # candidates of which some are in a second group
+SLOW = [words for words in ALONE if any(issubclass(block_of(word), Relays) for word in words.split())]
 
 
 def legs(levels, points):
@@ -87,7 +88,7 @@ drives = st.one_of(
     st.builds(waves, seeds, st.integers(4, 150)),
     st.builds(noise, seeds, st.integers(4, 150)),
 )
-quick = settings(deadline=None, max_examples=20, derandomize=True)
+quick = settings(deadline=None, max_examples=12, derandomize=True)
 
 
 def made(words, drive, count=3, seed=1, **more):
@@ -187,18 +188,18 @@ def test_term_at_its_null_is_not_there(host, term, drive, seed):
             assert_close(found, expected, rounding(without, measured, theta))
 
 
-@pytest.mark.parametrize("words", ALONE)
+@pytest.mark.parametrize("words", [words for words in ALONE if words not in SLOW])
 @quick
 @given(drive=drives, seed=seeds)
 def test_compiled_is_what_the_author_wrote(words, drive, seed):
     assert_compiled(words, drive, seed)
 
 
-@pytest.mark.parametrize("words", BESIDE_OTHERS)
+@pytest.mark.parametrize("words", [*SLOW, *BESIDE_OTHERS])
 @settings(quick, max_examples=5)
 @given(drive=drives, seed=seeds)
-def test_compiled_beside_others_is_what_the_authors_wrote(words, drive, seed):
-    """Each alone is above."""
+def test_compiled_slow_or_beside_others_is_what_the_authors_wrote(words, drive, seed):
+    """Each alone that is not slow is above."""
     assert_compiled(words, drive, seed)
 
 
@@ -211,7 +212,7 @@ def assert_compiled(words, drive, seed):
         assert_close(simulate(chain, measured, theta), expected, rounding(chain, measured, theta))
 
 
-@pytest.mark.parametrize("samples", [1, 2, 3, 63, 64, 65, 127, 129, 400])
+@pytest.mark.parametrize("samples", [1, 2, 63, 64, 65, 129])
 @pytest.mark.parametrize("words", CHAINS)
 def test_tiles_leave_no_seam(words, samples):
     chain, measured, theta = made(words, waves(samples, samples), count=1)
@@ -223,9 +224,11 @@ def test_tiles_leave_no_seam(words, samples):
 
 @pytest.mark.parametrize("words", CHAINS)
 def test_batch_is_each_alone(words):
+    """And in any lane the same."""
     chain, measured, theta = made(words, waves(1), count=LANES)
-    alone = [simulate(chain, measured, candidate)[0] for candidate in theta]
-    assert_close(simulate(chain, measured, theta), np.array(alone))
+    some, found = [0, 5, WIDTH - 1, WIDTH], simulate(chain, measured, theta)
+    assert_close(found[some], np.array([simulate(chain, measured, candidate)[0] for candidate in theta[some]]))
+    assert_close(simulate(chain, measured, theta[::-1])[::-1], found)
 
 
 @pytest.mark.parametrize("words", CHAINS)
@@ -290,7 +293,7 @@ def test_run_in_is_the_drive_again(words):
 
 
 @pytest.mark.parametrize("words", CHAINS)
-@pytest.mark.parametrize("more", [{}, {"settle": 70}, {"run_in": 2}, {"run_in": 1, "settle": 129}])
+@pytest.mark.parametrize("more", [{}, {"settle": 70}, {"run_in": 1, "settle": 129}])
 def test_squares_are_those_of_the_residuals(words, more):
     chain, measured, theta = made(words, waves(5), count=LANES, **more)
     measured.response[:] = np.random.default_rng(6).normal(size=measured.response.shape)

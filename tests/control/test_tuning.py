@@ -134,7 +134,7 @@ def test_gains_keep_their_margins_and_no_larger_integral_gain_does():
         kept = found.margins
         assert found.radius < 1 and kept.gain > 0.999 * gain and kept.phase > phase - 0.1
         assert min(kept.gain / gain, kept.phase / phase) < 1.02
-        for kp in found.kp + np.linspace(0, 2e6, 9):
+        for kp in found.kp + np.linspace(0, 2e6, 3):
             more = Loop(axis, delay, kp, 1.02 * found.ki)
             assert more.radius > 1 or more.margins.gain < gain or more.margins.phase < phase
 

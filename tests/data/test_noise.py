@@ -172,7 +172,7 @@ def test_rests_that_ring_are_no_evidence_while_a_quarter_is_quiet(rings, size):
     assert (floor.source, floor.value) == ("rest segments", pytest.approx(1, rel=0.15))
 
 
-@pytest.mark.parametrize("seed", range(0, 40, 10))
+@pytest.mark.parametrize("seed", (0, 20))
 @pytest.mark.parametrize(("period", "growth", "size"), [(60, 1, 10), (60, 3, 100), (20, 5, 3)])
 def test_rests_that_all_ring_are_no_evidence(period, growth, size, seed):
     """Slowly, or so unlike each other that the quiet quarter rings, too: up to 200,000 times the noise."""

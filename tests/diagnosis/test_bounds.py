@@ -43,6 +43,14 @@ def bounded(low, high, effects=(), **more):
     return stage.case(hidden, **more).with_specs({"bouc_wen.gain": Widened((low * GAIN, high * GAIN))})
 
 
+def lifted():
+    """A curvature that lifts the gain which is fitted without it, far from the bound that keeps out the true one."""
+    case = stage.considering(
+        stage.case({"quadratic_gain.curvature": 2e-3}), "quadratic_gain", "cubic_stiffness", "creep"
+    )
+    return case.with_specs({"bouc_wen.gain": Widened((1.05 * GAIN, 1.6 * GAIN))})
+
+
 @pytest.mark.parametrize("low", [1.05, 1.1, 1.25])
 def test_a_gain_beside_its_bounds_is_the_bound_and_no_effect(low):
     case = bounded(low, 1.3)
@@ -80,10 +88,7 @@ def test_an_effect_that_is_small_beside_what_a_narrow_bound_leaves_is_found():
 
 
 def test_a_bound_that_only_the_first_effect_reaches_is_widened_before_a_second_one_is_blamed():
-    """The curvature lifts the gain that is fitted without it, far from the bound that keeps out the true one."""
-    case = stage.case({"quadratic_gain.curvature": 2e-3}).with_specs(
-        {"bouc_wen.gain": Widened((1.05 * GAIN, 1.6 * GAIN))}
-    )
+    case = lifted()
     first = first_fit(case, 0)
     assert first.on_bounds == ()
     found = improve(case, first)
@@ -95,9 +100,7 @@ def test_a_bound_that_only_the_first_effect_reaches_is_widened_before_a_second_o
 @pytest.mark.parametrize(("left", "widened"), [(None, True), (10.0, True), (1.0, False)])
 def test_where_no_effect_passes_that_does_as_well_the_bounds_that_the_best_one_reaches_are_widened(left, widened):
     """left: what the effect that passes leaves, in what the best one leaves."""
-    case = stage.case({"quadratic_gain.curvature": 2e-3}).with_specs(
-        {"bouc_wen.gain": Widened((1.05 * GAIN, 1.6 * GAIN))}
-    )
+    case = lifted()
     first = first_fit(case, 0)
     diagnosis = diagnose(case, first)
     assert bounds_beside(case, first, diagnosis) is None
@@ -113,9 +116,7 @@ def test_where_no_effect_passes_that_does_as_well_the_bounds_that_the_best_one_r
 
 @pytest.mark.parametrize("leads", [True, False])
 def test_bounds_that_lead_to_the_noise_beside_one_effect_are_widened_before_other_effects_are_tried(monkeypatch, leads):
-    case = stage.case({"quadratic_gain.curvature": 2e-3}).with_specs(
-        {"bouc_wen.gain": Widened((1.05 * GAIN, 1.6 * GAIN))}
-    )
+    case = lifted()
     first, tried = first_fit(case, 0), []
     wide, after = beyond_bounds(case, first, diagnose(case, first).best.fit)
     after = after if leads else replace(after, identify=10 * after.identify)
@@ -183,7 +184,7 @@ def test_a_bound_that_the_job_does_not_give_is_a_guess_and_no_payload(effect):
     chirps = [50 + reach * np.sin(2 * np.pi * (10 + 20 * t) * t) for reach in (30, 20)]
     known = SOFT | stage.EFFECTS.get(effect, {})
     case = stage.case(known, {"lumped.mass": MASS}, model=("bouc_wen", "lumped"), drives=chirps, dt=1e-3, steps=1)
-    first = first_fit(case, 0)
+    first = first_fit(stage.considering(case, "load_mass", "viscous_damping", "quadratic_gain", "resonance"), 0)
     least, most = first.problem.declared_bounds(first.problem.model.names.index("lumped.stiffness"))
     assert known["lumped.stiffness"] < least
     found = improve(case, first)
@@ -209,7 +210,8 @@ def test_wider_bounds_that_help_too_little_are_no_account():
 def test_bounds_that_keep_out_one_axis_are_widened_though_the_other_lacks_more():
     curved = stage.case({"quadratic_gain.curvature": -4e-3})
     beyond = stage.case({"bouc_wen.gain": 1.04 * stage.STAGE["bouc_wen.gain"]}, seed=9)
-    case = stage.beside(curved, beyond).with_specs({"bouc_wen.gain": Widened((0.3 * GAIN, 1.01 * GAIN))})
+    both = stage.considering(stage.beside(curved, beyond), "quadratic_gain", "saturation", "creep")
+    case = both.with_specs({"bouc_wen.gain": Widened((0.3 * GAIN, 1.01 * GAIN))})
     first = first_fit(case, 0)
     _, wide = beyond_bounds(case, first, first)
     assert share_explained(first.total, wide.total, case.floor) < 0.5
@@ -251,12 +253,20 @@ def test_without_a_budget_for_both_the_wider_bounds_are_kept_that_clear_up_most(
 @pytest.mark.parametrize(("times", "words"), [(1.1, ["quadratic_gain", "wider bounds"]), (0.9, ["quadratic_gain"])])
 def test_what_is_larger_than_the_catalogue_expects_is_told_so_before_another_effect_is_blamed(times, words):
     size = times * 0.5 / 120  # 1/V: half the gain is gone at 120 V
-    case = stage.case({"quadratic_gain.curvature": -size})
+    case = stage.considering(stage.case({"quadratic_gain.curvature": -size}), "quadratic_gain", "saturation", "creep")
     found = improve(case, first_fit(case, 0))
     assert [step.added or step.change for step in found.steps[1:]] == words
     assert found.last.verdict == "adequate"
     assert found.end.values["quadratic_gain.curvature"] == pytest.approx(-size, rel=0.01)
     assert bool(narrow_bounds_sentence(case, found.end)) == (times > 1)
+
+
+@pytest.fixture(scope="module")
+def unbent():
+    """A case with bounds beside the truth, its first fit, and the diagnosis of that."""
+    case = bounded(0.9, 1.1)
+    first = first_fit(case, 0)
+    return case, first, diagnose(case, first)
 
 
 @pytest.mark.parametrize(
@@ -270,15 +280,14 @@ def test_what_is_larger_than_the_catalogue_expects_is_told_so_before_another_eff
     ],
 )
 def test_wider_bounds_without_an_effect_are_the_cheaper_account_of_what_no_effect_explains(
-    monkeypatch, apart, effects, within, cheaper
+    monkeypatch, unbent, apart, effects, within, cheaper
 ):
     """Above the noise both: a jump at a position, in a job that bounds the gain beside the truth. apart: noise floors,
     root mean square, by which wider bounds leave more."""
-    case = bounded(0.9, 1.1)
-    first = first_fit(case, 0)
+    case, first, diagnosis = unbent
     given = replace(first, identify=10 * case.floor, validate=10 * case.floor, effects=tuple(effects))
     left = case.floor * (100 + np.sign(apart) * apart**2) ** 0.5
-    wide = Staircase([Step(replace(first, identify=left, validate=left))], diagnose(case, first))
+    wide = Staircase([Step(replace(first, identify=left, validate=left))], diagnosis)
     monkeypatch.setattr(staircase, "keeps_within", lambda *arguments: within)
     assert is_cheaper(wide, Staircase([Step(given)], wide.last), case) == cheaper
 

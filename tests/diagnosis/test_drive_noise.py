@@ -21,7 +21,8 @@ def recorded_with_noise(effect=None, noise=5e-3):
     """A stage whose drives are recorded with noise that they do not have."""
     made, random = stage.records(stage.EFFECTS.get(effect, {}), drives=DRIVES), np.random.default_rng(4)
     noisy = [replace(each, drive=each.drive + random.normal(0, noise, each.drive.shape)) for each in made]
-    return Case(("bouc_wen",), (), noisy, stage.specs({}))
+    case = Case(("bouc_wen",), (), noisy, stage.specs({}))
+    return stage.considering(case, "quadratic_gain", "sensor_lag", "amplifier_lag", "delay", "distributed_memory")
 
 
 @pytest.mark.parametrize("effect", [None, "quadratic_gain", "sensor_lag"])

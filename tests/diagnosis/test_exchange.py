@@ -74,9 +74,14 @@ def test_a_lag_of_two_poles_is_one_effect_and_a_lag_behind_a_delay_is_two(stage_
     assert not joined or steps[-1].fit.total < now.total
 
 
+@pytest.fixture(scope="module")
+def rubbing_late():
+    return with_viscous_friction({"delay.time": 0.012})
+
+
 @pytest.mark.parametrize("item", [item for word in blocks.effects() for item in blocks.forms(word)])
-def test_the_parts_of_a_form_are_what_it_contains_and_look_alikes_of_that_and_nothing_the_model_has(item):
-    case, _, now = with_viscous_friction({"delay.time": 0.012})
+def test_the_parts_of_a_form_are_what_it_contains_and_look_alikes_of_that_and_nothing_the_model_has(rubbing_late, item):
+    case, _, now = rubbing_late
     parts = parts_of(case, now, item)
     assert bool(parts) == bool(blocks[item].contains)
     assert not {*parts} & {*map(word_of, now.effects)}

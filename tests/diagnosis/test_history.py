@@ -32,7 +32,7 @@ def begun_in_motion(effect=None, words=("bouc_wen",)):
     made = stage.records(KNOWN.get(effect, {}), drives=whole)
     since = LED.size + 2
     cut = [replace(each, drive=each.drive[:, since:], response=each.response[:, since:]) for each in made]
-    return Case(words, (), cut, stage.specs({}))
+    return stage.considering(Case(words, (), cut, stage.specs({})), *KNOWN, "asymmetry", "sensor_lag", "creep")
 
 
 @pytest.mark.parametrize("effect", [None, *KNOWN])
@@ -76,7 +76,7 @@ def test_a_job_that_follows_what_was_before_is_followed():
 
 
 def test_a_path_that_is_refused_with_what_was_before_leaves_that_from_rest(monkeypatch):
-    case = begun_in_motion("quadratic_gain")
+    case = stage.considering(begun_in_motion("quadratic_gain"), "quadratic_gain")
     first = first_fit(case, 0)
     refused = Staircase([Step(first)], Diagnosis("refused", "halving the step", first, [], []))
     monkeypatch.setattr(staircase, "improve_aged", lambda *arguments: refused)

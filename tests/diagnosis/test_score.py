@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import rig
 import stage
 from pzt_ident.diagnosis import cost
 from pzt_ident.diagnosis.case import Case
@@ -172,7 +173,8 @@ def test_every_axis_has_its_own_amounts_and_its_own_line():
 
 @pytest.mark.parametrize("dt", [1e-6, 1e-3, 1.0])
 def test_records_of_any_length_are_scored_and_a_line_that_they_are_too_short_for_is_not_told(dt):
-    case = stage.case(stage.EFFECTS["quadratic_gain"], dt=dt)
+    drives = [rig.path(0, top, 20, 80, 0, 0, points=80) for top in (100, 70)]
+    case = stage.case(stage.EFFECTS["quadratic_gain"], drives=drives, dt=dt)
     scorer = Scorer(case, first_fit(case, 0))
     for score in (score for effect in applicable(case, ()) for score in scorer.scores(effect)):
         assert np.isfinite([score.explained, score.visibility]).all(), score.effect

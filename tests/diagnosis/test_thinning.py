@@ -69,7 +69,8 @@ def test_short_records_stay_whole(counts, most, monkeypatch):
 def long_case(parameters):
     """A stage, sampled three times as fast as needed."""
     fine = [np.interp(np.arange(TIMES * u.size) / TIMES, np.arange(u.size), u) for u in stage.loops()]
-    return Case(("bouc_wen",), (), stage.records(parameters, fine, dt=5e-3 / TIMES, steps=2), {})
+    case = Case(("bouc_wen",), (), stage.records(parameters, fine, dt=5e-3 / TIMES, steps=2), {})
+    return stage.considering(case, "quadratic_gain", "asymmetry", "saturation", "creep")
 
 
 def test_a_verdict_on_fewer_samples_is_carried_to_all(monkeypatch):

@@ -57,7 +57,7 @@ def coupled(stiffness, known=None, loops=None, model=MODEL, share=SHARE):
 @pytest.mark.parametrize("stiffness", [STIFFNESS, 1.15 * X["lumped.stiffness"]])
 def test_a_coupling_shows_the_stiffness_of_an_axis_without_a_response(stiffness):
     """A resonance that is a little higher is no second mode of the measured axis."""
-    case = coupled(stiffness)
+    case = stage.considering(coupled(stiffness), "kinematic_coupling", "cross_coupling", "resonance")
     found = improve(case, first_fit(case, 0))
     end = found.steps[-1].fit
     assert found.last.verdict == "adequate" and [*map(word_of, end.effects)] == ["kinematic_coupling"]
@@ -71,8 +71,7 @@ def test_a_coupling_shows_the_stiffness_of_an_axis_without_a_response(stiffness)
 def test_a_coupling_shows_the_hysteresis_of_an_axis_without_a_response(share):
     """It is no second coupling, by the voltage."""
     case = coupled(STIFFNESS, loops={"bouc_wen.alpha": 0.3}, model=("bouc_wen",), share=share)
-    case.ruled_out = tuple({*blocks.effects()} - {"kinematic_coupling", "cross_coupling", "creep"})
-    found = improve(case, first_fit(case, 0))
+    found = improve(case, first_fit(stage.considering(case, "kinematic_coupling", "cross_coupling", "creep"), 0))
     end = found.steps[-1].fit
     assert found.last.verdict == "adequate" and [*map(word_of, end.effects)] == ["kinematic_coupling"]
     assert [step.change for step in found.steps] == ["", OWN_LOOPS, ""]
@@ -92,7 +91,7 @@ def test_a_hysteresis_of_its_own_has_the_shapes_that_the_measured_axis_has_free(
 
 
 def test_an_axis_that_is_like_the_measured_one_is_taken_for_it():
-    case = coupled(X["lumped.stiffness"])
+    case = stage.considering(coupled(X["lumped.stiffness"]), "kinematic_coupling", "cross_coupling", "resonance")
     found = improve(case, first_fit(case, 0))
     assert {*map(word_of, found.steps[-1].fit.effects)} <= {"kinematic_coupling", "cross_coupling"}
     assert bounds_that_changed(case, found.steps[-1].fit) == {}

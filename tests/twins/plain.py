@@ -13,6 +13,7 @@ from pzt_ident.model.block import Bank, Beside, Coupling, Modes, Operator, Place
 SIZES = ("span", "peak")  # of the drive of the axis itself
 
 
+@np.errstate(over="ignore", invalid="ignore")
 def simulate(model, record, theta):
     """What `Model.simulate` gives for one candidate: (measured axes, samples). Once a number overflows, NaN.
 
