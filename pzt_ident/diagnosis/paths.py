@@ -12,7 +12,7 @@ from pzt_ident.diagnosis.budget import PROVING, WHOLE
 from pzt_ident.diagnosis.candidates import Candidate
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, climb
-from pzt_ident.diagnosis.criteria import near_noise, removed_rms, removes_enough
+from pzt_ident.diagnosis.criteria import adequate, near_noise, removed_rms, removes_enough
 from pzt_ident.diagnosis.exchange import (
     add_rivals_beside,
     drop_outdone_rivals,
@@ -42,7 +42,8 @@ def improve_within(
     model as given first. diagnosis: of the last of them, where there is one.
 
     Where the best first effect leads to no adequate model, another one is tried: the first may have stood in for
-    something else. Both are then compared without the effects that they do not prove.
+    something else. Both are then compared without the effects that they do not prove, unless the better one is adequate
+    without these, too.
     """
     first = base[-1].fit
     diagnosis = diagnosis or diagnose(case, first)
@@ -58,10 +59,9 @@ def improve_within(
         if not case.budget.allows("another effect first"):
             break
     case.budget.begin_proof()
-    finished = [best_path(case, paths)] if any(map(is_adequate, paths)) else paths
-    climbed = {id(path): len(path.steps) for path in finished}
-    doubts = [(path, finish(path.case or case, first, path)) for path in finished]
-    best = best_path(case, finished)
+    climbed = {id(path): len(path.steps) for path in paths}
+    doubts = finish_all(case, first, paths)
+    best = best_path(case, [path for path, _ in doubts])
     for step in best.steps[climbed[id(best)] if best is path else 0 :]:  # another path than the last is told anew
         on_step(step)
     find_rivals(best.case or case, first, best.steps, on_step)
@@ -71,14 +71,28 @@ def improve_within(
     return best
 
 
+def finish_all(case: Case, first: Fit, paths: Sequence[Staircase]) -> list[tuple[Staircase, Fit | None]]:
+    """Paths that are finished, the best first, up to one that is adequate then, with what `finish` returns of each."""
+    finished, left = list[tuple[Staircase, Fit | None]](), [*paths]
+    while left and not any(is_adequate(path) for path, _ in finished):
+        path = best_path(case, left)
+        left = [other for other in left if other is not path]
+        finished.append((path, finish(path.case or case, first, path)))
+    return finished
+
+
 def finish(case: Case, first: Fit, path: Staircase) -> Fit | None:
-    """Take back what a path can do without, or does not prove; see `take_back`."""
+    """Take back what a path can do without, or does not prove; see `take_back`. Its verdict is no longer that it is
+    adequate where it is not without these."""
     path.steps += exchange_main_mode(case, first, path.end)
     path.steps += exchange_limits(case, first, path.end)
     if wider := exchange_for_bounds(case, first, path.end):
         path.steps += wider
         path.case = case = wider[0].case or case
-    return take_back(case, first, path)
+    doubted = take_back(case, first, path)
+    if path.last.verdict == "adequate" and not adequate(case, first, path.end):
+        path.last = replace(path.last, verdict="unexplained")
+    return doubted
 
 
 def exchange_for_bounds(case: Case, first: Fit, now: Fit) -> list[Step]:

@@ -30,10 +30,7 @@ from pzt_ident.diagnosis.verdict import Diagnosis
 )
 def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, monkeypatch):
     """Each path by its verdict, its last error in noise floors and its total; the second is tried where it may help."""
-    several = [
-        Staircase([Step(ending(identify, total))], SimpleNamespace(verdict=verdict))
-        for verdict, identify, total in ends
-    ]
+    several = [Staircase([Step(ending(identify, total))], ended(verdict)) for verdict, identify, total in ends]
     assert taken_of(several, lambda path: [], monkeypatch) is several[taken]
 
 
@@ -55,6 +52,7 @@ def taken_of(several, taken_back, monkeypatch):
     for exchange in ("exchange_main_mode", "exchange_limits", "exchange_for_bounds"):
         monkeypatch.setattr(paths, exchange, lambda *arguments: [])
     monkeypatch.setattr(paths, "take_back", take_back)
+    monkeypatch.setattr(paths, "adequate", lambda case, first, fit: fit.identify < 1.5)
     monkeypatch.setattr(paths, "find_rivals", lambda *arguments: None)
     monkeypatch.setattr(paths, "conclude", lambda *arguments: None)
     best = improve_within(SimpleNamespace(floor=1.0, budget=Budget()), [Step(SimpleNamespace())], told.append)
@@ -71,6 +69,18 @@ def test_a_path_that_joins_another_is_no_path_and_the_next_effect_is_tried_first
 def test_of_two_paths_that_end_above_the_noise_the_one_is_taken_that_is_lower_with_what_is_proven(monkeypatch):
     lower, proven = (Staircase([Step(ending(2.0, end))], SimpleNamespace(verdict="unexplained")) for end in (2.0, 3.0))
     assert taken_of([lower, proven], lambda path: [Step(ending(9.0, 9.0))] * (path is lower), monkeypatch) is proven
+
+
+def test_an_adequate_path_of_which_little_is_proven_is_no_more_than_another(monkeypatch):
+    """As where friction takes the place of the model's loops, and a lag does nearly as well."""
+    lag = Staircase([Step(ending(1.6, 1.6))], ended("unexplained"))
+    friction = Staircase([Step(ending(1.0, 1.0))], ended("adequate"))
+    assert taken_of([lag, friction], lambda path: [Step(ending(8.0, 8.0))] * (path is friction), monkeypatch) is lag
+    assert friction.last.verdict == "unexplained"
+
+
+def ended(verdict):
+    return Diagnosis(verdict, "", None, [], [])
 
 
 def ending(identify, total, parameters=3):
