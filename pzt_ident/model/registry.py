@@ -236,6 +236,10 @@ class Blocks(Registry[Any]):
         """The words of all effects."""
         return [word for word in self.usable() if self.is_effect(word)]
 
+    def faults(self) -> list[str]:
+        """The words of the effects that are faults of the set-up."""
+        return [word for word in self.effects() if self[word].in_setup]
+
     def is_effect(self, word: str) -> bool:
         """Whether a block may be missing from a model: an effect has a remedy on the rig."""
         return bool(self[word].remedy)

@@ -15,7 +15,6 @@ from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step
 from pzt_ident.model.registry import blocks
 
-FAULTS = [word for word in blocks.effects() if blocks[word].in_setup]
 GAP = 0.12e-6  # m
 RUBBING = {"friction.force": GAP, "friction.reach": GAP, "friction.stiction": 0.0, "friction.stribeck": 1.0}
 
@@ -85,7 +84,7 @@ def test_no_effect_is_taken_for_a_fault(name):
     assert fault_instead(case, first_fit(case, 0)) is None
 
 
-@pytest.mark.parametrize("word", FAULTS)
+@pytest.mark.parametrize("word", blocks.faults())
 def test_a_fault_is_no_candidate_and_may_be_ruled_out(word):
     case = stage.case()
     assert word not in applicable(case, ()) and word in applicable(case, (), in_setup=True)
