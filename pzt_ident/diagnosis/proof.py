@@ -28,7 +28,7 @@ from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.spectral_line import is_own_line
 from pzt_ident.diagnosis.step import effects_without
 from pzt_ident.diagnosis.ties import TIE, strangers
-from pzt_ident.model.registry import phrase_of
+from pzt_ident.model.registry import blocks, phrase_of, word_of
 
 ENOUGH = 3 / 4  # of the misfit as given, of all records together: what the first of several effects must remove
 SINGLE = 0.9  # of it, which one effect must remove that is alone
@@ -106,21 +106,21 @@ def unproven(
 ) -> list[Suspect]:
     """The effects to be taken out again, the least first. known: other fits of the case.
 
-    Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may
-    stand in for what is not in the catalogue: they must also remove together as much of the misfit as given as if
-    the first removed ENOUGH of all records (SINGLE, if it is alone), or DECISIVE where the identification records
-    are at the noise, and EACH of either kind of them, and each of the others half of the rest, and each the share
-    ALONE beside the others; of several that leave more than that each must remove more in proportion, and none is
-    proven where that is more than BESIDE. None may have rivals that fit as well and are not its look-alikes: what
-    any effect takes up is not that of one. And none may have a shape, or all its amounts, on a bound, as a cyclic
-    error that the stroke does not hold twice: it stands for what it is like there, unless the model is adequate
-    with it. Even then none may be in a limit that is declared to be something else, or a low harmonic of the drive,
-    or of another size in each record where it is the device's. A line of the spectrum that takes up all of its band
-    is proven whatever is left elsewhere. Nor may one take the place of the model's operator, whose loops are gone
-    beside it, unless the model is adequate. What takes up enough and only may be something else is a suspect beside
-    which the others are judged: without it what they take up is nothing; of those that remove little beside what is
-    in a limit none is proven. What is proven on one of several axes, and clear there, is proven, whatever another
-    lacks.
+    Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may stand
+    in for what is not in the catalogue: they must also remove together as much of the misfit as given as if the first
+    removed ENOUGH of all records (SINGLE, if it is alone), or DECISIVE where the identification records are at the
+    noise, and EACH of either kind of them, and each of the others half of the rest, and each the share ALONE beside the
+    others; of several that leave more than that each must remove more in proportion, and none is proven where that is
+    more than BESIDE. None may have rivals that fit as well and are not its look-alikes: what any effect takes up is not
+    that of one. And none may have a shape, or all its amounts, on a bound, as a cyclic error that the stroke does not
+    hold twice: it stands for what it is like there, unless the model is adequate with it. Even then none may be in a
+    limit that is declared to be something else, or a low harmonic of the drive, or of another size in each record where
+    it is the device's. Beside an effect that leaves its trace where its form is another one each must remove SINGLE, as
+    if it were alone: a gain by the swing beside a memory. A line of the spectrum that takes up all of its band is
+    proven whatever is left elsewhere. Nor may one take the place of the model's operator, whose loops are gone beside
+    it, unless the model is adequate. What takes up enough and only may be something else is a suspect beside which the
+    others are judged: without it what they take up is nothing; of those that remove little beside what is in a limit
+    none is proven. What is proven on one of several axes, and clear there, is proven, whatever another lacks.
     """
     judge = partial(taken_out, case, first, now, rivals, known)
     suspects, axes = judge(), len(now.problem.model.measured)
@@ -258,4 +258,11 @@ def suspect(
     if validate is not None and differs_by_record(effect):
         of_all = share_explained(before.total, after.total, view.floor)
         clear = removed_rms(before.total, after.total) > form_of_others(view, given.total)
+    if is_trace(effect, others_only):
+        clear &= min(share for share in (of_all or identify, of_all or validate) if share is not None) >= SINGLE
     return Suspect(effect, identify, validate, without, clear, others, on_bounds, limit, displaced, of_all, is_line)
+
+
+def is_trace(effect: str, others: Collection[str]) -> bool:
+    """Whether an effect may be what one of the others leaves whose form is another one."""
+    return any(word_of(effect) in blocks[other].leaves for other in others)

@@ -12,6 +12,7 @@ class Bending:
     about_rest = True
     form = Form("motion", ("motion", "rest"), "Whether the spring is bent in the equation of motion, or at rest.")
     look_alikes = ("quadratic_gain", "saturation", "encoder_cyclic_error")
+    leaves = ("saturation",)
     separate_by = "Load the stage with a known force or change its preload, or measure the resonance at several biases."
     remedy = "Work on a smaller part of the range, or put the identified curve into the calibration or feedforward."
 

@@ -25,6 +25,7 @@ class DistributedMemory(Plays):
     weight = Parameter("1", (-0.5, 0.5), "Weight of the i-th play over the gain.", null=0, count=PLAYS)
     reach = Parameter("drive", (0.05, 1), "Half-width of the widest play.", value=0.4)
     look_alikes = ("amplitude_gain",)
+    leaves = ("amplitude_gain",)
     separate_by = "Run nested loops that come back to the same voltages: plays close them, Bouc-Wen does not."
     remedy = "Use a Prandtl-Ishlinskii or Preisach inverse in the feedforward, or return over a full loop."
 

@@ -17,6 +17,7 @@ class Saturation(Block):
     sizes = (0.1, 0.3, 0.8)
     knee = Parameter("1/drive", (0, 2), "One over the voltage at which the response saturates.", null=0)
     look_alikes = ("quadratic_gain", "cubic_stiffness", "encoder_cyclic_error")
+    leaves = ("cubic_stiffness",)
     separate_by = "Drive to both polarities up to the limits of the amplifier, and repeat under a known preload."
     remedy = "Keep to smaller voltages, or linearise the drive by the identified curve."
 

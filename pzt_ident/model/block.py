@@ -75,6 +75,7 @@ class Block:
     lead: ClassVar[int] = 0  # samples ahead of a record in which it acts on the memory, all else being at rest
     look_alikes: ClassVar[tuple[str, ...]] = ()
     contains: ClassVar[tuple[str, ...]] = ()
+    leaves: ClassVar[tuple[str, ...]] = ()  # effects whose trace is left where its own form is another one
     separate_by: ClassVar[str] = ""
     remedy: ClassVar[str] = ""
     in_setup: ClassVar[bool] = False  # a fault of the set-up: mended, not modelled, so that no diagnosis adds it

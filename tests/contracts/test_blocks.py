@@ -111,7 +111,7 @@ def test_declarations_are_complete(word):
 @pytest.mark.parametrize("word", EFFECTS)
 def test_effect_says_what_else_it_may_be_and_what_to_do(word):
     effect = blocks[word]
-    assert set(effect.look_alikes) <= set(EFFECTS) - {word}
+    assert set(effect.leaves) <= set(effect.look_alikes) <= set(EFFECTS) - {word}
     for sentence in (effect.separate_by, effect.remedy):
         assert re.fullmatch(r"[A-Z].{30,}[a-z%]\.", sentence)
 
@@ -135,7 +135,8 @@ def test_form_says_its_equation_and_source(item):
     assert form.name == effect.name and form.item() == item
     assert form.__doc__ != effect.__doc__
     assert re.search("=|<-", form.__doc__) and re.search(r"\(\d{4}\)", form.__doc__)
-    assert (form.look_alikes, form.separate_by, form.remedy) == (effect.look_alikes, effect.separate_by, effect.remedy)
+    for word in ("look_alikes", "leaves", "separate_by", "remedy"):
+        assert getattr(form, word) == getattr(effect, word)
 
 
 @pytest.mark.parametrize("word", ADDITIONS)

@@ -53,16 +53,18 @@ def suspects_of(monkeypatch):
         instead=(),
         lines=(),
         harmonics=(),
+        traces=(),
         **declared,
     ):
         """sizes: the parameters of a model without each effect. larger: those that would settle beyond their bounds.
         instead: those that take the place of the operator. lines: those of
-        the spectrum. harmonics: those of the drive. declared: of the parameters with shapes."""
+        the spectrum. harmonics: those of the drive. traces: those that others leave. declared: of the parameters with shapes."""
         validation = validation or errors
         operator = lambda case, first, now, effect: "bouc_wen" if effect in instead else ""  # noqa: E731
         monkeypatch.setattr(proof, "displaced_operator", operator)
         monkeypatch.setattr(proof, "harmonic_of", lambda now, effect: "the drive's" if effect in harmonics else "")
         monkeypatch.setattr(proof, "size_of", lambda now, effect: "")
+        monkeypatch.setattr(proof, "is_trace", lambda effect, others: effect in traces and bool(others))
         monkeypatch.setattr(proof, "is_own_line", lambda case, without, now, effect: effect in lines)
 
         def refitted(case, before, effects, guess):
@@ -359,3 +361,19 @@ def test_what_is_little_beside_something_else_may_be_what_its_form_leaves(taken_
     seen = of(ab=1.2, a=alone, b=30.0, none=30.0 if alone < 10 else 36.0)
     assert taken_out(seen, shapes={"a": [0.0]}, limit="a play", first=60.0) == suspects
     assert taken_out(seen, shapes={"a": [0.0]}, limit="a play", first=60.0, lines=["b"]) == ["a"]
+
+
+@pytest.mark.parametrize(("left", "suspects"), [(3.5, ["a"]), (5.0, [])])
+def test_what_the_form_of_another_leaves_is_proven_only_as_if_it_were_alone(taken_out, left, suspects):
+    """At the noise too: a of a gain by the swing beside b of a memory, which leaves 3.5 or 5 floors alone."""
+    errors = of(ab=1.6, a=20.0, b=left, none=30.0)
+    assert taken_out(errors) == []
+    assert taken_out(errors, traces="a") == suspects
+
+
+def test_a_memory_leaves_a_gain_by_the_swing_and_a_bend_another():
+    assert proof.is_trace("amplitude_gain.span", ("creep", "distributed_memory.fine_plays"))
+    assert proof.is_trace("saturation", ("cubic_stiffness.rest",)) and proof.is_trace(
+        "cubic_stiffness", ("saturation",)
+    )
+    assert not proof.is_trace("distributed_memory", ("amplitude_gain",)) and not proof.is_trace("amplitude_gain", ())

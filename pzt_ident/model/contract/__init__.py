@@ -71,7 +71,7 @@ def check_loaded(block: Any, known: Any) -> None:
     """The checks of a block that need its whole file and the other effects. known: the registry of blocks."""
     try_functions(block)
     check_identity(block)
-    references = [("look_alikes", word) for word in block.look_alikes]
+    references = [(where, word) for where in ("look_alikes", "leaves") for word in getattr(block, where)]
     references += [("contains", word) for form in (block, *block.forms.values()) for word in form.contains]
     references += [(word, item.effect) for word, item in parameters(block).items() if item.effect]
     for where, word in references:

@@ -26,7 +26,7 @@ FIELD_WORDS = {"scale": ("linear", "log"), "per": ("axis", "stage", "later axis"
 TEXT, COUNT = "a text", "a whole number from 1 on"
 TUPLE = 'a tuple of words, such as `("creep",)`'
 ATTRIBUTES = {
-    TUPLE: ("look_alikes", "contains", "compared_with_drive", "refines", "alike", "solved", "weights"),
+    TUPLE: ("look_alikes", "contains", "leaves", "compared_with_drive", "refines", "alike", "solved", "weights"),
     TEXT: ("separate_by", "remedy", "violation"),
     COUNT: ("oversample",),
     "a tuple of numbers": ("sizes",),
