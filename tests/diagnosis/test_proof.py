@@ -57,8 +57,8 @@ def suspects_of(monkeypatch):
         **declared,
     ):
         """sizes: the parameters of a model without each effect. larger: those that would settle beyond their bounds.
-        instead: those that take the place of the operator. lines: those of
-        the spectrum. harmonics: those of the drive. traces: those that others leave. declared: of the parameters with shapes."""
+        instead: those that take the place of the operator. lines: those of the spectrum. harmonics: those of the drive.
+        traces: those that others leave. declared: of the parameters with shapes."""
         validation = validation or errors
         operator = lambda case, first, now, effect: "bouc_wen" if effect in instead else ""  # noqa: E731
         monkeypatch.setattr(proof, "displaced_operator", operator)
