@@ -1,15 +1,16 @@
 """What a campaign is: records, a base model, and hooks that put into it what is hidden; its simulation."""
 
-import inspect
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from .declared import entry
 from .dynamics import lumped
 from .hysteresis import operator
 
 CAMPAIGNS = {}
+declare = entry(CAMPAIGNS)
 PSO = "{name: pso, population: 60, generations: 120}"
 SMALL_PSO = "{name: pso, population: 40, generations: 80}"
 LEAST_SQUARES = "{name: least_squares, budget: 300}"
@@ -84,28 +85,6 @@ class Campaign:
     time_unit: str = "s"
     drive_unit: str = "V"
     unit: str = "um"
-
-
-@dataclass(frozen=True)
-class Declared:
-    """kind, true effects, {effect: names that are right as well}, what is hidden, and the function that builds it."""
-
-    kind: str
-    effects: tuple
-    also: dict
-    what: str
-    build: Callable
-
-
-def declare(name, kind, **effects):
-    """Enter a campaign: kind, and each hidden effect with the names that are right as well."""
-
-    def enter(build):
-        what = " ".join(inspect.getdoc(build).split())
-        CAMPAIGNS[name] = Declared(kind, tuple(effects), {k: tuple(v) for k, v in effects.items()}, what, build)
-        return build
-
-    return enter
 
 
 def _record(name, use, drives, settle):

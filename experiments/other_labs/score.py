@@ -6,7 +6,7 @@ from pathlib import Path
 
 from experiments.foreign_effect.score import classes, matched
 
-PER_UM = {"um": 1, "nm": 1e3, "mm": 1e-3}
+PER_UM = {"um": 1, "nm": 1e3, "mm": 1e-3, "m": 1e-6}
 
 
 def _accepted(improvement, truth):

@@ -2,7 +2,6 @@
 
 import json
 import math
-import os
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +9,7 @@ from scipy.io import savemat
 from scipy.signal import lfilter
 
 from .campaign import simulate
+from .declared import keep, truth
 from .names import CAMPAIGNS
 
 SIZES = json.loads((Path(__file__).parent / "sizes.json").read_text())
@@ -164,15 +164,10 @@ def _job(name, campaign, channels, seed, rng):
 
 
 def _truth(name, campaign):
-    declared, sizes = CAMPAIGNS[name], SIZES[name]
-    also = [other for names in declared.also.values() for other in names]
     floor = math.sqrt(noise_size(name, campaign) ** 2 + campaign.counts**2 / 12)
     samples = sum(len(record.times) - record.ahead for record in campaign.records)
-    out = {"name": name, "kind": declared.kind, "effects": declared.effects, "class": [*declared.effects, *also]}
-    out |= {"also_right": declared.also, "what": declared.what, "floors": sizes["floors"]}
-    if "floors_each" in sizes:
-        out["floors_each"] = sizes["floors_each"]
-    return out | {"noise_um": floor, "samples": samples, "records": len(campaign.records), "base": campaign.base}
+    known = {"noise_um": floor, "samples": samples, "records": len(campaign.records), "base": campaign.base}
+    return truth(name, CAMPAIGNS[name], SIZES[name], known)
 
 
 def write(name, out):
@@ -185,7 +180,5 @@ def write(name, out):
         columns = _columns(campaign, number, size, rng)
         _save(rig / f"{record.name}.{campaign.format}", columns, campaign.format)
     (rig / "job.yaml").write_text(_job(name, campaign, _channels(columns, campaign.format), seed, rng))
-    part = home / "truth.part"
-    part.write_text(json.dumps(_truth(name, campaign), indent=1) + "\n")
-    os.replace(part, home / "truth.json")
+    keep(home, _truth(name, campaign))
     return home
