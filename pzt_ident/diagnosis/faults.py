@@ -69,7 +69,7 @@ def fault_instead(case: Case, first: Fit) -> Staircase | None:
     diagnosis = diagnose(case, first)
     if any(item.fit and not leaves_less(case, fit, item.fit) for item in diagnosis.candidates):
         return None
-    return Staircase([Step(first)], of_none(case, first, diagnosis), [fault_in(case, first, word, fit)])
+    return Staircase([Step(first)], with_fault(case, first, diagnosis, word), [fault_in(case, first, word, fit)])
 
 
 def with_faults(case: Case, diagnosis: Diagnosis) -> Diagnosis:
@@ -110,7 +110,7 @@ def without_outdone(case: Case, staircase: Staircase) -> Staircase:
         *staircase.suspects,
         fault_in(home, first, word, fit, added),
     ]
-    staircase.last = of_none(home, first, staircase.last)
+    staircase.last = with_fault(home, first, staircase.last, word)
     if added:
         staircase.steps.append(Step(first, explained=explained_share(home, end, first), change=MENDED))
     return staircase
@@ -122,8 +122,9 @@ def fault_in(case: Case, first: Fit, word: str, fit: Fit, outdone: tuple[str, ..
     return Fault(word, share, fit.total / case.floor, outdone)
 
 
-def of_none(case: Case, first: Fit, diagnosis: Diagnosis) -> Diagnosis:
-    """The diagnosis of the model as given, of which no effect is the account."""
+def with_fault(case: Case, first: Fit, diagnosis: Diagnosis, word: str) -> Diagnosis:
+    """The diagnosis of the model as given, of which a fault is the account and no effect."""
     for candidate in diagnosis.candidates:
         candidate.decision = "suspect" if candidate.decision == "missing" else candidate.decision
-    return Diagnosis("unexplained", nothing_explains(case, first), first, diagnosis.candidates, [])
+    reason = nothing_explains(case, first)
+    return Diagnosis("unexplained", reason, first, diagnosis.candidates, [], faults=(word,))

@@ -64,7 +64,8 @@ STEP_FAULT = 0.6  # of the misfit: where halving the simulation step changes mor
 @dataclass
 class Diagnosis:
     """verdict and reason; before: the fit that is diagnosed; candidates, best first; tied: names of the effects that
-    these data cannot distinguish, the best first; passing: candidates that remove enough, the best first."""
+    these data cannot distinguish, the best first; passing: candidates that remove enough, the best first; faults: those
+    of the set-up that account for the misfit."""
 
     verdict: str
     reason: str
@@ -72,6 +73,7 @@ class Diagnosis:
     candidates: list[Candidate]
     tied: list[str]
     passing: list[Candidate] = field(default_factory=list)
+    faults: tuple[str, ...] = ()
 
     @property
     def best(self) -> Candidate | None:

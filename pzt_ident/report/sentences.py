@@ -10,6 +10,7 @@ from pzt_ident.data.notation import count, listed, number, quantity, ranges, spe
 from pzt_ident.data.over_axes import USE_NAMES as USE_NAMES
 from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.model.parameter import NOTHING_BEYOND
+from pzt_ident.model.registry import blocks
 from pzt_ident.run.results import Results
 
 SENTENCE = re.compile(r"(?<=[^.\s][.?!])(?<!\beq\.)(?<!\bfig\.)(?<!\be\.g\.)(?<!\bi\.e\.) ", re.IGNORECASE)
@@ -93,6 +94,8 @@ def next_step(results: Results) -> str:
         return f"Measure again with the drive in {proposal['file']}: it tells {listed(proposal['splits'])} apart."
     if best:
         return f"Add {best.get('item', best['effect'])} to the model and identify it again."
+    for word in results.diagnosis.get("faults", ()):
+        return f"{blocks[word].remedy.removesuffix('.')}, and measure again: the misfit is that of a {word}."
     if verdict == "adequate" and is_unjudged(results):
         return "Measure a record to identify that is like the one kept back: nothing unseen has judged the model."
     if verdict == "adequate":

@@ -171,6 +171,7 @@ def diagnosis_of(job: Job, case: Case, diagnosis: Diagnosis, folder: Path) -> di
         "effects": list(before.effects),
         "parameters": parameters_of(before, case.budget),
         "candidates": [candidate_of(case, candidate, diagnosis.tied) for candidate in diagnosis.candidates],
+        "faults": list(diagnosis.faults),
         "next_experiment": proposed,
     }
 

@@ -46,6 +46,7 @@ def improved():
 
 def test_a_backlash_is_told_with_its_remedy_and_never_added(improved):
     assert improved.last.verdict == "unexplained"
+    assert improved.last.faults == ("backlash",)
     assert improved.end.effects == () and improved.end is improved.last.before
     (told,) = (item for item in improved.suspects if isinstance(item, Fault))
     assert told.effect == "backlash" and told.share == pytest.approx(1, abs=0.01) and told.left < 1.1
@@ -66,6 +67,7 @@ def test_it_spares_the_search_for_effects(improved):
 
 def test_a_diagnosis_tells_it_too():
     found = thinning.diagnosed(loose(), lambda case: first_fit(case, 0))
+    assert found.faults == ("backlash",)
     assert found.verdict == "unexplained" and "backlash alone takes up" in found.reason
     assert not [item for item in found.candidates if item.decision == "missing"]
 

@@ -12,6 +12,7 @@ import pytest
 from pzt_ident.data.notation import listed
 from pzt_ident.data.over_axes import together, weighed
 from pzt_ident.model.parameter import NOTHING_BEYOND
+from pzt_ident.model.registry import blocks
 from pzt_ident.report.page import write_report
 from pzt_ident.report.sentences import (
     findings,
@@ -271,6 +272,14 @@ def test_the_next_step_follows_from_the_verdict(plain, verdict, decision, senten
     diagnosis = {"verdict": verdict, "candidates": [{"effect": "creep", "decision": decision}], "next_experiment": None}
     assert sentence in next_step(replace(results, diagnosis=diagnosis))
     assert "Diagnose the model" in next_step(replace(results, diagnosis={}))
+
+
+@pytest.mark.parametrize("word", blocks.faults())
+def test_the_next_step_is_to_mend_a_fault_of_the_set_up(plain, word):
+    results = read_results(plain)
+    found = {"verdict": "unexplained", "candidates": [], "faults": [word]}
+    sentence = next_step(replace(results, diagnosis=found))
+    assert blocks[word].remedy.removesuffix(".") in sentence and f"that of a {word}" in sentence
 
 
 @pytest.mark.parametrize("use", ["identify", "validate"])
