@@ -22,8 +22,8 @@ class Growing:
 class AmplitudeGain(Growing, Block):
     """Rayleigh's law, more domain walls move under a larger drive: y = (1 + growth U_pp) f.
 
-    U_pp is the peak-to-peak drive of the record. Damjanovic & Demartin (1996), J. Phys. D 29, 2057. In data of one
-    amplitude the gain absorbs it.
+    U_pp is the peak-to-peak drive of the axis in the record, of all of its samples. Damjanovic & Demartin (1996), J.
+    Phys. D 29, 2057. In data of one amplitude the gain absorbs it.
     """
 
     place = Place.STATIC

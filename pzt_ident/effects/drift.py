@@ -26,7 +26,7 @@ class Drift(Drifting, Addition):
     Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems. Nearly a ramp for a long tau.
     """
 
-    tau = Parameter("s", (1, 3000), "Thermal time constant.", scale="log", end="upper")
+    tau = Parameter("s", (1, 3000), "Thermal time constant, one for all records.", scale="log", end="upper")
 
     def basis(t, tau):
         return (-expm1(-t / tau),)
