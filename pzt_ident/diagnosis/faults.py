@@ -69,7 +69,8 @@ def fault_instead(case: Case, first: Fit) -> Staircase | None:
     diagnosis = diagnose(case, first)
     if any(item.fit and not leaves_less(case, fit, item.fit) for item in diagnosis.candidates):
         return None
-    return Staircase([Step(first)], with_fault(case, first, diagnosis, word), [fault_in(case, first, word, fit)])
+    steps = [Step(first), *there_and_back(case, first, word, fit)]
+    return Staircase(steps, with_fault(case, first, diagnosis, word), [fault_in(case, first, word, fit)])
 
 
 def with_faults(case: Case, diagnosis: Diagnosis) -> Diagnosis:
@@ -113,7 +114,14 @@ def without_outdone(case: Case, staircase: Staircase) -> Staircase:
     staircase.last = with_fault(home, first, staircase.last, word)
     if added:
         staircase.steps.append(Step(first, explained=explained_share(home, end, first), change=MENDED))
+    staircase.steps += there_and_back(home, first, word, fit)
     return staircase
+
+
+def there_and_back(case: Case, first: Fit, word: str, fit: Fit) -> list[Step]:
+    """The steps that show what a fault accounts for, and take it out again."""
+    with_it = Step(fit, word, None, {word: fit}, explained_share(case, first, fit))
+    return [with_it, Step(first, None, word, {}, explained_share(case, fit, first))]
 
 
 def fault_in(case: Case, first: Fit, word: str, fit: Fit, outdone: tuple[str, ...] = ()) -> Fault:

@@ -55,7 +55,8 @@ def improve_on_lines(case: Case, first: Fit, on_step: StepListener) -> Staircase
     """The same, with drives as they are unless the model with the best effect says otherwise."""
     good = adequate(case, first, first)
     if mended := None if good else fault_instead(case, first):
-        on_step(mended.steps[0])
+        for step in mended.steps:
+            on_step(step)
         return mended
     diagnosis = None if good or needs_wider_bounds(case, first) else diagnose(case, first)
     if diagnosis and (behind := smooth_behind(case, first, diagnosis.best.fit if diagnosis.best else None)):

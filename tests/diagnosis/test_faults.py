@@ -61,8 +61,14 @@ def test_the_gap_is_found():
 
 
 def test_it_spares_the_search_for_effects(improved):
-    """Beside the model as given nothing was tried that leads through another effect."""
-    assert len(improved.steps) == 1
+    """The steps show what it accounts for, and lead through no effect."""
+    assert [(step.added, step.removed) for step in improved.steps] == [
+        (None, None),
+        ("backlash", None),
+        (None, "backlash"),
+    ]
+    assert improved.steps[1].fit.validate == pytest.approx(stage.NOISE, rel=0.1)
+    assert improved.steps[2].fit is improved.steps[0].fit
 
 
 def test_a_diagnosis_tells_it_too():
