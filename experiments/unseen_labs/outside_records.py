@@ -17,20 +17,18 @@ def _records():
     )
 
 
+def _stack(noise, hidden, **more):
+    """The stack in these records, with what is hidden in its readings."""
+    usual = {"base": "bouc_wen", "parameters": {"x": STACK}, "mechanics": False, "bounds": {"gain": "tight"}}
+    return Campaign(records=_records(), noise=noise, hidden=hidden, **usual | more)
+
+
 @declare("a44", "outside")
 def hinge_of_the_gain():
     """Capacitive sensor at the end of its range: from 7.2 um of stroke on the guard electrode no longer covers the
     target, and the reading's slope rises by 4 % at a hinge, y = x + 0.04 max(x - 7.2 um, 0). A broken line at one
     place, no polynomial."""
-    return Campaign(
-        base="bouc_wen",
-        parameters={"x": STACK},
-        mechanics=False,
-        records=_records(),
-        noise=0.004,
-        hidden={"readings": lambda moved, at: {"x": moved["x"] + 0.04 * np.maximum(moved["x"] - 7.2, 0)}},
-        bounds={"gain": "tight"},
-    )
+    return _stack(0.004, {"readings": lambda moved, at: {"x": moved["x"] + 0.04 * np.maximum(moved["x"] - 7.2, 0)}})
 
 
 def _seats(times, moments):
@@ -49,13 +47,9 @@ def loose_mirror():
         (1.7, 2.1, 5.05),
         (0.61, 3.3, 4.6, 5.2),
     )
-    return Campaign(
-        base="bouc_wen",
-        parameters={"x": STACK},
-        mechanics=False,
-        records=_records(),
-        noise=0.005,
-        hidden={"readings": lambda moved, at: {"x": moved["x"] + 0.06 * _seats(at.times, moments[at.number])}},
+    return _stack(
+        0.005,
+        {"readings": lambda moved, at: {"x": moved["x"] + 0.06 * _seats(at.times, moments[at.number])}},
         bounds={"gain": "tight", "beta": "wide"},
     )
 
@@ -82,28 +76,16 @@ def _bursts(y, t, number):
 def welding_next_door():
     """A welding set next door: electromagnetic bursts on the sensor cable at random times, each a decaying oscillation
     of its own frequency (35 to 160 Hz) lasting some 0.1 s."""
-    return Campaign(
-        base="bouc_wen",
-        parameters={"x": STACK},
-        mechanics=False,
-        records=_records(),
-        noise=0.003,
-        hidden={"reading": _bursts},
-        bounds={"gain": "tight"},
-    )
+    return _stack(0.003, {"reading": _bursts})
 
 
 @declare("a51", "outside")
 def stuck_codes():
     """The reading's converter has a stuck code block: between 3.9 and 4.9 um all codes come out 70 nm too high (one
     carry line of the converter). Two steps at fixed readings, once over the stroke, flat in between."""
-    return Campaign(
-        base="bouc_wen",
-        parameters={"x": STACK},
-        mechanics=False,
-        records=_records(),
-        noise=0.005,
-        hidden={"reading": lambda y, t, number: y + 0.07 * ((y > 3.9) & (y < 4.9))},
+    return _stack(
+        0.005,
+        {"reading": lambda y, t, number: y + 0.07 * ((y > 3.9) & (y < 4.9))},
         bounds={"gain": "tight", "alpha": (0.1, 0.7)},
         format="spaces",
     )
@@ -130,13 +112,4 @@ def lost_readings():
     """The logger loses blocks of 2 to 4 readings now and then (buffer overrun) while the drive channel goes on, so that
     from each glitch on the reading is early against the drive by as many samples more. A timing that jumps within a
     record."""
-    return Campaign(
-        base="bouc_wen",
-        parameters={"x": STACK},
-        mechanics=False,
-        records=_records(),
-        noise=0.006,
-        hidden={"reading": _shortened},
-        bounds={"gain": "tight"},
-        timed=False,
-    )
+    return _stack(0.006, {"reading": _shortened}, timed=False)

@@ -12,6 +12,7 @@ from pzt_ident.diagnosis.climb import Staircase
 from pzt_ident.diagnosis.criteria import adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
+from pzt_ident.diagnosis.paths import SETTLED
 from pzt_ident.diagnosis.proof import SINGLE, suspect
 from pzt_ident.diagnosis.reasons import nothing_explains
 from pzt_ident.diagnosis.refit import refit
@@ -23,7 +24,7 @@ from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
 from pzt_ident.model.registry import blocks, phrase_of
 
 LIKELY = 0.2  # of the misfit: a fault that scores less is not fitted
-MENDED = "back to the model as given"  # the step that takes out what a fault of the set-up does better
+BACK = "back to the model as given"  # the step that takes out what a fault of the set-up does better
 
 
 @dataclass(frozen=True)
@@ -70,14 +71,13 @@ def fault_instead(case: Case, first: Fit) -> Staircase | None:
     if any(item.fit and not leaves_less(case, fit, item.fit) for item in diagnosis.candidates):
         return None
     steps = [Step(first), *there_and_back(case, first, word, fit)]
-    return Staircase(steps, with_fault(case, first, diagnosis, word), [fault_in(case, first, word, fit)])
+    return Staircase(steps, blamed_on(case, first, diagnosis, word), [fault_in(case, first, word, fit)])
 
 
 def with_faults(case: Case, diagnosis: Diagnosis) -> Diagnosis:
     """The diagnosis of a model, of which a fault of the set-up that alone leads to the noise is the account if any
     effect leaves clearly more."""
-    settled = diagnosis.verdict in ("adequate", "refused")
-    mended = None if settled else fault_instead(case, diagnosis.before)
+    mended = None if diagnosis.verdict in SETTLED else fault_instead(case, diagnosis.before)
     if mended is None:
         return diagnosis
     return replace(mended.last, reason=f"{mended.last.reason} {mended.suspects[0].why_not}")
@@ -111,9 +111,9 @@ def without_outdone(case: Case, staircase: Staircase) -> Staircase:
         *staircase.suspects,
         fault_in(home, first, word, fit, added),
     ]
-    staircase.last = with_fault(home, first, staircase.last, word)
+    staircase.last = blamed_on(home, first, staircase.last, word)
     if added:
-        staircase.steps.append(Step(first, explained=explained_share(home, end, first), change=MENDED))
+        staircase.steps.append(Step(first, explained=explained_share(home, end, first), change=BACK))
     staircase.steps += there_and_back(home, first, word, fit)
     return staircase
 
@@ -130,7 +130,7 @@ def fault_in(case: Case, first: Fit, word: str, fit: Fit, outdone: tuple[str, ..
     return Fault(word, share, fit.total / case.floor, outdone)
 
 
-def with_fault(case: Case, first: Fit, diagnosis: Diagnosis, word: str) -> Diagnosis:
+def blamed_on(case: Case, first: Fit, diagnosis: Diagnosis, word: str) -> Diagnosis:
     """The diagnosis of the model as given, of which a fault is the account and no effect."""
     for candidate in diagnosis.candidates:
         candidate.decision = "suspect" if candidate.decision == "missing" else candidate.decision

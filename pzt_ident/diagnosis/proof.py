@@ -258,9 +258,9 @@ def suspect(
     if validate is not None and differs_by_record(effect):
         of_all = share_explained(before.total, after.total, view.floor)
         clear = removed_rms(before.total, after.total) > form_of_others(view, given.total)
-    if is_trace(effect, others_only):
-        clear &= min(share for share in (of_all or identify, of_all or validate) if share is not None) >= SINGLE
-    return Suspect(effect, identify, validate, without, clear, others, on_bounds, limit, displaced, of_all, is_line)
+    found = Suspect(effect, identify, validate, without, clear, others, on_bounds, limit, displaced, of_all, is_line)
+    little = is_trace(effect, others_only) and found.share < SINGLE
+    return replace(found, beyond_form=False) if little else found
 
 
 def is_trace(effect: str, others: Collection[str]) -> bool:
