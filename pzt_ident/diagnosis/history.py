@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.notation import listed
+from pzt_ident.diagnosis.candidates import NEARLY_ALL
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, LEAST_SHARE, adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit, fit_at
@@ -36,15 +37,17 @@ def with_history(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fi
     alone leads to the noise as well. diagnosis: of the fit."""
     if has_history(first) or not has_operator(case):
         return None
-    best = beside(case, first)
     effects = sorted((item.fit for item in diagnosis.passing if item.fit), key=lambda fit: fit.total)
+    rival = min((fit.identify for fit in effects), default=np.inf)
+    accounted = bool(effects) and share_explained(first.total, effects[0].total, case.floor) >= NEARLY_ALL
+    best = beside(case, first, DECISIVE if accounted else PROMISING, rival)
     left = best[1].total if best else first.total
     if any(adequate(case, first, fit) and removed_rms(fit.total, left) < TIE * case.floor for fit in effects):
         return None
     share = share_explained(first.total, best[1].total, case.floor) if best else 0.0
     least = DECISIVE if best and any(removed_rms(fit.total, best[1].total) < 0 for fit in effects) else LEAST_SHARE
-    if share >= least:
-        return best
+    if best and share >= least:
+        return best[0], refit(best[0], best[1], first.effects, {})
     behind = (history_behind(case, first, fit) for fit in effects[:TRIED])
     return next((found for found in behind if found), None)
 
@@ -58,17 +61,19 @@ def history_behind(case: Case, first: Fit, end: Fit) -> tuple[Case, Fit] | None:
     return best[0], refit(best[0], first, first.effects, {})
 
 
-def beside(case: Case, fit: Fit) -> tuple[Case, Fit] | None:
+def beside(case: Case, fit: Fit, least: float = PROMISING, rival: float = np.inf) -> tuple[Case, Fit] | None:
     """The case whose model follows what was before the records, with as few reversals as do, and the refit in it; None
-    where it promises nothing."""
+    where it promises less than a share of the misfit. More reversals are asked for where the last ones show. rival: an
+    RMSE that a refit which stays far above it is given up for."""
     best: tuple[Case, Fit] | None = None
     for item in blocks.forms(HISTORY) if remembers_reversals(case) else [HISTORY]:
         aged = case.with_words((item, *case.words))
-        if case.budget.allows(BEFORE) and promise(aged, fit) >= PROMISING:
-            other = refit(aged, fit, fit.effects, {})
+        if case.budget.allows(BEFORE) and promise(aged, fit) >= least:
+            other = refit(aged, fit, fit.effects, {}, rival)
             if best is None or removed_rms(best[1].total, other.total) > CLEAR * case.floor:
                 best = aged, other
-        if best and adequate(case, fit, best[1]):
+        shown = share_explained(fit.total, best[1].total, case.floor) if best else 0.0
+        if shown < LEAST_SHARE or (best and adequate(case, fit, best[1])):
             break
     return best
 

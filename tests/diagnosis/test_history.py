@@ -7,11 +7,12 @@ import pytest
 
 import rig
 import stage
-from pzt_ident.diagnosis import staircase
+from pzt_ident.diagnosis import history, staircase
 from pzt_ident.diagnosis.bounds import Widened, continued
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase
-from pzt_ident.diagnosis.history import BEFORE, has_history, history_sentence, with_history
+from pzt_ident.diagnosis.history import BEFORE, PROMISING, beside, has_history, history_sentence, with_history
+from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.staircase import improve, improve_beyond
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step
@@ -65,6 +66,36 @@ def test_records_that_start_at_rest_have_nothing_before_them():
     first = first_fit(case, 0)
     assert with_history(case, first, diagnose(case, first)) is None
     assert not has_history(first) and history_sentence(case, first) == ""
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """Effects and blocks of the refits that follow what was before, which promises something in all of them."""
+    calls = []
+
+    def noting(case, before, effects, *others):
+        calls.append((effects, case.words))
+        return refit(case, before, effects, *others)
+
+    monkeypatch.setattr(history, "refit", noting)
+    monkeypatch.setattr(history, "promise", lambda aged, fit: 2 * PROMISING)
+    return calls
+
+
+def test_beside_an_effect_that_explains_nearly_all_what_was_before_is_not_asked_for_alone(asked):
+    case = stage.considering(stage.case(stage.EFFECTS["creep"]), "creep")
+    first = first_fit(case, 0)
+    assert with_history(case, first, diagnose(case, first)) is None
+    assert not asked
+
+
+@pytest.mark.parametrize(("in_motion", "forms"), [(False, ["history"]), (True, ["history", "history.two"])])
+def test_more_reversals_are_asked_for_where_the_last_ones_show(in_motion, forms, asked, monkeypatch):
+    monkeypatch.setattr(history, "remembers_reversals", lambda case: True)
+    monkeypatch.setattr(history, "adequate", lambda *fits: False)
+    case = begun_in_motion() if in_motion else stage.case(stage.EFFECTS["creep"])
+    beside(case, first_fit(case, 0))
+    assert [words[0] for _, words in asked] == forms
 
 
 def test_a_job_that_follows_what_was_before_is_followed():
