@@ -47,7 +47,8 @@ def with_history(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fi
     share = share_explained(first.total, best[1].total, case.floor) if best else 0.0
     least = DECISIVE if best and any(removed_rms(fit.total, best[1].total) < 0 for fit in effects) else LEAST_SHARE
     if best and share >= least:
-        return best[0], refit(best[0], best[1], first.effects, {})
+        given_up = best[1].identify > rival
+        return (best[0], refit(best[0], best[1], first.effects, {})) if given_up else best
     behind = (history_behind(case, first, fit) for fit in effects[:TRIED])
     return next((found for found in behind if found), None)
 

@@ -9,6 +9,7 @@ import rig
 import stage
 from pzt_ident.diagnosis import history, staircase
 from pzt_ident.diagnosis.bounds import Widened, continued
+from pzt_ident.diagnosis.candidates import Candidate
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase
 from pzt_ident.diagnosis.history import BEFORE, PROMISING, beside, has_history, history_sentence, with_history
@@ -70,12 +71,12 @@ def test_records_that_start_at_rest_have_nothing_before_them():
 
 @pytest.fixture
 def asked(monkeypatch):
-    """Effects and blocks of the refits that follow what was before, which promises something in all of them."""
+    """Blocks and rivals of the refits that follow what was before, which promises something in all of them."""
     calls = []
 
-    def noting(case, before, effects, *others):
-        calls.append((effects, case.words))
-        return refit(case, before, effects, *others)
+    def noting(case, before, effects, guess, rival=np.inf):
+        calls.append((case.words, rival))
+        return refit(case, before, effects, guess, rival)
 
     monkeypatch.setattr(history, "refit", noting)
     monkeypatch.setattr(history, "promise", lambda aged, fit: 2 * PROMISING)
@@ -89,13 +90,23 @@ def test_beside_an_effect_that_explains_nearly_all_what_was_before_is_not_asked_
     assert not asked
 
 
+def test_what_was_before_has_the_best_effect_as_a_rival(asked):
+    case = begun_in_motion()
+    first = first_fit(case, 0)
+    effect = replace(first, identify=0.5 * first.identify, validate=0.5 * first.validate)
+    diagnosis = Diagnosis("missing", "", first, [], [], [Candidate(None, effect)])
+    _, fit = with_history(case, first, diagnosis)
+    assert [rival for _, rival in asked] == [effect.identify]
+    assert has_history(fit) and fit.identify < effect.identify
+
+
 @pytest.mark.parametrize(("in_motion", "forms"), [(False, ["history"]), (True, ["history", "history.two"])])
 def test_more_reversals_are_asked_for_where_the_last_ones_show(in_motion, forms, asked, monkeypatch):
     monkeypatch.setattr(history, "remembers_reversals", lambda case: True)
     monkeypatch.setattr(history, "adequate", lambda *fits: False)
     case = begun_in_motion() if in_motion else stage.case(stage.EFFECTS["creep"])
     beside(case, first_fit(case, 0))
-    assert [words[0] for _, words in asked] == forms
+    assert [words[0] for words, _ in asked] == forms
 
 
 def test_a_job_that_follows_what_was_before_is_followed():
