@@ -12,7 +12,7 @@ from pzt_ident.diagnosis.candidates import NEARLY_ALL
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, LEAST_SHARE, adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit, fit_at
-from pzt_ident.diagnosis.misfit import share_explained
+from pzt_ident.diagnosis.misfit import share_explained, squared_misfit
 from pzt_ident.diagnosis.refit import refit, refit_from, start_of
 from pzt_ident.diagnosis.score import applicable, scorer_of
 from pzt_ident.diagnosis.ties import TIE
@@ -56,10 +56,15 @@ def with_history(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fi
 def history_behind(case: Case, first: Fit, end: Fit) -> tuple[Case, Fit] | None:
     """The same where what was before the records shows behind the effects of a fit, most of what these leave; else
     None."""
-    best = None if has_history(end) or not has_operator(case) else beside(case, end)
+    best = None if has_history(end) or not has_operator(case) else beside(case, end, rival=enough(case, end))
     if best is None or share_explained(end.total, best[1].total, case.floor) < DECISIVE:
         return None
     return best[0], refit(best[0], first, first.effects, {})
+
+
+def enough(case: Case, fit: Fit) -> float:
+    """The RMSE of the identification records that explains most of the misfit which a fit leaves of them."""
+    return float(np.sqrt(fit.identify**2 - DECISIVE * squared_misfit(fit.identify, case.floor)))
 
 
 def beside(case: Case, fit: Fit, least: float = PROMISING, rival: float = np.inf) -> tuple[Case, Fit] | None:

@@ -58,6 +58,7 @@ def improve_on_lines(case: Case, first: Fit, on_step: StepListener) -> Staircase
         for step in mended.steps:
             on_step(step)
         return mended
+    case.budget.begin_path()
     diagnosis = None if good or needs_wider_bounds(case, first) else diagnose(case, first)
     if diagnosis and (behind := smooth_behind(case, first, diagnosis.best.fit if diagnosis.best else None)):
         return improve_otherwise(case, first, *behind, SMOOTH, on_step)

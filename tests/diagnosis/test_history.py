@@ -12,7 +12,17 @@ from pzt_ident.diagnosis.bounds import Widened, continued
 from pzt_ident.diagnosis.candidates import Candidate
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase
-from pzt_ident.diagnosis.history import BEFORE, PROMISING, beside, has_history, history_sentence, with_history
+from pzt_ident.diagnosis.criteria import DECISIVE
+from pzt_ident.diagnosis.history import (
+    BEFORE,
+    PROMISING,
+    beside,
+    has_history,
+    history_behind,
+    history_sentence,
+    with_history,
+)
+from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.staircase import improve, improve_beyond
 from pzt_ident.diagnosis.starts import first_fit
@@ -98,6 +108,13 @@ def test_what_was_before_has_the_best_effect_as_a_rival(asked):
     _, fit = with_history(case, first, diagnosis)
     assert [rival for _, rival in asked] == [effect.identify]
     assert has_history(fit) and fit.identify < effect.identify
+
+
+def test_behind_effects_what_was_before_has_what_would_be_enough_as_a_rival(asked):
+    case = begun_in_motion()
+    first = first_fit(case, 0)
+    assert has_history(history_behind(case, first, first)[1])
+    assert share_explained(first.identify, asked[0][1], case.floor) == pytest.approx(DECISIVE)
 
 
 @pytest.mark.parametrize(("in_motion", "forms"), [(False, ["history"]), (True, ["history", "history.two"])])

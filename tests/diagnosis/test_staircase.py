@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import stage
-from pzt_ident.diagnosis import candidates, climb, exchange
-from pzt_ident.diagnosis.budget import Budget
+from pzt_ident.diagnosis import candidates, climb, exchange, staircase
+from pzt_ident.diagnosis.budget import EXPLORING, Budget
 from pzt_ident.diagnosis.climb import add_pair, add_restarted
 from pzt_ident.diagnosis.exchange import exchange_any, remove_unneeded
 from pzt_ident.diagnosis.fit import Fit, fit_at
@@ -18,6 +18,7 @@ from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step, explained_share
 from pzt_ident.diagnosis.verdict import Candidate, Diagnosis, diagnose
+from pzt_ident.engine import work
 from pzt_ident.model.registry import blocks
 
 PAIR = stage.EFFECTS["creep"] | stage.EFFECTS["quadratic_gain"]
@@ -70,6 +71,22 @@ def test_a_spent_budget_suffices_for_the_best_effect_and_the_rest_is_said():
     steps = improve(case, first).steps
     assert [step.added for step in steps] == [None, "quadratic_gain"]
     assert "the refits of all candidates" in case.budget.untried
+
+
+def test_the_part_of_the_budget_for_other_effects_begins_where_the_first_fit_ends(monkeypatch):
+    case, begun = stage.case(stage.EFFECTS["creep"]), 0.4
+    first = first_fit(case, 0)
+    case.budget = Budget(100)
+    work.add(100 * begun)
+    parts = []
+
+    def noting(case, fit):
+        parts.append(case.budget.beside)
+        return diagnose(case, fit)
+
+    monkeypatch.setattr(staircase, "diagnose", noting)
+    improve(case, first)
+    assert begun < parts[0] == pytest.approx((begun + EXPLORING) / 2, abs=0.01)
 
 
 def test_the_effects_of_the_job_stay():
