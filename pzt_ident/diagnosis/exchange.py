@@ -204,7 +204,9 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
     known = added == (last.added,) and last.removed is None
     for effect in added if not known and case.budget.allows("ties", WHOLE + PROOF) else ():
         step = next(step for step in reversed(steps) if step.added == effect)
-        fits = fits_in_place(case, now, effect, look_alikes(case, now, effect, step.tied), as_rivals=True)
+        in_every_form = len(added) > 1 and not at_noise(case, now)
+        items = look_alikes(case, now, effect, step.tied, in_every_form)
+        fits = fits_in_place(case, now, effect, items, as_rivals=True)
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
         rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
         taken = min(rivals, key=partial(simplicity, case, now, rivals))

@@ -285,7 +285,7 @@ def test_beside_other_effects_too_the_simpler_of_tied_look_alikes_is_taken(monke
         fitted("delay", 2, 1),
     )
     others = {"creep": [], "friction.coulomb": [rival, worse], "forms": [fitted("friction", 2 if twin else 2.1, 3)]}
-    monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect, tied: [effect])
+    monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect, *_: [effect])
     monkeypatch.setattr(exchange, "other_forms", lambda case, now, effect: ["forms"])
     monkeypatch.setattr(
         exchange, "fits_in_place", lambda case, now, effect, items, **_: others[items[0]] if items else []
@@ -305,7 +305,7 @@ def test_the_rivals_of_an_effect_that_is_alone_again_are_asked_for_anew(monkeypa
         return SimpleNamespace(effects=effects, total=total, identify=total, freedom=3)
 
     alone, rival = fitted("sensor_lag"), fitted("delay", total=1.11)
-    monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect, tied: ["delay"])
+    monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect, *_: ["delay"])
     monkeypatch.setattr(exchange, "fits_in_place", lambda case, now, effect, items, **_: [rival])
     case = SimpleNamespace(floor=1.0, budget=Budget())
     lone = [Step(alone, "sensor_lag", rivals={"sensor_lag": alone})]
@@ -315,6 +315,25 @@ def test_the_rivals_of_an_effect_that_is_alone_again_are_asked_for_anew(monkeypa
     for steps in (exchanged, [*lone, Step(fitted("sensor_lag", "creep"), "creep"), Step(alone, None, "creep")]):
         exchange.find_rivals(case, SimpleNamespace(effects=()), steps, None)
         assert steps[-1].fit is alone and {"sensor_lag", "delay"} in [set(step.tied) for step in steps]
+
+
+@pytest.mark.parametrize(("total", "tied"), [(1.05, {"delay"}), (1.5, {"delay", "sensor_lag.third_order"})])
+def test_far_above_the_noise_a_form_that_may_be_in_its_limit_is_no_exchange_but_a_tie(monkeypatch, total, tied):
+    def fitted(item, total):
+        return SimpleNamespace(effects=("creep", item), total=total, identify=total, freedom=1)
+
+    now, better, worse = fitted("delay", total), fitted("sensor_lag.third_order", total - 0.01), fitted("creep", 9)
+    fits = {better.effects[-1]: better}
+
+    def in_place(case, now, effect, items, **_):
+        return [fits.get(item, worse) for item in items]
+
+    monkeypatch.setattr(exchange, "fits_in_place", in_place)
+    one_axis = {"words": ("bouc_wen",), "effects": (), "ruled_out": (), "records": [SimpleNamespace(axes="x")]}
+    case = SimpleNamespace(floor=1.0, budget=Budget(), **one_axis)
+    steps = [Step(now, "creep"), Step(now, "delay")]
+    exchange.find_rivals(case, SimpleNamespace(effects=()), steps, None)
+    assert set(steps[1].tied) == tied and len(steps) == 2
 
 
 @pytest.mark.parametrize(("total", "taken"), [(1.5, "cross_coupling.voltage"), (1.6, "kinematic_coupling.voltage")])
