@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import pickle
 import platform
 import time
@@ -12,6 +13,8 @@ from itertools import islice
 from queue import Empty, SimpleQueue
 from threading import Lock
 from typing import TYPE_CHECKING, Any, ClassVar
+from urllib.parse import urljoin
+from urllib.request import urlopen
 from uuid import uuid4
 
 from pzt_ident.errors import InputError, LostError
@@ -41,6 +44,7 @@ AHEAD = 2
 """Tasks that are on their way to each thread of the cluster."""
 ATTEMPTS = 3
 """How often a task is sent whose outcome a living scheduler lost."""
+SECONDS_FOR_A_PAGE = 3.0
 SECONDS_TO_JOIN = 30.0
 SECONDS_WITHOUT_WORKERS = 60.0
 SECONDS_BETWEEN_EVENTS = 1.0
@@ -228,8 +232,28 @@ def joined(client: Client, words: str) -> Event:
     )
     workers = f"{len(threads)} worker{'s' * (len(threads) > 1)}"
     count = workers if threads else "jobs that wait for their turn"
-    sentence = f"{count}{shared} at {words}; Dask's dashboard: {client.dashboard_link}"
-    return {"event": "cluster", "said": sentence, "workers": len(threads), "dashboard": client.dashboard_link}
+    link = dashboard_of(client)
+    named = (
+        f"Dask's dashboard: {link}"
+        if link
+        else "no dashboard, as the scheduler runs without Bokeh or with --no-dashboard"
+    )
+    return {
+        "event": "cluster",
+        "said": f"{count}{shared} at {words}; {named}",
+        "workers": len(threads),
+        "dashboard": link,
+    }
+
+
+def dashboard_of(client: Client) -> str | None:
+    """The address of Dask's dashboard; None where the scheduler has an address for one, but no plots to show."""
+    link = client.dashboard_link
+    try:
+        with urlopen(urljoin(link, "individual-plots.json"), timeout=SECONDS_FOR_A_PAGE) as answer:
+            return link if json.load(answer) else None
+    except (OSError, ValueError):  # behind a proxy or a tunnel of the user's
+        return link or None
 
 
 def check_versions(client: Client, words: str) -> None:
