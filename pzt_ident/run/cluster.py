@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import pickle
-import platform
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -13,14 +11,12 @@ from itertools import islice
 from queue import Empty, SimpleQueue
 from threading import Lock
 from typing import TYPE_CHECKING, Any, ClassVar
-from urllib.parse import urljoin
-from urllib.request import urlopen
 from uuid import uuid4
 
 from pzt_ident.errors import InputError, LostError
 from pzt_ident.files import plain, temporary_files_in
+from pzt_ident.run.cluster_members import SECONDS_TO_JOIN, joined
 from pzt_ident.run.computing import computing
-from pzt_ident.run.folder import version_of
 from pzt_ident.run.interrupts import interrupts_deferred
 from pzt_ident.run.pool import (
     SECONDS_DEAF,
@@ -44,8 +40,6 @@ AHEAD = 2
 """Tasks that are on their way to each thread of the cluster."""
 ATTEMPTS = 3
 """How often a task is sent whose outcome a living scheduler lost."""
-SECONDS_FOR_A_PAGE = 3.0
-SECONDS_TO_JOIN = 30.0
 SECONDS_WITHOUT_WORKERS = 60.0
 SECONDS_BETWEEN_EVENTS = 1.0
 FREQUENT = ("generation", "fitted", "scored", "refitted")
@@ -214,58 +208,6 @@ def reason_of(error: BaseException | None) -> str:
     if isinstance(error, KilledWorker):
         return f"each of the {error.allowed_failures + 1} workers that were at it ended"
     return f"it could not be run there: {error}"
-
-
-def joined(client: Client, words: str) -> Event:
-    """The event that names the workers and the dashboard. Raises InputError where there is no worker, or one without
-    this version of the package."""
-    if client.cluster is None:  # the jobs of a queue come when there is room for them
-        try:
-            client.wait_for_workers(1, timeout=SECONDS_TO_JOIN)
-        except TimeoutError:
-            remedy = f"start some: `dask worker {words} --nworkers auto --nthreads 1`"
-            raise InputError("has no worker", where=f"--on {words}", remedy=remedy) from None
-    threads = client.nthreads()
-    check_versions(client, words)
-    shared = " of several threads, which wait for each other: start them with --nthreads 1" * (
-        max(threads.values(), default=1) > 1
-    )
-    workers = f"{len(threads)} worker{'s' * (len(threads) > 1)}"
-    count = workers if threads else "jobs that wait for their turn"
-    link = dashboard_of(client)
-    named = (
-        f"Dask's dashboard: {link}"
-        if link
-        else "no dashboard, as the scheduler runs without Bokeh or with --no-dashboard"
-    )
-    return {
-        "event": "cluster",
-        "said": f"{count}{shared} at {words}; {named}",
-        "workers": len(threads),
-        "dashboard": link,
-    }
-
-
-def dashboard_of(client: Client) -> str | None:
-    """The address of Dask's dashboard; None where the scheduler has an address for one, but no plots to show."""
-    link = client.dashboard_link
-    try:
-        with urlopen(urljoin(link, "individual-plots.json"), timeout=SECONDS_FOR_A_PAGE) as answer:
-            return link if json.load(answer) else None
-    except (OSError, ValueError):  # behind a proxy or a tunnel of the user's
-        return link or None
-
-
-def check_versions(client: Client, words: str) -> None:
-    ours, remedy = version(), "install the same there: pip install 'pzt-ident[cluster]'"
-    for address, theirs in client.run(version, on_error="return").items():
-        if theirs != ours:
-            problem = f"{theirs} there, {ours} here" if isinstance(theirs, str) else "pzt-ident is not installed there"
-            raise InputError(f"worker {address}: {problem}", where=f"--on {words}", remedy=remedy)
-
-
-def version() -> str:
-    return f"pzt-ident {version_of('pzt-ident')} on Python {'.'.join(platform.python_version_tuple()[:2])}"
 
 
 _alone = Lock()

@@ -16,7 +16,7 @@ import measured
 from experiments.fleet.cluster import TCP
 from pzt_ident.errors import InputError, LostError
 from pzt_ident.job.schema import load_job
-from pzt_ident.run.cluster import Session, joined
+from pzt_ident.run.cluster import Session
 from pzt_ident.run.identify import resume, run
 from pzt_ident.run.place import Local, place_of
 
@@ -115,17 +115,6 @@ def test_a_task_whose_outcome_a_living_scheduler_lost_is_sent_again(cluster, tmp
         session = Forgetful(client, "here", slow_once, (tmp_path,), lambda event: None, results.__setitem__)
         assert session.run(iter([(str(i), (i,)) for i in range(3)]), lambda: None) == {}
     assert results == {"0": 0, "1": 1, "2": 4}
-
-
-@pytest.mark.parametrize("shown", [True, False])
-def test_a_dashboard_is_named_where_there_is_one(shown):
-    told = {"scheduler_kwargs": {"dashboard": shown}, "dashboard_address": ":0", "processes": False}
-    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, **told) as cluster:
-        address = cluster.scheduler_address
-        with distributed.Client(address, set_as_default=False) as client:
-            event = joined(client, address)
-            assert event["dashboard"] == (client.dashboard_link if shown else None)
-        assert ("Dask's dashboard: http" in event["said"]) == shown
 
 
 def full(tell, number):
