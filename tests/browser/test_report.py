@@ -53,6 +53,14 @@ def test_it_opens_without_a_network_or_an_error(opened, folder):
     assert faults_of(opened) == []
 
 
+def test_its_figures_can_be_read_on_a_phone(opened):
+    opened.set_viewport_size({"width": 390, "height": 800})
+    heights = [text.bounding_box()["height"] for text in opened.locator("figure svg text").all() if text.is_visible()]
+    assert opened.evaluate("document.documentElement.scrollWidth") <= 390
+    opened.set_viewport_size({"width": 1280, "height": 800})
+    assert heights and min(heights) > 8
+
+
 def test_the_edges_of_the_noise_band_are_over_the_residual(opened):
     """Rows of the plot that have the colour of the noise floor from end to end."""
     rows = opened.evaluate(
