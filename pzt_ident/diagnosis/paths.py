@@ -144,8 +144,8 @@ def first_candidates(case: Case, first: Fit, diagnosis: Diagnosis) -> list[Candi
 
 def take_back(case: Case, first: Fit, staircase: Staircase) -> Fit | None:
     """Steps that take effects out again: those that the last model can do without, which may only have led the fit out
-    of a side minimum, such as that to which the bounds of the job had led it, and the unproven ones; or back to a
-    model whose effects are all proven, where that is better than what is then left. Returns the fit with the unproven
+    of a side minimum, such as that to which the bounds of the job had led it, and the unproven ones; or back to what is
+    proven of an earlier model, where that is better than what is then left. Returns the fit with the unproven
     ones, None where there are none beside those of the last model."""
     now, wider = staircase.end, any(step.change == WIDER for step in staircase.steps)
     steps = remove_unneeded(case, first, now, newest=0, restarted=wider) if near_noise(case, first, now) else []
@@ -174,22 +174,20 @@ def unproven_of(case: Case, first: Fit, fit: Fit, steps: Sequence[Step]) -> list
 
 
 def proven_before(case: Case, first: Fit, end: Fit, steps: Sequence[Step]) -> Fit | None:
-    """The lowest fit of the case short of the last one whose effects are all proven and which leaves clearly less than
-    the model that is left at the end; None where there is none."""
+    """What is proven of the fits of the case short of the last one: the lowest that leaves clearly less than the model
+    at the end; None where there is none."""
     since = max(number for number, step in enumerate(steps) if number == 0 or step.case)
-    lower = [
-        number
-        for number, step in enumerate(steps[:-1])
-        if number > since
-        and len(step.fit.effects) > len(end.effects)
-        and removed_rms(end.total, step.fit.total) > TIE * case.floor
-    ]
-    for number in sorted(lower, key=lambda number: steps[number].fit.total):
+    best = end
+    for number in sorted(range(since + 1, len(steps) - 1), key=lambda number: steps[number].fit.total):
+        fit = steps[number].fit
+        if removed_rms(best.total, fit.total) <= TIE * case.floor:
+            break
         if not case.budget.allows("proof of fewer effects", PROVING):
-            return None
-        if not unproven_of(case, first, steps[number].fit, steps[: number + 1]):
-            return steps[number].fit
-    return None
+            break
+        suspects = unproven_of(case, first, fit, steps[: number + 1])
+        left = suspects[-1].without if suspects else fit
+        best = left if removed_rms(best.total, left.total) > TIE * case.floor else best
+    return None if best is end else best
 
 
 def conclude(case: Case, first: Fit, staircase: Staircase) -> None:
