@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
 
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removes_enough
@@ -12,10 +16,16 @@ from pzt_ident.diagnosis.refit import refine_steps
 from pzt_ident.diagnosis.undetermined import undetermined_mechanics
 from pzt_ident.model.chain import Entry
 from pzt_ident.model.registry import word_of
+from pzt_ident.search.descent import descend
+from pzt_ident.search.problem import Problem
+
+Array = NDArray[np.float64]
 
 SLIP = 0.08  # of a bound, by which a data sheet may be beside the truth
 FAR_SLIP = 0.3  # by which it may be where nothing else is missing
 DECADES = 100.0  # times a bound on a logarithmic scale that the job does not give: a guess of where a search begins
+SCANNED = 0.82 ** np.arange(1, 15)  # of the range of a parameter that is freed
+FOLLOWING = 3  # steps
 BESIDE = 0.02  # of the range of such a guess: that close to its bound a fit is as good as on it
 
 
@@ -31,13 +41,14 @@ def beyond_bounds(case: Case, first: Fit, fit: Fit) -> tuple[Case, Fit] | None:
     """The case with wider bounds where a fit rests on bounds of the job, and the fit in it, if that removes enough;
     None where it does not. Bounds that are still too narrow then are taken further if that leads to the noise."""
     near = beyond_by(SLIP, case, first, fit)
-    far = beyond_by(FAR_SLIP, case, first, fit) if near is None or stands_in(near[0], case, near[1]) else None
+    farther = widened(case, fit, FAR_SLIP) and (near is None or stands_in(near[0], case, near[1]))
+    far = beyond_by(FAR_SLIP, case, first, fit) if farther else None
     return far if far and adequate(case, first, far[1]) and not stands_in(far[0], case, far[1]) else near
 
 
 def beyond_by(slip: float, case: Case, first: Fit, fit: Fit) -> tuple[Case, Fit] | None:
     """The same with bounds that are wider by a share of them."""
-    specs = widened(case, fit, slip)
+    specs = widened(case, fit, slip) | freed(case, fit.problem)
     if not specs:
         return None
     wide = case.with_specs(specs)
@@ -57,15 +68,31 @@ def are_decisive(case: Case, before: Fit, after: Fit) -> bool:
 def continued(wide: Case, fit: Fit) -> Fit:
     """A fit gone on with in a case with wider bounds."""
     problem = wide.problem(fit.effects, fit.steps, fit.measured_only)
-    point = wide.descend(problem, problem.unit_point(fit.values))
+    start = problem.unit_point(fixed_values(fit.problem) | fit.values)
+    new = [i for i, name in enumerate(problem.names) if name not in fit.values]
+    point = wide.descend(problem, scanned(wide, problem, start, new))
     return refine_steps(wide, fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
+
+
+def scanned(case: Case, problem: Problem, point: Array, numbers: Iterable[int]) -> Array:
+    """The point with each of some parameters where it leaves least, once the others follow by few steps."""
+    for i in numbers:
+        points = [np.where(np.arange(point.size) == i, share, point) for share in SCANNED]
+        reached = [point, *(descend(problem, each, FOLLOWING, i, case.budget.lasts) for each in points)]
+        point = reached[int(np.argmin(problem.loss(np.array(reached))))]
+    return point
 
 
 def stands_in(wide: Case, case: Case, fit: Fit) -> bool:
     """Whether a parameter rests on its wider bound too: then it makes up for something else."""
     given, problem = case.problem(fit.effects, fit.steps, fit.measured_only), fit.problem
-    ends = zip(problem.lower - given.lower, problem.upper - given.upper, fit.point, strict=True)
-    return any(rests(case, fit, i) and (low if place < 0.5 else high) != 0 for i, (low, high, place) in enumerate(ends))
+    bounds = {name: ends for name, *ends in zip(given.names, given.lower, given.upper, strict=True)}
+
+    def is_wider(i: int) -> bool:
+        side = int(fit.point[i] >= 0.5)
+        return bounds.get(problem.names[i], (None, None))[side] != (problem.lower, problem.upper)[side][i]
+
+    return any(rests(case, fit, i) and is_wider(i) for i in range(problem.dimensions))
 
 
 def widened(case: Case, fit: Fit, slip: float = SLIP) -> dict[str, Widened]:
@@ -98,6 +125,27 @@ def widened(case: Case, fit: Fit, slip: float = SLIP) -> dict[str, Widened]:
         if (low, high) != given:
             specs[key] = Widened((float(low), float(high)))
     return specs
+
+
+def freed(case: Case, problem: Problem) -> dict[str, Widened]:
+    """The declared bounds of the parameters of the job's own model that are fixed at a guess of the catalogue, such as
+    the reach of plays, and of which the job says nothing."""
+    names = zip(problem.model.names, problem.model.entries, strict=True)
+    columns = {name: column for column, (name, entry) in enumerate(names) if is_fixed_at_a_guess(case, problem, entry)}
+    return {name: Widened(problem.declared_bounds(column)) for name, column in columns.items()}
+
+
+def is_fixed_at_a_guess(case: Case, problem: Problem, entry: Entry) -> bool:
+    """Whether a parameter of the job's own model has a value of the catalogue, in units of the drive."""
+    own = entry.block.name in map(word_of, case.words) and entry.axis in problem.model.measured
+    said = any(word in case.specs for word in problem.model.spellings(entry))
+    return own and not said and bool(entry.parameter.value) and entry.parameter.unit == "drive"
+
+
+def fixed_values(problem: Problem) -> dict[str, float]:
+    """The fixed parameters of a model, by name, in the user's units."""
+    columns = (n for n in range(len(problem.model.entries)) if n not in {*problem.free, *problem.linear_columns})
+    return {problem.model.names[column]: problem.range_of(column)[0] for column in columns}
 
 
 def roomier(case: Case, fit: Fit, i: int) -> Widened | None:
@@ -142,7 +190,8 @@ def bounds_that_changed(case: Case, fit: Fit) -> dict[str, tuple[float, float]]:
         spellings = (name, *problem.model.spellings(problem.model.entries[column]))
         key = next((word for word in spellings if word in case.specs), None)
         given = case.specs[key].bounds if key else problem.declared_bounds(int(column))
-        is_new = key is None and problem.model.entries[column].axis not in problem.model.measured
+        entry = problem.model.entries[column]
+        is_new = key is None and (entry.axis not in problem.model.measured or entry.parameter.value is not None)
         if is_new or (given and tuple(given) != (low, high)):
             changed[key or name] = (float(low), float(high))
     return changed
@@ -153,7 +202,7 @@ def brought_back(case: Case, fit: Fit) -> Fit | None:
     problem = case.problem(fit.effects, fit.steps, fit.measured_only)
     values = fit.values
     inside = zip(problem.names, problem.lower, problem.upper, strict=True)
-    if not all(low <= values[name] <= high for name, low, high in inside):
+    if freed_sentence(case, fit) or not all(low <= values[name] <= high for name, low, high in inside):
         return None
     return fit_at(fit.effects, problem, problem.unit_point(values), fit.converged, fit.measured_only)
 
@@ -170,4 +219,15 @@ def narrow_bounds_sentence(case: Case, fit: Fit) -> str:
         named = any(word in case.specs for word in given.model.spellings(given.model.entries[given.free[i]]))
         whose = "in the job, which is too narrow" if named else "by default: give it bounds in the job"
         text += f" {name} is {value:.4g}{unit}, beyond its bound of {bound:.4g}{unit} {whose}."
+    return text + freed_sentence(case, fit)
+
+
+def freed_sentence(case: Case, fit: Fit) -> str:
+    """A sentence about each parameter that a fit has free and the catalogue fixes; empty where there is none."""
+    given = case.problem(fit.effects, fit.steps, fit.measured_only)
+    guesses, units, text = fixed_values(given), dict(zip(fit.problem.names, fit.problem.units, strict=True)), ""
+    for name in (name for name in freed(case, given) if name in fit.values):
+        unit = f" {units[name]}".removesuffix(" 1")
+        text += f" {name} is {fit.values[name]:.4g}{unit}, not {guesses[name]:.4g}{unit} as by default: "
+        text += "give it bounds in the job."
     return text

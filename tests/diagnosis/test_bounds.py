@@ -17,6 +17,7 @@ from pzt_ident.diagnosis.bounds import (
     bounds_that_changed,
     brought_back,
     continued,
+    freed,
     narrow_bounds_sentence,
     stands_in,
     widened,
@@ -319,3 +320,36 @@ def test_another_effect_that_is_adequate_beyond_a_bound_of_the_job_is_gone_on_wi
     monkeypatch.setattr(staircase, "beyond_bounds", lambda case, first, fit: (case, wide) if fit is other else None)
     found = bounds_beside(case, first, SimpleNamespace(candidates=passing, passing=passing))
     assert found == ((case, wide) if taken else None)
+
+
+WEIGHTS = {f"prandtl_ishlinskii.weight_{i + 1}": 4e-9 for i in range(8)}
+PLAYS = {"prandtl_ishlinskii.gain": 5e-8, "prandtl_ishlinskii.reach": 30.0} | WEIGHTS  # m/V, V
+
+
+@pytest.mark.parametrize("effect", [None, "quadratic_gain", "amplifier_lag"])
+def test_a_value_that_the_catalogue_guesses_is_freed_before_an_effect_makes_up_for_it(effect):
+    model = ("prandtl_ishlinskii",)
+    case = stage.case(PLAYS | stage.EFFECTS.get(effect, {}), model=model)
+    case = stage.considering(case, "quadratic_gain", "amplifier_lag", "distributed_memory", "friction")
+    first = first_fit(case, 0)
+    assert "prandtl_ishlinskii.reach" not in first.values and not adequate(case, first, first)
+    found = improve(case, first)
+    assert found.last.verdict == "adequate"
+    assert found.end.values["prandtl_ishlinskii.reach"] == pytest.approx(30, rel=0.05)
+    assert [*map(word_of, found.end.effects)] == ([effect] if effect else [])
+    assert [step.change for step in found.steps if step.change] == [WIDER]
+    assert "prandtl_ishlinskii.reach" in bounds_that_changed(case, found.end)
+    assert "V, not 60 V as by default: give it bounds in the job." in narrow_bounds_sentence(case, found.end)
+
+
+def test_a_value_that_the_job_gives_is_not_freed():
+    case = stage.case(PLAYS, {"prandtl_ishlinskii.reach": 60.0}, model=("prandtl_ishlinskii",))
+    assert freed(case, case.problem(())) == {}
+
+
+def test_a_model_with_a_value_freed_is_not_that_of_the_job():
+    case = stage.case(PLAYS, model=("prandtl_ishlinskii",))
+    wide = case.with_specs(freed(case, case.problem(())))
+    fit = continued(wide, first_fit(case, 0))
+    assert brought_back(case, fit) is None and not stands_in(wide, case, fit)
+    assert narrow_bounds_sentence(wide, fit) == "" and bounds_that_changed(wide, fit) == {}
