@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pzt_ident.diagnosis.bounds import continued, stands_in, widened
+from pzt_ident.diagnosis.bounds import continued, freed, stands_in, widened
 from pzt_ident.diagnosis.budget import PROVING, WHOLE
 from pzt_ident.diagnosis.candidates import Candidate
 from pzt_ident.diagnosis.case import Case
@@ -99,12 +99,16 @@ def exchange_for_bounds(case: Case, first: Fit, now: Fit) -> list[Step]:
     """The steps to wider bounds and from the effect that made up for them, where a model near the noise rests on bounds
     of the job and fits as well beyond them without one of its effects."""
     added = now.effects[len(first.effects) :]
-    specs = widened(case, now) if added and near_noise(case, first, now) else {}
+    free = freed(case, now.problem)
+    specs = widened(case, now) | free if added and near_noise(case, first, now) else {}
     if not specs or not case.budget.allows("wider bounds", WHOLE):
         return []
     wide = case.with_specs(specs)
     for effect in reversed(added):
         beyond = refit(wide, now, effects_without(now, effect), {})
+        if free:
+            without = continued(wide, refit(case, now, effects_without(now, effect), {}))
+            beyond = min(beyond, without, key=lambda fit: fit.total)
         if removed_rms(beyond.total, now.total) < TIE * case.floor and not stands_in(wide, case, beyond):
             both = continued(wide, now)
             return [

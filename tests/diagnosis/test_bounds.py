@@ -29,6 +29,7 @@ from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.paths import exchange_for_bounds, improve_within
 from pzt_ident.diagnosis.refit import refit
+from pzt_ident.diagnosis.score import scorer_of
 from pzt_ident.diagnosis.staircase import bounds_beside, improve, is_cheaper
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step
@@ -353,3 +354,13 @@ def test_a_model_with_a_value_freed_is_not_that_of_the_job():
     fit = continued(wide, first_fit(case, 0))
     assert brought_back(case, fit) is None and not stands_in(wide, case, fit)
     assert narrow_bounds_sentence(wide, fit) == "" and bounds_that_changed(wide, fit) == {}
+
+
+def test_a_memory_that_makes_up_for_a_value_that_the_catalogue_guesses_is_exchanged_for_it():
+    case, memory = stage.case(PLAYS, model=("prandtl_ishlinskii",)), "distributed_memory.fine_plays"
+    first = first_fit(case, 0)
+    finer = refit(case, first, (memory,), scorer_of(case, first).score(memory).guess)
+    assert adequate(case, first, finer)
+    steps = exchange_for_bounds(case, first, finer)
+    assert [(step.change, step.removed) for step in steps] == [(WIDER, None), ("", memory)]
+    assert steps[-1].fit.values["prandtl_ishlinskii.reach"] == pytest.approx(30, rel=0.05)
