@@ -202,7 +202,7 @@ def brought_back(case: Case, fit: Fit) -> Fit | None:
     problem = case.problem(fit.effects, fit.steps, fit.measured_only)
     values = fit.values
     inside = zip(problem.names, problem.lower, problem.upper, strict=True)
-    if freed_sentence(case, fit) or not all(low <= values[name] <= high for name, low, high in inside):
+    if freed_names(case, fit) or not all(low <= values[name] <= high for name, low, high in inside):
         return None
     return fit_at(fit.effects, problem, problem.unit_point(values), fit.converged, fit.measured_only)
 
@@ -222,11 +222,16 @@ def narrow_bounds_sentence(case: Case, fit: Fit) -> str:
     return text + freed_sentence(case, fit)
 
 
+def freed_names(case: Case, fit: Fit) -> list[str]:
+    """The parameters that a fit has free and the catalogue fixes by a guess."""
+    return [name for name in freed(case, case.problem(fit.effects, fit.steps, fit.measured_only)) if name in fit.values]
+
+
 def freed_sentence(case: Case, fit: Fit) -> str:
-    """A sentence about each parameter that a fit has free and the catalogue fixes; empty where there is none."""
-    given = case.problem(fit.effects, fit.steps, fit.measured_only)
-    guesses, units, text = fixed_values(given), dict(zip(fit.problem.names, fit.problem.units, strict=True)), ""
-    for name in (name for name in freed(case, given) if name in fit.values):
+    """A sentence about each of these; empty where there is none."""
+    guesses = fixed_values(case.problem(fit.effects, fit.steps, fit.measured_only))
+    units, text = dict(zip(fit.problem.names, fit.problem.units, strict=True)), ""
+    for name in freed_names(case, fit):
         unit = f" {units[name]}".removesuffix(" 1")
         text += f" {name} is {fit.values[name]:.4g}{unit}, not {guesses[name]:.4g}{unit} as by default: "
         text += "give it bounds in the job."

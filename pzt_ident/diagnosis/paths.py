@@ -97,18 +97,14 @@ def finish(case: Case, first: Fit, path: Staircase) -> Fit | None:
 
 def exchange_for_bounds(case: Case, first: Fit, now: Fit) -> list[Step]:
     """The steps to wider bounds and from the effect that made up for them, where a model near the noise rests on bounds
-    of the job and fits as well beyond them without one of its effects."""
+    of the job, or has a value that the catalogue guesses, and fits as well beyond these without one of its effects."""
     added = now.effects[len(first.effects) :]
-    free = freed(case, now.problem)
-    specs = widened(case, now) | free if added and near_noise(case, first, now) else {}
+    specs = widened(case, now) | freed(case, now.problem) if added and near_noise(case, first, now) else {}
     if not specs or not case.budget.allows("wider bounds", WHOLE):
         return []
     wide = case.with_specs(specs)
     for effect in reversed(added):
-        beyond = refit(wide, now, effects_without(now, effect), {})
-        if free:
-            without = continued(wide, refit(case, now, effects_without(now, effect), {}))
-            beyond = min(beyond, without, key=lambda fit: fit.total)
+        beyond = continued(wide, refit(case, now, effects_without(now, effect), {}))
         if removed_rms(beyond.total, now.total) < TIE * case.floor and not stands_in(wide, case, beyond):
             both = continued(wide, now)
             return [
