@@ -104,7 +104,9 @@ def exchange_for_bounds(case: Case, first: Fit, now: Fit) -> list[Step]:
         return []
     wide = case.with_specs(specs)
     for effect in reversed(added):
-        beyond = continued(wide, refit(case, now, effects_without(now, effect), {}))
+        others = effects_without(now, effect)
+        fits = refit(wide, now, others, {}), continued(wide, refit(case, now, others, {}))
+        beyond = min(fits, key=lambda fit: fit.total)
         if removed_rms(beyond.total, now.total) < TIE * case.floor and not stands_in(wide, case, beyond):
             both = continued(wide, now)
             return [
