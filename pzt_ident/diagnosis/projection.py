@@ -13,10 +13,9 @@ Array = NDArray[np.float64]
 
 NEGLIGIBLE = 1e-7  # of the largest singular value: directions below are rounding
 ROUNDING = 1e-12  # of a signal
-MOST_EXCHANGES = 12  # of bounds, all at once
 OVERSHOOT = 1e-9  # of its range, by which a parameter may pass its bound
 ALIKE = 1e-14  # of the largest inner product: traces that differ by less are one
-STRETCH = 2048  # samples that are projected at once
+LOST = 1e-8  # of the square of a trace: so little outside is told by taking away what is inside, not from squares
 
 
 @dataclass(frozen=True)
@@ -42,13 +41,13 @@ class Split:
 @dataclass(frozen=True)
 class Sets:
     """Sets of traces beside a signal. signals: (sets, 1, ...), and traces: (sets, count, ...), what is outside rotated
-    together into a few rows for each set: norms and inner products stay, to half the digits. signal: as it is; outside:
-    of the traces, (sets, count, samples)."""
+    together into a few rows for each set: norms and inner products stay, to half the digits. whole: the traces as they
+    are, (sets, count, samples)."""
 
+    projection: Projection
     signals: Split
     traces: Split
-    signal: Split
-    outside: Array
+    whole: Array
 
     @cached_property
     def least(self) -> Array:
@@ -62,10 +61,9 @@ class Sets:
 
     def exact(self, number: int) -> tuple[Split, Split]:
         """The signal and a set of traces, what is outside rotated together to all digits."""
-        columns = np.vstack([self.outside[number], self.signal.outside]).T
-        triangle = np.asarray(np.linalg.qr(columns, mode="r"))
-        inside = self.traces.inside[number]
-        return Split(self.signal.inside, triangle[:, -1:].T), Split(inside, triangle[:, :-1].T)
+        signal, traces = self.projection.signal, self.projection.split(self.whole[number])
+        triangle = np.asarray(np.linalg.qr(np.vstack([traces.outside, signal.outside]).T, mode="r"))
+        return Split(signal.inside, triangle[:, -1:].T), Split(traces.inside, triangle[:, :-1].T)
 
 
 class Projection:
@@ -73,10 +71,11 @@ class Projection:
 
     jacobian: (samples, free), derivatives over the unit cube. point: (free,), from which parameter i may step from
     -point[i] to 1 - point[i]. Where all steps stay within, what remains of a signal is its orthogonal projection; a
-    parameter on its bound, or one that the data hardly move, cannot go as far as that would take it.
+    parameter on its bound, or one that the data hardly move, cannot go as far as that would take it. signal: (samples,),
+    which traces are to take away, or such that are near it.
     """
 
-    def __init__(self, jacobian: Array, point: Array) -> None:
+    def __init__(self, jacobian: Array, point: Array, signal: Array) -> None:
         norms = np.linalg.norm(jacobian, axis=0)
         scales = np.where(norms > 0, norms, 1)
         u, s, vt = np.linalg.svd(jacobian / scales, full_matrices=False)
@@ -85,38 +84,51 @@ class Projection:
         self._steps = (vt[kept].T / s[kept]) / scales[:, None]  # (free, kept): basis coefficients to parameter steps
         self._responses = s[kept, None] * vt[kept] * scales  # (kept, free): parameter steps to basis coefficients
         self._least, self._most = np.minimum(-point, 0), np.maximum(1 - point, 0)
+        self.signal, self._begin = self.split(signal[None]), np.zeros(point.size)
+        self._begin = self._within(self.signal.inside[0])
 
     def split(self, signals: Array) -> Split:
         """Of signals, (signals, samples)."""
         inside = signals @ self._basis
         return Split(inside, signals - inside @ self._basis.T)
 
-    def split_sets(self, signal: Split, traces: Array, count: int) -> Sets:
-        """Sets of so many traces, (sets * count, samples), beside one signal; what is inside of the traces is taken
-        away in place."""
-        inside = traces @ self._basis
-        products = np.zeros((len(traces) // count, 1 + count, 1 + count))
-        for first in range(0, traces.shape[1], STRETCH):
-            at = slice(first, first + STRETCH)
-            outside = traces[:, at]
-            outside -= inside @ self._basis[at].T
-            both = np.empty((*products.shape[:2], outside.shape[1]))
-            both[:, 0], both[:, 1:] = signal.outside[0, at], outside.reshape(-1, count, outside.shape[1])
-            products += both @ both.swapaxes(1, 2)
+    def split_sets(self, traces: Array, count: int) -> Sets:
+        """Sets of so many traces, (sets * count, samples), beside the signal."""
+        whole, inside = traces.reshape(-1, count, traces.shape[1]), (traces @ self._basis).reshape(-1, count, len(self._responses))
+        outside = self.signal.outside[0]
+        products = np.empty((len(whole), 1 + count, 1 + count))
+        products[:, 0, 0], products[:, 1:, 0] = outside @ outside, whole @ outside
+        squares = whole @ whole.swapaxes(1, 2)
+        products[:, 1:, 1:] = squares - inside @ inside.swapaxes(1, 2)
+        products[:, 0, 1:] = products[:, 1:, 0]
+        for number in lost(products[:, 1:, 1:], squares):
+            both = np.vstack([outside, self.split(whole[number]).outside])
+            products[number] = both @ both.T
         rows = rows_of(products)
-        alone = np.broadcast_to(signal.inside, (len(rows), *signal.inside.shape))
-        short = Split(alone, rows[:, :1]), Split(inside.reshape(-1, count, inside.shape[1]), rows[:, 1:])
-        return Sets(*short, signal, traces.reshape(-1, count, traces.shape[1]))
+        alone = np.broadcast_to(self.signal.inside, (len(rows), *self.signal.inside.shape))
+        return Sets(self, Split(alone, rows[:, :1]), Split(inside, rows[:, 1:]), whole)
 
     def left(self, signals: Split) -> Array:
         """Norms of what is left of signals at best: (signals,)."""
-        beside = np.array([np.linalg.norm(self._left_inside(inside)) for inside in signals.inside])
-        return np.hypot(beside, signals.norms_outside)
+        return np.hypot(self._norms_left(signals.inside), signals.norms_outside)
+
+    def left_of(self, signals: Array) -> Array:
+        """The same of signals as they are, (signals, samples), to half the digits."""
+        inside = signals @ self._basis
+        outside = np.einsum("ij,ij->i", signals, signals) - np.einsum("ij,ij->i", inside, inside)
+        return np.sqrt(self._norms_left(inside) ** 2 + np.maximum(outside, 0))
+
+    def _norms_left(self, inside: Array) -> Array:
+        return np.array([np.linalg.norm(self._left_inside(signal)) for signal in inside])
 
     def _left_inside(self, inside: Array) -> Array:
         if self._reachable(-self._steps @ inside):
             return np.zeros(0)
-        return inside + self._responses @ bounded(self._responses, inside, self._least, self._most)
+        return inside + self._responses @ self._within(inside)
+
+    def _within(self, inside: Array) -> Array:
+        """The steps within the bounds that take most of a signal away."""
+        return bounded(self._responses, inside, self._least, self._most, self._begin)
 
     def fit(
         self, signal: Split, traces: Split, one_sided: NDArray[np.bool_], least: float = np.inf
@@ -133,7 +145,7 @@ class Projection:
         low = np.concatenate([self._least, np.where(one_sided, 0, -np.inf)])
         high = np.concatenate([self._most, np.full(one_sided.size, np.inf)])
         wanted = np.concatenate([inside, target])
-        steps = bounded(both, wanted, low, high)
+        steps = bounded(both, wanted, low, high, np.concatenate([self._begin, np.zeros(one_sided.size)]))
         return steps[self._least.size :], float(np.linalg.norm(wanted + both @ steps))
 
     def _reachable(self, steps: Array) -> bool:
@@ -153,61 +165,51 @@ def _amounts(traces: Array, signal: Array, one_sided: NDArray[np.bool_]) -> Arra
     amounts = np.asarray(np.linalg.lstsq(traces, -signal, rcond=1e-8)[0])
     if not (one_sided & (amounts < 0)).any():
         return amounts
-    return bounded(traces, signal, np.where(one_sided, 0, -np.inf), np.full(one_sided.size, np.inf))
+    low, high = np.where(one_sided, 0, -np.inf), np.full(one_sided.size, np.inf)
+    return bounded(traces, signal, low, high, np.zeros(one_sided.size))
 
 
-def bounded(matrix: Array, target: Array, least: Array, most: Array) -> Array:
-    """Steps x, least <= 0 <= most, that leave least of target + matrix x: by exchanges of all bounds at once
-    where these settle, else of one. Never more is left than without a step, however ill-conditioned the matrix."""
+def lost(outside: Array, whole: Array) -> Array:
+    """Numbers of the sets, by inner products (sets, traces, traces), of which a trace has too little outside."""
+    least = LOST * np.einsum("scc->sc", whole)
+    return np.flatnonzero((np.einsum("scc->sc", outside) < least).any(axis=1))
+
+
+def bounded(matrix: Array, target: Array, low: Array, high: Array, begin: Array) -> Array:
+    """Steps x, low <= x <= high, that leave least of target + matrix x, by active sets (Nocedal & Wright 2006, algorithm
+    16.3) from steps within, of which those on a bound are held at first. Never more is left than with these, however
+    ill-conditioned the matrix."""
     norms = np.linalg.norm(matrix, axis=0)
     scales = np.where(norms > 0, norms, 1)
-    box = (matrix / scales, target, least * scales, most * scales)
-    x = exchanged_together(*box)
-    return (exchanged_singly(*box) if x is None else x) / scales
+    return np.clip(exchanged(matrix / scales, target, low * scales, high * scales, begin * scales) / scales, low, high)
 
 
-def exchanged_together(matrix: Array, target: Array, low: Array, high: Array) -> Array | None:
-    """The steps by block pivoting (Portugal, Judice & Vicente 1994, Math. Comp. 63, 625); None where it does not
-    settle, as where a set of free steps comes back."""
-    x, free, seen = np.zeros(low.size), low < high, set[bytes]()
-    while len(seen) < MOST_EXCHANGES and free.tobytes() not in seen:
-        seen.add(free.tobytes())
-        beside = target + matrix[:, ~free] @ x[~free]
-        x[free] = np.linalg.lstsq(matrix[:, free], -beside, rcond=ROUNDING)[0]
-        beyond = free & ((x < low) | (x > high))
-        x = np.clip(x, low, high)
-        pull = pull_inward(matrix, target, x, low, high)
-        back = ~free & (low < high) & (pull > ROUNDING * np.linalg.norm(target))
-        if not (beyond | back).any():
-            return x if np.linalg.norm(target + matrix @ x) <= np.linalg.norm(target) else None
-        free = free & ~beyond | back
-    return None
-
-
-def exchanged_singly(matrix: Array, target: Array, low: Array, high: Array) -> Array:
-    """The steps by active sets from x = 0 (Nocedal & Wright 2006, algorithm 16.3)."""
-    x, free = np.zeros(low.size), low < high
+def exchanged(matrix: Array, target: Array, low: Array, high: Array, x: Array) -> Array:
+    """The steps, from x on, where all columns are of one size."""
+    free = (x > low) & (x < high)
+    least, left = ROUNDING * np.linalg.norm(target), target + matrix @ x
     for _ in range(10 * low.size):
-        left = target + matrix @ x
         step = np.zeros(low.size)
         step[free] = np.linalg.lstsq(matrix[:, free], -left, rcond=ROUNDING)[0]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            room = np.where(step > 0, (high - x) / step, np.where(step < 0, (low - x) / step, np.inf))
+        room = room_along(step, x, low, high)
         nearest = int(np.argmin(room))
         if room[nearest] < 1:
             x = np.clip(x + room[nearest] * step, low, high)
             x[nearest] = high[nearest] if step[nearest] > 0 else low[nearest]
             free[nearest] = False
+            left = target + matrix @ x
             continue
         x = np.clip(x + step, low, high)
-        pull = np.where(free | (high <= low), 0, pull_inward(matrix, target, x, low, high))
-        if not pull.max(initial=0) > ROUNDING * np.linalg.norm(target):
+        left = target + matrix @ x
+        gradient = matrix.T @ left
+        pull = np.where(free | (high <= low), 0, np.where(x >= high, gradient, -gradient))
+        if not pull.max(initial=0) > least:
             break
         free[np.argmax(pull)] = True
     return x
 
 
-def pull_inward(matrix: Array, target: Array, x: Array, low: Array, high: Array) -> Array:
-    """By how much the sum of squares falls along each step that rests on its bound, as that leaves it; 0 for others."""
-    gradient = matrix.T @ (target + matrix @ x)
-    return np.where(x >= high, gradient, np.where(x <= low, -gradient, 0))
+def room_along(step: Array, x: Array, low: Array, high: Array) -> Array:
+    """The multiples of each step after which its bound is reached."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(step > 0, (high - x) / step, np.where(step < 0, (low - x) / step, np.inf))

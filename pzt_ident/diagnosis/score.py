@@ -93,11 +93,10 @@ class Scorer:
 
     def __init__(self, case: Case, fit: Fit) -> None:
         self.case, self.fit = case, fit
-        self.projection = Projection(fit.problem.jacobian(fit.point), fit.point)
         self.followed = fit.problem.tangent(fit.point, sampled=True), fit.problem.held(fit.point)
         self.residual = fit.problem.along(*self.followed).residuals(fit.point)[0]
-        self.split = self.projection.split(self.residual[None])
-        self.left = float(self.projection.left(self.split)[0])
+        self.projection = Projection(fit.problem.jacobian(fit.point), fit.point, self.residual)
+        self.left = float(self.projection.left(self.projection.signal)[0])
         self.misfit = squared_misfit(case, fit)
         self._scores: dict[str, Score] = {}
 
@@ -152,7 +151,7 @@ class Scorer:
             for number, trial in enumerate(trials):
                 traces = sets.traces[number]
                 norm = traces.norms.max()
-                if norm > LEAST_TRACE * self.split.norms[0]:
+                if norm > LEAST_TRACE * self.projection.signal.norms[0]:
                     place = (trial.size, -float(traces.norms_outside.max() / norm))
                     order, clearest = (place, traces) if place < order else (order, clearest)
                 if trial.size == max(blocks[effect].sizes):
@@ -163,7 +162,10 @@ class Scorer:
                 if sets.least[number] >= least:
                     break
                 trial = trials[number]
-                amounts, left = self.projection.fit(*sets.exact(number), trial.one_sided(problem), least)
+                one_sided = trial.one_sided(problem)
+                if self.projection.fit(sets.signals[number], sets.traces[number], one_sided, least)[1] >= least:
+                    continue
+                amounts, left = self.projection.fit(*sets.exact(number), one_sided, least)
                 if self.explained(left) > score.explained:
                     score.explained, least = self.explained(left), left
                     guesses = [self._guess(problem, trial, scales) for scales in scales_of(amounts)]
@@ -195,7 +197,7 @@ class Scorer:
     def _left(self, problem: Problem, physical: Array) -> Array:
         """Norms of the residuals that are left at points (candidates, free) in the user's units, simulated and not
         linearised: (candidates,)."""
-        return self.projection.left(self.projection.split(self._residuals(problem, physical)))
+        return self.projection.left_of(self._residuals(problem, physical))
 
     def _trials(self, problem: Problem, planned: Iterable[Trial]) -> Iterator[tuple[list[Trial], Sets]]:
         """Trials side by side, and beside the residual the changes of the response by the steps of each, one of each
@@ -212,7 +214,7 @@ class Scorer:
             if whole.any():
                 traces = residuals if whole.all() else residuals[np.repeat(whole, count)]
                 traces -= self.residual
-                sets = self.projection.split_sets(self.split, traces, count)
+                sets = self.projection.split_sets(traces, count)
                 yield [trial for trial, kept in zip(batch, whole, strict=True) if kept], sets
 
     def _residuals(self, problem: Problem, physical: Array) -> Array:
