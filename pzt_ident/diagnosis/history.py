@@ -28,7 +28,7 @@ HISTORY = "history"  # the word of the block
 BEFORE = "what was before the records"  # the step after which a model follows it
 ALIKE = ("drift",)  # a memory that fades slowly from what was before, in each record from another place, is one
 TRIED = 3  # effects beside which it is looked for
-PROMISING = 0.02  # of the misfit: what is removed at once, with all parameters as they are
+PROMISING = 0.1  # of the misfit: what is removed at once, with all parameters as they are
 
 
 def with_history(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fit] | None:
