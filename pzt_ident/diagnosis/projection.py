@@ -71,8 +71,8 @@ class Projection:
 
     jacobian: (samples, free), derivatives over the unit cube. point: (free,), from which parameter i may step from
     -point[i] to 1 - point[i]. Where all steps stay within, what remains of a signal is its orthogonal projection; a
-    parameter on its bound, or one that the data hardly move, cannot go as far as that would take it. signal: (samples,),
-    which traces are to take away, or such that are near it.
+    parameter on its bound, or one that the data hardly move, cannot go as far as that would take it. signal:
+    (samples,), what traces are to take away.
     """
 
     def __init__(self, jacobian: Array, point: Array, signal: Array) -> None:
@@ -94,8 +94,8 @@ class Projection:
 
     def split_sets(self, traces: Array, count: int) -> Sets:
         """Sets of so many traces, (sets * count, samples), beside the signal."""
-        whole, inside = traces.reshape(-1, count, traces.shape[1]), (traces @ self._basis).reshape(-1, count, len(self._responses))
-        outside = self.signal.outside[0]
+        whole, outside = traces.reshape(-1, count, traces.shape[1]), self.signal.outside[0]
+        inside = (traces @ self._basis).reshape(-1, count, len(self._responses))
         products = np.empty((len(whole), 1 + count, 1 + count))
         products[:, 0, 0], products[:, 1:, 0] = outside @ outside, whole @ outside
         squares = whole @ whole.swapaxes(1, 2)
@@ -169,16 +169,16 @@ def _amounts(traces: Array, signal: Array, one_sided: NDArray[np.bool_]) -> Arra
     return bounded(traces, signal, low, high, np.zeros(one_sided.size))
 
 
-def lost(outside: Array, whole: Array) -> Array:
+def lost(outside: Array, whole: Array) -> NDArray[np.intp]:
     """Numbers of the sets, by inner products (sets, traces, traces), of which a trace has too little outside."""
     least = LOST * np.einsum("scc->sc", whole)
     return np.flatnonzero((np.einsum("scc->sc", outside) < least).any(axis=1))
 
 
 def bounded(matrix: Array, target: Array, low: Array, high: Array, begin: Array) -> Array:
-    """Steps x, low <= x <= high, that leave least of target + matrix x, by active sets (Nocedal & Wright 2006, algorithm
-    16.3) from steps within, of which those on a bound are held at first. Never more is left than with these, however
-    ill-conditioned the matrix."""
+    """Steps x, low <= x <= high, that leave least of target + matrix x, by active sets (Nocedal & Wright 2006,
+    algorithm 16.3) from steps within, of which those on a bound are held at first. Never more is left than with these,
+    however ill-conditioned the matrix."""
     norms = np.linalg.norm(matrix, axis=0)
     scales = np.where(norms > 0, norms, 1)
     return np.clip(exchanged(matrix / scales, target, low * scales, high * scales, begin * scales) / scales, low, high)
