@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -131,6 +132,16 @@ class Record:
         """The drive of each axis at which the stage rests at first."""
         given = self.rest_at or (None,) * len(self.drive)
         return [float(drive[0]) if level is None else level for level, drive in zip(given, self.drive, strict=False)]
+
+    @cached_property
+    def spans(self) -> list[float]:
+        """Largest less least drive of each axis."""
+        return [float(np.ptp(drive)) for drive in self.drive]
+
+    @cached_property
+    def peaks(self) -> list[float]:
+        """The largest drive of each axis, of either sign."""
+        return [float(np.abs(drive).max()) for drive in self.drive]
 
     @property
     def measured(self) -> tuple[int, ...]:

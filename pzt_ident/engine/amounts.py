@@ -149,8 +149,7 @@ def size_of(record: Record, entry: Entry) -> float:
     """What the bounds of an amount are multiples of: the drive's span or largest value, or the span of the response
     that is scored, the zero of which means nothing."""
     if entry.parameter.unit == "drive":
-        drive = record.drive[entry.axis]
-        return float(max(np.ptp(drive), np.abs(drive).max()))
+        return max(record.spans[entry.axis], record.peaks[entry.axis])
     return float(np.ptp(record.response[entry.axis, record.settle :]))
 
 

@@ -228,14 +228,13 @@ class Program:
 
     def _known(self, block: type[Block], axis: int) -> dict[str, float]:
         """What `prepare` may ask for besides the parameters of the model."""
-        drive, level = self.record.drive[axis], self.record.levels[axis]
+        record = self.record
         nulls = {p.name: p.null for p in block.parameters().values() if p.null is not None}
-        span, peak = float(np.ptp(drive)), float(max(np.abs(drive).max(), abs(level)))
-        duration = self.record.dt * (self.record.samples - 1)
-        known = {"dt": self.record.dt / self.substeps, "span": span, "peak": peak, "duration": duration}
+        peak, duration = max(record.peaks[axis], abs(record.levels[axis])), record.dt * (record.samples - 1)
+        known = {"dt": record.dt / self.substeps, "span": record.spans[axis], "peak": peak, "duration": duration}
         known |= {"from_rest": float(self.model.from_rest), "lead": float(self.model.lead * self.substeps)}
         if issubclass(block, Addition):
-            known |= {"_first": self.lead, "_start": self.record.start, "_dt": self.record.dt}
+            known |= {"_first": self.lead, "_start": record.start, "_dt": record.dt}
         return nulls | block.numbers() | known
 
     def _weigh(self, block: type[Modes], mode: int, row: int) -> int:

@@ -97,7 +97,7 @@ def check_drive(problem: Identification, identify: list[Record]) -> None:
         if entry.word in entry.block.compared_with_drive:
             unit = problem.all_units[column]
             low, high = problem.range_of(column)
-            span = max(float(np.ptp(record.drive[entry.axis])) for record in identify) / factor(unit)
+            span = max(record.spans[entry.axis] for record in identify) / factor(unit)
             if not SMALL * span < high or not low < LARGE * span:
                 raise _out_of_reach(entry.name, unit, low, high, span)
 

@@ -42,7 +42,7 @@ def size_of(model: Chain, entry: Entry, records: Sequence[Record]) -> float:
     Raises InputError where the unit names a drive that is constant.
     """
     spans = {
-        "drive": max(float(np.ptp(record.drive[entry.axis])) for record in records),
+        "drive": max(record.spans[entry.axis] for record in records),
         "response": max(float(np.ptp(record.response[entry.axis])) for record in records),
         "first": max(float(np.ptp(record.response[model.measured[0]])) for record in records),
     }

@@ -174,7 +174,7 @@ def main_frequency(drive: Array, dt: float) -> float:
 def amplitude_of(records: Sequence[Record], axis: int) -> dict[str, Any]:
     """The largest span of a drive."""
     unit = records[0].drive_units[axis]
-    span = max(float(np.ptp(record.drive[axis])) for record in records)
+    span = max(record.spans[axis] for record in records)
     return {"value": span / factor(unit), "unit": printed_unit(unit)}
 
 
