@@ -64,35 +64,34 @@ class Candidate:
 
 def score_all(case: Case, first: Fit, before: Fit, scorer: Scorer, in_every_form: bool = True) -> list[Candidate]:
     """Every effect that can be added to the model, with the scores of its forms; beside the model as given all of them,
-    beside other effects those that the budget suffices for. Of an adequate model the first forms: what they are far
-    from, no other form shows. Where the first form of an effect explains nearly all, other forms of it and of its
-    look-alikes only."""
-    share = PROVING if adequate(case, first, before) else WHOLE
+    beside other effects those that the budget suffices for, of other forms while it is for exploring: what scores best
+    is still to be refitted. Of an adequate model the first forms: what they are far from, no other form shows. Where
+    the first form of an effect explains nearly all, other forms of it and of its look-alikes only."""
     words, candidates = applicable(case, before.effects), dict[str, Candidate]()
 
-    def allowed(word: str) -> bool:
+    def allowed(word: str, share: float) -> bool:
         return before is first or case.budget.allows("the scores of all effects", share)
 
-    def scored(some: Sequence[str], in_every_form: bool) -> Iterator[str]:
+    def scored(some: Sequence[str], share: float, in_every_form: bool) -> Iterator[str]:
         scores_of = partial(scorer.scores, in_every_form=in_every_form)
-        for scores in side_by_side(scores_of, filter(allowed, some)):
+        for scores in side_by_side(scores_of, filter(partial(allowed, share=share), some)):
             candidates[word_of(scores[0].effect)] = Candidate.of(scores)
             yield word_of(scores[0].effect)
 
-    for done, word in enumerate(scored(words, False), 1):
+    for done, word in enumerate(scored(words, PROVING if adequate(case, first, before) else WHOLE, False), 1):
         facts = {"effect": word, "explained": candidates[word].score.explained}
         case.on_event({"event": "scored", **facts, "done": done, "of": len(words)})
     if in_every_form and (before is first or not adequate(case, first, before)):
-        list(scored(worth_other_forms(candidates), True))
+        list(scored(worth_other_forms(candidates), EXPLORING, True))
     return list(candidates.values())
 
 
 def worth_other_forms(candidates: Mapping[str, Candidate]) -> list[str]:
-    """Words of the effects of which other forms may change what is found."""
-    best = max(candidates, key=lambda word: candidates[word].score.explained_in_bounds, default="")
-    if not best or candidates[best].score.explained_in_bounds < NEARLY_ALL:
-        return list(candidates)
-    return [word for word in candidates if word == best or are_look_alikes(best, word)]
+    """Words of the effects of which other forms may change what is found, those that explain most first."""
+    words = sorted(candidates, key=lambda word: -candidates[word].score.explained_in_bounds)
+    if not words or candidates[words[0]].score.explained_in_bounds < NEARLY_ALL:
+        return words
+    return [word for word in words if word == words[0] or are_look_alikes(words[0], word)]
 
 
 def least_score(case: Case, first: Fit, before: Fit) -> float:
