@@ -26,7 +26,7 @@ from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
 
-BATCH = 48  # candidates that are simulated together
+BATCH = 48  # candidates that are simulated together, of those that differ on one axis
 LEAST_TRACE = 1e-9  # of the residual: less is rounding
 LEAST_SCORE = 0.02  # of the misfit: an effect that scores less is not refitted
 KEPT = 4  # scorers
@@ -203,7 +203,8 @@ class Scorer:
         """Trials side by side, and beside the residual the changes of the response by the steps of each, one of each
         amplitude."""
         trials = list(planned)
-        batch_size = max(1, BATCH // max(1, len(trials[0].amplitudes))) if trials else 1
+        axes = [problem.model.entries[problem.free[i]].axis for i in trials[0].amplitudes] if trials else []
+        batch_size = max(1, BATCH // max(map(axes.count, axes), default=1))
         for first in range(0, len(trials), batch_size):
             batch = trials[first : first + batch_size]
             stepped = [trial.stepped(problem, trials[0].start) for trial in batch]
