@@ -27,6 +27,7 @@ AGREEMENT = 0.01  # of the loss, between the two best minima
 ENOUGH = 12  # minima that agree: a model that is not adequate is fitted from more points than lead to two, until then
 ON_STARTS = 0.1  # of the budget, which ends that where two agree
 STARTS_BESIDE = 60  # random points of the model with other effects
+STARTS_SOLVED = 20  # random points of a block where each costs a solution for what the response is linear in
 RESTARTS = 2  # random points of one block that are refined
 MOST_RESTARTED = 4  # times that all blocks are restarted, where no two minima agree
 
@@ -138,29 +139,43 @@ def best_of_each_axis(case: Case, problem: Problem, minima: Array) -> Array:
 
 
 def restart(case: Case, fit: Fit, block: str = "", starts_per_block: int = RESTARTS) -> Fit:
-    """The best of the fit and of fits restarted from other values of one block on one axis, the rest kept: of each
-    block in turn but of those that guess from a residual, as the frequency of a line, or of `block` only. A block may
-    rest in a side minimum, such as a distant resonance, when it was fitted beside a misfit that has since been
+    """The best of the fit and of fits restarted from other values of one block, on all axes together, the rest kept: of
+    each block in turn but of those that guess from a residual, as the frequency of a line, or of `block` only. A block
+    may rest in a side minimum, such as a distant resonance, when it was fitted beside a misfit that has since been
     explained, or from a poor guess."""
     problem = fit.problem
-    entries = [problem.model.entries[column] for column in problem.free]
-    owners = [(entry.axis, entry.block.name) for entry in entries]
-    guessed = [entry.block.name for entry in entries if hasattr(entry.block, "guess")]
+    owners = [problem.model.entries[column].block for column in problem.free]
     rng = np.random.default_rng(0)
     fits = [fit]
-    chosen = [(axis, name) for axis, name in owners if name == block or (not block and name not in guessed)]
+    chosen = [owner for owner in owners if owner.name == block or (not block and not hasattr(owner, "guess"))]
     for owner in dict.fromkeys(chosen):
-        restarted = np.array([column_owner == owner for column_owner in owners])
-        starts = np.where(restarted, random_points(problem, rng), fit.point)
-        for start in starts[np.argsort(problem.rough_loss(starts, fit.point))[:starts_per_block]]:
-            point = case.descend(problem, start, fit.identify)
+        if not case.budget.lasts():
+            break
+        restarted = np.array([column_owner is owner for column_owner in owners])
+        starts = restarts(problem, fit.point, restarted, random_points(problem, rng))[:starts_per_block]
+        minima = np.array([fit.point, *(case.descend(problem, start, fit.identify) for start in starts)])
+        for point in (*minima[1:], best_of_each_axis(case, problem, minima)):
             fits.append(fit_at(fit.effects, problem, point, fit.converged, fit.measured_only))
     best = best_with_fine_steps(case, fits, lambda candidate: candidate.total)
     return best if block else min(best, best_alias(case, best), key=lambda candidate: candidate.total)
 
 
+def restarts(problem: Problem, point: Array, restarted: NDArray[np.bool_], points: Array) -> Array:
+    """(starts, dimensions): the point with parameters from random points, the best first: each axis has its own best,
+    but for modes, which have all axes in common, and without a response, where they are the best for all."""
+    errors = problem.rough_by_axis(np.where(restarted, points, point), point)
+    order = np.argsort(np.square(errors / problem.sizes).sum(axis=1), kind="stable")
+    starts = np.tile(point, (len(points), 1))
+    for i in np.flatnonzero(restarted):
+        entry = problem.model.entries[problem.free[i]]
+        own = entry.axis in problem.model.measured and not issubclass(entry.block, Modes)
+        row = problem.model.measured.index(entry.axis) if own else -1
+        starts[:, i] = points[np.argsort(errors[:, row], kind="stable") if own else order, i]
+    return starts
+
+
 def random_points(problem: Problem, rng: np.random.Generator) -> Array:
-    """(STARTS, dimensions) random points; half of them keep parameters whose lower bound is 0 near it."""
-    points = rng.uniform(size=(STARTS, problem.dimensions))
-    near = (problem.lower == 0) & (rng.random((STARTS, 1)) < 0.5)
+    """(points, dimensions) random points; half of them keep parameters whose lower bound is 0 near it."""
+    points = rng.uniform(size=(STARTS_SOLVED if problem.linear.columns.size else STARTS, problem.dimensions))
+    near = (problem.lower == 0) & (rng.random((len(points), 1)) < 0.5)
     return np.where(near, points**4, points)

@@ -101,7 +101,11 @@ class Problem(Cube):
         """(candidates,); infinite if the simulation failed, NaN if there is no record of this use."""
         if not self.simulators[use]:
             return np.full(np.atleast_2d(points).shape[0], np.nan)
-        rmse = self.by_axis(points, use, squares) / self.sizes
+        return self._together(self.by_axis(points, use, squares))
+
+    def _together(self, rmse: Array) -> Array:
+        """The loss of the RMSE of each axis."""
+        rmse = rmse / self.sizes
         return rmse[:, 0] if rmse.shape[1] == 1 else np.sqrt(np.mean(rmse**2, axis=1))
 
     def best(self, points: Array, near: Array, squares: Squares = exact_squares) -> tuple[Array, float]:
@@ -122,11 +126,15 @@ class Problem(Cube):
         return points[best], float(losses[best])
 
     def rough_loss(self, points: Array, near: Array) -> Array:
-        """The loss by which points are told from each other: (candidates,). Amounts of the records follow those of
-        another point to first order, which costs a simulation each."""
+        """The loss by which points are told from each other: (candidates,)."""
+        return self._together(self.rough_by_axis(points, near))
+
+    def rough_by_axis(self, points: Array, near: Array) -> Array:
+        """The RMSE of each measured axis by which points are told from each other: (candidates, axes). Amounts of the
+        records follow those of another point to first order, which costs a simulation each."""
         if not self.model.amounts:
-            return self.rough().loss(points)
-        return self.along(None, self.held(near)).loss(points, squares=exact_squares)
+            return self.rough().by_axis(points)
+        return self.along(None, self.held(near)).by_axis(points, squares=exact_squares)
 
     def residuals(self, points: Array) -> Array:
         """(candidates, scored samples of all records and axes), scaled so that the norm is the loss; inf if failed."""

@@ -8,11 +8,22 @@ import pytest
 import stage
 from pzt_ident.diagnosis import starts
 from pzt_ident.diagnosis.bounds import Widened
+from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.refit import FINEST, STEP_TOLERANCE, step_errors
-from pzt_ident.diagnosis.starts import best_exchange, best_of, first_fit, restart
+from pzt_ident.diagnosis.starts import (
+    STARTS_SOLVED,
+    best_exchange,
+    best_of,
+    first_fit,
+    random_points,
+    restart,
+    restarts,
+)
+from pzt_ident.job.sections import Choice
 from pzt_ident.search.descent import descend
+from pzt_ident.search.problem import Problem
 
 
 def test_the_first_fit_finds_the_stage(plain):
@@ -118,3 +129,26 @@ def test_modes_the_wrong_way_round_are_exchanged():
     found = best_exchange(case, wrong)
     assert found.identify == pytest.approx(stage.NOISE, rel=0.05)
     assert found.values["modal.frequency_1"] == pytest.approx(88.0, rel=1e-3)
+
+
+def test_each_axis_is_restarted_from_its_own_best_of_the_random_points():
+    problem, rng = stage.beside(stage.case(), stage.case({"bouc_wen.alpha": 0.2})).problem(()), np.random.default_rng(0)
+    point, points = np.full(problem.dimensions, 0.5), rng.random((40, problem.dimensions))
+    every = np.ones(problem.dimensions, dtype=bool)
+    starts = restarts(problem, point, every, points)
+    np.testing.assert_allclose(problem.by_axis(starts), np.sort(problem.by_axis(points), axis=0))
+    only_x = np.array([name.startswith("x.") for name in problem.names])
+    assert (restarts(problem, point, only_x, points)[:, ~only_x] == 0.5).all()
+
+
+def test_where_nothing_is_left_of_the_budget_no_start_is_ranked(plain, monkeypatch):
+    fit = first_fit(plain, 0)
+    monkeypatch.setattr(Problem, "rough_by_axis", lambda *arguments: pytest.fail("ranked"))
+    monkeypatch.setattr(plain, "budget", Budget(0.0))
+    assert restart(plain, fit).identify <= fit.identify
+
+
+def test_few_points_are_ranked_where_each_costs_a_solution():
+    density = Choice("homogenized_energy", {"density": "free"})
+    dense = Case((density,), (), stage.case().records, {})
+    assert len(random_points(dense.problem(()), np.random.default_rng(0))) == STARTS_SOLVED
