@@ -115,10 +115,13 @@ def refine_steps(
 ) -> Fit:
     """The fit, continued with finer simulation steps for the records where halving the step changes the response by
     more than a part of what the fit leaves, or of the noise; `fine`: of the noise even where the fit leaves more.
-    checked: the numbers of the records in question, by default of all.
+    checked: the numbers of the records in question, by default of all. None is refined behind the end of the budget,
+    but for what is `fine`.
 
     Where the drive is linear between samples, the signals between blocks are taken as linear too.
     """
+    if not fine and not case.budget.lasts():
+        return fit
     most = STEP_TOLERANCE * (case.floor if fine else max(case.floor, fit.identify))
     numbers = [n for n in (range(len(fit.steps)) if checked is None else checked) if fit.steps[n] < FINEST]
     coarse = [n for n, error in zip(numbers, step_errors(case, fit, numbers), strict=True) if error > most]

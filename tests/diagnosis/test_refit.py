@@ -146,8 +146,9 @@ def test_a_ripple_between_samples_is_followed_by_finer_steps():
     assert min(fit.steps) > 1
 
 
-def test_a_step_that_is_short_for_what_a_fit_leaves_is_kept_until_it_leaves_less(creeping, monkeypatch):
+def test_a_step_that_is_short_for_what_a_fit_leaves_is_kept_until_it_leaves_less(monkeypatch):
     """The second record would change by a 25th of what the fit leaves, several times as much as of the noise."""
+    creeping = stage.case(stage.EFFECTS["creep"])
     fit, asked = first_fit(creeping, 0), []
 
     def errors(case, fit, numbers):
@@ -159,6 +160,10 @@ def test_a_step_that_is_short_for_what_a_fit_leaves_is_kept_until_it_leaves_less
     assert refit.refine_steps(creeping, fit) is fit
     assert refit.refine_steps(creeping, fit, fine=True).steps == (1, refit.FINEST)
     assert asked == [(0, 1), (0, 1), (1,), (1,), ()]  # what has been short enough is not asked about again
+    creeping.budget = Budget(0.0)
+    monkeypatch.setattr(refit, "step_errors", lambda case, fit, numbers: np.full(len(numbers), fit.identify))
+    assert refit.refine_steps(creeping, fit) is fit, "the budget is spent"
+    assert refit.refine_steps(creeping, fit, fine=True).steps == (refit.FINEST, refit.FINEST)
 
 
 def test_a_lag_within_the_sample_is_told_from_a_delay_by_finer_steps():

@@ -20,6 +20,7 @@ from pzt_ident.diagnosis.candidates import (
     refit_other_forms,
     restart_look_alikes,
     score_all,
+    worth_other_forms,
 )
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import removed_rms, removes_enough
@@ -338,6 +339,22 @@ def test_beside_what_explains_nearly_all_but_not_the_noise_time_is_kept_for_a_se
     alone = stage.case({"quadratic_gain.curvature": 3e-3})
     given = first_fit(alone, 0)
     assert refitted_words(alone, given, given, 0.5) == {"quadratic_gain", "saturation"}
+
+
+def test_beside_other_effects_other_forms_are_scored_while_the_budget_is_for_exploring():
+    case = stage.case(stage.EFFECTS["creep"])
+    first = first_fit(case, 0)
+    before = refit.refit(case, first, ("drift",), {})
+    for spent, most in ((0.5, 2), (0.7, 1)):
+        case.budget = partly_spent(spent)
+        found = score_all(case, first, before, Scorer(case, before))
+        assert len(found) > 10 and min(2, max(len(item.forms) for item in found)) == most
+
+
+def test_other_forms_are_asked_for_in_the_order_of_what_the_first_ones_explain():
+    shares = {"creep": 0.1, "friction": 0.6, "drift": 0.3}
+    candidates = {word: Candidate(Score(word, share, share)) for word, share in shares.items()}
+    assert worth_other_forms(candidates) == ["friction", "drift", "creep"]
 
 
 def test_beside_what_explains_nearly_all_only_its_look_alikes_are_scored_in_other_forms():
