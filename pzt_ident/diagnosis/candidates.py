@@ -69,12 +69,10 @@ def score_all(case: Case, first: Fit, before: Fit, scorer: Scorer, in_every_form
     the first form of an effect explains nearly all, other forms of it and of its look-alikes only."""
     words, candidates = applicable(case, before.effects), dict[str, Candidate]()
 
-    def allowed(word: str, share: float) -> bool:
-        return before is first or case.budget.allows("the scores of all effects", share)
-
     def scored(some: Sequence[str], share: float, in_every_form: bool) -> Iterator[str]:
         scores_of = partial(scorer.scores, in_every_form=in_every_form)
-        for scores in side_by_side(scores_of, filter(partial(allowed, share=share), some)):
+        allowed = (each for each in some if before is first or case.budget.allows("the scores of all effects", share))
+        for scores in side_by_side(scores_of, allowed):
             candidates[word_of(scores[0].effect)] = Candidate.of(scores)
             yield word_of(scores[0].effect)
 

@@ -164,13 +164,12 @@ def restarts(problem: Problem, point: Array, restarted: NDArray[np.bool_], point
     """(starts, dimensions): the point with parameters from random points, the best first: each axis has its own best,
     but for modes, which have all axes in common, and without a response, where they are the best for all."""
     errors = problem.rough_by_axis(np.where(restarted, points, point), point)
-    order = np.argsort(np.square(errors / problem.sizes).sum(axis=1), kind="stable")
+    by_axis, together = (np.argsort(each, axis=0, kind="stable") for each in (errors, problem.loss_of(errors)))
     starts = np.tile(point, (len(points), 1))
     for i in np.flatnonzero(restarted):
-        entry = problem.model.entries[problem.free[i]]
-        own = entry.axis in problem.model.measured and not issubclass(entry.block, Modes)
-        row = problem.model.measured.index(entry.axis) if own else -1
-        starts[:, i] = points[np.argsort(errors[:, row], kind="stable") if own else order, i]
+        entry, measured = problem.model.entries[problem.free[i]], problem.model.measured
+        own = entry.axis in measured and not issubclass(entry.block, Modes)
+        starts[:, i] = points[by_axis[:, measured.index(entry.axis)] if own else together, i]
     return starts
 
 

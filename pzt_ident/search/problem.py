@@ -101,10 +101,10 @@ class Problem(Cube):
         """(candidates,); infinite if the simulation failed, NaN if there is no record of this use."""
         if not self.simulators[use]:
             return np.full(np.atleast_2d(points).shape[0], np.nan)
-        return self._loss_of(self.by_axis(points, use, squares))
+        return self.loss_of(self.by_axis(points, use, squares))
 
-    def _loss_of(self, rmse: Array) -> Array:
-        """The loss of the RMSE of each axis."""
+    def loss_of(self, rmse: Array) -> Array:
+        """The loss, of the RMSE of each measured axis in SI units, (candidates, axes)."""
         rmse = rmse / self.sizes
         return rmse[:, 0] if rmse.shape[1] == 1 else np.sqrt(np.mean(rmse**2, axis=1))
 
@@ -127,7 +127,7 @@ class Problem(Cube):
 
     def rough_loss(self, points: Array, near: Array) -> Array:
         """The loss by which points are told from each other: (candidates,)."""
-        return self._loss_of(self.rough_by_axis(points, near))
+        return self.loss_of(self.rough_by_axis(points, near))
 
     def rough_by_axis(self, points: Array, near: Array) -> Array:
         """The RMSE of each measured axis by which points are told from each other: (candidates, axes). Amounts of the

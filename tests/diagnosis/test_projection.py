@@ -83,6 +83,20 @@ def test_no_set_of_traces_leaves_less_than_without_bounds(seed, free, amplitudes
             assert within >= (1 - 1e-6) * sets.least[number]
 
 
+@given(st.integers(0, 10_000), st.integers(1, 4))
+def test_so_it_is_of_traces_that_the_parameters_nearly_produce(seed, free):
+    """What is outside is a millionth of such a trace: its square is the rounding of that of the whole."""
+    jacobian, point, signal, small = drawn(seed, free, 2)
+    inside = jacobian / np.linalg.norm(jacobian, axis=0) @ np.random.default_rng(seed).normal(size=(free, 2))
+    projection = Projection(jacobian, point, signal)
+    sets = projection.split_sets((1e6 * inside + small).T, 1)
+    outside = projection.split(small.T).outside
+    left = projection.signal.outside[0]
+    for number, trace in enumerate(outside):
+        expected = left - trace * (trace @ left) / (trace @ trace)
+        assert sets.least[number] == pytest.approx(np.linalg.norm(expected), rel=1e-6)
+
+
 @given(st.integers(0, 10_000), st.integers(1, 6))
 def test_where_all_may_go_as_far_as_they_like_it_is_the_orthogonal_projection(seed, free):
     jacobian, _, signal, _ = drawn(seed, free)
