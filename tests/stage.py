@@ -35,12 +35,15 @@ def loops():
     return [np.concatenate([np.zeros(100), drive, np.zeros(150)]) for drive in (fitted, unseen)]
 
 
-def records(parameters, drives=None, dt=5e-3, model=("bouc_wen",), noise=NOISE, seed=1, steps=8, effects=EFFECTS):
-    """One record to identify and one to validate of the stage with the effects that the parameters name; simulated in
-    so many steps a sample."""
+def records(
+    parameters, drives=None, dt=5e-3, model=("bouc_wen",), noise=NOISE, seed=1, steps=8, effects=EFFECTS, forms=()
+):
+    """One record to identify and one to validate of the stage with the effects that the parameters name, in other forms
+    where these are given; simulated in so many steps a sample."""
     rng = np.random.default_rng(seed)
     words = {name.split(".")[0] for name in parameters}
-    chain = [*model, *sorted(words & set(effects) - set(model))]
+    other = {form.split(".")[0]: form for form in forms}
+    chain = [other.get(word, word) for word in (*model, *sorted(words & set(effects) - set(model)))]
     stage = {name: value for name, value in STAGE.items() if name.split(".")[0] in model}
     made = []
     for drive, use in zip(drives or loops(), ("identify", "validate"), strict=True):

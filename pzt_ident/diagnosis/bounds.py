@@ -51,8 +51,11 @@ def beyond_by(slip: float, case: Case, first: Fit, fit: Fit) -> tuple[Case, Fit]
     specs = widened(case, fit, slip) | freed(case, fit.problem)
     if not specs:
         return None
-    wide = case.with_specs(specs)
-    after = continued(wide, fit)
+    key = (slip, fit.effects, fit.steps, fit.measured_only, fit.point.tobytes())
+    if key not in case.wider:
+        wide = case.with_specs(specs)
+        case.wider[key] = wide, continued(wide, fit)
+    wide, after = case.wider[key]
     enough = removes_enough(case, first, fit, after) or are_decisive(case, fit, after)
     return (wide, after) if enough else None
 

@@ -25,7 +25,7 @@ from pzt_ident.diagnosis.refit import refit, refit_from
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, applicable, scorer_of
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.threads import side_by_side
-from pzt_ident.diagnosis.ties import TIE, are_look_alikes
+from pzt_ident.diagnosis.ties import TIE, are_look_alikes, at_noise
 from pzt_ident.model.registry import word_of
 
 FORM_GAIN = 0.02  # of the misfit, by which another form of an effect explains more than the first one
@@ -110,9 +110,15 @@ def promises_most(case: Case, first: Fit, fit: Fit) -> bool:
 def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
     """Refit the model with each effect, in its first form and in the one that scores best; returns the refitted ones,
     which are all that the budget suffices for, but at least the best one beside the model as given. Those that stay far
-    above what the best score leads to are given up."""
+    above what the best score leads to are given up; where that is adequate, none is refitted that is far from it."""
     fits: list[Fit] = []
     rival = np.inf
+
+    def may_stand(candidate: Candidate) -> bool:
+        if not any(adequate(case, first, fit) for fit in fits):
+            return True
+        alike = are_look_alikes(candidates[0].score.effect, candidate.score.effect)
+        return alike or candidate.score.explained >= NOT_ALL
 
     def share_allowed(candidate: Candidate) -> float:
         best, score = candidates[0].score, candidate.score
@@ -123,7 +129,8 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
 
     def allowed(candidate: Candidate) -> bool:
         needed = before is first and candidate is candidates[0]
-        return needed or case.budget.allows("the refits of all candidates", share_allowed(candidate))
+        allows = partial(case.budget.allows, "the refits of all candidates", share_allowed(candidate))
+        return needed or (may_stand(candidate) and allows())
 
     def refitted(candidate: Candidate) -> Candidate:
         forms = {score.effect: score for score in (candidate.forms[0], candidate.score)}
@@ -137,10 +144,25 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
     made: list[Candidate] = []
     for some in (candidates[:1], candidates[1:]):
         for candidate in side_by_side(refitted, filter(allowed, some)):
+            if candidate is candidates[0]:
+                refit_likely_forms(case, first, before, candidate)
             made.append(candidate)
             fits.extend(candidate.refits.values())
         rival = min((fit.identify for fit in fits), default=np.inf)
     return made
+
+
+def refit_likely_forms(case: Case, first: Fit, before: Fit, candidate: Candidate) -> None:
+    """Refit an effect that explains most of the misfit, and leaves more than the noise, in its other forms, before
+    other effects are refitted: those that explain most by their scores first, until one is adequate."""
+    likely = [score for score in candidate.forms if score.explained >= DECISIVE * candidate.score.explained]
+    for score in sorted(likely, key=lambda score: -score.explained):
+        best = min(candidate.refits.values(), key=lambda fit: fit.total)
+        if adequate(case, first, best) or share_explained(before.identify, best.identify, case.floor) < DECISIVE:
+            break
+        if score.effect not in candidate.refits and case.budget.allows("other forms"):
+            effects = (*before.effects, score.effect)
+            candidate.refits[score.effect] = refit_from(case, before, effects, score.guesses, best.identify)
 
 
 def from_each_other(case: Case, refits: Mapping[str, Fit]) -> dict[str, Fit]:
@@ -231,31 +253,45 @@ def refit_other_forms(
     case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate], shortlist: list[Candidate]
 ) -> None:
     """Refit the short list, and then what else scores, in every form where no effect explains most of the misfit: one
-    that scores low may leave little of it. Where an effect explains nearly all, refit it and its look-alikes in every
-    form: one may explain more in another. All that is refitted is added to the short list."""
+    that scores low may leave little of it. Where an effect explains nearly all, refit it, unless it is at the noise,
+    and its look-alikes in the forms that are not far from that by their scores: one may explain more in another. All
+    that is refitted is added to the short list."""
     fits = [fit for item in shortlist for fit in item.refits.values()]
     passing = [fit for fit in fits if removes_enough(case, first, before, fit)]
     best = min(passing, key=lambda fit: fit.total, default=before)
     share = share_explained(before.identify, best.identify, case.floor)
-    if share >= NEARLY_ALL:
-        named = best.effects[-1]
-        itself = [item for item in candidates if word_of(item.score.effect) == word_of(named)]
-        wanted = [*itself, *(item for item in candidates if are_look_alikes(named, item.score.effect))]
+    nearly_all = share >= NEARLY_ALL
+    if nearly_all:
+        wanted = alternatives(case, best, candidates)
     else:
         least = least_score(case, first, before)
         others = [item for item in candidates if item not in shortlist and item.score.explained > least]
         wanted = [*shortlist, *others] if share < DECISIVE else []
     for candidate in wanted:
         candidate.forms = scorer_of(case, before).scores(word_of(candidate.score.effect))
-        missing = [score for score in candidate.forms if score.effect not in candidate.refits]
+        possible = likely_forms(candidate) if nearly_all else candidate.forms
+        missing = [score for score in possible if score.effect not in candidate.refits]
         if missing and not case.budget.allows("other forms", share_of_others(case, first, before, fits)):
             break
         new = {
             score.effect: refit_from(case, before, (*before.effects, score.effect), score.guesses, best.identify)
             for score in missing
         }
-        candidate.refits = from_each_other(case, {**candidate.refits, **new})
+        candidate.refits = from_each_other(case, {**candidate.refits, **new}) if new else candidate.refits
     shortlist += [item for item in wanted if item.refits and item not in shortlist]
+
+
+def likely_forms(candidate: Candidate) -> list[Score]:
+    """The forms that are not far from all of the misfit by their scores, and the first form beside them."""
+    likely = [score for score in candidate.forms if score.explained >= NOT_ALL]
+    return [score for score in candidate.forms if likely and (score in likely or score is candidate.forms[0])]
+
+
+def alternatives(case: Case, best: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
+    """The effect of a fit, unless that is at the noise, and its look-alikes."""
+    word = word_of(best.effects[-1])
+    itself = [] if at_noise(case, best) else [item for item in candidates if word_of(item.score.effect) == word]
+    return [*itself, *(item for item in candidates if are_look_alikes(word, item.score.effect))]
 
 
 def promises_enough(case: Case, first: Fit, before: Fit, candidate: Candidate) -> bool:

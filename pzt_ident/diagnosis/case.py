@@ -53,6 +53,7 @@ class Case:
         self.caveat = ""
         self._resampled: dict[tuple[int, int], Record] = {}
         self.refits: dict[Any, Fit] = {}  # by effects, steps and start
+        self.wider: dict[Any, tuple[Case, Fit]] = {}  # fits gone on with beyond bounds, by slip, effects and point
         self.scorers: list[Any] = []  # of the fits that were diagnosed last
         self.records, self.specs, self.error_scales = tuple(records), specs, error_scales(list(records))
 

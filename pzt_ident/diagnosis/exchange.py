@@ -22,6 +22,7 @@ from pzt_ident.diagnosis.ties import (
     TIE,
     TWIN,
     are_look_alikes,
+    at_noise,
     is_equal,
     is_tied,
     is_twin,
@@ -168,11 +169,6 @@ def look_alikes(
     forms = [fitting_forms(case, effects, word) for word in blocks[effect].look_alikes if word in possible]
     meant = [{items[0], *tied, *(item for item in items if form_of(item) == form_of(effect))} for items in forms]
     return [item for items, some in zip(forms, meant, strict=True) for item in items if in_every_form or item in some]
-
-
-def at_noise(case: Case, fit: Fit) -> bool:
-    """Whether what a fit leaves above the noise would not distinguish two look-alikes."""
-    return removed_rms(fit.total, case.floor) < 2 * TIE * case.floor
 
 
 def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str], as_rivals: bool = False) -> list[Fit]:

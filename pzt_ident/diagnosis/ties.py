@@ -26,6 +26,11 @@ def differ(one: float, other: float, floor: float) -> bool:
     return abs(one**2 - other**2) ** 0.5 > TIE * floor
 
 
+def at_noise(case: Case, fit: Fit) -> bool:
+    """Whether what a fit leaves above the noise would not distinguish two look-alikes."""
+    return removed_rms(fit.total, case.floor) < 2 * TIE * case.floor
+
+
 def is_tied(case: Case, effect: str, fit: Fit, rival: Fit) -> bool:
     """Whether a fit with a look-alike in the place of an effect is hardly worse."""
     return is_equal(case, fit, rival) and are_look_alikes(effect, rival.effects[-1])

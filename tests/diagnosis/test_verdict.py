@@ -16,6 +16,7 @@ from pzt_ident.diagnosis.candidates import (
     Candidate,
     decide_by_score,
     least_score,
+    likely_forms,
     refit_all,
     refit_other_forms,
     restart_look_alikes,
@@ -76,7 +77,7 @@ def test_what_is_found_is_the_same_from_one_thread_and_from_three(monkeypatch):
     assert np.array_equal(found.best.fit.point, expected.best.fit.point)
 
 
-@pytest.mark.parametrize("share", [0.2, 0.5, 0.8])
+@pytest.mark.parametrize("share", [0.2, 0.4, 0.6])
 def test_what_a_budget_suffices_for_is_the_same_from_one_thread_and_from_three(share, monkeypatch):
     monkeypatch.setattr(budget, "computing_time", lambda: 0.0)
     answers, before = [], work.done()
@@ -94,18 +95,47 @@ def test_what_a_budget_suffices_for_is_the_same_from_one_thread_and_from_three(s
     assert answers[0][1]
 
 
-def test_look_alikes_of_what_explains_nearly_all_are_compared_in_every_form():
+def test_look_alikes_of_what_explains_nearly_all_are_compared_in_every_form_that_may_explain_as_much():
     case = stage.case({"sensor_lag.tau": 2e-3}, noise=1e-8)
     before = first_fit(case, 0)
     candidates = score_all(case, before, before, Scorer(case, before))
     named = next(item for item in candidates if item.score.effect == "sensor_lag")
     shortlist = refit_all(case, before, before, [named])
+    tried = {*named.refits}
     refit_other_forms(case, before, before, candidates, shortlist)
     alike = [item for item in candidates if are_look_alikes("sensor_lag", item.score.effect)]
-    assert {"amplifier_lag", "delay"} <= {word_of(item.score.effect) for item in alike}
-    assert shortlist == [named, *alike]
-    for candidate in (named, *alike):
-        assert set(candidate.refits) == {score.effect for score in candidate.forms}
+    assert {"amplifier_lag", "delay"} <= {word_of(item.score.effect) for item in shortlist}
+    for candidate in alike:
+        assert set(candidate.refits) == {item.effect for item in likely_forms(candidate)}
+        assert {item.effect for item in candidate.forms if item.explained >= NOT_ALL} <= {*candidate.refits}
+    assert shortlist == [named, *(item for item in alike if item.refits)]
+    assert {*named.refits} == tried
+
+
+@pytest.mark.parametrize("quiet", [True, False])
+def test_an_effect_at_the_noise_is_not_tried_in_its_other_forms(quiet):
+    case = stage.case({"sensor_lag.tau": 2e-3}, noise=1e-8)
+    before = first_fit(case, 0)
+    named = Candidate.of(Scorer(case, before).scores("sensor_lag"))
+    shortlist = refit_all(case, before, before, [named])
+    case.floor *= 1 if quiet else 0.5
+    refit_other_forms(case, before, before, [named], shortlist)
+    assert ({*named.refits} == {score.effect for score in named.forms}) is not quiet
+
+
+def test_an_effect_that_explains_most_is_tried_in_its_other_forms_before_others_of_which_few_are_tried_then():
+    made = stage.records({"saturation.knee": 0.004}, effects=["saturation"], forms=["saturation.cubic"])
+    case = stage.considering(Case(("bouc_wen",), (), made, {}), "saturation", "quadratic_gain", "creep")
+    before = first_fit(case, 0)
+    candidates = sorted(score_all(case, before, before, Scorer(case, before)), key=lambda item: -item.score.explained)
+    assert [item.score.effect for item in candidates][::2] == ["saturation", "creep"]
+    assert LEAST_SCORE < candidates[2].score.explained < NOT_ALL
+    refitted = []
+    case.on_event = lambda event: refitted.append(event["effects"][-1])
+    made = refit_all(case, before, before, candidates)
+    assert refitted == ["saturation", "saturation.cubic", "quadratic_gain"]
+    assert made == candidates[:2]
+    assert made[0].refits["saturation"].identify > 3 * case.floor > 2.9 * made[0].refits["saturation.cubic"].identify
 
 
 def test_where_no_effect_explains_most_all_that_scores_is_tried_in_every_form_the_short_list_first():
