@@ -20,7 +20,7 @@ from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.starts import best_alias, first_fit, restart
 from pzt_ident.diagnosis.step import Doubt, Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE
-from pzt_ident.diagnosis.verdict import Diagnosis, best_pair, diagnose
+from pzt_ident.diagnosis.verdict import Diagnosis, best_pair, diagnose, pair_behind
 from pzt_ident.model.registry import blocks, word_of
 
 MOST_STEPS = 8
@@ -191,7 +191,8 @@ def other_ways(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> Iterat
 
 def add_pair(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Step]:
     """Two effects that hide each other, as two steps, the one that fits better alone first."""
-    both = best_pair(case, first, now, diagnosis.candidates)
+    pairs = (find(case, first, now, diagnosis.candidates) for find in (pair_behind, best_pair))
+    both = next(filter(None, pairs), None)
     if both is None:
         return []
     values = {name: value for name, value in both.values.items() if name not in now.problem.names}

@@ -8,6 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from pzt_ident.diagnosis.candidates import (
+    PROMISING,
     Candidate,
     choose_forms,
     decide_by_score,
@@ -31,6 +32,7 @@ from pzt_ident.diagnosis.criteria import (
 )
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.limit import is_limited
+from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.reasons import (
     identification_only_sentence,
     missing_sentence,
@@ -254,6 +256,22 @@ def unexplained(case: Case, first: Fit, found: Diagnosis) -> Diagnosis:
     reason = found.reason if found.verdict == "unexplained" else nothing_explains(case, found.before)
     reason = with_proven(case, first, found.before, reason)
     return Diagnosis("unexplained", reason, found.before, found.candidates, [], found.passing)
+
+
+def pair_behind(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> Fit | None:
+    """The refit with the effect that removes most of the misfit of the identification records, though it may lose the
+    others for lack of a second one, and with that which promises most of what it leaves; None where none does, or both
+    do not remove enough."""
+    fits = [fit for item in candidates for fit in item.refits.values()]
+    leading = min(fits, key=lambda fit: fit.identify, default=before)
+    if share_explained(before.identify, leading.identify, case.floor) < DECISIVE:
+        return None
+    beside = score_all(case, first, leading, scorer_of(case, leading), in_every_form=False)
+    most = max((item.score for item in beside), key=lambda score: score.explained_in_bounds, default=None)
+    if most is None or most.explained_in_bounds < PROMISING:
+        return None
+    both = refit(case, leading, (*leading.effects, most.effect), most.guess)
+    return both if removes_enough(case, first, before, both) else None
 
 
 def best_pair(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> Fit | None:

@@ -22,7 +22,7 @@ from pzt_ident.diagnosis.exchange import in_its_limit
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.score import Score, squared_misfit
 from pzt_ident.diagnosis.ties import generalises, is_tied, is_twin
-from pzt_ident.diagnosis.verdict import best_pair, diagnose
+from pzt_ident.diagnosis.verdict import best_pair, diagnose, pair_behind
 from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks, word_of
 
@@ -376,6 +376,25 @@ def test_of_pairs_that_earn_the_best_on_both_uses_is_taken(monkeypatch):
     before = fit(30.0, 30.0)
     assert best_pair(CASE, before, before, items) is fits["drift", "delay"]
     assert best_pair(CASE, before, before, items[:2]) is None
+
+
+@pytest.mark.parametrize(
+    ("alone", "promised", "together", "found"),
+    [(15.0, 0.9, 1.0, True), (25.0, 0.9, 1.0, False), (15.0, 0.7, 1.0, False), (15.0, 0.9, 29.0, False)],
+    ids=["both", "not most", "no promise", "not both"],
+)
+def test_a_second_effect_is_sought_behind_one_that_loses_the_validation_records(
+    alone, promised, together, found, monkeypatch
+):
+    before, lost, both = fit(30.0, 15.0), fit(alone, 40.0, ("slew_limit",)), fit(together, 1.0, ("slew_limit", "creep"))
+    beside = [Candidate(Score("drift", 0.1)), Candidate(Score("creep", promised, promised))]
+    monkeypatch.setattr(verdict, "scorer_of", lambda *_: None)
+    monkeypatch.setattr(verdict, "score_all", lambda case, first, leading, *_, **__: beside if leading is lost else [])
+    monkeypatch.setattr(verdict, "refit", lambda case, leading, effects, guess: both)
+    refits = {"slew_limit": lost, "slew_limit.lag": fit(29.0, 15.0)}
+    items = [Candidate(Score("drift", 0.2), fit(28.0, 15.0)), Candidate(Score("slew_limit", 0.8), lost, refits=refits)]
+    assert (pair_behind(CASE, before, before, items) is both) is found
+    assert pair_behind(CASE, before, before, items[:1]) is None
 
 
 @pytest.mark.parametrize(
