@@ -131,11 +131,13 @@ class Case:
         once."""
         return self._resampled.setdefault((number, steps), replace(self.records[number], steps=steps))
 
-    def descend(self, problem: Problem, point: Array, rival: float = np.inf) -> Array:
+    def descend(self, problem: Problem, point: Array, rival: float = np.inf, rough: bool = False) -> Array:
         """The point that few steps reach while the budget lasts, of which a descent behind a rival gets no more than a
         part, see `search.descent`."""
-        begun, part = work.done(), BEHIND * self.budget.seconds
-        return descend(problem, point, going=self.budget.lasts, rival=rival, patient=lambda: work.done() < begun + part)
+        end = work.done() + BEHIND * self.budget.seconds
+        return descend(
+            problem, point, going=self.budget.lasts, rival=rival, patient=lambda: work.done() < end, rough=rough
+        )
 
     @cached_property
     def floor(self) -> float:

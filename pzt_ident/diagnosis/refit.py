@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 
 STEP_TOLERANCE = 0.05  # of what a fit leaves, but at least of the noise: a step is halved where that changes more
 FINEST = 8  # steps per sample
+AT_NOISE = 1.05  # noise floors: what leaves no more is fitted from no other guess
 SHARES = 0.5 ** np.arange(15)  # of a range, at which the amount of a part is tried
 
 
@@ -37,9 +38,11 @@ def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, fl
 def refit_from(
     case: Case, before: Fit, effects: tuple[str, ...], guesses: Sequence[dict[str, float]], rival: float = np.inf
 ) -> Fit:
-    """The best of the refits from each guess, one after the other."""
+    """The best of the refits from each guess, one after the other, up to one at the noise."""
     fits: list[Fit] = []
     for guess in guesses or [{}]:
+        if any(fit.total < AT_NOISE * case.floor for fit in fits):
+            break
         fits.append(refit(case, before, effects, guess, min([rival, *(fit.identify for fit in fits)])))
     return min(fits, key=lambda fit: fit.total)
 

@@ -51,7 +51,7 @@ def first_fit(
     most = MOST_REFINED if known is None else REFINED
     for number in range(0, most, REFINED):
         starts = order[number : number + REFINED]
-        for minimum in side_by_side(partial(case.descend, problem, rival=least), starts):
+        for minimum in side_by_side(partial(case.descend, problem, rival=least, rough=True), starts):
             minima = np.vstack([minima, minimum])
             case.on_event({"event": "fitted", "done": len(minima), "of": most + (known is not None)})
         losses = problem.loss(minima)
@@ -62,7 +62,7 @@ def first_fit(
         if agreed and (alike >= ENOUGH or adequate(case, lowest, lowest) or case.budget.spent(ON_STARTS)):
             break
     point = min((minima[np.argmin(losses)], best_of_each_axis(case, problem, minima)), key=lambda p: problem.loss(p)[0])
-    fit = fit_at(effects, problem, point, agreed or known is not None)
+    fit = fit_at(effects, problem, case.descend(problem, point), agreed or known is not None)
     return refine_steps(case, best_exchange(case, fit if fit.converged else settled(case, fit)), fine=True)
 
 

@@ -27,6 +27,23 @@ def test_a_descent_ends_with_the_budget(plain):
     assert budget.untried == ["settled fits"]
 
 
+@pytest.mark.parametrize("arrives", [True, False])
+def test_behind_a_refit_at_the_noise_no_other_guess_is_tried(creeping, monkeypatch, arrives):
+    before, made = first_fit(creeping, 0), refit.refit
+    guesses = [{"creep.ratio": 0.05, "creep.tau": 2.0}, {"creep.ratio": 0.01, "creep.tau": 0.5}]
+    tried = []
+
+    def noted(case, before, effects, guess, rival=np.inf):
+        tried.append((guess, rival))
+        fit = made(case, before, effects, guess, rival)
+        return fit if arrives else replace(fit, identify=2 * fit.identify, validate=2 * fit.validate)
+
+    monkeypatch.setattr(refit, "refit", noted)
+    fit = refit.refit_from(creeping, before, ("creep",), guesses)
+    assert [guess for guess, _ in tried] == (guesses[:1] if arrives else guesses)
+    assert arrives or tried[1][1] == pytest.approx(fit.identify, rel=0.01)
+
+
 def test_a_refit_goes_on_from_what_was_found(creeping):
     before = first_fit(creeping, 0)
     after = refit.refit(creeping, before, ("creep",), {"creep.ratio": 0.05, "creep.tau": 2.0})

@@ -230,7 +230,7 @@ def test_what_a_shorter_step_would_change_is_blamed_on_no_effect(monkeypatch, fi
 
 def test_a_fit_that_has_not_converged_is_blamed_on_no_effect(monkeypatch):
     case = stage.case(stage.EFFECTS["creep"])
-    monkeypatch.setattr(Case, "descend", lambda case, problem, point, rival=np.inf: point)
+    monkeypatch.setattr(Case, "descend", lambda case, problem, point, *_, **__: point)
     monkeypatch.setattr(starts, "restart", lambda case, fit: replace(fit, identify=0.9 * fit.identify))
     diagnosis = judged(case)
     assert diagnosis.verdict == "refused"
