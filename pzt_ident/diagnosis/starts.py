@@ -26,7 +26,7 @@ REFINED, MOST_REFINED = 4, 24  # points in a batch, and in all batches
 AGREEMENT = 0.01  # of the loss, between the two best minima
 ENOUGH = 12  # minima that agree: a model that is not adequate is fitted from more points than lead to two, until then
 ON_STARTS = 0.1  # of the budget, which ends that where two agree
-STARTS_BESIDE = 60  # random points of the model with other effects
+STARTS_BESIDE = 60  # random points of the model with other effects, and where each costs a solution
 STARTS_SOLVED = 20  # random points of a block where each costs a solution for what the response is linear in
 RESTARTS = 2  # random points of one block that are refined
 MOST_RESTARTED = 4  # times that all blocks are restarted, where no two minima agree
@@ -43,9 +43,9 @@ def first_fit(
     converged where the two best minima differ, and restarts of single blocks still lead lower. known: the point of a
     fit that was searched for, beside which one batch of random points is enough. rival: the loss of another model, far
     above which a descent that crawls is given up."""
-    number_of_points = STARTS if effects is None else STARTS_BESIDE
-    effects = case.effects if effects is None else effects
+    beside, effects = effects is not None, case.effects if effects is None else effects
     problem = case.problem(effects)
+    number_of_points = STARTS_BESIDE if beside or problem.linear.columns.size else STARTS
     minima = np.empty((0, problem.dimensions)) if known is None else case.descend(problem, known)[None]
     order, agreed, least = ranked_points(problem, seed, number_of_points), False, rival
     most = MOST_REFINED if known is None else REFINED
@@ -80,9 +80,11 @@ def best_alias(case: Case, fit: Fit) -> Fit:
 
 
 def best_of(case: Case, fit: Fit, starts: Iterable[Array]) -> Fit:
-    """The best of the fit and of those from other starts."""
+    """The best of the fit and of those from other starts, while the budget lasts."""
     fits = [fit]
     for start in starts:
+        if not case.budget.lasts():
+            break
         point = case.descend(fit.problem, start)
         fits.append(fit_at(fit.effects, fit.problem, point, fit.converged, fit.measured_only))
     return best_with_fine_steps(case, fits, lambda candidate: candidate.identify)
