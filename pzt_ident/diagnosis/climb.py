@@ -128,10 +128,13 @@ def stuck(steps: list[Step]) -> bool:
 
 
 def settle(case: Case, first: Fit, before: Fit, step: Step) -> list[Step]:
-    """Restart the fit of a step that does not reach the noise before anything else is blamed; the steps that remove
-    what is not needed any more, and exchange what fits better in another form."""
+    """Restart the fit of a step that does not reach the noise before anything else is blamed, which is kept where that
+    leads hardly lower: what was scored beside it holds. The steps that remove what is not needed any more, and exchange
+    what fits better in another form."""
     if not adequate(case, first, step.fit) and case.budget.allows("other starts"):
-        fit_anew(case, before, step, restart(case, step.fit))
+        restarted = restart(case, step.fit)
+        if removed_rms(step.fit.total, restarted.total) > TIE * case.floor:
+            fit_anew(case, before, step, restarted)
     unneeded = remove_unneeded(case, first, step.fit)
     return [*unneeded, *exchange_accounts(case, first, (unneeded or [step])[-1].fit)]
 

@@ -220,6 +220,20 @@ def test_a_step_is_settled_first_where_no_other_effect_promises_most_of_what_it_
     assert (added[0] in settled) != kept and added[-1] in settled
 
 
+@pytest.mark.parametrize(("lower", "taken"), [(0.999, False), (0.9, True)])
+def test_a_restart_that_leads_hardly_lower_leaves_a_step_its_fit(monkeypatch, lower, taken):
+    """Else all effects would be scored again beside it."""
+    case = stage.considering(stage.case(PAIR), "quadratic_gain", "creep")
+    first = first_fit(case, 0)
+    after = replace(refit(case, first, ("creep",), {}), identify=3 * case.floor, validate=3 * case.floor)
+    restarted = replace(after, identify=lower * after.identify, validate=lower * after.validate)
+    monkeypatch.setattr(climb, "restart", lambda case, fit: restarted)
+    monkeypatch.setattr(climb, "exchange_accounts", lambda *arguments: [])
+    step = Step(after, "creep")
+    assert climb.settle(case, first, first, step) == []
+    assert step.fit is (restarted if taken else after)
+
+
 def test_a_path_ends_where_it_joins_a_known_one_that_is_as_low():
     case = stage.case(stage.EFFECTS["creep"])
     first = first_fit(case, 0)
