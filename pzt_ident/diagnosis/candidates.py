@@ -30,9 +30,10 @@ from pzt_ident.model.registry import word_of
 
 FORM_GAIN = 0.02  # of the misfit, by which another form of an effect explains more than the first one
 PROMISING = 0.75  # of the misfit: what an effect explains by its score, so that it is tried ahead of anything else
+LIKELY = 0.65  # of the misfit: an effect that explains as much by its score is tried in its other forms before others
 NEARLY_ALL = 0.9  # of the misfit: what explains as much may be a look-alike of what is missing, in another form
 NOT_ALL = 0.3  # of the misfit: an effect that scores less is no account of nearly all of it
-AS_LIKELY = 0.9  # of what the best score explains: what scores as much is refitted as long as others are
+AS_LIKELY = 0.7  # of what the best score explains: what scores as much is refitted as long as others are
 LOOK_ALIKE_STARTS = 8  # starts of a look-alike's own parameters
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
 
@@ -153,8 +154,10 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
 
 
 def refit_likely_forms(case: Case, first: Fit, before: Fit, candidate: Candidate) -> None:
-    """Refit an effect that explains most of the misfit, and leaves more than the noise, in its other forms, before
-    other effects are refitted: those that explain most by their scores first, until one is adequate."""
+    """Refit an effect that promises most of the misfit, explains most of it and leaves more than the noise in its other
+    forms, before other effects are refitted: those that explain most by their scores first, until one is adequate."""
+    if candidate.score.explained < LIKELY:
+        return
     likely = [score for score in candidate.forms if score.explained >= DECISIVE * candidate.score.explained]
     for score in sorted(likely, key=lambda score: -score.explained):
         best = min(candidate.refits.values(), key=lambda fit: fit.total)
