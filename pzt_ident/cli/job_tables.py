@@ -24,8 +24,8 @@ def show_job(facts: Facts) -> None:
     )
     show_notes(facts["records"])
     table(
-        ("axis", "drive", "response"),
-        [(axis["name"], _range(axis, "drive"), _range(axis, "response")) for axis in facts["axes"]],
+        ("axis", "drive", "response", "noise floor", "taken from"),
+        [(axis["name"], _range(axis, "drive"), _range(axis, "response"), *_floor(axis)) for axis in facts["axes"]],
     )
     table(
         ("parameter", "unit", "bounds", "what it is"),
@@ -44,6 +44,12 @@ def _range(axis: Facts, channel: str) -> str:
         return "not measured"
     low, high = axis[f"{channel}_range"]
     return f"{low:.4g} to {high:.4g} {axis[f'{channel}_unit']}"
+
+
+def _floor(axis: Facts) -> tuple[str, str]:
+    if "noise_floor" not in axis:
+        return "", ""
+    return f"{axis['noise_floor']:.3g} {axis['response_unit']}", axis["noise_floor_source"]
 
 
 def _treatment(row: Facts) -> str:

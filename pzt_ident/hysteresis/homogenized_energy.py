@@ -44,7 +44,8 @@ class HomogenizedEnergy(Bank):
     density of the coercive fields, nu1, is lognormal, that of the interaction fields, nu2, normal: a Preisach operator
     whose density is their product. Of one coercive field the domains with an interaction field above -F_Ec point up,
     F_Ec the play p <- max(E - Ec, min(E + Ec, p)) (Krasnosel'skii & Pokrovskii 1989), which is exact in the interaction
-    field. There are 64 coercive fields of equal probability. The polarization is computed as the field eta P.
+    field. There are 64 coercive fields of equal probability, the quantiles (i + 1/2) / 64 of the density. The
+    polarization is computed as the field eta P.
 
     E is the drive minus the bias. The history before the first sample is virgin, then `poled`, then the first sample.
     Responses of different kinds, such as P itself and a displacement, may share all parameters but gain and quadratic.

@@ -242,7 +242,8 @@ def _add_faults(document: Document, error: ValidationError) -> None:
         else:
             expected, remedy = _EXPECTED.get(kind, (item["msg"], "see `pzt-ident init` for an example"))
             facts = item.get("ctx", {})
-            wrong.setdefault(document.reach(loc), []).append((expected.format(**facts), remedy.format(**facts)))
+            remedy = remedy.format(**facts) + (_choice_of_keys(loc) if kind == "dataclass_type" else "")
+            wrong.setdefault(document.reach(loc), []).append((expected.format(**facts), remedy))
     for loc, alternatives in wrong.items():
         expected, remedy = (" or ".join(dict.fromkeys(column)) for column in zip(*alternatives, strict=True))
         document.fault(loc, f"{document.source(loc)} is not {expected}", remedy)
@@ -276,6 +277,11 @@ def _known_keys(loc: Loc) -> list[str]:
         if "$ref" in node:
             node = definitions[node["$ref"].rpartition("/")[2]]
     return list(node["properties"])
+
+
+def _choice_of_keys(loc: Loc) -> str:
+    """The keys that a mapping at a place may have, in words."""
+    return f" with some of {', '.join(_known_keys(loc))}"
 
 
 def _item_schema(schema: dict[str, Any]) -> dict[str, Any]:

@@ -16,7 +16,8 @@ class Modal(Oscillator, Modes):
     Several inputs and outputs (Preumont 2011, Vibration Control of Active Structures, ch. 2); exact for f linear on
     each step. Sensors and actuators may be at different places. Modes are scaled so that the first axis drives each of
     them with its f. The shapes contain the static gains, so the gain of the operator must be
-    fixed: beside a gain of 1 um/V a shape of 0.08 moves the axis by 0.08 um/V.
+    fixed: beside a gain of 1 um/V a shape of 0.08 moves the axis by 0.08 um/V. Fix it near the gain of the stage, so
+    that the shapes are near 1: with readings in nm at 100 nm/V, say.
     """
 
     modes = Setting(2, (1, 100), "Modes of the stage.")

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from pzt_ident.data.noise import noise_floor
 from pzt_ident.data.record import Record
 from pzt_ident.data.units import factor
 from pzt_ident.job.schema import Job
@@ -59,6 +60,9 @@ def _axis(records: list[Record], axis: int) -> Facts:
         if unit is not None:
             values = [getattr(record, channel)[axis] / factor(unit) for record in records]
             facts[f"{channel}_range"] = [float(min(map(np.min, values))), float(max(map(np.max, values)))]
+    if axis in first.measured:
+        floor = noise_floor(records, axis)
+        facts |= {"noise_floor": floor.value / factor(channels["response"]), "noise_floor_source": floor.source}
     return facts
 
 

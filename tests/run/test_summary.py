@@ -9,6 +9,12 @@ from pzt_ident.job.schema import load_job
 from pzt_ident.run.summary import summary_of
 
 
+def test_the_noise_floor_is_told_with_what_it_is_taken_from(tmp_path):
+    axis = summary_of(load_job(stage.write(tmp_path, stage.records({}), stage.JOB)))["axes"][0]
+    assert axis["noise_floor"] == pytest.approx(stage.NOISE / 1e-6, rel=0.2)
+    assert axis["noise_floor_source"] == "rest segments"
+
+
 def notes_of(folder: Path, model: str, parameters: str) -> list[str]:
     job = stage.JOB.replace("model: [bouc_wen]", f"model: {model}\nparameters: {parameters}")
     return summary_of(load_job(stage.write(folder, stage.records({}), job)))["notes"]
