@@ -272,7 +272,7 @@ def refit_other_forms(
         wanted = [*shortlist, *others] if share < DECISIVE else []
     for candidate in wanted:
         candidate.forms = scorer_of(case, before).scores(word_of(candidate.score.effect))
-        possible = likely_forms(candidate) if nearly_all else candidate.forms
+        possible = contending_forms(candidate) if nearly_all else candidate.forms
         missing = [score for score in possible if score.effect not in candidate.refits]
         if missing and not case.budget.allows("other forms", share_of_others(case, first, before, fits)):
             break
@@ -284,7 +284,7 @@ def refit_other_forms(
     shortlist += [item for item in wanted if item.refits and item not in shortlist]
 
 
-def likely_forms(candidate: Candidate) -> list[Score]:
+def contending_forms(candidate: Candidate) -> list[Score]:
     """The forms that are not far from all of the misfit by their scores, and the first form beside them."""
     likely = [score for score in candidate.forms if score.explained >= NOT_ALL]
     return [score for score in candidate.forms if likely and (score in likely or score is candidate.forms[0])]

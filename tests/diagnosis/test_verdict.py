@@ -16,7 +16,7 @@ from pzt_ident.diagnosis.candidates import (
     Candidate,
     decide_by_score,
     least_score,
-    likely_forms,
+    contending_forms,
     refit_all,
     refit_other_forms,
     restart_look_alikes,
@@ -106,7 +106,7 @@ def test_look_alikes_of_what_explains_nearly_all_are_compared_in_every_form_that
     alike = [item for item in candidates if are_look_alikes("sensor_lag", item.score.effect)]
     assert {"amplifier_lag", "delay"} <= {word_of(item.score.effect) for item in shortlist}
     for candidate in alike:
-        assert set(candidate.refits) == {item.effect for item in likely_forms(candidate)}
+        assert set(candidate.refits) == {item.effect for item in contending_forms(candidate)}
         assert {item.effect for item in candidate.forms if item.explained >= NOT_ALL} <= {*candidate.refits}
     assert shortlist == [named, *(item for item in alike if item.refits)]
     assert {*named.refits} == tried
