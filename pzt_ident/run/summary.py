@@ -60,9 +60,9 @@ def _axis(records: list[Record], axis: int) -> Facts:
         if unit is not None:
             values = [getattr(record, channel)[axis] / factor(unit) for record in records]
             facts[f"{channel}_range"] = [float(min(map(np.min, values))), float(max(map(np.max, values)))]
-    if axis in first.measured:
+    if unit := channels["response"]:
         floor = noise_floor(records, axis)
-        facts |= {"noise_floor": floor.value / factor(channels["response"]), "noise_floor_source": floor.source}
+        facts |= {"noise_floor": floor.value / factor(unit), "noise_floor_source": floor.source}
     return facts
 
 

@@ -14,9 +14,9 @@ from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.candidates import (
     NOT_ALL,
     Candidate,
+    contending_forms,
     decide_by_score,
     least_score,
-    contending_forms,
     refit_all,
     refit_other_forms,
     restart_look_alikes,
