@@ -33,7 +33,7 @@ PROMISING = 0.75  # of the misfit: what an effect explains by its score, so that
 LIKELY = 0.65  # of the misfit: an effect that explains as much by its score is tried in its other forms before others
 NEARLY_ALL = 0.9  # of the misfit: what explains as much may be a look-alike of what is missing, in another form
 NOT_ALL = 0.3  # of the misfit: an effect that scores less is no account of nearly all of it
-AS_LIKELY = 0.7  # of what the best score explains: what scores as much is refitted as long as others are
+AS_LIKELY = 0.9  # of what the best score explains: what scores as much is refitted as long as others are
 LOOK_ALIKE_STARTS = 8  # starts of a look-alike's own parameters
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
 
