@@ -18,9 +18,9 @@ DAMPINGS = 10.0 ** np.arange(-12, 4)  # of the curvature, tried side by side, wh
 FARTHEST = 0.3  # of a parameter's range in a step
 REFINED, PATIENCE = 1e-4, 3  # of the loss: so many steps in a row that take less off end a descent
 PROMISED = 1e-8  # of the loss: a step that would take less off ends it, too
-BEHIND = 1.1  # times the loss of a rival
-CRAWLING = 1e-3  # of the loss: so many steps in a row that take less off end a rough descent, and one behind a rival
-FEW = 5  # steps, after which a descent behind a rival ends where there is no patience
+FAR = 2.0  # times the loss of a rival
+CRAWLING = 1e-3  # of the loss: so many steps in a row that take less off end a rough descent, and one far above a rival
+BEHIND, FEW = 1.1, 5  # times the loss of a rival: what is above it after so many steps ends where there is no patience
 SETTLED = 1e-11  # of the loss: a step that takes less off, or would, ends a polish
 NEXT = 1e-3  # of a parameter's range: twice the longest step that still leads to the minimum next to it
 ROUNDING = 1e-10  # of the loss: it rises by less where only its digits end
@@ -37,15 +37,14 @@ def descend(
     rough: bool = False,
 ) -> Array:
     """The point that few steps reach. held: a parameter that stays where it is. going: whether there is time for
-    another step. rival: the loss of another model; a descent is given up behind it where it crawls, or where `patient`
-    says that it took long. rough: whether it ends anywhere where it crawls."""
+    another step. rival: the loss of another model; a descent is given up far above it where it crawls, and behind it
+    where `patient` says that it took long. rough: whether it ends anywhere where it crawls."""
     best, falls = np.clip(point, 0, 1), [1.0]
     for step, loss, fall in islice(steps(problem, best, PROMISED, held, going, Simulator.sure_squares), most):
         best = step
         falls.append(fall)
-        behind = loss > BEHIND * rival
-        crawls = max(falls[-PATIENCE:]) < (CRAWLING if rough or behind else REFINED)
-        if crawls or (behind and len(falls) > FEW and not patient()):
+        crawls = max(falls[-PATIENCE:]) < (CRAWLING if rough or loss > FAR * rival else REFINED)
+        if crawls or (loss > BEHIND * rival and len(falls) > FEW and not patient()):
             break
     return best
 

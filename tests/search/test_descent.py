@@ -10,7 +10,7 @@ from pzt_ident.engine import simulator
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks
 from pzt_ident.search import descent
-from pzt_ident.search.descent import BEHIND, CRAWLING, FEW, PATIENCE, REFINED, descend, polish
+from pzt_ident.search.descent import BEHIND, CRAWLING, FAR, FEW, PATIENCE, REFINED, descend, polish
 from pzt_ident.search.problem import Problem
 from pzt_ident.search.stencil import DIFFERENCE, NARROW, forward, half_widths, stencil
 from pzt_ident.search.uncertainty import covariance
@@ -60,15 +60,15 @@ def test_a_linear_problem_within_bounds_has_its_closed_form(count, decades, seed
 @pytest.mark.parametrize(
     ("fall", "above", "rough", "taken"),
     [
-        (2 * CRAWLING, 2 * BEHIND, False, 30),
-        (CRAWLING / 2, 2 * BEHIND, False, PATIENCE),
-        (CRAWLING / 2, 0.9 * BEHIND, False, 30),
+        (2 * CRAWLING, 2 * FAR, False, 30),
+        (CRAWLING / 2, 2 * FAR, False, PATIENCE),
+        (CRAWLING / 2, 0.9 * FAR, False, 30),
         (CRAWLING / 2, 0, True, PATIENCE),
         (2 * CRAWLING, 0, True, 30),
         (REFINED / 2, 0, False, PATIENCE),
     ],
 )
-def test_a_rough_descent_that_crawls_is_given_up_and_one_behind_a_rival(monkeypatch, fall, above, rough, taken):
+def test_a_rough_descent_that_crawls_is_given_up_and_one_far_above_a_rival(monkeypatch, fall, above, rough, taken):
     """After steps that each take the same share off, the first of which counts as long."""
     losses = above * (1 - fall) ** np.arange(1, 40)
     monkeypatch.setattr(descent, "steps", lambda *args: ((np.array([i]), loss, fall) for i, loss in enumerate(losses)))
