@@ -128,9 +128,9 @@ def stuck(steps: list[Step]) -> bool:
 
 
 def settle(case: Case, first: Fit, before: Fit, step: Step) -> list[Step]:
-    """Restart the fit of a step that does not reach the noise before anything else is blamed, which is kept where that
-    leads hardly lower: what was scored beside it holds. The steps that remove what is not needed any more, and exchange
-    what fits better in another form."""
+    """Restart the fit of a step that does not reach the noise before anything else is blamed; it is kept where the
+    restart leads hardly lower, since what was scored beside it holds then. Returns the steps that remove what is not
+    needed any more, and exchange what fits better in another form."""
     if not adequate(case, first, step.fit) and case.budget.allows("other starts"):
         restarted = restart(case, step.fit)
         if removed_rms(step.fit.total, restarted.total) > TIE * case.floor:

@@ -280,8 +280,10 @@ def _known_keys(loc: Loc) -> list[str]:
 
 
 def _choice_of_keys(loc: Loc) -> str:
-    """The keys that a mapping at a place may have, in words."""
-    return f" with some of {', '.join(_known_keys(loc))}"
+    """The keys that a mapping at a place may have, in words; the settings of a block or an optimizer are beside its
+    name."""
+    words = ["its settings" if key == "settings" else key for key in _known_keys(loc)]
+    return f" with some of {', '.join(words)}"
 
 
 def _item_schema(schema: dict[str, Any]) -> dict[str, Any]:

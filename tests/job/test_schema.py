@@ -195,6 +195,7 @@ ONE_FAULT = [
     ("[bouc_wen, lumped]", "[bouc_wenn, lumped]", "10:9: model[0]: unknown block 'bouc_wenn'", "'bouc_wen'"),
     ("[bouc_wen, lumped]", "bouc_wen", "10:8: model: 'bouc_wen' is not a list", "[first, second]"),
     ('{drive: "u_y [V]"}', "5", "channels.axes.y: 5 is not a mapping", "with some of drive, response"),
+    ("{name: fake, population: 40, pull: 1.5}", "5", "optimizers[0]: 5 is not a mapping", "some of name, its settings"),
     ("{value: 0.1566}", "0.1566", "x.lumped.mass: 0.1566 is not a mapping", "{key: value} with some of bounds, value"),
     ("lumped]", "{name: lumpd}]", "10:26: model[1].name: unknown block 'lumpd'", "did you mean 'lumped'"),
     ("lumped]", "{name: lumped, size: 3}]", "10:34: model[1].size: unknown setting 'size'", "write just `lumped`"),
