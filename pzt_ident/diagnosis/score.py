@@ -69,8 +69,22 @@ def applicable(case: Case, effects: tuple[str, ...], in_setup: bool = False) -> 
 
 
 def fitting_forms(case: Case, effects: tuple[str, ...], word: str) -> list[str]:
-    """The items of the forms of an effect that can act in the model with `effects`, in the order of the declaration."""
-    return [item for item in blocks.forms(word) if fits(case, effects, item)]
+    """The items of the forms of an effect that can act in the model with `effects`, in the order of the declaration; of
+    those that are one there, as in a block that has the effect in one form only, the first."""
+    forms: dict[object, str] = {}
+    for item in blocks.forms(word):
+        if fits(case, effects, item):
+            forms.setdefault(place_of(case, effects, item), item)
+    return list(forms.values())
+
+
+def place_of(case: Case, effects: tuple[str, ...], item: str) -> object:
+    """What tells a form of an effect from others: inside the equations of blocks, their parameters and forms with it."""
+    if not issubclass(blocks[item], Term):
+        return item
+    names, chain = {word_of(item), item}, blocks.chain((*case.words, *effects))
+    declared = ((block, word) for block in chain for word, each in block.parameters().items() if each.effect in names)
+    return frozenset((*declared, *((block, name) for block in chain for name in names if name in block.forms)))
 
 
 def fits(case: Case, effects: tuple[str, ...], item: str) -> bool:

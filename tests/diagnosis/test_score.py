@@ -15,6 +15,7 @@ from pzt_ident.diagnosis.score import (
     KEPT,
     Scorer,
     applicable,
+    fits,
     fitting_forms,
     scorer_of,
     squared_misfit,
@@ -22,7 +23,11 @@ from pzt_ident.diagnosis.score import (
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.trials import planned_trials
 from pzt_ident.job.sections import Setting
+from pzt_ident.model.block import Bank, Operator
 from pzt_ident.model.registry import blocks
+
+
+OPERATORS = [word for word in blocks.words() if issubclass(blocks[word], Operator | Bank) and not blocks.is_effect(word)]
 
 
 def scored(case, effect):
@@ -103,6 +108,21 @@ def test_guesses_are_within_the_bounds():
             low, high = bounds[name]
             assert low <= value <= high, name
         assert np.isfinite(score.explained) and score.explained <= 1.1
+
+
+@pytest.mark.parametrize("mechanics", [(), ("lumped",), ("modal",)], ids=" ".join)
+@pytest.mark.parametrize("operator", OPERATORS)
+def test_each_form_of_an_effect_is_a_model_of_its_own(operator, mechanics):
+    case = stage.case().with_words((operator, *mechanics))
+
+    def model(item):
+        built = case.problem((item,)).model
+        return tuple(map(built.form_of, built.blocks)), tuple(built.additions), case.problem((item,)).names
+
+    for word in applicable(case, ()):
+        forms = fitting_forms(case, (), word)
+        everything = {model(item) for item in blocks.forms(word) if fits(case, (), item)}
+        assert len(forms) == len(everything) and {model(item) for item in forms} == everything, word
 
 
 def test_what_a_record_may_add_of_its_own():
