@@ -124,14 +124,21 @@ class Linear:
 
     changes: theta (candidates, parameters) -> (rows, candidates), the residual of the first and how that of each other
     differs from it, rotated so that a few rows are left. units: (linear,), a change of each parameter that is small
-    beside its typical size, with the sign that it may have. passes: of linearisation, at most.
+    beside its typical size, with the sign that it may have. passes: of linearisation, at most. beside: a candidate and
+    its solution, from whose values those of others are sought.
     """
 
     def __init__(
-        self, model: Chain, columns: Sequence[int] | Indices, units: Array, changes: Changes, passes: int = MAX_PASSES
+        self,
+        model: Chain,
+        columns: Sequence[int] | Indices,
+        units: Array,
+        changes: Changes,
+        passes: int = MAX_PASSES,
+        beside: tuple[bytes, LinearSolution] | None = None,
     ) -> None:
         self.columns = np.array(columns, dtype=int)
-        self.model, self.units, self.passes, self._changes = model, units, passes, changes
+        self.model, self.units, self.passes, self._changes, self._beside = model, units, passes, changes, beside
         self._solved = lru_cache(SOLUTIONS)(self._solve)
         self._values = lru_cache(VALUES)(lambda raw: self._solved(raw).values)
         entries = [model.entries[column] for column in columns]
@@ -145,6 +152,11 @@ class Linear:
     def rough(self) -> Linear:
         """Those whose solution ends as soon as it tells candidates from each other."""
         return Linear(self.model, self.columns, self.units, self._changes, ROUGH)
+
+    def begun_at(self, row: Array, changes: Changes) -> Linear:
+        """Those that are sought from the solution of a candidate, in fewer passes."""
+        beside = self._key(row), self.solved(row)
+        return Linear(self.model, self.columns, self.units, changes, ROUGH, beside)
 
     def fill(self, theta: Array) -> None:
         """Write the solved values into theta (candidates, parameters), in place."""
@@ -172,6 +184,11 @@ class Linear:
         def begin() -> Array:
             return self.solved(plain).values
 
+        if self._beside is not None:
+            place, solution = self._beside
+            if raw == place or not np.isfinite(solution.values).all():
+                return solution
+            return solve(changes, self.units, self._curves, row[self._weights], self.passes, first=solution.values)
         plain = self._without_effects(row)
         bends = None if self._key(plain) == raw else begin
         return solve(changes, self.units, self._curves, row[self._weights], self.passes, bends)
@@ -188,17 +205,18 @@ def solve(
     weights: ArrayLike,
     passes: int = MAX_PASSES,
     begin: Callable[[], Array] | None = None,
+    first: Array | None = None,
 ) -> LinearSolution:
     """Non-negative least squares in multiples of `units`, with squared second differences as a smoothness prior.
 
     changes, units: as of `Linear`. curves: indices of the parameters of each smooth curve, in order. weights: of the
     squared second differences of each curve relative to the squared errors. Lawson & Hanson (1974), Solving Least
     Squares Problems, ch. 23; linearised again, `passes` in all, where the response is not linear, which half of a step
-    tells, and how much is left after it, from the best place on the way there. The first pass begins at zero, where a
-    cyclic error is a slope; the next one at the values of `begin` if these leave less. Values are NaN where the
-    residuals are not finite.
+    tells, and how much is left after it, from the best place on the way there. The first pass begins at `first`, by
+    default at zero, where a cyclic error is a slope; the next one at the values of `begin` if these leave less. Values
+    are NaN where the residuals are not finite.
     """
-    values = np.zeros(units.size)
+    values = np.zeros(units.size) if first is None else first
     for number in range(passes):
         residual, columns = np.split(changes(values + np.vstack([np.zeros(units.size), np.diag(units)])), [1], axis=1)
         if not np.isfinite(columns).all():

@@ -187,9 +187,13 @@ class Problem(Cube):
         return self._with_amounts(Simulator.near, held)
 
     def begun_at(self, point: Array) -> Problem:
-        """The problem whose amounts of the records are sought from those of a point, which takes fewer steps beside it;
-        itself without any."""
-        return self._with_amounts(Simulator.begun_at, self.held(point)) if self.model.amounts else self
+        """The problem whose amounts of the records, and what is solved for, are sought from those of a point, which
+        takes fewer steps beside it; itself without any."""
+        begun = self._with_amounts(Simulator.begun_at, self.held(point)) if self.model.amounts else self
+        if self.linear.columns.size:
+            begun = copy(begun)
+            begun.linear = self.linear.begun_at(self.parameters(point)[0], begun._changes)
+        return begun
 
     def _with_amounts(self, changed: Callable[[Simulator, Held], Simulator], held: tuple[Held, ...]) -> Problem:
         if not held:

@@ -200,6 +200,18 @@ def test_few_passes_tell_candidates_from_each_other(measured, behind, most):
     assert np.all(np.abs(np.log(rough / exact)) <= np.log(most))
 
 
+@pytest.mark.parametrize("behind", [(), ("quadratic_gain.displacement",)])
+def test_what_is_sought_from_beside_is_what_is_sought_from_nothing(measured, behind):
+    """In half the passes; beside its own place it is there already."""
+    made = problem(measured, *behind)
+    points = np.full((3, made.dimensions), 0.52)
+    points[:, made.names.index("homogenized_energy.interaction")] = [0.5, 0.51, 0.53]
+    begun = made.begun_at(points[0])
+    np.testing.assert_array_equal(begun.parameters(points[0]), made.parameters(points[0]))
+    np.testing.assert_allclose(begun.loss(points), made.loss(points), rtol=1e-3)
+    assert np.all(begun.loss(points) <= (1 + 1e-6) * made.rough().loss(points))
+
+
 @pytest.mark.parametrize(("reach", "says"), [(5e6, "nothing switches: the response is linear"), (5.0, "at once")])
 def test_a_density_far_from_the_drive_is_refused(measured, reach, says):
     with pytest.raises(InputError, match=says) as error:
