@@ -24,6 +24,7 @@ FAR_OFF = 2.0  # times the loss of the identification records: what a record lea
 AS_WELL = 1.1  # of the loss: parameters that fit the identification records as well
 OPEN = 0.5  # of the error of a record: what it varies by with such parameters where the others leave it open
 DRAWS = 240  # points along the directions of the curvature, each as far as the loss grows little
+DRAWS_SOLVED = 60  # the same where each costs a solution for what the response is linear in
 
 
 def judged(case: Case, fit: Fit) -> tuple[Case, Fit]:
@@ -62,7 +63,8 @@ def as_good(fit: Fit) -> Array:
     growth = np.sqrt(AS_WELL**2 - 1) * fit.identify
     lengths = np.minimum(growth / np.maximum(sizes, np.finfo(float).tiny), 1.0)
     rng = np.random.default_rng(0)
-    parts, any_place = rng.uniform(-1, 1, size=(DRAWS, lengths.size)), rng.uniform(size=(DRAWS, fit.point.size))
+    draws = DRAWS_SOLVED if fit.problem.linear.columns.size else DRAWS
+    parts, any_place = rng.uniform(-1, 1, size=(draws, lengths.size)), rng.uniform(size=(draws, fit.point.size))
     near = np.clip(fit.point + parts * lengths @ directions, 0, 1)
     points = np.vstack([near, np.where(np.isin(fit.problem.free, [*mechanics_of(fit)]), any_place, fit.point)])
     return points[fit.problem.loss(points) <= AS_WELL * fit.identify]
