@@ -21,7 +21,7 @@ from pzt_ident.diagnosis.criteria import (
 )
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.refit import refit, refit_from
+from pzt_ident.diagnosis.refit import AT_NOISE, refit, refit_from
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, applicable, scorer_of
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.threads import side_by_side
@@ -139,7 +139,7 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
             item: refit_from(case, before, (*before.effects, item), score.guesses, rival)
             for item, score in forms.items()
         }
-        candidate.refits = from_each_other(case, fits)
+        candidate.refits = from_each_other(case, fits, rival)
         return candidate
 
     made: list[Candidate] = []
@@ -168,10 +168,14 @@ def refit_likely_forms(case: Case, first: Fit, before: Fit, candidate: Candidate
             candidate.refits[score.effect] = refit_from(case, before, effects, score.guesses, best.identify)
 
 
-def from_each_other(case: Case, refits: Mapping[str, Fit]) -> dict[str, Fit]:
+def from_each_other(case: Case, refits: Mapping[str, Fit], rival: float = np.inf) -> dict[str, Fit]:
     """The refits with the forms of an effect, by item: those far behind the best one are tried from where it led,
-    too. Forms share parameters, and a poor guess may rest in a side minimum."""
+    too. Forms share parameters, and a poor guess may rest in a side minimum. rival: the RMSE of another effect; beside
+    one at the noise no form is tried again where none is near that."""
     best = min(refits.values(), key=lambda fit: fit.total)
+    beaten = share_explained(best.identify, rival, case.floor) >= DECISIVE
+    if beaten and rival < AT_NOISE * case.floor:
+        return dict(refits)
     return {
         item: from_where(case, best, fit, {}) if is_far_behind(case, fit, best) else fit for item, fit in refits.items()
     }
@@ -280,7 +284,8 @@ def refit_other_forms(
             score.effect: refit_from(case, before, (*before.effects, score.effect), score.guesses, best.identify)
             for score in missing
         }
-        candidate.refits = from_each_other(case, {**candidate.refits, **new}) if new else candidate.refits
+        if new:
+            candidate.refits = from_each_other(case, {**candidate.refits, **new}, best.identify)
     shortlist += [item for item in wanted if item.refits and item not in shortlist]
 
 

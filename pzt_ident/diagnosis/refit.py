@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.modes import mechanics_at_main_mode, mechanics_without_payload
+from pzt_ident.search.descent import FAR
 from pzt_ident.search.halving import change_by_halving
 from pzt_ident.search.problem import Problem
 
@@ -119,7 +120,7 @@ def refine_steps(
     """The fit, continued with finer simulation steps for the records where halving the step changes the response by
     more than a part of what the fit leaves, or of the noise; `fine`: of the noise even where the fit leaves more.
     checked: the numbers of the records in question, by default of all. None is refined behind the end of the budget,
-    but for what is `fine`.
+    but for what is `fine`, nor where the fit stays far above a rival whatever finer steps change.
 
     Where the drive is linear between samples, the signals between blocks are taken as linear too.
     """
@@ -127,8 +128,9 @@ def refine_steps(
         return fit
     most = STEP_TOLERANCE * (case.floor if fine else max(case.floor, fit.identify))
     numbers = [n for n in (range(len(fit.steps)) if checked is None else checked) if fit.steps[n] < FINEST]
-    coarse = [n for n, error in zip(numbers, step_errors(case, fit, numbers), strict=True) if error > most]
-    if not coarse:
+    errors = step_errors(case, fit, numbers)
+    coarse = [n for n, error in zip(numbers, errors, strict=True) if error > most]
+    if not coarse or fit.identify - errors.max() > FAR * rival:
         return fit
     steps = [count * (2 if n in coarse else 1) for n, count in enumerate(fit.steps)]
     problem = case.problem(fit.effects, steps, fit.measured_only)

@@ -481,6 +481,13 @@ def test_a_form_far_behind_another_one_is_tried_from_where_that_led(monkeypatch,
     assert found["creep"].identify == kept and found["creep.voltage"] is refits["creep.voltage"]
 
 
+def test_no_form_is_tried_again_far_behind_another_effect_at_the_noise(monkeypatch):
+    refits = {"creep": fit(8.0, 8.0, ["creep"]), "creep.voltage": fit(3.0, 3.0, ["creep.voltage"])}
+    monkeypatch.setattr(candidates, "refit", lambda case, other, effects, guess, rival: fit(2.9, 2.9, effects))
+    for rival, tried in ((1.0, False), (1.5, True), (np.inf, True)):
+        assert (candidates.from_each_other(CASE, refits, rival) != refits) == tried
+
+
 @pytest.mark.parametrize("own, led", [(6.0, 1.0), (6.0, 7.0)])
 def test_a_look_alike_far_behind_is_tried_from_where_the_best_led(monkeypatch, own, led):
     monkeypatch.setattr(candidates, "refit", lambda case, other, effects, guess, rival: fit(led, led, effects))

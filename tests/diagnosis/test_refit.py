@@ -183,6 +183,14 @@ def test_a_step_that_is_short_for_what_a_fit_leaves_is_kept_until_it_leaves_less
     assert refit.refine_steps(creeping, fit, fine=True).steps == (refit.FINEST, refit.FINEST)
 
 
+def test_no_step_is_refined_of_a_fit_that_stays_far_above_a_rival(monkeypatch):
+    creeping = stage.case(stage.EFFECTS["creep"])
+    fit = first_fit(creeping, 0)
+    monkeypatch.setattr(refit, "step_errors", lambda case, fit, numbers: np.full(len(numbers), 0.2 * fit.identify))
+    assert refit.refine_steps(creeping, fit, 0.3 * fit.identify) is fit
+    assert refit.refine_steps(creeping, fit, 0.5 * fit.identify) is not fit
+
+
 def test_a_lag_within_the_sample_is_told_from_a_delay_by_finer_steps():
     """The voltage between samples, which the mechanics ring with: a lag rounds it, a delay does not."""
     time = 1e-4 * np.arange(2500)
