@@ -79,7 +79,7 @@ def fitting_forms(case: Case, effects: tuple[str, ...], word: str) -> list[str]:
 
 
 def place_of(case: Case, effects: tuple[str, ...], item: str) -> object:
-    """What tells a form of an effect from others: inside the equations of blocks, their parameters and forms with it."""
+    """What tells a form from others: in the equations of blocks, their parameters and their own forms with it."""
     if not issubclass(blocks[item], Term):
         return item
     names, chain = {word_of(item), item}, blocks.chain((*case.words, *effects))

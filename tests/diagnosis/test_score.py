@@ -26,8 +26,9 @@ from pzt_ident.job.sections import Setting
 from pzt_ident.model.block import Bank, Operator
 from pzt_ident.model.registry import blocks
 
-
-OPERATORS = [word for word in blocks.words() if issubclass(blocks[word], Operator | Bank) and not blocks.is_effect(word)]
+OPERATORS = [
+    word for word in blocks.words() if issubclass(blocks[word], Operator | Bank) and not blocks.is_effect(word)
+]
 
 
 def scored(case, effect):
