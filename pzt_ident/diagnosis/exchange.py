@@ -91,11 +91,12 @@ def join_look_alikes(case: Case, first: Fit, now: Fit) -> list[Step]:
 
 
 def separate_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
-    """Where an effect contains another one, as friction with a viscous part a lag, the steps to a form that does not,
+    """Where an effect contains another one, as friction with a viscous part a lag, the steps to the form that does not,
     and to that other one by itself or a look-alike of it, where these remove most of what is left."""
     for effect in () if adequate(case, first, now) else now.effects[len(first.effects) :]:
         parts, plain = parts_of(case, now, effect), other_forms(case, now, effect)
         bare = [item for item in plain if not blocks[item].contains]
+        bare = [item for item in bare if issubclass(blocks[effect], blocks[item])] or bare
         if not parts or not bare or not case.budget.allows("other forms"):
             continue
         others = effects_without(now, effect)

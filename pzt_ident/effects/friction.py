@@ -1,7 +1,9 @@
 """Dry friction in the guide."""
 
+from dataclasses import replace
+
 from pzt_ident.model.block import Block, Place, Term, expm1
-from pzt_ident.model.bristles import PLAY, rub
+from pzt_ident.model.bristles import PLAY, bend, rub
 from pzt_ident.model.first_order_hold import decay
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
@@ -12,7 +14,7 @@ class Rubbing:
 
     form = Form(
         "lugre",
-        ("lugre", "lugre_viscous", "coulomb", "motion", "coulomb_motion", "slip"),
+        ("lugre", "lugre_viscous", "commanded", "commanded_lugre", "coulomb", "motion", "coulomb_motion", "slip"),
         "The law of friction, and where it acts.",
     )
     sizes = (0.02, 0.1, 0.5)
@@ -100,6 +102,52 @@ class LuGreViscous(Friction):
         return friction, u, w, u + w, u + w - friction
 
 
+class Commanded(Ahead, Block):
+    """Bristles that the commanded displacement f bends: x = f - F,  dF/df = (force - F sgn df/dt) / reach.
+
+    Dahl (1976), AIAA J. 14, 1675, with f in the place of x: friction as it is taken off a commanded displacement. It
+    may be so steep that x first goes the other way at a reversal. Its step is exact.
+    """
+
+    reach = replace(Friction.reach, doc="Commanded displacement over which friction builds up.")
+
+    def prepare(force, reach):
+        return force, 1 / reach
+
+    def start(u, force, per_reach):
+        return 0.0, u
+
+    def step(friction, before, u, force, per_reach):
+        friction = bend(friction, u - before, force, per_reach)
+        return friction, u, u - friction
+
+
+class CommandedLuGre(Commanded):
+    """The same with stiction and viscous friction: x = w - F,  viscous dw/dt + w = f,
+    dF/df = (g - F sgn df/dt) / (reach g / force),  g = force (1 + stiction exp(-(v / stribeck)^2)),  v = df/dt.
+
+    Canudas de Wit, Olsson, Astrom & Lischinsky (1995), IEEE Trans. Autom. Control 40, 419, eq. 2 to 5, with f in the
+    place of x. The viscous part against the stiffness is a lag, stepped exactly.
+    """
+
+    trials = {"stribeck": 1}
+    stiction, stribeck, viscous = Friction.stiction, Friction.stribeck, LuGreViscous.viscous
+    contains = ("sensor_lag", "amplifier_lag")
+
+    def prepare(force, reach, stiction, stribeck, viscous, dt):
+        return force, 1 / reach, stiction, 1 / (stribeck * dt), *decay(viscous, dt)
+
+    def start(u, force, per_reach, stiction, fast, keep, share):
+        return 0.0, u, 0.0
+
+    def step(friction, before, w, u, force, per_reach, stiction, fast, keep, share):
+        pull = u - before
+        w = keep * w - share * pull
+        level = 1 + stiction * (1 + expm1(-pull * fast * pull * fast))
+        friction = bend(friction, pull, force * level, per_reach / level)
+        return friction, u, w, u + w - friction
+
+
 class Coulomb(Ahead, Block):
     """Dry and viscous friction: x + viscous dx/dt = f - force tanh(v / speed).
 
@@ -157,6 +205,8 @@ class Slip(Rubbing, Term):
 
 Friction.forms = {
     "lugre_viscous": LuGreViscous,
+    "commanded": Commanded,
+    "commanded_lugre": CommandedLuGre,
     "coulomb": Coulomb,
     "motion": Motion,
     "coulomb_motion": CoulombMotion,

@@ -6,6 +6,12 @@ from pzt_ident.model.elementary import expm1, log1p, rough_log
 PLAY = "a play, as a backlash between stage and sensor is"  # friction that does not give before it slides
 
 
+def bend(friction, pull, level, per_reach):
+    """Friction F after bristles were pulled: F <- s + (F - s) exp(-|pull| / reach), s = level sgn pull: Dahl (1976)."""
+    slid = level if pull >= 0 else -level
+    return friction - (slid - friction) * expm1(-abs(pull) * per_reach)
+
+
 def rub(friction, pull, force, reach, stiction, fast, share):
     """Friction F after a step dx, the root of dx + share (F(dx) - F) = pull, pull being dx if F stayed as it was.
 

@@ -14,10 +14,10 @@ T = np.arange(DRIVE.size) * 1e-3
 BOUC_WEN = {"bouc_wen.gain": 0.08, "bouc_wen.alpha": 0.4, "bouc_wen.beta": 0.04, "bouc_wen.gamma": -0.01}
 
 
-def alone(item, **parameters):
-    """Response of one effect to the drive."""
+def alone(item, drive=DRIVE, **parameters):
+    """Response of one effect to a drive."""
     word = item.partition(".")[0]
-    return response([item], {f"{word}.{name}": value for name, value in parameters.items()}, DRIVE)
+    return response([item], {f"{word}.{name}": value for name, value in parameters.items()}, drive)
 
 
 def behind(item, **parameters):
@@ -147,6 +147,31 @@ def test_viscous_friction_lags_the_force_that_bends_the_bristles(reach):
     named = {f"friction.{word}": value for word, value in {"force": 0.5, "viscous": 3e-3, **known}.items()}
     slowed = response(["friction"], {f"friction.{word}": v for word, v in {"force": 0.5, **known}.items()}, lagged)
     np.testing.assert_allclose(response(["friction.lugre_viscous"], named, DRIVE), slowed, atol=1e-12)
+
+
+@pytest.mark.parametrize(("force", "reach"), [(0.5, 4.0), (3.0, 1.0)])
+def test_commanded_friction_builds_up_with_what_is_asked_for(force, reach):
+    """F = force (1 - exp(-f / reach)) from rest, and force (2 exp(-a / reach) - 1) and so on a back from there; where
+    force is more than reach the stage first goes on the other way."""
+    up, back = np.linspace(0, 30, 50), np.linspace(30, 10, 50)[1:]
+    found = alone("friction.commanded", np.append(up, back), force=force, reach=reach)
+    np.testing.assert_allclose(up - found[:50], force * (1 - np.exp(-up / reach)), atol=1e-12)
+    turned = force * ((2 - np.exp(-30 / reach)) * np.exp(-(30 - back) / reach) - 1)
+    np.testing.assert_allclose(back - found[50:], turned, atol=1e-12)
+    assert (found[50:].max() > found[49]) == (2 * force > reach)
+
+
+@pytest.mark.parametrize("stiction", [0.0, 0.3])
+def test_commanded_friction_with_stiction_and_a_viscous_part(stiction):
+    """Of a steady rate v the level is force (1 + stiction exp(-(v / stribeck)^2)); what is viscous lags what is asked
+    for, and not the bristles."""
+    drive, known = np.linspace(0, 40, 400), {"reach": 0.5, "stribeck": 100.0}
+    found = alone("friction.commanded_lugre", drive, force=0.5, stiction=stiction, viscous=0.0, **known)
+    level = 0.5 * (1 + stiction * np.exp(-((drive[1] / 1e-3 / 100) ** 2)))  # reach and force are one here
+    np.testing.assert_allclose(drive - found, level * (1 - np.exp(-drive / level)), atol=1e-9)
+    lagged, plain = alone("amplifier_lag", tau=3e-3), alone("friction.commanded", force=0.5, reach=0.5)
+    both = alone("friction.commanded_lugre", force=0.5, stiction=0.0, viscous=3e-3, **known)
+    np.testing.assert_allclose(both - lagged, plain - DRIVE, atol=1e-11)
 
 
 def test_the_second_harmonic_of_the_grating():
