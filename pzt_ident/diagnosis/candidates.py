@@ -23,10 +23,10 @@ from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import AT_NOISE, refit, refit_from
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer, applicable, scorer_of
-from pzt_ident.diagnosis.starts import restart
+from pzt_ident.diagnosis.starts import first_fit, restart
 from pzt_ident.diagnosis.threads import side_by_side
 from pzt_ident.diagnosis.ties import TIE, are_look_alikes, at_noise
-from pzt_ident.model.registry import word_of
+from pzt_ident.model.registry import blocks, word_of
 
 FORM_GAIN = 0.02  # of the misfit, by which another form of an effect explains more than the first one
 PROMISING = 0.75  # of the misfit: what an effect explains by its score, so that it is tried ahead of anything else
@@ -57,6 +57,11 @@ class Candidate:
         """The candidate in the form that explains most, or in the first if that explains nearly as much."""
         best = max(scores, key=lambda score: score.explained)
         return cls(best if best.explained > scores[0].explained + FORM_GAIN else scores[0], forms=scores)
+
+    @property
+    def best(self) -> Fit:
+        """The refit that fits best."""
+        return min(self.refits.values(), key=lambda fit: fit.total)
 
     def take(self, item: str) -> None:
         """Mean this form, which was refitted."""
@@ -154,18 +159,46 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
 
 
 def refit_likely_forms(case: Case, first: Fit, before: Fit, candidate: Candidate) -> None:
-    """Refit an effect that promises most of the misfit, explains most of it and leaves more than the noise in its other
-    forms, before other effects are refitted: those that explain most by their scores first, until one is adequate."""
-    if candidate.score.explained < LIKELY:
+    """Refit an effect that explains most of the misfit and leaves more than the noise in its other forms, before other
+    effects are refitted, if it promised most, or rests where it may be astray: those that explain most by their scores
+    first, until one is adequate; if all rest there, from random points."""
+    astray = before is first and rests_anew(before, candidate.best)
+    if candidate.score.explained < LIKELY and not astray:
         return
-    likely = [score for score in candidate.forms if score.explained >= DECISIVE * candidate.score.explained]
-    for score in sorted(likely, key=lambda score: -score.explained):
-        best = min(candidate.refits.values(), key=lambda fit: fit.total)
-        if adequate(case, first, best) or share_explained(before.identify, best.identify, case.floor) < DECISIVE:
-            break
+    scores = [score for score in candidate.forms if score.explained >= DECISIVE * candidate.score.explained]
+    scores.sort(key=lambda score: -score.explained)
+    for score in scores:
+        if not leaves_some(case, first, before, candidate.best):
+            return
         if score.effect not in candidate.refits and case.budget.allows("other forms"):
-            effects = (*before.effects, score.effect)
-            candidate.refits[score.effect] = refit_from(case, before, effects, score.guesses, best.identify)
+            effects, rival = (*before.effects, score.effect), candidate.best.identify
+            candidate.refits[score.effect] = refit_from(case, before, effects, score.guesses, rival)
+    if before is first:
+        refit_anew(case, first, candidate, [score.effect for score in scores])
+
+
+def refit_anew(case: Case, first: Fit, candidate: Candidate, items: Sequence[str]) -> None:
+    """Fit forms of an effect from random points, but for those with amounts of each record, until one is adequate or
+    rests where the model did without it."""
+    for item in items:
+        best = candidate.best
+        if not (leaves_some(case, first, first, best) and rests_anew(first, best)):
+            return
+        if not blocks[item].amounts() and case.budget.allows("other starts"):
+            anew = first_fit(case, 0, effects=(*first.effects, item), rival=best.identify)
+            candidate.refits[item] = min(anew, candidate.refits.get(item, anew), key=lambda fit: fit.total)
+
+
+def leaves_some(case: Case, first: Fit, before: Fit, fit: Fit) -> bool:
+    """Whether a fit explains most of the misfit, and leaves more than the noise."""
+    explains_most = share_explained(before.identify, fit.identify, case.floor) >= DECISIVE
+    return explains_most and not adequate(case, first, fit)
+
+
+def rests_anew(before: Fit, fit: Fit) -> bool:
+    """Whether a parameter of the model rests on a bound where it did not without the effect: it may be a side minimum,
+    in which the effect does what a part of the model did."""
+    return bool(set(fit.on_bounds) & set(before.problem.names) - set(before.on_bounds))
 
 
 def from_each_other(case: Case, refits: Mapping[str, Fit], rival: float = np.inf) -> dict[str, Fit]:
@@ -199,9 +232,7 @@ def share_of_others(case: Case, first: Fit, before: Fit, fits: Sequence[Fit]) ->
 def second_missing(case: Case, first: Fit, before: Fit, fits: Sequence[Fit]) -> bool:
     """Whether one of the fits explains most of the misfit, and what it leaves is above the noise: time is for a second
     effect rather than for others in the place of this one."""
-    best = min(fits, key=lambda fit: fit.total, default=before)
-    most = share_explained(before.identify, best.identify, case.floor) >= DECISIVE
-    return most and not adequate(case, first, best)
+    return leaves_some(case, first, before, min(fits, key=lambda fit: fit.total, default=before))
 
 
 def choose_forms(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:

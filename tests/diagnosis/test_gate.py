@@ -481,6 +481,41 @@ def test_a_form_far_behind_another_one_is_tried_from_where_that_led(monkeypatch,
     assert found["creep"].identify == kept and found["creep.voltage"] is refits["creep.voltage"]
 
 
+@pytest.mark.parametrize(("rests", "left", "sought"), [(True, 4.0, True), (False, 4.0, False), (True, 1.0, False)])
+def test_an_effect_that_drives_the_model_onto_bounds_is_fitted_from_random_points(monkeypatch, rests, left, sought):
+    """In each of its forms, as long as it leaves more than the noise, and whatever it promised."""
+    first, tried = fit(12.0, 12.0), []
+    candidate = Candidate(Score("friction", 0.6), forms=[Score("friction", 0.6), Score("friction.commanded", 0.5)])
+    candidate.refits = {"friction": fit(left, left, ["friction"])}
+
+    def first_fit(case, seed, effects, rival):
+        tried.append(effects[-1])
+        assert rival == left
+        return fit(1.0, 1.0, effects) if effects[-1] == "friction.commanded" else fit(5.0, 5.0, effects)
+
+    monkeypatch.setattr(candidates, "first_fit", first_fit)
+    monkeypatch.setattr(candidates, "refit_from", lambda case, before, effects, *_: fit(4.5, 4.5, effects))
+    monkeypatch.setattr(candidates, "rests_anew", lambda before, fit: rests)
+    candidates.refit_likely_forms(CASE, first, first, candidate)
+    assert tried == (["friction", "friction.commanded"] if sought else [])
+    assert candidate.best.identify == (1.0 if sought else left)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "anew"),
+    [
+        ([], ["bouc_wen.alpha"], True),
+        (["bouc_wen.alpha"], ["bouc_wen.alpha"], False),
+        (["bouc_wen.alpha"], ["bouc_wen.beta"], True),
+        ([], ["friction.reach"], False),
+    ],
+)
+def test_only_parameters_of_the_model_itself_rest_anew(before, after, anew):
+    problem = SimpleNamespace(names=["bouc_wen.alpha", "bouc_wen.beta"])
+    bare, with_effect = SimpleNamespace(problem=problem, on_bounds=before), SimpleNamespace(on_bounds=after)
+    assert candidates.rests_anew(bare, with_effect) == anew
+
+
 def test_no_form_is_tried_again_far_behind_another_effect_at_the_noise(monkeypatch):
     refits = {"creep": fit(8.0, 8.0, ["creep"]), "creep.voltage": fit(3.0, 3.0, ["creep.voltage"])}
     monkeypatch.setattr(candidates, "refit", lambda case, other, effects, guess, rival: fit(2.9, 2.9, effects))
