@@ -9,11 +9,12 @@ import numpy as np
 
 from pzt_ident.diagnosis.bounds import are_decisive, beyond_bounds, stands_in
 from pzt_ident.diagnosis.budget import PROVING
-from pzt_ident.diagnosis.candidates import Candidate, promises_most
+from pzt_ident.diagnosis.candidates import promises_most
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, clears_an_axis, removed_rms, removes_enough
 from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, remove_unneeded, separate_accounts
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.score import Score

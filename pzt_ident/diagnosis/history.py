@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.notation import listed
-from pzt_ident.diagnosis.candidates import NEARLY_ALL
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, LEAST_SHARE, adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit, fit_at
+from pzt_ident.diagnosis.forms import NEARLY_ALL
 from pzt_ident.diagnosis.misfit import share_explained, squared_misfit
 from pzt_ident.diagnosis.refit import refit, refit_from, start_of
 from pzt_ident.diagnosis.score import applicable, scorer_of

@@ -9,7 +9,6 @@ import numpy as np
 
 from pzt_ident.diagnosis.bounds import continued, freed, stands_in, widened
 from pzt_ident.diagnosis.budget import PROVING, WHOLE
-from pzt_ident.diagnosis.candidates import Candidate
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, climb
 from pzt_ident.diagnosis.criteria import adequate, near_noise, removed_rms, removes_enough
@@ -22,6 +21,7 @@ from pzt_ident.diagnosis.exchange import (
     remove_unneeded,
 )
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.proof import Suspect, unproven
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explained_share

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from pzt_ident.data.notation import listed
-from pzt_ident.diagnosis.candidates import Candidate
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import (
     CLEAR,
@@ -17,6 +16,7 @@ from pzt_ident.diagnosis.criteria import (
     threshold,
 )
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.score import squared_misfit
 from pzt_ident.diagnosis.wording import percent
 from pzt_ident.model.registry import phrase_of

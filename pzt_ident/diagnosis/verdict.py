@@ -9,13 +9,9 @@ import numpy as np
 
 from pzt_ident.diagnosis.candidates import (
     PROMISING,
-    Candidate,
-    choose_forms,
     decide_by_score,
-    least_score,
     promises_enough,
     refit_all,
-    refit_other_forms,
     restart_look_alikes,
     restart_unconfirmed,
     score_all,
@@ -31,6 +27,7 @@ from pzt_ident.diagnosis.criteria import (
     removes_enough,
 )
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.forms import Candidate, choose_forms, least_score, refit_other_forms
 from pzt_ident.diagnosis.limit import is_limited
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.reasons import (

@@ -13,11 +13,11 @@ from pzt_ident.data.units import factor
 from pzt_ident.diagnosis import staircase as stairs
 from pzt_ident.diagnosis.bounds import bounds_that_changed, narrow_bounds_sentence
 from pzt_ident.diagnosis.budget import Budget
-from pzt_ident.diagnosis.candidates import Candidate
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.caveats import broken_conditions, caveats, misfit_sentences
 from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, removed_rms
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.history import history_sentence
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refining import refined_operator

@@ -6,9 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from pzt_ident.diagnosis import candidates, verdict
+from pzt_ident.diagnosis import candidates, forms, verdict
 from pzt_ident.diagnosis.budget import Budget
-from pzt_ident.diagnosis.candidates import Candidate, choose_forms
 from pzt_ident.diagnosis.criteria import (
     adequate,
     clears_an_axis,
@@ -20,6 +19,7 @@ from pzt_ident.diagnosis.criteria import (
 )
 from pzt_ident.diagnosis.exchange import in_its_limit
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.forms import Candidate, choose_forms
 from pzt_ident.diagnosis.score import Score, squared_misfit
 from pzt_ident.diagnosis.ties import generalises, is_tied, is_twin
 from pzt_ident.diagnosis.verdict import best_pair, diagnose, pair_behind
@@ -187,7 +187,7 @@ def judged(monkeypatch):
         scores = [Candidate.of([Score(word, explained=0.9, power=3.0)]) for word in fits]
         scorer = SimpleNamespace(scores=lambda word: next(item.forms for item in scores if item.score.effect == word))
         monkeypatch.setattr(verdict, "scorer_of", lambda case, before: scorer)
-        monkeypatch.setattr(candidates, "scorer_of", lambda case, before: scorer)
+        monkeypatch.setattr(forms, "scorer_of", lambda case, before: scorer)
         monkeypatch.setattr(verdict, "score_all", lambda case, first, before, scorer: scores)
         monkeypatch.setattr(verdict, "refusal", lambda case, first, before: "")
         monkeypatch.setattr(verdict, "restart_look_alikes", lambda case, first, before, candidates: None)
@@ -476,8 +476,8 @@ def test_a_form_far_behind_another_one_is_tried_from_where_that_led(monkeypatch,
         assert other is refits["creep.voltage"] and effects == ("creep",)
         return fit(led, led, effects)
 
-    monkeypatch.setattr(candidates, "refit", refit)
-    found = candidates.from_each_other(CASE, refits)
+    monkeypatch.setattr(forms, "refit", refit)
+    found = forms.from_each_other(CASE, refits)
     assert found["creep"].identify == kept and found["creep.voltage"] is refits["creep.voltage"]
 
 
@@ -493,10 +493,10 @@ def test_an_effect_that_drives_the_model_onto_bounds_is_fitted_from_random_point
         assert rival == left
         return fit(1.0, 1.0, effects) if effects[-1] == "friction.commanded" else fit(5.0, 5.0, effects)
 
-    monkeypatch.setattr(candidates, "first_fit", first_fit)
-    monkeypatch.setattr(candidates, "refit_from", lambda case, before, effects, *_: fit(4.5, 4.5, effects))
-    monkeypatch.setattr(candidates, "rests_anew", lambda before, fit: rests)
-    candidates.refit_likely_forms(CASE, first, first, candidate)
+    monkeypatch.setattr(forms, "first_fit", first_fit)
+    monkeypatch.setattr(forms, "refit_from", lambda case, before, effects, *_: fit(4.5, 4.5, effects))
+    monkeypatch.setattr(forms, "rests_anew", lambda before, fit: rests)
+    forms.refit_likely_forms(CASE, first, first, candidate)
     assert tried == (["friction", "friction.commanded"] if sought else [])
     assert candidate.best.identify == (1.0 if sought else left)
 
@@ -513,19 +513,19 @@ def test_an_effect_that_drives_the_model_onto_bounds_is_fitted_from_random_point
 def test_only_parameters_of_the_model_itself_rest_anew(before, after, anew):
     problem = SimpleNamespace(names=["bouc_wen.alpha", "bouc_wen.beta"])
     bare, with_effect = SimpleNamespace(problem=problem, on_bounds=before), SimpleNamespace(on_bounds=after)
-    assert candidates.rests_anew(bare, with_effect) == anew
+    assert forms.rests_anew(bare, with_effect) == anew
 
 
 def test_no_form_is_tried_again_far_behind_another_effect_at_the_noise(monkeypatch):
     refits = {"creep": fit(8.0, 8.0, ["creep"]), "creep.voltage": fit(3.0, 3.0, ["creep.voltage"])}
-    monkeypatch.setattr(candidates, "refit", lambda case, other, effects, guess, rival: fit(2.9, 2.9, effects))
+    monkeypatch.setattr(forms, "refit", lambda case, other, effects, guess, rival: fit(2.9, 2.9, effects))
     for rival, tried in ((1.0, False), (1.5, True), (np.inf, True)):
-        assert (candidates.from_each_other(CASE, refits, rival) != refits) == tried
+        assert (forms.from_each_other(CASE, refits, rival) != refits) == tried
 
 
 @pytest.mark.parametrize("own, led", [(6.0, 1.0), (6.0, 7.0)])
 def test_a_look_alike_far_behind_is_tried_from_where_the_best_led(monkeypatch, own, led):
-    monkeypatch.setattr(candidates, "refit", lambda case, other, effects, guess, rival: fit(led, led, effects))
+    monkeypatch.setattr(forms, "refit", lambda case, other, effects, guess, rival: fit(led, led, effects))
     best = Candidate.of([Score("amplifier_lag", guesses=[{"tau": 1.0}])])
     rival = Candidate.of([Score("sensor_lag", guesses=[{"tau": 1.0}])])
     stranger = Candidate.of([Score("saturation", guesses=[{"knee": 1.0}])])

@@ -9,10 +9,10 @@ import rig
 import stage
 from pzt_ident.diagnosis import history, staircase
 from pzt_ident.diagnosis.bounds import Widened, continued
-from pzt_ident.diagnosis.candidates import Candidate
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase
 from pzt_ident.diagnosis.criteria import DECISIVE
+from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.history import (
     BEFORE,
     PROMISING,
