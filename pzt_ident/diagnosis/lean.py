@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from pzt_ident.diagnosis.budget import WHOLE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import Staircase
@@ -9,7 +11,7 @@ from pzt_ident.diagnosis.criteria import adequate, removed_rms
 from pzt_ident.diagnosis.exchange import find_rivals
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.modes import mechanics_at_second_mode
-from pzt_ident.diagnosis.paths import SETTLED, conclude, improve_within
+from pzt_ident.diagnosis.paths import SETTLED, Begun, begin, conclude, improve_within
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE
@@ -24,9 +26,25 @@ def settles_for(case: Case, first: Fit, lean: Staircase) -> bool:
     return lean.end.total < first.total and not case.budget.allows("effects beside the mechanics", WHOLE)
 
 
-def improve_lean(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListener) -> Staircase | None:
-    """The staircase without mechanics that the data do not determine; None where these determine them, alone or beside
-    the best effect, or where the model needs one effect at most beside them. diagnosis: of the fit `first`."""
+class Lean(NamedTuple):
+    """The model without its mechanics, as far as its first path climbs: their word, its case and fit, and the steps to
+    it."""
+
+    word: str
+    case: Case
+    start: Fit
+    steps: list[Step]
+    begun: Begun
+
+    @property
+    def settled(self) -> bool:
+        """Whether nothing is missing at the end of that path."""
+        return self.begun.path.last.verdict in SETTLED
+
+
+def begin_lean(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListener) -> Lean | None:
+    """The path without mechanics that the data do not determine; None where these determine them, alone or beside the
+    best effect, or where the model needs one effect at most beside them. diagnosis: of the fit `first`."""
     settled = diagnosis.verdict in SETTLED or any(
         adequate(case, first, candidate.fit) for candidate in diagnosis.passing if candidate.fit
     )
@@ -35,11 +53,17 @@ def improve_lean(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepList
     if alternative is None:
         return None
     word, lean, start = alternative
-    staircase = improve_within(lean, steps_without(case, first, *alternative), on_step)
+    steps = steps_without(case, first, *alternative)
+    return Lean(word, lean, start, steps, begin(lean, steps, on_step))
+
+
+def improve_lean(case: Case, first: Fit, lean: Lean, on_step: StepListener) -> Staircase:
+    """The staircase without mechanics, or that with them at a second mode which it has. first: the model with them."""
+    staircase = improve_within(lean.case, lean.steps, on_step, begun=lean.begun)
     if moved := with_mechanics_moved(case, first, staircase.end, on_step):
         return moved
-    share = explained_share(case, start, first)
-    staircase.suspects.append(Undetermined(word, share, staircase.end.total / case.floor))
+    share = explained_share(case, lean.start, first)
+    staircase.suspects.append(Undetermined(lean.word, share, staircase.end.total / case.floor))
     return staircase
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,34 +36,53 @@ SETTLED = "adequate", "refused"
 PROVEN = "back to what is proven"  # the step that goes back to an earlier one
 
 
+class Begun(NamedTuple):
+    """The path of the best first effect, and the diagnosis of the model that it is added to."""
+
+    diagnosis: Diagnosis
+    path: Staircase
+
+
+def begin(case: Case, base: Sequence[Step], on_step: StepListener, diagnosis: Diagnosis | None = None) -> Begun:
+    """The first path of a case, see `improve_within`, as far as it climbs."""
+    diagnosis = diagnosis or diagnose(case, base[-1].fit)
+    candidate = next(iter(first_candidates(case, base[-1].fit, diagnosis)), None)
+    path = climb(case, base, diagnosis, candidate, on_step)
+    assert path is not None  # there is none that it could join
+    return Begun(diagnosis, path)
+
+
 def improve_within(
-    case: Case, base: Sequence[Step], on_step: StepListener, diagnosis: Diagnosis | None = None
+    case: Case,
+    base: Sequence[Step],
+    on_step: StepListener,
+    diagnosis: Diagnosis | None = None,
+    begun: Begun | None = None,
 ) -> Staircase:
     """The staircase of a case, with its blocks and bounds. base: the steps to the model that effects are added to, the
-    model as given first. diagnosis: of the last of them, where there is one.
+    model as given first. diagnosis: of the last of them, where there is one; begun: the first path, likewise.
 
     Where the best first effect leads to no adequate model, another one is tried: the first may have stood in for
     something else. Both are then compared without the effects that they do not prove, unless the better one is adequate
     without these, too.
     """
     first = base[-1].fit
-    diagnosis = diagnosis or diagnose(case, first)
-    paths, path = list[Staircase](), None
-    candidates: list[Candidate | None] = [*first_candidates(case, first, diagnosis)]
-    for candidate in candidates or [None]:
-        known = [step.fit for other in paths for step in other.steps[len(base) :]]
-        path = climb(case, base, diagnosis, candidate, on_step, known)
-        paths += [path] if path else []
+    diagnosis, path = begun or begin(case, base, on_step, diagnosis)
+    paths, told = [path], None if begun else path
+    for candidate in first_candidates(case, first, diagnosis)[1:]:
         last = paths[-1]
         if last.last.verdict in SETTLED or last.end.identify / case.floor > HOPELESS or len(paths) == PATHS:
             break
         if not case.budget.allows("another effect first"):
             break
+        known = [step.fit for other in paths for step in other.steps[len(base) :]]
+        told = climb(case, base, diagnosis, candidate, on_step, known)
+        paths += [told] if told else []
     case.budget.begin_proof()
     climbed = {id(path): len(path.steps) for path in paths}
     doubts = finish_all(case, first, paths)
     best = best_path(case, [path for path, _ in doubts])
-    for step in best.steps[climbed[id(best)] if best is path else 0 :]:  # another path than the last is told anew
+    for step in best.steps[climbed[id(best)] if best is told else 0 :]:  # another path than the last is told anew
         on_step(step)
     find_rivals(best.case or case, first, best.steps, on_step)
     for doubted in [fit for path, fit in doubts if path is best and fit]:

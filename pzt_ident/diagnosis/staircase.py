@@ -16,9 +16,9 @@ from pzt_ident.diagnosis.faults import fault_instead
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.history import BEFORE, at_rest, fits_at_rest, has_history, history_behind, with_history
 from pzt_ident.diagnosis.judges import judged
-from pzt_ident.diagnosis.lean import improve_lean, settles_for, steps_without
+from pzt_ident.diagnosis.lean import begin_lean, improve_lean, settles_for, steps_without
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.paths import SETTLED, best_path, conclude, improve_within
+from pzt_ident.diagnosis.paths import SETTLED, begin, best_path, conclude, improve_within
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE
@@ -130,7 +130,8 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener, diagnosis: Dia
 
     Wider bounds, where those of the job are too narrow, are tried first where they remove most of the misfit of an
     axis, or lead to the noise beside one effect; mechanics that the data do not determine are left out first where no
-    effect beside them reaches the noise, and any where nothing is missing without them."""
+    effect beside them reaches the noise, unless the first path with them does and the one without them does not, and
+    any where nothing is missing without them."""
     good = adequate(case, first, first)
     enough = None if good else enough_without_mechanics(case, first)
     if enough:
@@ -153,10 +154,15 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener, diagnosis: Dia
         wide = improve_beyond(case, first, *beyond, on_step) if adequate(case, first, beside[1]) else None
         if wide and accounts(wide, case, first):
             return wide
-    lean = improve_lean(case, first, diagnosis, on_step)
+    lean, begun = None, None
+    if without := begin_lean(case, first, diagnosis, on_step):
+        if not without.settled and case.budget.allows("effects beside the mechanics"):
+            begun = begin(case, [Step(first)], on_step, diagnosis)
+        if not (begun and begun.path.last.verdict == "adequate"):
+            lean = improve_lean(case, first, without, on_step)
     if lean and (lean.last.verdict == "adequate" or settles_for(case, first, lean)):
         return lean
-    given = with_least_bounds(case, improve_within(case, [Step(first)], on_step, diagnosis))
+    given = with_least_bounds(case, improve_within(case, [Step(first)], on_step, diagnosis, begun))
     if lean and given.last.verdict != "adequate" and lean.end.total < given.end.total:
         given = lean
     if own := own_account(case, first, given, on_step):

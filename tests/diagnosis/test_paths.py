@@ -39,7 +39,7 @@ def taken_of(several, taken_back, monkeypatch):
 
     told, joined = [], object()
 
-    def climb(case, first, diagnosis, number, on_step, known):
+    def climb(case, first, diagnosis, number, on_step, known=()):
         told[:] = several[number].steps if several[number] else [joined]
         return several[number]
 

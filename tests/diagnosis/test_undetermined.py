@@ -1,5 +1,7 @@
 """Mechanics that slow data do not determine are left out where they stand in for effects."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -7,7 +9,9 @@ import stage
 from pzt_ident.diagnosis import lean, staircase, verdict
 from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.fit import fit_at
+from pzt_ident.diagnosis.paths import Begun
 from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.diagnosis.step import Step
 from pzt_ident.diagnosis.undetermined import (
     enough_without_mechanics,
     undetermined_axes,
@@ -80,7 +84,7 @@ def test_mechanics_that_are_determined_beside_the_best_effect_are_kept(monkeypat
     best = min(diagnosis.passing, key=lambda item: item.fit.total).fit
     monkeypatch.setattr(lean, "undetermined_mechanics", lambda fit: beside if fit is best else "lumped")
     monkeypatch.setattr(lean, "without_mechanics", lambda case, first: tried.append(case))
-    assert lean.improve_lean(case, first, diagnosis, lambda step: None) is None
+    assert lean.begin_lean(case, first, diagnosis, lambda step: None) is None
     assert bool(tried) == (beside is not None)
 
 
@@ -148,3 +152,35 @@ def test_a_mode_beside_a_stiff_stage_is_a_second_one():
     end = fit_at_values(case.with_words(["bouc_wen"]), ("resonance",), KNOWN | second)
     assert end.total < 1.5 * case.floor
     assert lean.with_mechanics_moved(given, fit_at_values(given, (), ELSEWHERE), end, lambda step: None) is None
+
+
+def verdict_of(word):
+    return verdict.Diagnosis(word, "", None, [], [])
+
+
+@pytest.mark.parametrize(
+    ("without", "beside", "taken"),
+    [("adequate", "adequate", "lean"), ("unexplained", "adequate", "given"), ("unexplained", "unexplained", "lean")],
+)
+def test_the_first_path_with_mechanics_is_taken_where_it_alone_reaches_the_noise(monkeypatch, without, beside, taken):
+    """Before those without them are gone on with: what is left is then for its proof."""
+    case, begun, led = slow(SEVERAL), [], SimpleNamespace(end=SimpleNamespace(total=0.0), last=None)
+    first = first_fit(case, 0)
+    other = lean.Lean("lumped", case, first, [Step(first)], Begun(None, SimpleNamespace(last=verdict_of(without))))
+    given = SimpleNamespace(end=first, last=verdict_of(beside), steps=[Step(first)], case=None)
+    led.last = verdict_of("adequate" if without == "adequate" else "unexplained")
+
+    def begin(case, base, on_step, diagnosis):
+        begun.append(case)
+        return Begun(diagnosis, given)
+
+    for word in ("beyond_bounds", "fit_behind", "bounds_beside", "own_account", "enough_without_mechanics"):
+        monkeypatch.setattr(staircase, word, lambda *arguments: None)
+    monkeypatch.setattr(staircase, "begin_lean", lambda *arguments: other)
+    monkeypatch.setattr(staircase, "begin", begin)
+    monkeypatch.setattr(staircase, "improve_lean", lambda *arguments: led)
+    monkeypatch.setattr(staircase, "improve_within", lambda *arguments: arguments[-1].path)
+    monkeypatch.setattr(staircase, "with_least_bounds", lambda case, path: path)
+    found = staircase.improve_judged(case, first, lambda step: None, SimpleNamespace())
+    assert found is (led if taken == "lean" else given)
+    assert len(begun) == (without != "adequate")
