@@ -123,7 +123,7 @@ class Commanded(Ahead, Block):
 
 
 class CommandedLuGre(Commanded):
-    """The same with stiction and viscous friction: x = w - F,  viscous dw/dt + w = f,
+    """Commanded bristles with stiction and viscous friction: x = w - F,  viscous dw/dt + w = f,
     dF/df = (g - F sgn df/dt) / (reach g / force),  g = force (1 + stiction exp(-(v / stribeck)^2)),  v = df/dt.
 
     Canudas de Wit, Olsson, Astrom & Lischinsky (1995), IEEE Trans. Autom. Control 40, 419, eq. 2 to 5, with f in the

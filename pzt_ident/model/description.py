@@ -115,7 +115,8 @@ def _parameters(block: type[Any]) -> list[Facts]:
     rows: list[Facts] = []
     for name, item in {name: item for found in reversed(variants.values()) for name, item in found.items()}.items():
         owners = [label for label, found in variants.items() if name in found]
-        form = "" if len(owners) == len(variants) else "` or `".join(owners)
+        some = [] if len(owners) == len(variants) else owners
+        form = "` or `".join(filter(None, ["`, `".join(some[:-1]), *some[-1:]]))
         rows.append({"name": name, "form": form} | {key: getattr(item, key) for key in keys})
     order = list(dict.fromkeys(name for found in variants.values() for name in found))
     return sorted(rows, key=lambda row: order.index(row["name"]))
