@@ -70,7 +70,8 @@ class Cube:
     def _describe_free(self, free: list[int]) -> None:
         """Names, units and scales of the free columns of theta."""
         self.free = np.array(free, dtype=int)
-        self.names = tuple(self.model.names[column] for column in free)
+        names = self.model.names
+        self.names = tuple(names[column] for column in free)
         self.units = tuple(self.all_units[column] for column in free)
         scales = np.array([self.model.entries[column].parameter.scale == "log" for column in free], dtype=bool)
         self.log = scales & (self.lower > 0)

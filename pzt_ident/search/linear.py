@@ -58,8 +58,9 @@ class Tangent:
         active = np.flatnonzero(solution.values)
         theta = np.tile(row, (1 + active.size, 1))
         theta[1 + np.arange(active.size), linear.columns[active]] += solution.units[active]
-        values = dict(zip([model.names[i] for i in linear.columns], solution.values.tolist(), strict=True))
-        return cls(values, dict(zip(model.names, theta.T, strict=True)), solution.prior[:, active])
+        names = model.names
+        values = dict(zip([names[i] for i in linear.columns], solution.values.tolist(), strict=True))
+        return cls(values, dict(zip(names, theta.T, strict=True)), solution.prior[:, active])
 
     def of_samples(self, residuals: Array) -> Tangent:
         """One that can `follow`. residuals: (1 + active, samples), of `theta`."""

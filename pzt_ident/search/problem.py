@@ -212,9 +212,10 @@ class Problem(Cube):
         if tangent is None:
             return near
         near = copy(near)
-        followed = np.array([self.model.names[column] in tangent.values for column in columns])
+        names = self.model.names
+        followed = np.array([names[column] in tangent.values for column in columns])
         near.theta = self.theta.copy()
-        near.theta[columns[followed]] = [tangent.values[self.model.names[column]] for column in columns[followed]]
+        near.theta[columns[followed]] = [tangent.values[names[column]] for column in columns[followed]]
         near._tangent = tangent
         near.linear = Linear(self.model, columns[~followed], self.linear.units[~followed], near._changes)
         return near
