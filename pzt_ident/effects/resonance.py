@@ -1,5 +1,6 @@
 """A second mode of the flexure."""
 
+from dataclasses import replace
 from math import pi
 
 from pzt_ident.model.block import Beside, Block, Place
@@ -79,7 +80,7 @@ class OfVoltage(Series):
     place = Place.READOUT
     solvable = False
     share = Parameter("1", (-0.4, 0.4), SecondMode.share.doc, null=0)
-    frequency = Parameter("Hz", (100, 2e4), "Natural frequency of the stack or the amplifier.", scale="log")
+    frequency = replace(SecondMode.frequency, doc="Natural frequency of the stack or the amplifier.")
 
 
 Resonance.forms = {"series": Series, "voltage": OfVoltage}
