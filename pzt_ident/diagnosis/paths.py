@@ -32,6 +32,7 @@ from pzt_ident.model.registry import word_of
 
 PATHS = 2  # of a model, which differ by the effect that is added first
 FIRST_EFFECTS = 4  # effects that are tried as that one, for paths that do not join
+FEW = 2  # effects: what more can do without is told from other starts, too: they may stand in for one
 SETTLED = "adequate", "refused"
 PROVEN = "back to what is proven"  # the step that goes back to an earlier one
 
@@ -166,11 +167,12 @@ def first_candidates(case: Case, first: Fit, diagnosis: Diagnosis) -> list[Candi
 
 def take_back(case: Case, first: Fit, staircase: Staircase) -> Fit | None:
     """Steps that take effects out again: those that the last model can do without, which may only have led the fit out
-    of a side minimum, such as that to which the bounds of the job had led it, and the unproven ones; or back to what is
-    proven of an earlier model, where that is better than what is then left. Returns the fit with the unproven
-    ones, None where there are none beside those of the last model."""
+    of a side minimum, such as that to which the bounds of the job had led it or in which several stand in for one, and
+    the unproven ones; or back to what is proven of an earlier model, where that is better than what is then left.
+    Returns the fit with the unproven ones, None where there are none beside those of the last model."""
     now, wider = staircase.end, any(step.change == WIDER for step in staircase.steps)
-    steps = remove_unneeded(case, first, now, newest=0, restarted=wider) if near_noise(case, first, now) else []
+    many = len(now.effects) - len(first.effects) > FEW
+    steps = remove_unneeded(case, first, now, newest=0, restarted=wider or many) if near_noise(case, first, now) else []
     now = steps[-1].fit if steps else now
     if not near_noise(case, first, now):
         drop_outdone_rivals(case, now, staircase.steps)
