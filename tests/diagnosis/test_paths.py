@@ -109,10 +109,8 @@ def test_an_effect_that_only_led_out_of_a_side_minimum_is_taken_out_again():
 @pytest.mark.parametrize("count", [1, 2, 3, 4])
 def test_what_several_effects_can_do_without_is_told_from_other_starts_too(monkeypatch, count):
     """Two are often missing; three may stand in for one."""
-    fits = [
-        Fit(("creep", "delay", "drift", "friction")[:number], None, np.zeros(1), 1.0, 1.0)
-        for number in range(count + 1)
-    ]
+    words = ("creep", "delay", "drift", "friction")
+    fits = [Fit(words[:number], None, np.zeros(1), 1.0, 1.0) for number in range(count + 1)]
     asked = []
     monkeypatch.setattr(paths, "near_noise", lambda *arguments: True)
     monkeypatch.setattr(paths, "remove_unneeded", lambda *arguments, newest, restarted: asked.append(restarted) or [])
