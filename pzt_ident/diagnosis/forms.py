@@ -51,6 +51,11 @@ class Candidate:
         return cls(best if best.explained > scores[0].explained + FORM_GAIN else scores[0], forms=scores)
 
     @property
+    def rank(self) -> float:
+        """What it explains by its score; a little less in a form that contains another effect, which is simpler."""
+        return self.score.explained - (FORM_GAIN if blocks[self.score.effect].contains else 0.0)
+
+    @property
     def best(self) -> Fit:
         """The refit that fits best."""
         return min(self.refits.values(), key=lambda fit: fit.total)

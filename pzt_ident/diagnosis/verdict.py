@@ -90,7 +90,7 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     first = first or before
     if reason := refusal(case, first, before):
         return Diagnosis("refused", reason, before, [], [])
-    candidates = sorted(score_all(case, first, before, scorer_of(case, before)), key=lambda item: -item.score.explained)
+    candidates = sorted(score_all(case, first, before, scorer_of(case, before)), key=lambda item: -item.rank)
     if adequate(case, first, before) and not any(promises_enough(case, first, before, item) for item in candidates):
         decide_by_score(case, first, before, candidates)
         return without_effect(case, first, before, candidates)

@@ -516,6 +516,13 @@ def test_only_parameters_of_the_model_itself_rest_anew(before, after, anew):
     assert forms.rests_anew(bare, with_effect) == anew
 
 
+@pytest.mark.parametrize(("ahead", "first"), [(0.001, "sensor_lag"), (0.1, "friction")])
+def test_a_form_that_contains_another_effect_is_ranked_behind_it_where_it_explains_no_more(ahead, first):
+    friction = Candidate.of([Score("friction", 0.1), Score("friction.lugre_viscous", 0.5 + ahead)])
+    lag = Candidate.of([Score("sensor_lag", 0.5)])
+    assert max(friction, lag, key=lambda item: item.rank).score.effect.startswith(first)
+
+
 def test_no_form_is_tried_again_far_behind_another_effect_at_the_noise(monkeypatch):
     refits = {"creep": fit(8.0, 8.0, ["creep"]), "creep.voltage": fit(3.0, 3.0, ["creep.voltage"])}
     monkeypatch.setattr(forms, "refit", lambda case, other, effects, guess, rival: fit(2.9, 2.9, effects))
