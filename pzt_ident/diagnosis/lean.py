@@ -42,6 +42,18 @@ class Lean(NamedTuple):
         return self.begun.path.last.verdict in SETTLED
 
 
+def lean_or_begun(
+    case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListener
+) -> tuple[Staircase | None, Begun | None]:
+    """The staircase without mechanics that the data do not determine, None where the first path with them alone reaches
+    the noise, or as of `begin_lean`; and that path, None where it was not begun. diagnosis: of the fit `first`."""
+    lean, begun = begin_lean(case, first, diagnosis, on_step), None
+    if lean and not lean.settled and case.budget.allows("effects beside the mechanics"):
+        begun = begin(case, [Step(first)], on_step, diagnosis)
+    reached = begun is not None and begun.path.last.verdict == "adequate"
+    return (improve_lean(case, first, lean, on_step) if lean and not reached else None), begun
+
+
 def begin_lean(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListener) -> Lean | None:
     """The path without mechanics that the data do not determine; None where these determine them, alone or beside the
     best effect, or where the model needs one effect at most beside them. diagnosis: of the fit `first`."""

@@ -74,11 +74,11 @@ def fitting_forms(case: Case, effects: tuple[str, ...], word: str) -> list[str]:
     forms: dict[object, str] = {}
     for item in blocks.forms(word):
         if fits(case, effects, item):
-            forms.setdefault(place_of(case, effects, item), item)
+            forms.setdefault(held_by(case, effects, item), item)
     return list(forms.values())
 
 
-def place_of(case: Case, effects: tuple[str, ...], item: str) -> object:
+def held_by(case: Case, effects: tuple[str, ...], item: str) -> object:
     """What tells a form from others: in the equations of blocks, their parameters and their own forms with it."""
     if not issubclass(blocks[item], Term):
         return item

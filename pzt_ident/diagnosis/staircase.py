@@ -16,9 +16,9 @@ from pzt_ident.diagnosis.faults import fault_instead
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.history import BEFORE, at_rest, fits_at_rest, has_history, history_behind, with_history
 from pzt_ident.diagnosis.judges import judged
-from pzt_ident.diagnosis.lean import begin_lean, improve_lean, settles_for, steps_without
+from pzt_ident.diagnosis.lean import lean_or_begun, settles_for, steps_without
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.paths import SETTLED, begin, best_path, conclude, improve_within
+from pzt_ident.diagnosis.paths import SETTLED, best_path, conclude, improve_within
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE
@@ -154,12 +154,7 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener, diagnosis: Dia
         wide = improve_beyond(case, first, *beyond, on_step) if adequate(case, first, beside[1]) else None
         if wide and accounts(wide, case, first):
             return wide
-    lean, begun = None, None
-    if without := begin_lean(case, first, diagnosis, on_step):
-        if not without.settled and case.budget.allows("effects beside the mechanics"):
-            begun = begin(case, [Step(first)], on_step, diagnosis)
-        if not (begun and begun.path.last.verdict == "adequate"):
-            lean = improve_lean(case, first, without, on_step)
+    lean, begun = lean_or_begun(case, first, diagnosis, on_step)
     if lean and (lean.last.verdict == "adequate" or settles_for(case, first, lean)):
         return lean
     given = with_least_bounds(case, improve_within(case, [Step(first)], on_step, diagnosis, begun))

@@ -176,9 +176,9 @@ def test_the_first_path_with_mechanics_is_taken_where_it_alone_reaches_the_noise
 
     for word in ("beyond_bounds", "fit_behind", "bounds_beside", "own_account", "enough_without_mechanics"):
         monkeypatch.setattr(staircase, word, lambda *arguments: None)
-    monkeypatch.setattr(staircase, "begin_lean", lambda *arguments: other)
-    monkeypatch.setattr(staircase, "begin", begin)
-    monkeypatch.setattr(staircase, "improve_lean", lambda *arguments: led)
+    monkeypatch.setattr(lean, "begin_lean", lambda *arguments: other)
+    monkeypatch.setattr(lean, "begin", begin)
+    monkeypatch.setattr(lean, "improve_lean", lambda *arguments: led)
     monkeypatch.setattr(staircase, "improve_within", lambda *arguments: arguments[-1].path)
     monkeypatch.setattr(staircase, "with_least_bounds", lambda case, path: path)
     found = staircase.improve_judged(case, first, lambda step: None, SimpleNamespace())
