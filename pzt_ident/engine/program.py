@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from functools import cached_property
 from itertools import product
 from typing import Any, Literal, NamedTuple
@@ -13,7 +14,6 @@ from pzt_ident.data.record import Record
 from pzt_ident.engine.precomputed import Precomputation
 from pzt_ident.model.block import (
     TILES,
-    Addition,
     Bank,
     Beside,
     Block,
@@ -47,8 +47,8 @@ class Program:
     single: for one candidate and one sample a call, as in real time (see `realtime`).
 
     Sources of the arguments of a block's `prepare`: `given` pairs a row of the scratch with a column of theta, `known`
-    with a number that is the same for every candidate, and `precomputed` holds those that a bank computes with NumPy,
-    with their rows (branches, words).
+    with a number that is the same for every candidate, `of_record` with an axis and one of its facts, see `facts`, and
+    `precomputed` holds those that a bank computes with NumPy, with their axes and rows (branches, words).
     """
 
     def __init__(self, model: Chain, record: Record, single: bool = False) -> None:
@@ -58,7 +58,8 @@ class Program:
         self.operations: list[Operation] = []
         self.given: list[tuple[int, int]] = []
         self.known: list[tuple[int, float]] = []
-        self.precomputed: list[tuple[Precomputation, NDArray[np.int64]]] = []
+        self.of_record: list[tuple[int, int, str]] = []
+        self.precomputed: list[tuple[Precomputation, int, NDArray[np.int64]]] = []
         self.rows = 0
         self._fresh = set(range(len(model.axes)))  # axes whose tile does not hold a signal yet
         last = max((i for i, block in enumerate(model.blocks) if issubclass(block, Coupling | Modes)), default=-1)
@@ -80,6 +81,14 @@ class Program:
         self.additions = {axis: self._additions(axis) for axis in model.measured} if not single else {}
         if not single:
             self.steps  # noqa: B018  what cannot be compiled is refused before anything is simulated
+
+    def on(self, record: Record) -> Program:
+        """The program of the same model on another record."""
+        other = copy(self)
+        other.record = record
+        for fact in ("steps", "substeps", "facts", "_sources"):
+            vars(other).pop(fact, None)
+        return other
 
     @cached_property
     def ends(self) -> list[int]:
@@ -205,18 +214,20 @@ class Program:
     def _place(self, block: type[Block], axis: int, other: int, words: tuple[str, ...], row: int) -> int:
         """Add the parameters of a block on an axis or pair of axes from a scratch row on; returns the next row."""
         columns = self.model.columns(block, axis, other)
-        known = self._known(block, axis)
+        constants = {p.name: p.null for p in block.parameters().values() if p.null is not None} | block.numbers()
         branches = range(block.branches) if issubclass(block, Bank | Modes) else [0]
         if issubclass(block, Bank) and block.solved:
             rows = [[row + branch * len(words) + words.index(word) for word in block.solved] for branch in branches]
-            self.precomputed.append((Precomputation(block, columns or {}, known), np.array(rows)))
+            self.precomputed.append((Precomputation(block, columns or {}, constants), axis, np.array(rows)))
         for branch in branches:
             for word in words:
                 column = columns.get(word) if columns else None
-                if column is None or (self.single and self._is_amount(column)):
-                    self.known.append((row, (known | {"branch": branch}).get(word, 0.0)))
-                else:
+                if column is not None and not (self.single and self._is_amount(column)):
                     self.given.append((row, column[branch] if isinstance(column, list) else column))
+                elif word in self.facts[axis]:
+                    self.of_record.append((row, axis, word))
+                else:
+                    self.known.append((row, (constants | {"branch": branch}).get(word, 0.0)))
                 row += 1
             if issubclass(block, Modes):
                 row = self._weigh(block, branch, row)
@@ -226,16 +237,15 @@ class Program:
         """Whether a column of theta is one of the parameters of which each record has its own, which are behind all."""
         return max(np.atleast_1d(column)) >= len(self.model.entries)
 
-    def _known(self, block: type[Block], axis: int) -> dict[str, float]:
-        """What `prepare` may ask for besides the parameters of the model."""
+    @cached_property
+    def facts(self) -> list[dict[str, float]]:
+        """What `prepare` may ask for, besides the parameters of the model, of each axis of the record."""
         record = self.record
-        nulls = {p.name: p.null for p in block.parameters().values() if p.null is not None}
-        peak, duration = max(record.peaks[axis], abs(record.levels[axis])), record.dt * (record.samples - 1)
-        known = {"dt": record.dt / self.substeps, "span": record.spans[axis], "peak": peak, "duration": duration}
-        known |= {"from_rest": float(self.model.from_rest), "lead": float(self.model.lead * self.substeps)}
-        if issubclass(block, Addition):
-            known |= {"_first": self.lead, "_start": record.start, "_dt": record.dt}
-        return nulls | block.numbers() | known
+        same = {"dt": record.dt / self.substeps, "duration": record.dt * (record.samples - 1)}
+        same |= {"from_rest": float(self.model.from_rest), "lead": float(self.model.lead * self.substeps)}
+        same |= {"_first": self.lead, "_start": record.start, "_dt": record.dt}
+        peaks = np.maximum(record.peaks, np.abs(record.levels))
+        return [same | {"span": span, "peak": peak} for span, peak in zip(record.spans, peaks, strict=True)]
 
     def _weigh(self, block: type[Modes], mode: int, row: int) -> int:
         """Add the weights of a mode for force and motion of each axis from a row of the scratch on: 1 for the force of
@@ -263,13 +273,14 @@ class Program:
         given, columns, known, values = self._sources
         scratch[:, given] = theta[lanes, columns]
         scratch[:, known] = values
-        for precompute, places in self.precomputed:
-            scratch[:, places] = precompute(theta)[lanes[:, 0]].transpose(0, 2, 3, 1)
+        for precompute, axis, places in self.precomputed:
+            scratch[:, places] = precompute(theta, self.facts[axis])[lanes[:, 0]].transpose(0, 2, 3, 1)
         return scratch.reshape(groups, -1)
 
     @cached_property
     def _sources(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], Array]:
         """Rows that come from columns of theta, and rows that hold the same number for every candidate."""
         rows, columns = np.array(self.given, dtype=np.int64).reshape(-1, 2).T
-        known, values = np.array(self.known, dtype=float).reshape(-1, 2).T
+        facts = [(row, self.facts[axis][word]) for row, axis, word in self.of_record]
+        known, values = np.array([*self.known, *facts], dtype=float).reshape(-1, 2).T
         return rows, columns[:, None], known.astype(np.int64), values[:, None]

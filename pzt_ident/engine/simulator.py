@@ -34,15 +34,26 @@ class Simulator:
     """
 
     def __init__(self, model: Chain, record: Record) -> None:
-        self.model, self.record = model, record
-        self._program = Program(model, record)
-        self.additions = Additions(self._program)
-        self.amounts: Amounts | Held = Amounts(self)
+        self.model = model
+        self._begin(Program(model, record))
         self._measured = TILES * np.array(model.measured, dtype=np.int64)
         self._columns = columns_of_axes(model)
         self._sums = self._program.rows  # row of the scratch after those of the blocks
         self._each = self.additions.sums or 2  # rows of sums of an axis
         self._rows = self._sums + self._each * len(model.measured)
+
+    def on(self, record: Record) -> Simulator:
+        """The simulator of the same model on another record."""
+        other = copy(self)
+        for signals in ("_signals", "_scoring"):
+            vars(other).pop(signals, None)
+        other._begin(self._program.on(record))
+        return other
+
+    def _begin(self, program: Program) -> None:
+        self.record, self._program = program.record, program
+        self.additions = Additions(program)
+        self.amounts: Amounts | Held = Amounts(self)
 
     def held(self, theta: Array) -> Held | None:
         """The amounts of the record with one candidate; None if it has none."""

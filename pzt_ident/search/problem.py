@@ -53,8 +53,9 @@ class Problem(Cube):
         if not identify:
             raise InputError("no record to identify from", where="records", remedy="give one of them `use: identify`")
         judging = {"identify": identify, "validate": [r for r in records if r.use == "validate" and r.judges]}
-        self.simulators = {use: [Simulator(model, record) for record in some] for use, some in judging.items()}
-        self._not_judging = [Simulator(model, record) for record in records if not record.judges]
+        simulator = Simulator(model, identify[0])
+        self.simulators = {use: [simulator.on(record) for record in some] for use, some in judging.items()}
+        self._not_judging = [simulator.on(record) for record in records if not record.judges]
         super().__init__(model, identify, specs or {})
         self._set_linear(self.linear_columns, identify)
         check_feasible(self, identify)
