@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.diagnosis.budget import PROVING, Budget
 from pzt_ident.search.problem import Problem
+from pzt_ident.search.sandwich import Sandwich
 from pzt_ident.search.uncertainty import Estimate, estimates
 
 Array = NDArray[np.float64]
@@ -77,6 +78,11 @@ class Fit:
             there[range(near.size), near] = bounds[near]
             edges[near] = self.problem.loss(there) <= (1 + NO_WORSE) * self.identify
         return edges
+
+    @cached_property
+    def covariance(self) -> Array:
+        """Of the free parameters in the unit cube, (free, free), see `Sandwich`."""
+        return Sandwich(lambda: self.problem.samples(self.point)).covariance
 
     @property
     def steps(self) -> tuple[int, ...]:

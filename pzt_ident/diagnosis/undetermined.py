@@ -15,7 +15,6 @@ from pzt_ident.diagnosis.starts import restart
 from pzt_ident.model.block import Place
 from pzt_ident.model.chain import Entry
 from pzt_ident.model.registry import blocks, word_of
-from pzt_ident.search.sandwich import Sandwich
 
 SURE = 0.1  # of the search range: a direction of parameters with a smaller standard error is determined
 OF_A_MODE = 2  # numbers that the data determine of a mode which they show: its frequency and its damping
@@ -81,9 +80,8 @@ def undetermined_axes(fit: Fit) -> set[int]:
     free = {entry.axis for entry in entries.values()} - fixed
     if not free:
         return set()
-    covariance = Sandwich(lambda: fit.problem.samples(fit.point)).covariance
     own = {axis: [places[column] for column, entry in entries.items() if entry.axis == axis] for axis in free}
-    variances = {axis: np.linalg.eigvalsh(covariance[np.ix_(rows, rows)]) for axis, rows in own.items()}
+    variances = {axis: np.linalg.eigvalsh(fit.covariance[np.ix_(rows, rows)]) for axis, rows in own.items()}
     return {axis for axis, values in variances.items() if np.count_nonzero(values < SURE**2) < OF_A_MODE}
 
 
