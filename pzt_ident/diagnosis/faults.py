@@ -14,7 +14,7 @@ from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.paths import SETTLED
 from pzt_ident.diagnosis.proof import SINGLE, suspect
-from pzt_ident.diagnosis.reasons import nothing_explains
+from pzt_ident.diagnosis.reasons import fault_explains
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.score import applicable, scorer_of
 from pzt_ident.diagnosis.starts import restart
@@ -134,5 +134,5 @@ def blamed_on(case: Case, first: Fit, diagnosis: Diagnosis, word: str) -> Diagno
     """The diagnosis of the model as given, of which a fault is the account and no effect."""
     for candidate in diagnosis.candidates:
         candidate.decision = "suspect" if candidate.decision == "missing" else candidate.decision
-    reason = nothing_explains(case, first)
+    reason = fault_explains(case, first)
     return Diagnosis("unexplained", reason, first, diagnosis.candidates, [], faults=(word,))

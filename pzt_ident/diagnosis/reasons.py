@@ -27,6 +27,12 @@ def nothing_explains(case: Case, fit: Fit) -> str:
     return f"No effect of the catalogue explains the remaining error, {rmse_phrase(case, fit)}."
 
 
+def fault_explains(case: Case, fit: Fit) -> str:
+    """The sentence on a misfit that a fault of the set-up accounts for."""
+    unexplained = f"No effect of the stage explains the remaining error, {rmse_phrase(case, fit)}"
+    return f"{unexplained}, but a fault of the set-up does."
+
+
 def with_proven(case: Case, first: Fit, fit: Fit, reason: str) -> str:
     """The reason, with what the proven effects explain ahead of it, and that the rest which no effect explains may be
     another form of them; as it is where there are none."""

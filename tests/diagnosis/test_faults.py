@@ -74,7 +74,7 @@ def test_it_spares_the_search_for_effects(improved):
 def test_a_diagnosis_tells_it_too():
     found = thinning.diagnosed(loose(), lambda case: first_fit(case, 0))
     assert found.faults == ("backlash",)
-    assert found.verdict == "unexplained" and "backlash alone takes up" in found.reason
+    assert found.verdict == "unexplained" and "but a fault of the set-up does. backlash alone takes up" in found.reason
     assert not [item for item in found.candidates if item.decision == "missing"]
 
 
