@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import pytest
 
+import made_fits
 import stage
 from pzt_ident.diagnosis import exchange
 from pzt_ident.diagnosis import refit as refitting
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.exchange import exchange_limits, join_look_alikes, parts_of, separate_accounts
+from pzt_ident.diagnosis.exchange import exchange_limits, in_its_limit, join_look_alikes, parts_of, separate_accounts
 from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.starts import first_fit
@@ -99,3 +100,21 @@ def test_a_drift_whose_time_is_on_its_bound_is_a_ramp_where_that_fits_as_well(on
     steps = exchange_limits(case, first, now)
     assert [(step.added, step.removed) for step in steps] == ([("drift.ramp", "drift")] if on_bound else [])
     assert all(step.fit.total < 1.01 * now.total for step in steps)
+
+
+@pytest.mark.parametrize(("place", "worse", "in_limit"), [(1.0, 1.09, True), (1.0, 1.11, False), (0.5, 1.09, False)])
+def test_nothing_is_exchanged_for_an_effect_on_its_own_bound_that_is_hardly_better(place, worse, in_limit):
+    """A cyclic error whose pitch is the stroke is a bend."""
+    bend, encoder = (
+        made_fits.fit(4.0 * worse, 4.0 * worse, ["quadratic_gain"]),
+        made_fits.fit(4.0, 4.0, ["encoder_cyclic_error"], own=[place]),
+    )
+    assert in_its_limit(bend, encoder) == in_limit
+
+
+def test_nothing_is_exchanged_for_an_effect_in_a_declared_limit():
+    bend, friction = (
+        made_fits.fit(6.0, 6.0, ["quadratic_gain"]),
+        made_fits.fit(2.0, 2.0, ["friction"], own=[0.0], limit="a play"),
+    )
+    assert in_its_limit(bend, friction)

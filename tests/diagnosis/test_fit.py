@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import made_fits
 import rig
 from pzt_ident.diagnosis import refit
 from pzt_ident.diagnosis.case import Case
@@ -75,3 +76,8 @@ def test_a_shape_rests_on_no_bound_where_its_range_ends_of_itself(end, free):
     """A drift whose time constant is far longer than the record is a ramp."""
     tau = Parameter("s", (1, 3000), "", scale="log", end=end)
     assert {word for word, value in (("lower", 1.0), ("upper", 3000.0)) if not tau.ends_at(value, word)} == free
+
+
+def test_the_total_is_root_mean_square_over_both_uses():
+    assert made_fits.fit(1.0, 7.0).total == made_fits.fit(7.0, 1.0).total == pytest.approx(5)
+    assert made_fits.fit(3.0).total == 3

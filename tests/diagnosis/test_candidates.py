@@ -1,0 +1,58 @@
+"""Which refits are started elsewhere: by hand, the noise floor being 1."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import pytest
+
+from made_fits import CASE, fit
+from pzt_ident.diagnosis import candidates, forms
+from pzt_ident.diagnosis.budget import Budget
+from pzt_ident.diagnosis.forms import Candidate
+from pzt_ident.diagnosis.score import Score
+
+
+@pytest.mark.parametrize("confirmed", [False, True])
+def test_what_other_records_do_not_confirm_is_started_anew_where_nothing_is_adequate(monkeypatch, confirmed):
+    """A mode that only the others make ring may rest anywhere."""
+    monkeypatch.setattr(candidates, "restart", lambda case, fit: replace(fit, validate=1.2))
+    case = SimpleNamespace(floor=1.0, budget=Budget())
+    fits = {"quadratic_gain": fit(1.04, 14.4), "saturation": fit(2.5, 14.2)}
+    if confirmed:
+        fits["creep"] = fit(1.0, 1.0)
+    shortlist = [Candidate(Score(word), refits={word: made}) for word, made in fits.items()]
+    candidates.restart_unconfirmed(case, fit(20.0, 20.0), shortlist)
+    validated = [item.refits[item.score.effect].validate for item in shortlist]
+    assert validated == ([14.4, 14.2, 1.0] if confirmed else [1.2, 14.2])
+
+
+@pytest.mark.parametrize("own, led", [(6.0, 1.0), (6.0, 7.0)])
+def test_a_look_alike_far_behind_is_tried_from_where_the_best_led(monkeypatch, own, led):
+    monkeypatch.setattr(forms, "refit", lambda case, other, effects, guess, rival: fit(led, led, effects))
+    best = Candidate.of([Score("amplifier_lag", guesses=[{"tau": 1.0}])])
+    rival = Candidate.of([Score("sensor_lag", guesses=[{"tau": 1.0}])])
+    stranger = Candidate.of([Score("saturation", guesses=[{"knee": 1.0}])])
+    for item, left in ((best, 1.0), (rival, own), (stranger, own)):
+        word = item.score.effect
+        item.refits = {word: fit(left, left, [word])}
+        item.take(word)
+    candidates.restart_look_alikes(CASE, fit(9.0, 9.0), fit(9.0, 9.0), [best, rival, stranger])
+    assert rival.fit.identify == rival.refits["sensor_lag"].identify == min(own, led)
+    assert best.fit.identify == 1.0 and stranger.fit.identify == own
+
+
+def test_a_look_alike_in_another_form_is_started_anew_by_the_name_of_its_block(monkeypatch):
+    def started(case, fit, block, starts):
+        assert block == "sensor_lag"
+        return replace(fit, identify=1.5)
+
+    monkeypatch.setattr(candidates, "restart", started)
+    monkeypatch.setattr(candidates, "from_where", lambda case, other, fit, guess: fit)
+    best = Candidate.of([Score("amplifier_lag", guesses=[{"tau": 1.0}])])
+    best.refits, item = {"amplifier_lag": fit(1.5, 1.5)}, "sensor_lag.second_order"
+    rival = Candidate(Score(item, guesses=[{"one": 1.0, "two": 2.0}]), forms=[Score(item)])
+    rival.refits = {item: fit(1.52, 9.0)}
+    best.take("amplifier_lag")
+    rival.fit = rival.refits[item]
+    candidates.restart_look_alikes(CASE, fit(9.0, 9.0), fit(9.0, 9.0), [best, rival])
+    assert rival.fit.identify == rival.refits[item].identify == 1.5

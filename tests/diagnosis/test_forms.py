@@ -1,0 +1,109 @@
+"""Which forms of an effect are refitted, and which is meant: by hand, the noise floor being 1."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from made_fits import CASE, fit
+from pzt_ident.diagnosis import forms
+from pzt_ident.diagnosis.forms import Candidate, choose_forms
+from pzt_ident.diagnosis.score import Score
+
+
+@pytest.mark.parametrize(
+    ("usual", "other", "more", "rival", "taken"),
+    [
+        (5.0, 3.0, 1, 4.0, "friction"),
+        (5.0, 3.0, 0, 4.0, "friction.coulomb"),
+        (5.0, 4.997, 0, 4.0, "friction"),
+        (5.0, 2.5, 1, 4.0, "friction.coulomb"),
+        (5.0, 1.1, 1, 4.0, "friction.coulomb"),
+        (1.1, 1.0, 1, 4.0, "friction.coulomb"),
+        (1.1, 1.09, 1, 4.0, "friction"),
+        (5.0, 3.0, 1, 1.1, "friction.coulomb"),
+    ],
+    ids=[
+        "not enough",
+        "as simple",
+        "as simple and as good",
+        "decisive",
+        "enough",
+        "better",
+        "as good",
+        "beside enough",
+    ],
+)
+def test_a_form_of_more_parameters_is_meant_only_where_one_effect_is_enough(usual, other, more, rival, taken):
+    """RMSE in noise floors, of a model that is adequate up to 1.17; forms are as good to a fifth of the noise."""
+    friction = Candidate.of([Score("friction", explained=0.5), Score("friction.coulomb", explained=0.9)])
+    friction.refits = {"friction": fit(usual, usual), "friction.coulomb": fit(other, other, dimensions=4 + more)}
+    creep = Candidate.of([Score("creep", explained=0.5)])
+    creep.refits = {"creep": fit(rival, rival)}
+    choose_forms(CASE, fit(10.0, 10.0), [friction, creep])
+    assert friction.score.effect == taken
+    assert friction.fit is friction.refits[taken]
+    assert creep.fit is creep.refits["creep"]
+
+
+@pytest.mark.parametrize("plain, led, kept", [(8.0, 4.0, 4.0), (8.0, 9.0, 8.0), (3.9, 1.0, 3.9)])
+def test_a_form_far_behind_another_one_is_tried_from_where_that_led(monkeypatch, plain, led, kept):
+    """And no worse than from its own guess."""
+    refits = {"creep": fit(plain, plain, ["creep"]), "creep.voltage": fit(3.0, 3.0, ["creep.voltage"])}
+
+    def refit(case, other, effects, guess, rival):
+        assert other is refits["creep.voltage"] and effects == ("creep",)
+        return fit(led, led, effects)
+
+    monkeypatch.setattr(forms, "refit", refit)
+    found = forms.from_each_other(CASE, refits)
+    assert found["creep"].identify == kept and found["creep.voltage"] is refits["creep.voltage"]
+
+
+@pytest.mark.parametrize(("rests", "left", "sought"), [(True, 4.0, True), (False, 4.0, False), (True, 1.0, False)])
+def test_an_effect_that_drives_the_model_onto_bounds_is_fitted_from_random_points(monkeypatch, rests, left, sought):
+    """In each of its forms, as long as it leaves more than the noise, and whatever it promised."""
+    first, tried = fit(12.0, 12.0), []
+    candidate = Candidate(Score("friction", 0.6), forms=[Score("friction", 0.6), Score("friction.commanded", 0.5)])
+    candidate.refits = {"friction": fit(left, left, ["friction"])}
+
+    def first_fit(case, seed, effects, rival):
+        tried.append(effects[-1])
+        assert rival == left
+        return fit(1.0, 1.0, effects) if effects[-1] == "friction.commanded" else fit(5.0, 5.0, effects)
+
+    monkeypatch.setattr(forms, "first_fit", first_fit)
+    monkeypatch.setattr(forms, "refit_from", lambda case, before, effects, *_: fit(4.5, 4.5, effects))
+    monkeypatch.setattr(forms, "rests_anew", lambda before, fit: rests)
+    forms.refit_likely_forms(CASE, first, first, candidate)
+    assert tried == (["friction", "friction.commanded"] if sought else [])
+    assert candidate.best.identify == (1.0 if sought else left)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "anew"),
+    [
+        ([], ["bouc_wen.alpha"], True),
+        (["bouc_wen.alpha"], ["bouc_wen.alpha"], False),
+        (["bouc_wen.alpha"], ["bouc_wen.beta"], True),
+        ([], ["friction.reach"], False),
+    ],
+)
+def test_only_parameters_of_the_model_itself_rest_anew(before, after, anew):
+    problem = SimpleNamespace(names=["bouc_wen.alpha", "bouc_wen.beta"])
+    bare, with_effect = SimpleNamespace(problem=problem, on_bounds=before), SimpleNamespace(on_bounds=after)
+    assert forms.rests_anew(bare, with_effect) == anew
+
+
+@pytest.mark.parametrize(("ahead", "first"), [(0.001, "sensor_lag"), (0.1, "friction")])
+def test_a_form_that_contains_another_effect_is_ranked_behind_it_where_it_explains_no_more(ahead, first):
+    friction = Candidate.of([Score("friction", 0.1), Score("friction.lugre_viscous", 0.5 + ahead)])
+    lag = Candidate.of([Score("sensor_lag", 0.5)])
+    assert max(friction, lag, key=lambda item: item.rank).score.effect.startswith(first)
+
+
+def test_no_form_is_tried_again_far_behind_another_effect_at_the_noise(monkeypatch):
+    refits = {"creep": fit(8.0, 8.0, ["creep"]), "creep.voltage": fit(3.0, 3.0, ["creep.voltage"])}
+    monkeypatch.setattr(forms, "refit", lambda case, other, effects, guess, rival: fit(2.9, 2.9, effects))
+    for rival, tried in ((1.0, False), (1.5, True), (np.inf, True)):
+        assert (forms.from_each_other(CASE, refits, rival) != refits) == tried

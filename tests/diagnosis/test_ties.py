@@ -1,0 +1,41 @@
+"""When two fits are one on these data: by hand, the noise floor being 1."""
+
+import numpy as np
+import pytest
+
+from made_fits import CASE, fit
+from pzt_ident.diagnosis.ties import generalises, is_tied, is_twin
+
+
+@pytest.mark.parametrize(("total", "apart", "close"), [(2.0, 0.39, True), (2.0, 0.41, False)])
+def test_look_alikes_are_a_tie_where_they_are_twice_as_far_apart(total, apart, close):
+    best, rival = (
+        fit(total, total, ["amplifier_lag"]),
+        fit(np.hypot(total, apart), np.hypot(total, apart), ["sensor_lag"]),
+    )
+    assert is_tied(CASE, "amplifier_lag", best, rival) == close
+    stranger = fit(rival.identify, rival.validate, ["saturation"])
+    assert not is_tied(CASE, "amplifier_lag", best, stranger)
+
+
+@pytest.mark.parametrize(("share", "close"), [(1.009, True), (1.011, False)])
+def test_far_above_the_noise_look_alikes_are_a_tie_to_one_percent(share, close):
+    best, rival = fit(50.0, 50.0, ["amplifier_lag"]), fit(50.0 * share, 50.0 * share, ["sensor_lag"])
+    assert is_tied(CASE, "amplifier_lag", best, rival) == close
+
+
+@pytest.mark.parametrize(
+    ("apart", "word", "twin"),
+    [(9e-4, "kinematic_coupling", True), (1.1e-3, "kinematic_coupling", False), (0.0, "creep", False)],
+)
+def test_what_fits_as_another_form_of_an_effect_does_is_not_told_from_it(apart, word, twin):
+    """A coupling by the other axis' voltage fits better than by its force, which is that of its displacement."""
+    force, rival = fit(3.0, 3.0, ["cross_coupling"]), fit(3.0 + apart, 3.0 + apart, [word])
+    assert is_twin(CASE, "cross_coupling.voltage", [force], rival) == twin
+
+
+def test_a_form_of_more_parameters_than_the_best_effect_may_contain_it():
+    lag = fit(1.0, effects=["amplifier_lag"], dimensions=5)
+    assert generalises(fit(1.0, effects=["slew_limit.lag"], dimensions=6), lag)
+    assert not generalises(fit(1.0, effects=["slew_limit"], dimensions=6), lag)
+    assert not generalises(fit(1.0, effects=["sensor_lag.second_order"], dimensions=5), lag)
