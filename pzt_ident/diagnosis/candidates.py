@@ -22,9 +22,11 @@ from pzt_ident.diagnosis.forms import (
     NEARLY_ALL,
     NOT_ALL,
     Candidate,
+    drives_onto_bounds,
     from_each_other,
     from_where,
     is_far_behind,
+    refit_anew,
     refit_likely_forms,
     share_of_others,
 )
@@ -84,7 +86,8 @@ def promises_most(case: Case, first: Fit, fit: Fit) -> bool:
 def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
     """Refit the model with each effect, in its first form and in the one that scores best; returns the refitted ones,
     which are all that the budget suffices for, but at least the best one beside the model as given. Those that stay far
-    above what the best score leads to are given up; where that is adequate, none is refitted that is far from it."""
+    above what the best score leads to are given up; where that is adequate, none is refitted that is far from it. Where
+    the best drives the model onto bounds it is fitted from random points, unless another promises most of its rest."""
     fits: list[Fit] = []
     rival = np.inf
 
@@ -120,6 +123,9 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
         for candidate in side_by_side(refitted, filter(allowed, some)):
             if candidate is candidates[0]:
                 refit_likely_forms(case, first, before, candidate)
+                astray = before is first and drives_onto_bounds(case, first, candidate)
+                if astray and not promises_most(case, first, candidate.best):
+                    refit_anew(case, first, candidate)
             made.append(candidate)
             fits.extend(candidate.refits.values())
         rival = min((fit.identify for fit in fits), default=np.inf)

@@ -73,31 +73,37 @@ def least_score(case: Case, first: Fit, before: Fit) -> float:
 def refit_likely_forms(case: Case, first: Fit, before: Fit, candidate: Candidate) -> None:
     """Refit an effect that explains most of the misfit and leaves more than the noise in its other forms, before other
     effects are refitted, if it promised most, or rests where it may be astray: those that explain most by their scores
-    first, until one is adequate; if all rest there, from random points."""
-    astray = before is first and rests_anew(before, candidate.best)
-    if candidate.score.explained < LIKELY and not astray:
+    first, until one is adequate."""
+    if candidate.score.explained < LIKELY and not (before is first and rests_anew(before, candidate.best)):
         return
-    scores = [score for score in candidate.forms if score.explained >= DECISIVE * candidate.score.explained]
-    scores.sort(key=lambda score: -score.explained)
-    for score in scores:
+    for score in likely_forms(candidate):
         if not leaves_some(case, first, before, candidate.best):
             return
         if score.effect not in candidate.refits and case.budget.allows("other forms"):
             effects, rival = (*before.effects, score.effect), candidate.best.identify
             candidate.refits[score.effect] = refit_from(case, before, effects, score.guesses, rival)
-    if before is first:
-        refit_anew(case, first, candidate, [score.effect for score in scores])
 
 
-def refit_anew(case: Case, first: Fit, candidate: Candidate, items: Sequence[str]) -> None:
-    """Fit forms of an effect from random points, but for those with amounts of each record, until one is adequate or
-    rests where the model did without it."""
-    for item in items:
-        best = candidate.best
-        if not (leaves_some(case, first, first, best) and rests_anew(first, best)):
+def likely_forms(candidate: Candidate) -> list[Score]:
+    """The scores of the forms that explain at least half of what the best one does, that of the most first."""
+    scores = [score for score in candidate.forms if score.explained >= DECISIVE * candidate.score.explained]
+    return sorted(scores, key=lambda score: -score.explained)
+
+
+def drives_onto_bounds(case: Case, first: Fit, candidate: Candidate) -> bool:
+    """Whether an effect beside the model as given explains most and leaves more than the noise, and drives the model
+    onto bounds where it did not rest without it."""
+    return leaves_some(case, first, first, candidate.best) and rests_anew(first, candidate.best)
+
+
+def refit_anew(case: Case, first: Fit, candidate: Candidate) -> None:
+    """Fit an effect that drives the model onto its bounds in its likely forms from random points, but for those with
+    amounts of each record, until one is adequate or rests where the model did without it."""
+    for item in [score.effect for score in likely_forms(candidate)]:
+        if not drives_onto_bounds(case, first, candidate):
             return
         if not blocks[item].amounts() and case.budget.allows("other starts"):
-            anew = first_fit(case, 0, effects=(*first.effects, item), rival=best.identify)
+            anew = first_fit(case, 0, effects=(*first.effects, item), rival=candidate.best.identify)
             candidate.refits[item] = min(anew, candidate.refits.get(item, anew), key=lambda fit: fit.total)
 
 

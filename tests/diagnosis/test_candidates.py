@@ -56,3 +56,21 @@ def test_a_look_alike_in_another_form_is_started_anew_by_the_name_of_its_block(m
     rival.fit = rival.refits[item]
     candidates.restart_look_alikes(CASE, fit(9.0, 9.0), fit(9.0, 9.0), [best, rival])
     assert rival.fit.identify == rival.refits[item].identify == 1.5
+
+
+@pytest.mark.parametrize(
+    ("astray", "promised", "anew"), [(True, False, True), (True, True, False), (False, False, False)]
+)
+def test_an_effect_is_fitted_from_random_points_unless_another_promises_what_it_leaves(
+    monkeypatch, astray, promised, anew
+):
+    """A friction that leaves a coupling rests on bounds for want of that."""
+    first, tried = fit(12.0, 12.0), []
+    candidate = Candidate.of([Score("friction", explained=0.8)])
+    monkeypatch.setattr(candidates, "refit_from", lambda case, before, effects, guesses, rival: fit(5.0, 5.0, effects))
+    monkeypatch.setattr(candidates, "refit_likely_forms", lambda case, first, before, candidate: None)
+    monkeypatch.setattr(candidates, "drives_onto_bounds", lambda case, first, candidate: astray)
+    monkeypatch.setattr(candidates, "promises_most", lambda case, first, best: promised)
+    monkeypatch.setattr(candidates, "refit_anew", lambda case, first, candidate: tried.append(candidate))
+    assert candidates.refit_all(CASE, first, first, [candidate]) == [candidate]
+    assert bool(tried) == anew

@@ -76,6 +76,7 @@ def test_an_effect_that_drives_the_model_onto_bounds_is_fitted_from_random_point
     monkeypatch.setattr(forms, "refit_from", lambda case, before, effects, *_: fit(4.5, 4.5, effects))
     monkeypatch.setattr(forms, "rests_anew", lambda before, fit: rests)
     forms.refit_likely_forms(CASE, first, first, candidate)
+    forms.refit_anew(CASE, first, candidate)
     assert tried == (["friction", "friction.commanded"] if sought else [])
     assert candidate.best.identify == (1.0 if sought else left)
 
