@@ -171,9 +171,10 @@ def choose_forms(case: Case, first: Fit, candidates: Sequence[Candidate]) -> Non
 
 
 def clearly_best(case: Case, refits: Mapping[str, Fit], usual: str) -> str:
-    """The item that fits best, or the usual one where that is hardly worse."""
-    best = min(refits, key=lambda item: refits[item].total)
-    return best if removed_rms(refits[usual].total, refits[best].total) > TIE * case.floor else usual
+    """The item that fits best, or of those that are hardly worse the usual one, else that of fewest parameters."""
+    least = min(fit.total for fit in refits.values())
+    close = {item: fit for item, fit in refits.items() if removed_rms(fit.total, least) <= TIE * case.floor}
+    return usual if usual in close else min(close, key=lambda item: (close[item].freedom, close[item].total))
 
 
 def refit_other_forms(
@@ -216,7 +217,9 @@ def contending_forms(candidate: Candidate) -> list[Score]:
 
 
 def alternatives(case: Case, best: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
-    """The effect of a fit, unless that is at the noise, and its look-alikes."""
+    """The effect of a fit, unless that is at the noise and in no form of more parameters than the first, and its
+    look-alikes."""
     word = word_of(best.effects[-1])
-    itself = [] if at_noise(case, best) else [item for item in candidates if word_of(item.score.effect) == word]
-    return [*itself, *(item for item in candidates if are_look_alikes(word, item.score.effect))]
+    itself = next(item for item in candidates if word_of(item.score.effect) == word)
+    settled = at_noise(case, best) and best.freedom <= itself.refits[itself.forms[0].effect].freedom
+    return [*([] if settled else [itself]), *(item for item in candidates if are_look_alikes(word, item.score.effect))]

@@ -225,7 +225,7 @@ class Scorer:
             residuals = self._residuals(problem, np.concatenate(stepped))
             held = np.isfinite(residuals[:, 0])  # all of those that failed are infinite
             count = len(trials[0].amplitudes)
-            whole = held.reshape(-1, count).all(axis=1)
+            whole = np.asarray(held.reshape(-1, count).all(axis=1))
             if whole.any():
                 traces = residuals if whole.all() else residuals[np.repeat(whole, count)]
                 traces -= self.residual

@@ -108,3 +108,22 @@ def test_no_form_is_tried_again_far_behind_another_effect_at_the_noise(monkeypat
     monkeypatch.setattr(forms, "refit", lambda case, other, effects, guess, rival: fit(2.9, 2.9, effects))
     for rival, tried in ((1.0, False), (1.5, True), (np.inf, True)):
         assert (forms.from_each_other(CASE, refits, rival) != refits) == tried
+
+
+@pytest.mark.parametrize(("apart", "taken"), [(0.19, "cross_coupling.voltage"), (0.21, "cross_coupling.displacement")])
+def test_of_forms_that_fit_as_well_the_one_of_fewest_parameters_is_meant(apart, taken):
+    items = ["cross_coupling", "cross_coupling.voltage", "cross_coupling.displacement"]
+    candidate = Candidate.of([Score(item, 0.9) for item in items])
+    fits = fit(5.0, 5.0), fit(np.hypot(1.0, apart), np.hypot(1.0, apart)), fit(1.0, 1.0, dimensions=6)
+    candidate.refits = dict(zip(items, fits, strict=True))
+    choose_forms(CASE, fit(10.0, 10.0), [candidate])
+    assert candidate.score.effect == taken
+
+
+@pytest.mark.parametrize(("dimensions", "tried"), [(4, False), (6, True)])
+def test_an_effect_at_the_noise_is_tried_in_its_other_forms_where_its_own_has_more_parameters(dimensions, tried):
+    """One of them may be the model of a look-alike to the last digit."""
+    own, alike = Candidate.of([Score("cross_coupling", 0.9)]), Candidate.of([Score("kinematic_coupling", 0.8)])
+    own.refits = {"cross_coupling": fit(5.0, 5.0)}
+    best = fit(1.0, 1.0, ["cross_coupling.displacement"], dimensions=dimensions)
+    assert forms.alternatives(CASE, best, [own, alike]) == ([own, alike] if tried else [alike])
