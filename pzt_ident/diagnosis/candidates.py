@@ -9,6 +9,7 @@ import numpy as np
 
 from pzt_ident.diagnosis.budget import EXPLORING, PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.cost import is_bank
 from pzt_ident.diagnosis.criteria import (
     DECISIVE,
     adequate,
@@ -35,7 +36,7 @@ from pzt_ident.diagnosis.score import LEAST_SCORE, Scorer, applicable, scorer_of
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.threads import side_by_side
 from pzt_ident.diagnosis.ties import TIE, are_look_alikes
-from pzt_ident.model.registry import word_of
+from pzt_ident.model.registry import blocks, word_of
 
 PROMISING = 0.75  # of the misfit: what an effect explains by its score, so that it is tried ahead of anything else
 AS_LIKELY = 0.9  # of what the best score explains: what scores as much is refitted as long as others are
@@ -81,6 +82,15 @@ def promises_most(case: Case, first: Fit, fit: Fit) -> bool:
     best = max(scores, key=lambda score: score.explained_in_bounds, default=None)
     added = fit.effects[len(first.effects) :]
     return best is not None and not any(are_look_alikes(effect, best.effect) for effect in added)
+
+
+def simpler_first(candidates: list[Candidate]) -> list[Candidate]:
+    """The candidates in the order in which they are refitted: ahead of a bank that explains most by its score the best
+    of the others, if that explains nearly as much. Many amounts follow anything a little better, and take long."""
+    other = next((item for item in candidates if not is_bank(blocks[item.score.effect])), None)
+    if other is None or other.score.explained < AS_LIKELY * candidates[0].score.explained:
+        return candidates
+    return [other, *(item for item in candidates if item is not other)]
 
 
 def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:

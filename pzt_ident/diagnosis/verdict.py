@@ -15,6 +15,7 @@ from pzt_ident.diagnosis.candidates import (
     restart_look_alikes,
     restart_unconfirmed,
     score_all,
+    simpler_first,
 )
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import (
@@ -96,7 +97,7 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
         return without_effect(case, first, before, candidates)
     least = least_score(case, first, before)
     promising = [item for item in candidates if item.score.explained > least][:SHORTLIST]
-    shortlist = refit_all(case, first, before, promising)
+    shortlist = refit_all(case, first, before, simpler_first(promising))
     refit_other_forms(case, first, before, candidates, shortlist)
     restart_unconfirmed(case, first, shortlist)
     choose_forms(case, first, shortlist)
