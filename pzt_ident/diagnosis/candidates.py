@@ -9,7 +9,7 @@ import numpy as np
 
 from pzt_ident.diagnosis.budget import EXPLORING, PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.cost import is_bank
+from pzt_ident.diagnosis.cost import has_many_amounts
 from pzt_ident.diagnosis.criteria import (
     DECISIVE,
     adequate,
@@ -85,9 +85,10 @@ def promises_most(case: Case, first: Fit, fit: Fit) -> bool:
 
 
 def simpler_first(candidates: list[Candidate]) -> list[Candidate]:
-    """The candidates in the order in which they are refitted: ahead of a bank that explains most by its score the best
-    of the others, if that explains nearly as much. Many amounts follow anything a little better, and take long."""
-    other = next((item for item in candidates if not is_bank(blocks[item.score.effect])), None)
+    """The candidates in the order in which they are refitted: ahead of one with many amounts that explains most by its
+    score the best of the others, if that explains nearly as much. Many amounts follow anything a little better, and
+    take long."""
+    other = next((item for item in candidates if not has_many_amounts(blocks[item.score.effect])), None)
     if other is None or other.score.explained < AS_LIKELY * candidates[0].score.explained:
         return candidates
     return [other, *(item for item in candidates if item is not other)]
@@ -96,8 +97,7 @@ def simpler_first(candidates: list[Candidate]) -> list[Candidate]:
 def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
     """Refit the model with each effect, in its first form and in the one that scores best; returns the refitted ones,
     which are all that the budget suffices for, but at least the best one beside the model as given. Those that stay far
-    above what the best score leads to are given up; where that is adequate, none is refitted that is far from it. Where
-    the best drives the model onto bounds it is fitted from random points, unless another promises most of its rest."""
+    above what the best score leads to are given up; where that is adequate, none is refitted that is far from it."""
     fits: list[Fit] = []
     rival = np.inf
 
@@ -132,14 +132,20 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
     for some in (candidates[:1], candidates[1:]):
         for candidate in side_by_side(refitted, filter(allowed, some)):
             if candidate is candidates[0]:
-                refit_likely_forms(case, first, before, candidate)
-                astray = before is first and drives_onto_bounds(case, first, candidate)
-                if astray and not promises_most(case, first, candidate.best):
-                    refit_anew(case, first, candidate)
+                refit_further(case, first, before, candidate)
             made.append(candidate)
             fits.extend(candidate.refits.values())
         rival = min((fit.identify for fit in fits), default=np.inf)
     return made
+
+
+def refit_further(case: Case, first: Fit, before: Fit, candidate: Candidate) -> None:
+    """Refit the best candidate in its other likely forms; where it drives the model onto bounds, from random points,
+    unless another effect promises most of what it leaves."""
+    refit_likely_forms(case, first, before, candidate)
+    astray = before is first and drives_onto_bounds(case, first, candidate)
+    if astray and not promises_most(case, first, candidate.best):
+        refit_anew(case, first, candidate)
 
 
 def restart_unconfirmed(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:

@@ -8,7 +8,7 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.model.block import Block, Coupling
 from pzt_ident.model.registry import blocks
 
-MANY_AMOUNTS = 10  # parameters: an effect with more is a bank
+MANY_AMOUNTS = 10  # of the branches of an effect
 MANY_TRIALS = 50  # values of the shape parameters
 MOST_SIMULATIONS = 2000  # of a form beside the first
 
@@ -30,7 +30,7 @@ def is_costly(block: type[Block]) -> bool:
     return bool(block.amounts()) or has_many_trials(block)
 
 
-def is_bank(block: type[Block]) -> bool:
+def has_many_amounts(block: type[Block]) -> bool:
     """Whether an effect has an amount of each of many branches, as a density of plays, which takes long to refit."""
     counts = (parameter.count for parameter in block.parameters().values() if parameter.count is not None)
     return sum(getattr(block, count) if isinstance(count, str) else count for count in counts) >= MANY_AMOUNTS

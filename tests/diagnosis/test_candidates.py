@@ -77,7 +77,7 @@ def test_an_effect_is_fitted_from_random_points_unless_another_promises_what_it_
 
 
 @pytest.mark.parametrize(("bend", "first"), [(0.86, "saturation"), (0.82, "distributed_memory")])
-def test_a_bank_is_refitted_behind_what_explains_nearly_as_much(bend, first):
+def test_what_has_many_amounts_is_refitted_behind_what_explains_nearly_as_much(bend, first):
     scores = [Score("distributed_memory", 0.92), Score("saturation", bend), Score("creep", 0.5)]
     ordered = candidates.simpler_first([Candidate.of([score]) for score in scores])
     assert ordered[0].score.effect == first and len(ordered) == 3

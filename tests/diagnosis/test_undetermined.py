@@ -35,6 +35,14 @@ def test_slow_loops_determine_at_most_one_number_of_a_mode():
     assert undetermined_mechanics(first_fit(slow(stage.EFFECTS["sensor_lag"]), 0)) == "lumped"
 
 
+def test_what_the_data_determine_is_asked_of_the_samples_once_a_fit(monkeypatch):
+    fit, asked = first_fit(slow(stage.EFFECTS["sensor_lag"]), 0), []
+    samples = fit.problem.samples
+    monkeypatch.setattr(fit.problem, "samples", lambda point: asked.append(point) or samples(point))
+    once = undetermined_mechanics(fit), len(asked)
+    assert (undetermined_mechanics(fit), len(asked)) == once and asked
+
+
 def test_mechanics_that_the_job_knows_are_kept():
     known = slow(stage.EFFECTS["sensor_lag"], {"lumped.mass": 0.15})
     assert undetermined_mechanics(first_fit(known, 0)) is None
