@@ -1,15 +1,18 @@
 """A fault of the set-up is told where it alone accounts for the misfit, and is never added."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import rig
 import stage
-from pzt_ident.diagnosis import thinning
+from made_fits import CASE, fit
+from pzt_ident.diagnosis import faults, thinning
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.faults import Fault, fault_instead, without_outdone
 from pzt_ident.diagnosis.refit import refit
-from pzt_ident.diagnosis.score import applicable
+from pzt_ident.diagnosis.score import Score, applicable
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step
@@ -90,6 +93,16 @@ def test_friction_that_gives_before_it_slides_is_no_backlash():
 def test_no_effect_is_taken_for_a_fault(name):
     case = stage.case(stage.EFFECTS[name])
     assert fault_instead(case, first_fit(case, 0)) is None
+
+
+@pytest.mark.parametrize(("explained", "fitted"), [(0.49, False), (0.51, True)])
+def test_a_fault_is_fitted_where_it_may_be_most_of_what_is_missing(monkeypatch, explained, fitted):
+    first, with_fault = fit(12.0, 12.0), fit(1.0, 1.0, ["backlash"])
+    scorer = SimpleNamespace(score=lambda word: Score(word, explained))
+    monkeypatch.setattr(faults, "applicable", lambda case, effects, in_setup: ["backlash"])
+    monkeypatch.setattr(faults, "scorer_of", lambda case, fit: scorer)
+    monkeypatch.setattr(faults, "refit", lambda case, first, effects, guess: with_fault)
+    assert [word for word, _ in faults.faults_of(CASE, first)] == ["backlash"] * fitted
 
 
 @pytest.mark.parametrize("word", blocks.faults())
