@@ -9,6 +9,7 @@ import numpy as np
 
 from pzt_ident.diagnosis.budget import EXPLORING
 from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.cost import has_many_amounts
 from pzt_ident.diagnosis.criteria import (
     DECISIVE,
     adequate,
@@ -92,7 +93,10 @@ def likely_forms(candidate: Candidate) -> list[Score]:
 
 def drives_onto_bounds(case: Case, first: Fit, candidate: Candidate) -> bool:
     """Whether an effect beside the model as given explains most and leaves more than the noise, and drives the model
-    onto bounds where it did not rest without it."""
+    onto bounds where it did not rest without it; not one with many amounts, which takes the place of what the model
+    has."""
+    if has_many_amounts(blocks[candidate.score.effect]):
+        return False
     return leaves_some(case, first, first, candidate.best) and rests_anew(first, candidate.best)
 
 

@@ -9,6 +9,7 @@ from made_fits import CASE, fit
 from pzt_ident.diagnosis import forms
 from pzt_ident.diagnosis.forms import Candidate, choose_forms
 from pzt_ident.diagnosis.score import Score
+from pzt_ident.model.registry import blocks
 
 
 @pytest.mark.parametrize(
@@ -79,6 +80,14 @@ def test_an_effect_that_drives_the_model_onto_bounds_is_fitted_from_random_point
     forms.refit_anew(CASE, first, candidate)
     assert tried == (["friction", "friction.commanded"] if sought else [])
     assert candidate.best.identify == (1.0 if sought else left)
+
+
+@pytest.mark.parametrize("item", blocks.effects())
+def test_only_a_density_takes_the_place_of_the_model_without_being_astray(monkeypatch, item):
+    """A bank of many amounts has its own hysteresis: the one that the model had may well end on its bounds."""
+    monkeypatch.setattr(forms, "rests_anew", lambda before, fit: True)
+    candidate = Candidate(Score(item, 0.9), refits={item: fit(4.0, 4.0, [item])})
+    assert forms.drives_onto_bounds(CASE, fit(12.0, 12.0), candidate) == (item != "distributed_memory")
 
 
 @pytest.mark.parametrize(
