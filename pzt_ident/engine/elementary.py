@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from math import log, pi
 from typing import Any
 
 from llvmlite import ir
@@ -44,7 +44,8 @@ mantissa = bitwise(
 )
 
 SHIFT = 1.5 * 2**52
-PER_LN2, PER_PI = 1 / log(2), 1 / pi
+LN2 = math.log(2)
+PER_LN2, PER_PI = 1 / LN2, 1 / math.pi
 LN2_HIGH, LN2_LOW = float.fromhex("0x1.62e42fefap-1"), float.fromhex("0x1.cf79abc9e3b3ap-40")
 PI_HIGH, PI_LOW = float.fromhex("0x1.921fb54442p+1"), float.fromhex("0x1.a308d313198a3p-40")
 
@@ -68,14 +69,25 @@ def expm1(x):
 
 @register_jitable(forceinline=True)
 def log1p(x):
-    """log(1 + x) for x > -1, corrected for the rounding of 1 + x; Chebyshev fit to (atanh(s) / s - 1) / s^2."""
-    argument = 1 + x
-    m = mantissa(argument)
+    """log(1 + x) for x > -1, corrected for the rounding of 1 + x."""
+    return log_of_sum(1 + x, x - ((1 + x) - 1))
+
+
+@register_jitable(forceinline=True)
+def log(x):
+    """log(x) for x > 0, not below 1e-300."""
+    return log_of_sum(x, 0.0)
+
+
+@register_jitable(forceinline=True)
+def log_of_sum(x, rest):
+    """log(x + rest), x > 0 and the rest below its rounding; Chebyshev fit to (atanh(s) / s - 1) / s^2."""
+    m = mantissa(x)
     high = m > 1.4142135623730951
     m = 0.5 * m if high else m
-    power = exponent(argument) + (1 if high else 0)
+    power = exponent(x) + (1 if high else 0)
     n = float(power)
-    s = ((m - 1) + (x - (argument - 1)) * two_to_minus(power)) / (m + 1)
+    s = ((m - 1) + rest * two_to_minus(power)) / (m + 1)
     z = s * s
     w = z * z
     even = 0.3333333333333335 + w * (0.14285714313095244 + w * (0.09091445840219947 + w * 0.07308749346957806))
@@ -86,7 +98,7 @@ def log1p(x):
 @register_jitable(forceinline=True)
 def rough_log(x):
     """The bits of x as a whole number are nearly its logarithm: exponent plus mantissa."""
-    return float(bits_of(x)) * (log(2) / 2**52) - (1023 - 0.043) * log(2)
+    return float(bits_of(x)) * (LN2 / 2**52) - (1023 - 0.043) * LN2
 
 
 @register_jitable(forceinline=True)
@@ -145,6 +157,7 @@ def replace(function: Callable[[float], float], lanes: Any) -> None:
 for function, lanes in (
     (block.expm1, expm1),
     (block.log1p, log1p),
+    (block.log, log),
     (block.erf, erf),
     (block.rough_log, rough_log),
     (block.rough_inverse_cube_root, rough_inverse_cube_root),

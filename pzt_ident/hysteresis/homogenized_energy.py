@@ -191,16 +191,20 @@ class Relaxing(HomogenizedEnergy):
         heat = relaxation_coefficients(fluctuation * per_width, dt)
         return gain, remanence, quadratic, bias, zero, per_width, half, before, *heat
 
-    def start(u, gain, remanence, quadratic, bias, zero, per_width, half, before, width, width_log_dt):
+    def start(u, gain, remanence, quadratic, bias, zero, per_width, half, before, width, width_log_dt, per_heat):
         field = (u - bias) * per_width
         return play(before, field, half), field
 
-    def step(p, last, u, gain, remanence, quadratic, bias, zero, per_width, half, before, width, width_log_dt):
+    def step(
+        p, last, u, gain, remanence, quadratic, bias, zero, per_width, half, before, width, width_log_dt, per_heat
+    ):
         field = (u - bias) * per_width
-        p = relaxed_play(p, last, field, half, width, width_log_dt)
+        p = relaxed_play(p, last, field, half, width, width_log_dt, per_heat)
         return p, field, erf(p)
 
-    def output(u, total, gain, remanence, quadratic, bias, zero, per_width, half, before, width, width_log_dt):
+    def output(
+        u, total, gain, remanence, quadratic, bias, zero, per_width, half, before, width, width_log_dt, per_heat
+    ):
         field = u - bias + remanence * (total / NODES - 1)
         return (gain + quadratic * field) * field - zero
 

@@ -18,6 +18,7 @@ from pzt_ident.model.contract import call_function
 from pzt_ident.model.elementary import cos as cos
 from pzt_ident.model.elementary import erf as erf
 from pzt_ident.model.elementary import expm1 as expm1
+from pzt_ident.model.elementary import log as log
 from pzt_ident.model.elementary import log1p as log1p
 from pzt_ident.model.elementary import rough_inverse_cube_root as rough_inverse_cube_root
 from pzt_ident.model.elementary import rough_log as rough_log

@@ -13,6 +13,11 @@ def log1p(x: float) -> float:
     return math.log1p(x) if x > -1 else math.nan
 
 
+def log(x: float) -> float:
+    """log(x) for blocks, likewise; undefined for x <= 0, but raises no error there."""
+    return math.log(x) if x > 0 else math.nan
+
+
 def rough_log(x: float) -> float:
     """log(x) for x > 0, where an iteration starts; in lanes it is off by up to 0.03."""
     return math.log(x)

@@ -23,11 +23,12 @@ def over(function):
     return loop
 
 
-expm1, log1p, sin, cos, erf, rough_log, rough_inverse_cube_root = (
+expm1, log1p, log, sin, cos, erf, rough_log, rough_inverse_cube_root = (
     over(function)
     for function in (
         elementary.expm1,
         elementary.log1p,
+        elementary.log,
         elementary.sin,
         elementary.cos,
         elementary.erf,
@@ -81,6 +82,12 @@ def test_log1p_where_its_argument_is_split():
     np.testing.assert_allclose(log1p(x), np.log1p(x), rtol=1e-15)
 
 
+def test_log_over_the_whole_range():
+    x = np.concatenate([np.abs(both_signs(-300, 300)), np.random.default_rng(1).uniform(0, 3, 40000)])
+    np.testing.assert_allclose(log(x), np.log(x), rtol=1e-15, atol=1e-16)
+    assert log(np.ones(1)) == 0
+
+
 def test_inverse_of_each_other():
     x = np.random.default_rng(2).uniform(-0.99, 20, 5000)
     np.testing.assert_allclose(expm1(log1p(x)), x, rtol=1e-13)
@@ -126,4 +133,5 @@ def test_authors_have_them_in_plain_python():
     assert block.erf(0.5) == math.erf(0.5)
     assert block.rough_log(2.0) == math.log(2)
     assert block.rough_inverse_cube_root(8.0) == pytest.approx(0.5)
+    assert block.log(math.e) == 1 and math.isnan(block.log(0.0))
     assert math.isnan(block.log1p(-1.0)) and math.isnan(block.log1p(-5.0))
