@@ -135,6 +135,6 @@ class Additions:
             steps, tiles = np.array(self.steps(axis), dtype=np.int64), program.tiles + 1 + np.arange(self.signals)
             begin, since, count = (lead + at.start) // TILE * TILE, lead + at.start, program.tiles + self.tiles
             scratch, output = program.scratch(theta, program.rows), np.empty_like(bases[:, 1 : 1 + self.signals])
-            run(steps, np.zeros((1, 1)), scratch, count, begin, lead + at.stop, since, 1, output, tiles)
+            run(steps, np.zeros((1, 1)), scratch, len(theta), count, begin, lead + at.stop, since, 1, output, tiles)
             bases[:, 1 : 1 + self.signals] = output
         return bases

@@ -24,7 +24,7 @@ for option in (f"-force-vector-interleave={VECTORS}", f"-unroll-full-max-count={
 OPTIONS: dict[str, Any] = {"fastmath": {"contract"}, "error_model": "numpy", "cache": not loads()}
 
 pointer = types.CPointer(types.float64)
-SIGNATURE = types.void(types.intp, types.intp, types.intp, pointer, pointer, pointer, pointer)
+SIGNATURE = types.void(*[types.intp] * 3, *[pointer] * 4, types.intp)
 
 
 class NoAliasCompiler(Compiler):
@@ -40,18 +40,27 @@ compiled = cfunc(SIGNATURE, pipeline_class=NoAliasCompiler, **OPTIONS)
 
 @intrinsic
 def call(
-    context: Any, function: Any, samples: Any, first: Any, fresh: Any, drive: Any, runs: Any, scratch: Any, tile: Any
+    context: Any,
+    function: Any,
+    samples: Any,
+    first: Any,
+    fresh: Any,
+    drive: Any,
+    runs: Any,
+    scratch: Any,
+    tile: Any,
+    lanes: Any,
 ) -> Any:
-    """Call the C function at an address; the last four are addresses of float64."""
+    """Call the C function at an address; the four ahead of the last are addresses of float64."""
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         integer, floats = ir.IntType(64), ir.DoubleType().as_pointer()
-        function_type = ir.FunctionType(ir.VoidType(), [integer] * 3 + [floats] * 4)
+        function_type = ir.FunctionType(ir.VoidType(), [integer] * 3 + [floats] * 4 + [integer])
         function = builder.inttoptr(args[0], function_type.as_pointer())
-        builder.call(function, [*args[1:4], *(builder.inttoptr(argument, floats) for argument in args[4:])])
+        builder.call(function, [*args[1:4], *(builder.inttoptr(argument, floats) for argument in args[4:8]), args[8]])
         return context.get_dummy_value()
 
-    return types.void(*[types.int64] * 8), generate
+    return types.void(*[types.int64] * 9), generate
 
 
 @intrinsic

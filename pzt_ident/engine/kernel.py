@@ -46,6 +46,7 @@ def run(
     program: np.ndarray,
     signals: np.ndarray,
     scratch: np.ndarray,
+    candidates: int,
     count: int,
     begin: int,
     end: int,
@@ -58,9 +59,9 @@ def run(
 
     program: (steps, 5), each step the address of a function, its row of the scratch, row of signals, tile, and first
     sample. signals: (rows, 1 + samples + PADDING), with a sample of rest before the record; the row after that of a
-    drive holds its runs. scratch: (groups, rows * WIDTH). count: number of tiles. begin: a multiple of TILE, and of the
-    stride. output: (candidates, tiles, samples after `since` / stride) or empty; it is filled with every `stride`-th
-    sample of output_tiles.
+    drive holds its runs. scratch: (groups, rows * WIDTH), of so many candidates and copies of the last one. count:
+    number of tiles. begin: a multiple of TILE, and of the stride. output: (candidates, tiles, samples after `since` /
+    stride) or empty; it is filled with every `stride`-th sample of output_tiles.
     """
     tiles, wanted = aligned_zeros(count * TILE * WIDTH), np.ascontiguousarray(output_tiles, dtype=np.int64)
     assert all(array.flags.c_contiguous for array in (program, signals, scratch, output))
@@ -68,9 +69,9 @@ def run(
     _driver()(
         program.ctypes.data, len(program),
         signals.ctypes.data, len(signals), signals.strides[0],
-        scratch.ctypes.data, len(scratch), scratch.strides[0],
+        scratch.ctypes.data, len(scratch), scratch.strides[0], candidates,
         at, at, begin, end, max(begin, since), stride,
-        output.ctypes.data, len(output), kept,
+        output.ctypes.data, kept,
         wanted.ctypes.data, wanted.size,
     )  # fmt: skip
 

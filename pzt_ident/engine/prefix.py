@@ -60,5 +60,5 @@ def tiles_after(program: Program, scratch: Array, steps: Steps, signals: Array) 
     """The signals of all tiles after some steps of one candidate, as rows of the kernel's signals."""
     samples = signals.shape[1] - 1 - PADDING
     tiles = np.empty((1, program.tiles, samples))
-    run(steps, signals, scratch, program.tiles, 0, samples, 0, 1, tiles, np.arange(program.tiles))
+    run(steps, signals, scratch, 1, program.tiles, 0, samples, 0, 1, tiles, np.arange(program.tiles))
     return np.pad(tiles[0], ((0, 0), (1, PADDING)), mode="edge")

@@ -38,6 +38,7 @@ def advance(program, scratch, tiles, window, inputs, fresh):
             window[axis].ctypes.data + 8,
             scratch.ctypes.data + 8 * program[step, 1],
             tiles.ctypes.data + 8 * program[step, 2],
+            1,
         )
 
 

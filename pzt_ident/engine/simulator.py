@@ -131,7 +131,7 @@ class Simulator:
             last = min(first + length, lead + samples)
             at = slice(max(first - lead, 0), last - lead)
             output = np.empty((len(fewer.theta), len(self.model.measured), max(at.stop - at.start, 0)))
-            self._run(scratch, *shared, output, first, last)
+            self._run(scratch, *shared, len(fewer.theta), output, first, last)
             if output.size:
                 yield at, fewer.of_candidates(output)
 
@@ -160,7 +160,7 @@ class Simulator:
         sums = scratch.reshape(scratch.shape[0], self._rows, WIDTH)[:, self._sums :]
         self.additions.begin(sums)
         shared = self._shared(scratch, self._scoring)
-        self._run(scratch, *shared, np.empty((0, 0, 0)), 0, self._program.lead + self.record.samples)
+        self._run(scratch, *shared, len(fewer.theta), np.empty((0, 0, 0)), 0, self._program.lead + self.record.samples)
         table = sums.reshape(-1, len(self.model.measured), self._each, WIDTH).transpose(0, 3, 1, 2)
         table = fewer.of_candidates(table.reshape(-1, *table.shape[2:])[: len(fewer.theta)])
         if self.model.additions:
@@ -227,7 +227,15 @@ class Simulator:
         return steps, signals, self._rows - (self._program.ends[count - 1] if count else 0)
 
     def _run(
-        self, scratch: Array, steps: NDArray[np.int64], signals: Array, rows: int, output: Array, first: int, last: int
+        self,
+        scratch: Array,
+        steps: NDArray[np.int64],
+        signals: Array,
+        rows: int,
+        candidates: int,
+        output: Array,
+        first: int,
+        last: int,
     ) -> None:
         """Step from sample `first` to sample `last`, counted from where the lead begins. rows: that are run."""
         from pzt_ident.engine.kernel import WIDTH, run
@@ -235,7 +243,7 @@ class Simulator:
         fine = self.substeps
         since = self._program.lead * fine
         tiles = self._program.tiles + self.additions.tiles
-        run(steps, signals, scratch, tiles, first * fine, last * fine, since, fine, output, self._measured)
+        run(steps, signals, scratch, candidates, tiles, first * fine, last * fine, since, fine, output, self._measured)
         work.add(work.of_run(len(scratch) * WIDTH, (last - first) * fine, rows))
 
     @cached_property

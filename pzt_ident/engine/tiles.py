@@ -9,7 +9,7 @@ from pzt_ident.engine.kernel import TILE, WIDTH
 
 
 @compiled
-def fill(samples, first, fresh, drive, runs, scratch, tile):
+def fill(samples, first, fresh, drive, runs, scratch, tile, lanes):
     """The drive itself, the same in every lane."""
     widen()  # type: ignore[call-arg]
     for i in range(samples):
@@ -17,33 +17,33 @@ def fill(samples, first, fresh, drive, runs, scratch, tile):
 
 
 @compiled
-def keep_prompt(samples, first, fresh, drive, runs, scratch, tile):
+def keep_prompt(samples, first, fresh, drive, runs, scratch, tile, lanes):
     """Keep the drive ahead of the readout blocks, the input of the operator's prompt response."""
     for i in range(samples * WIDTH):
         tile[TILE * WIDTH + i] = tile[i]
 
 
 @compiled
-def keep_force(samples, first, fresh, drive, runs, scratch, tile):
+def keep_force(samples, first, fresh, drive, runs, scratch, tile, lanes):
     """Keep the force on the mechanics."""
     for i in range(samples * WIDTH):
         tile[2 * TILE * WIDTH + i] = tile[i]
 
 
 @compiled
-def keep_prompt_of_sample(samples, first, fresh, drive, runs, scratch, tile):
+def keep_prompt_of_sample(samples, first, fresh, drive, runs, scratch, tile, lanes):
     """The same for one candidate and one sample a call."""
     tile[1] = tile[0]
 
 
 @compiled
-def keep_force_of_sample(samples, first, fresh, drive, runs, scratch, tile):
+def keep_force_of_sample(samples, first, fresh, drive, runs, scratch, tile, lanes):
     """The same for one candidate and one sample a call."""
     tile[2] = tile[0]
 
 
 @compiled
-def errors(samples, first, fresh, response, runs, sums, tile):
+def errors(samples, first, fresh, response, runs, sums, tile, lanes):
     """Add up e and e^2, e = y - response."""
     widen()  # type: ignore[call-arg]
     even = samples - samples % 2
@@ -61,7 +61,7 @@ def errors(samples, first, fresh, response, runs, sums, tile):
 
 
 @compiled
-def products(samples, first, fresh, response, runs, sums, tile):
+def products(samples, first, fresh, response, runs, sums, tile, lanes):
     """Add up e = y - response and the signals of additions, and the products of each pair of them: x_0, x_0 x_0, x_1,
     x_1 x_0, x_1 x_1, ..., with x_0 = e. Row 0 of sums: the number of signals; row 1: the tile of e, ahead of theirs,
     counted from that of y."""
@@ -98,9 +98,9 @@ def products(samples, first, fresh, response, runs, sums, tile):
 whole, integers = types.intp, types.CPointer(types.int64)
 
 
-@cfunc(types.void(integers, *[whole] * 8, pointer, *[whole] * 4, pointer, *[whole] * 2, integers, whole), **OPTIONS)
-def run(program, steps, signals, rows, row, scratch, groups, group, at, tiles, begin, end, since, stride, output,
-        candidates, kept, wanted, count):  # fmt: skip
+@cfunc(types.void(integers, *[whole] * 9, pointer, *[whole] * 4, pointer, whole, integers, whole), **OPTIONS)
+def run(program, steps, signals, rows, row, scratch, groups, group, candidates, at, tiles, begin, end, since, stride,
+        output, kept, wanted, count):  # fmt: skip
     """Run every group through the samples from `begin` to `end`, as `kernel.run`, which see. program: (steps, 5).
     signals: address of `rows` rows of `row` bytes. scratch: address of `groups` groups of `group` bytes. tiles: also as
     an address, `at`. output: (candidates, count, kept). wanted: (count,), the tiles of the output."""
@@ -120,6 +120,7 @@ def run(program, steps, signals, rows, row, scratch, groups, group, at, tiles, b
                         signals + row * min(program[s + 2] + 1, rows - 1) + 8,
                         scratch + group * g + 8 * WIDTH * program[s + 1],
                         at + 8 * WIDTH * (TILE * program[s + 3] + skip),
+                        lanes,
                     )
             left = max(first, since)
             left += (since - left) % stride

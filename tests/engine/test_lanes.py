@@ -13,8 +13,11 @@ from pzt_ident.engine.simulator import simulate
 from pzt_ident.files import cache_folder
 from pzt_ident.hysteresis.bouc_wen import BoucWen
 from pzt_ident.mechanics.lumped import Lumped
-from rig import model, record
+from pzt_ident.model.block import Bank
+from pzt_ident.model.registry import blocks
+from rig import candidates, model, path, record
 
+BANKS = [word for word in blocks.words() if issubclass(blocks[word], Bank)]
 AUTHOR = """
 from pzt_ident.model.block import Block, Place
 
@@ -140,6 +143,17 @@ def test_kept_kernels_need_no_compiler():
     for _ in range(2):  # the first one compiles what is not there
         ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=os.environ | here)
     assert ran.stdout == "False\n"
+
+
+@pytest.mark.parametrize("word", BANKS)
+def test_a_candidate_of_a_bank_does_not_depend_on_how_many_are_beside_it(word):
+    """Lanes without a candidate are left out, a vector at a time."""
+    drive, made = path(0, 80, 20, 60, 0, points=40), model(word)
+    theta = candidates(made, drive, kernel.WIDTH + 9, seed=0)
+    together = simulate(made, record(drive), theta)
+    for count in (1, 8, 9, 16, 17, kernel.WIDTH, kernel.WIDTH + 1):
+        alone = simulate(made, record(drive), theta[:count])
+        np.testing.assert_allclose(alone, together[:count], rtol=0, atol=1e-13 * np.abs(together).max())
 
 
 def test_physics_is_declared_without_a_compiler():
