@@ -182,7 +182,8 @@ class Scorer:
                 amounts, left = self.projection.fit(*sets.exact(number), one_sided, least)
                 if self.explained(left) > score.explained:
                     score.explained, least = self.explained(left), left
-                    guesses = [self._guess(problem, trial, scales) for scales in scales_of(amounts)]
+                    scales = scales_of(amounts) if score.explained > LEAST_SCORE else amounts[None]
+                    guesses = [self._guess(problem, trial, multiples) for multiples in scales]
         if has_many_trials(blocks[effect]):
             good = [(left, trial) for left, trial in tried if 2 * self.explained(left) >= score.explained]
             score.shapes = [trial.shape(problem) for _, trial in sorted(good, key=itemgetter(0))[:MOST_SHAPES]]
@@ -192,12 +193,13 @@ class Scorer:
 
     def _take_best_guess(self, score: Score, problem: Problem, guesses: list[dict[str, float]]) -> None:
         """Put the guess of the least residual into the score, and what it explains within the bounds."""
-        known = self.fit.values
-        points = [[(known | guess)[name] for name in problem.names] for guess in guesses]
-        norms = self._left(problem, np.array(points)) if guesses else np.empty(0)
-        least, guess = min(zip(norms, guesses, strict=True), key=itemgetter(0), default=(0.0, {}))
-        score.guesses = [guess] if guess else []
         score.explained_in_bounds = score.explained
+        score.guesses, least = guesses[:1], np.inf
+        if len(guesses) > 1 or on_bound(problem, score.guess):
+            known = self.fit.values
+            points = np.array([[(known | guess)[name] for name in problem.names] for guess in guesses])
+            least, guess = min(zip(self._left(problem, points), guesses, strict=True), key=itemgetter(0))
+            score.guesses = [guess]
         if on_bound(problem, score.guess):
             score.explained_in_bounds = float(np.clip(self.explained(least), 0, score.explained))
 
