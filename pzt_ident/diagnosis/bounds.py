@@ -68,6 +68,14 @@ def are_decisive(case: Case, before: Fit, after: Fit) -> bool:
     return max(share_explained(before.identify, after.identify, case.floor), *shares) >= DECISIVE
 
 
+def are_too_narrow(case: Case, wide: Case, before: Fit, after: Fit) -> bool:
+    """Whether bounds, beyond which a fit leaves clearly less, are too narrow, whatever else is missing: wider ones
+    remove most of the misfit, or they are bounds of the job and none of them is reached, as one would be that makes up
+    for something else."""
+    of_the_job = (widened(case, before) | freed(case, before.problem)).keys() <= case.specs.keys()
+    return are_decisive(case, before, after) or (of_the_job and not stands_in(wide, case, after))
+
+
 def continued(wide: Case, fit: Fit) -> Fit:
     """A fit gone on with in a case with wider bounds."""
     problem = wide.problem(fit.effects, fit.steps, fit.measured_only)

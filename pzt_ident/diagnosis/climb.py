@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from pzt_ident.diagnosis.bounds import are_decisive, beyond_bounds, stands_in
+from pzt_ident.diagnosis.bounds import are_too_narrow, beyond_bounds, stands_in
 from pzt_ident.diagnosis.budget import PROVING
 from pzt_ident.diagnosis.candidates import promises_most
 from pzt_ident.diagnosis.case import Case
@@ -111,13 +111,13 @@ def joins(case: Case, fit: Fit, known: Sequence[Fit]) -> bool:
 
 
 def wider_bounds(case: Case, first: Fit, fit: Fit) -> Step | None:
-    """The step to wider bounds, where these remove most of what a fit that rests on them leaves on an axis, and hold
-    its estimates: an effect would only stand in for what the bounds of the job keep out."""
+    """The step to wider bounds, where those that a fit rests on are too narrow and the wider ones hold its estimates:
+    an effect would only stand in for what they keep out."""
     beyond = None if adequate(case, first, fit) else beyond_bounds(case, first, fit)
     if beyond is None:
         return None
     wide, after = beyond
-    if not are_decisive(case, fit, after) or stands_in(wide, case, after):
+    if stands_in(wide, case, after) or not are_too_narrow(case, wide, fit, after):
         return None
     return Step(after, explained=explained_share(case, fit, after), change=WIDER, case=wide)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from pzt_ident.diagnosis.bounds import are_decisive, beyond_bounds, brought_back, continued, stands_in, widened
+from pzt_ident.diagnosis.bounds import are_too_narrow, beyond_bounds, brought_back, continued, stands_in, widened
 from pzt_ident.diagnosis.budget import WHOLE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase
@@ -103,9 +103,9 @@ def with_least_history(case: Case, first: Fit, staircase: Staircase) -> Staircas
 
 
 def needs_wider_bounds(case: Case, first: Fit) -> bool:
-    """Whether bounds of the job keep out most of what the model as given leaves."""
+    """Whether bounds are too narrow for the model as given."""
     beyond = beyond_bounds(case, first, first)
-    return bool(beyond and are_decisive(case, first, beyond[1]))
+    return bool(beyond and are_too_narrow(case, beyond[0], first, beyond[1]))
 
 
 def improve_aged(case: Case, first: Fit, aged: Case, start: Fit, on_step: StepListener) -> Staircase:
@@ -128,17 +128,16 @@ def improve_otherwise(case: Case, first: Fit, other: Case, start: Fit, change: s
 def improve_judged(case: Case, first: Fit, on_step: StepListener, diagnosis: Diagnosis | None = None) -> Staircase:
     """The same, judged by all records that are left to judge it; diagnosis: of the first fit, if there is one.
 
-    Wider bounds, where those of the job are too narrow, are tried first where they remove most of the misfit of an
-    axis, or lead to the noise beside one effect; mechanics that the data do not determine are left out first where no
-    effect beside them reaches the noise, unless the first path with them does and the one without them does not, and
-    any where nothing is missing without them."""
+    Wider bounds are tried first where those of the job are too narrow, or lead to the noise beside one effect;
+    mechanics that the data do not determine are left out first where no effect beside them reaches the noise, unless
+    the first path with them does and the one without them does not, and any where nothing is missing without them."""
     good = adequate(case, first, first)
     enough = None if good else enough_without_mechanics(case, first)
     if enough:
         return improve_within(enough[1], steps_without(case, first, *enough), on_step)
     beyond = None if good else beyond_bounds(case, first, first)
     wide = None
-    if beyond and are_decisive(case, first, beyond[1]):
+    if beyond and are_too_narrow(case, beyond[0], first, beyond[1]):
         wide = improve_beyond(case, first, *beyond, on_step)
         if accounts(wide, case, first):
             return wide

@@ -7,12 +7,14 @@ import numpy as np
 import pytest
 
 import stage
-from pzt_ident.diagnosis import staircase
+from made_fits import fit
+from pzt_ident.diagnosis import bounds, staircase
 from pzt_ident.diagnosis.bounds import (
     DECADES,
     SLIP,
     Widened,
     are_decisive,
+    are_too_narrow,
     beyond_bounds,
     bounds_that_changed,
     brought_back,
@@ -75,6 +77,39 @@ def test_beside_a_narrow_bound_the_effect_is_found_and_alone(effect):
     found = improve(case, first_fit(case, 0))
     assert found.last.verdict == "adequate"
     assert list(map(word_of, found.steps[-1].fit.effects)) == [effect]
+
+
+@pytest.mark.parametrize("low", [1.02, 1.03])
+def test_a_bound_that_keeps_out_less_than_an_effect_does_is_widened_where_the_wider_one_is_not_reached(low):
+    case = stage.case({"amplifier_lag.tau": 1e-2}).with_specs({"bouc_wen.gain": Widened((low * GAIN, 1.3 * GAIN))})
+    first = first_fit(case, 0)
+    wide, after = beyond_bounds(case, first, first)
+    assert 0.1 < share_explained(first.total, after.total, case.floor) < 0.5
+    assert are_too_narrow(case, wide, first, after)
+    end = improve(case, first).end
+    assert [word_of(effect) for effect in end.effects] == ["amplifier_lag"]
+    assert end.values["bouc_wen.gain"] == pytest.approx(GAIN, rel=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("given", "reached", "left", "narrow"),
+    [
+        (True, False, 0.9, True),
+        (True, True, 0.9, False),
+        (False, False, 0.9, False),
+        (True, True, 0.3, True),
+        (False, False, 0.3, True),
+    ],
+)
+def test_bounds_are_too_narrow_where_they_keep_out_most_or_are_of_the_job_and_not_reached_when_wider(
+    monkeypatch, given, reached, left, narrow
+):
+    """left: of an error far above the noise."""
+    monkeypatch.setattr(bounds, "widened", lambda case, fit: {"bouc_wen.gain": None})
+    monkeypatch.setattr(bounds, "freed", lambda case, problem: {})
+    monkeypatch.setattr(bounds, "stands_in", lambda wide, case, fit: reached)
+    case = SimpleNamespace(floor=1.0, floors=np.ones(1), specs={"bouc_wen.gain": None} if given else {})
+    assert bounds.are_too_narrow(case, case, fit(100.0, 100.0), fit(100 * left, 100 * left)) == narrow
 
 
 def test_an_effect_that_is_small_beside_what_a_narrow_bound_leaves_is_found():
