@@ -195,6 +195,9 @@ def refit_other_forms(
     nearly_all = share >= NEARLY_ALL
     if nearly_all:
         wanted = alternatives(case, best, candidates)
+        if not adequate(case, first, best):
+            others = [item for item in candidates if item not in wanted]
+            wanted += nearly_all_in_another_form(case, before, others, share_of_others(case, first, before, fits))
     else:
         least = least_score(case, first, before)
         others = [item for item in candidates if item not in shortlist and item.score.explained > least]
@@ -212,6 +215,20 @@ def refit_other_forms(
         if new:
             candidate.refits = from_each_other(case, {**candidate.refits, **new}, best.identify)
     shortlist += [item for item in wanted if item.refits and item not in shortlist]
+
+
+def nearly_all_in_another_form(
+    case: Case, before: Fit, candidates: Sequence[Candidate], share: float
+) -> list[Candidate]:
+    """The effects that explain nearly all by the score of one of their forms, while the share of the budget lasts."""
+    found = []
+    for candidate in candidates:
+        if not case.budget.allows("other forms", share):
+            break
+        scores = scorer_of(case, before).scores(word_of(candidate.score.effect))
+        if max(score.explained for score in scores) >= NEARLY_ALL:
+            found.append(candidate)
+    return found
 
 
 def contending_forms(candidate: Candidate) -> list[Score]:

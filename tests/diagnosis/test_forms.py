@@ -136,3 +136,31 @@ def test_an_effect_at_the_noise_is_tried_in_its_other_forms_where_its_own_has_mo
     own.refits = {"cross_coupling": fit(5.0, 5.0)}
     best = fit(1.0, 1.0, ["cross_coupling.displacement"], dimensions=dimensions)
     assert forms.alternatives(CASE, best, [own, alike]) == ([own, alike] if tried else [alike])
+
+
+@pytest.mark.parametrize(("left", "sought"), [(1.8, True), (1.0, False)])
+@pytest.mark.parametrize("explained", [0.91, 0.89])
+def test_beside_one_that_is_not_adequate_an_effect_is_tried_that_explains_nearly_all_in_another_form(
+    monkeypatch, left, sought, explained
+):
+    """A relaxation left 1.8 noise floors of a ripple of the drive, of which the first form, a hum, scores nothing."""
+    relaxation = Candidate.of([Score("thermal_relaxation", 0.97)])
+    relaxation.refits = {"thermal_relaxation": fit(left, left, ["thermal_relaxation"])}
+    hum = Candidate.of([Score("periodic_disturbance", 0.02)])
+    scores = {
+        "thermal_relaxation": [Score("thermal_relaxation", 0.97)],
+        "periodic_disturbance": [Score("periodic_disturbance", 0.02), Score("periodic_disturbance.ripple", explained)],
+    }
+    refitted = []
+
+    def refit_from(case, before, effects, guesses, rival):
+        refitted.append(effects[-1])
+        return fit(1.0, 1.0, effects)
+
+    monkeypatch.setattr(forms, "scorer_of", lambda case, fit: SimpleNamespace(scores=scores.__getitem__))
+    monkeypatch.setattr(forms, "refit_from", refit_from)
+    first, shortlist = fit(11.0, 11.0), [relaxation]
+    forms.refit_other_forms(CASE, first, first, [relaxation, hum], shortlist)
+    found = sought and explained >= forms.NEARLY_ALL
+    assert ("periodic_disturbance.ripple" in refitted) == found
+    assert (hum in shortlist) == found
