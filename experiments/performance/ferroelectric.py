@@ -53,11 +53,11 @@ def relays(coercive: np.ndarray, interaction: np.ndarray) -> Callable[[], np.nda
     return lambda: run(FIELD, coercive, interaction)
 
 
-def candidates(chain: dict[str, dict[str, float]]) -> float:
-    """CPU seconds a candidate, the lanes full."""
+def candidates(chain: dict[str, dict[str, float]], count: int = LANES) -> float:
+    """CPU seconds a candidate, of so many at once."""
     made, theta = simulator(chain, FIELD)
-    many = theta * np.exp(np.random.default_rng(0).normal(0, 0.05, (LANES, theta.shape[1])))
-    return least(lambda: made.squares(many)) / LANES
+    many = theta * np.exp(np.random.default_rng(0).normal(0, 0.05, (count, theta.shape[1])))
+    return least(lambda: made.squares(many)) / count
 
 
 def solved() -> float:
@@ -103,6 +103,7 @@ def text() -> str:
     whole, reduced = measured("", "rod", elements=40), measured("", "rod_reduced", elements=40, order=3)
     rows = [
         ("plays, 64 nodes", 1e3 * candidates(PLAIN), "0.5"),
+        *((f"the same, {count} candidates at once", 1e3 * candidates(PLAIN, count), "–") for count in (16, 8)),
         ("relays, 24 x 80", 1e3 * grid, "–"),
         ("plays that heat helps, 64 nodes", 1e3 * candidates(HELPED), "–"),
         ("thermal, 64 x 64 nodes", 1e3 * candidates(THERMAL), "40"),
