@@ -8,11 +8,13 @@ import pytest
 import rig
 import stage
 from pzt_ident.diagnosis import cost
+from pzt_ident.diagnosis import score as score_module
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.cost import MOST_SIMULATIONS, simulations
 from pzt_ident.diagnosis.refit import refit, refit_from
 from pzt_ident.diagnosis.score import (
     KEPT,
+    LEAST_SCORE,
     Scorer,
     applicable,
     fits,
@@ -24,7 +26,7 @@ from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.trials import planned_trials
 from pzt_ident.job.sections import Setting
 from pzt_ident.model.block import Bank, Operator
-from pzt_ident.model.registry import blocks
+from pzt_ident.model.registry import blocks, word_of
 
 OPERATORS = [
     word for word in blocks.words() if issubclass(blocks[word], Operator | Bank) and not blocks.is_effect(word)
@@ -330,6 +332,22 @@ def test_beside_a_ripple_that_is_explained_nothing_is_left_to_score():
     scorer = Scorer(case, fit)
     scores = [score for word in applicable(case, fit.effects) for score in scorer.scores(word)]
     assert all(score.explained * scorer.misfit < case.floor**2 for score in scores)
+
+
+def test_the_scales_of_a_guess_are_swept_only_where_an_effect_may_be_refitted(monkeypatch):
+    """What scores less has a guess nevertheless: a look-alike may be refitted from it."""
+    case, swept = stage.case(stage.EFFECTS["creep"]), set[str]()
+    scorer = Scorer(case, first_fit(case, 0))
+    for effect in [word for word in applicable(case, ()) if not blocks[word].amounts()]:
+        with monkeypatch.context() as patched:
+            patched.setattr(
+                score_module, "scales_of", lambda amounts, effect=effect: swept.add(effect) or amounts[None]
+            )
+            scorer.scores(effect, in_every_form=False)
+    scores = {word: score for word, score in scorer._scores.items() if score.explained > 0}
+    assert swept == {word_of(item) for item, score in scores.items() if score.explained > LEAST_SCORE}
+    assert "creep" in swept and len(scores) > len(swept)
+    assert all(score.guess for score in scores.values())
 
 
 def test_no_effect_is_scored_twice_beside_one_fit(monkeypatch):
