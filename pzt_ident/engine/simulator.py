@@ -237,7 +237,8 @@ class Simulator:
         first: int,
         last: int,
     ) -> None:
-        """Step from sample `first` to sample `last`, counted from where the lead begins. rows: that are run."""
+        """Step so many candidates from sample `first` to sample `last`, counted from where the lead begins. rows: that
+        are run."""
         from pzt_ident.engine.kernel import WIDTH, run
 
         fine = self.substeps

@@ -23,13 +23,13 @@ def relaxed_play(p, before, u, half, width, width_log_dt, per_width):
     dp/dt = (f / 1 s) (exp((u - p - r) / f) - exp((p - u - r) / f)), r = half, f = width the fluctuation field.
 
     Bertotti (1998), Hysteresis in Magnetism, ch. 14. Each exponential alone is linear in exp(p / f), so a sample is a
-    soft minimum at one edge, p <- p - f log(1 + X), and then a soft maximum at the other, p <- p + f log(1 + Y): exact,
-    apart from exp(-2 r / f), for any division into samples. In a hold p goes on with the logarithm of time. The
-    half-width is r at an input rate of f per second, and r + f log(v 1 s / f) at a rate v. For f -> 0 the soft maximum
-    is the maximum, and this is the play."""
+    soft minimum at the upper edge, p <- p - f log(1 + X), and then a soft maximum at the lower, which together are
+    p <- p + f log(1 / (1 + X) + Y): exact, apart from exp(-2 r / f), for any division into samples; X is `above`, Y
+    `below`. In a hold p goes on with the logarithm of time. The half-width is r at an input rate of f per second, and
+    r + f log(v 1 s / f) at a rate v. For f -> 0 the soft maximum is the maximum, and this is the play."""
     sign = 1.0 if u >= before else -1.0
     moved = min(max(abs(u - before) * per_width, 1e-12), 1e15)
-    share = -expm1(-moved) / moved  # of the sample near the edge
+    share = -expm1(-moved) / moved  # mean over the sample of what is 1 where it is nearest to the edge
     reach = half - width_log_dt
     upper, lower = sign * before + reach, sign * u - reach
     p = max(min(sign * p, upper + BEYOND * width), lower - BEYOND * width)
