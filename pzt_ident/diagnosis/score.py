@@ -88,10 +88,13 @@ def held_by(case: Case, effects: tuple[str, ...], item: str) -> object:
 
 
 def fits(case: Case, effects: tuple[str, ...], item: str) -> bool:
-    """Whether the model with `effects` has what a form of an effect acts in: a block with the term, a second axis."""
+    """Whether the model with `effects` has what a form of an effect acts in: a block with the term, a second axis, a
+    block that it is ahead of."""
     form, chain = blocks[item], blocks.chain((*case.words, *effects))
     if issubclass(form, Term):
         return any(block.holds(form) for block in chain)
+    if form.ahead_of is not None and all(block.place != form.ahead_of for block in chain):
+        return False
     return not issubclass(form, Coupling) or len(case.records[0].axes) > 1
 
 

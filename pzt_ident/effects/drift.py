@@ -1,6 +1,6 @@
 """Thermal drift of stage, frame and sensor."""
 
-from pzt_ident.model.block import Addition, Place, expm1
+from pzt_ident.model.block import Addition, Block, Place, expm1
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
 
@@ -9,7 +9,9 @@ class Drifting:
     """What all forms of drift declare."""
 
     place = Place.OUTPUT
-    form = Form("exponential", ("exponential", "ramp"), "The course of the drift within a record.")
+    form = Form(
+        "exponential", ("exponential", "ramp", "read"), "The course of the drift, and whether a sensor reads it."
+    )
     size = Parameter("response", (-1, 1), "Final drift of a record.", null=0, per_record=True)
     look_alikes = ("creep", "thermal_relaxation")
     separate_by = (
@@ -43,4 +45,25 @@ class Ramp(Drifting, Addition):
         return (t / duration,)
 
 
-Drift.forms = {"ramp": Ramp}
+class Read(Drifting, Block):
+    """The stage is elsewhere, and the sensor reads that with an error of its own: y = g(x + size (1 - exp(-t / tau))),
+    t from the start, with g the blocks of the sensor.
+
+    Fleming & Leang (2014), Design, Modeling and Control of Nanopositioning Systems. Behind a grating it moves the
+    cyclic error along the stroke.
+    """
+
+    ahead_of = Place.SENSOR
+    tau = Parameter("s", (1, 3000), "Thermal time constant, one for all records.", scale="log", end="upper")
+
+    def prepare(size, tau, dt):
+        return size, -expm1(-dt / tau)
+
+    def start(u, size, rate):
+        return (0.0,)
+
+    def step(share, u, size, rate):
+        return share + rate * (1 - share), u + size * share
+
+
+Drift.forms = {"ramp": Ramp, "read": Read}

@@ -86,6 +86,7 @@ class Block:
     chosen_settings: ClassVar[dict[str, Any]] = {}
     forms: ClassVar[Mapping[str, type[Block]]] = {}  # variants, by the word of a `Form` or of an effect in their step
     wrong_way: ClassVar[str] = ""  # the condition under which the output first moves against its input
+    ahead_of: ClassVar[Place | None] = None  # where a block must be for a form to be another one than the first
     about_rest: ClassVar[bool] = False  # whether it is nonlinear in the displacement from rest
     refines: ClassVar[tuple[str, ...]] = ()  # operators which with it are no more than finer
     alike: ClassVar[tuple[str, ...]] = ()  # parameters of each record that together are as large in all of them

@@ -128,6 +128,11 @@ def test_each_form_of_an_effect_is_a_model_of_its_own(operator, mechanics):
         assert len(forms) == len(everything) and {model(item) for item in forms} == everything, word
 
 
+def test_what_the_sensor_reads_is_told_from_what_is_added_where_the_sensor_has_an_error_of_its_own():
+    assert "drift.read" not in fitting_forms(stage.case(), (), "drift")
+    assert "drift.read" in fitting_forms(stage.case(), ("encoder_cyclic_error",), "drift")
+
+
 def test_what_a_record_may_add_of_its_own():
     case = stage.with_response(stage.case(), lambda r: 40e-9 * np.sin(2 * np.pi * 33.3 * r.time + len(r.name)))
     score = scored(case, "periodic_disturbance")
