@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from pzt_ident.atlas.fitted import fitted
-from pzt_ident.atlas.stage import MECHANICS, OPERATOR, SPAN, STROKE, VALUES, Array, Drive, Stage, drives, record
+from pzt_ident.atlas.stage import MECHANICS, OPERATOR, SENSOR, SPAN, STROKE, VALUES, Array, Drive, Stage, drives, record
 from pzt_ident.engine.additions import Additions
 from pzt_ident.engine.program import Program
 from pzt_ident.model.block import Addition, Place, Term
@@ -40,6 +40,7 @@ class Shown:
         self.item, self.block = item, blocks[item]
         self.effect = blocks.is_effect(word_of(item)) or self.block.lead > 0
         words, self.fixed = fitted(self._host() if self.effect else item)
+        words = [*words, *([SENSOR] if self.block.ahead_of == Place.SENSOR else [])]
         self.stage = self._stage([*words, *([item] if self.effect else [])])
         self.rest = [word for word in words if word != item]
         self.share = self._share() if self.effect else 0.0

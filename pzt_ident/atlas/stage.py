@@ -21,7 +21,7 @@ from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
 
-OPERATOR, MECHANICS = "bouc_wen", "lumped"
+OPERATOR, MECHANICS, SENSOR = "bouc_wen", "lumped", "encoder_cyclic_error"
 VALUES = {
     "bouc_wen.gain": 0.082,
     "bouc_wen.alpha": 0.48,
@@ -30,8 +30,12 @@ VALUES = {
     "lumped.mass": 0.1566,
     "lumped.damping": 250.0,
     "lumped.stiffness": 7.0e7,
+    "encoder_cyclic_error.sine": 0.1,
+    "encoder_cyclic_error.cosine": 0.0,
+    "encoder_cyclic_error.pitch": 0.8,
 }
-"""Of the standard stage, in um, V and SI units: a flexure of 8 um over 100 V with its resonance at 3.4 kHz."""
+"""Of the standard stage, in um, V and SI units: a flexure of 8 um over 100 V with its resonance at 3.4 kHz, and the
+error of a sensor for what shows in that alone."""
 
 SPAN, STROKE = 100.0, 8e-6  # V, m
 LOOPS = (0, 100, 0, 100, 20, 80, 35, 65, 50)

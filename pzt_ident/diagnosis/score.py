@@ -93,7 +93,7 @@ def fits(case: Case, effects: tuple[str, ...], item: str) -> bool:
     form, chain = blocks[item], blocks.chain((*case.words, *effects))
     if issubclass(form, Term):
         return any(block.holds(form) for block in chain)
-    if form.ahead_of is not None and all(block.place != form.ahead_of for block in chain):
+    if form.ahead_of is not None and form.ahead_of not in {getattr(block, "place", None) for block in chain}:
         return False
     return not issubclass(form, Coupling) or len(case.records[0].axes) > 1
 

@@ -129,7 +129,7 @@ def test_each_form_of_an_effect_is_a_model_of_its_own(operator, mechanics):
 
 
 def test_what_the_sensor_reads_is_told_from_what_is_added_where_the_sensor_has_an_error_of_its_own():
-    assert "drift.read" not in fitting_forms(stage.case(), (), "drift")
+    assert "drift.read" not in fitting_forms(stage.case(), ("asymmetry",), "drift")
     assert "drift.read" in fitting_forms(stage.case(), ("encoder_cyclic_error",), "drift")
 
 
