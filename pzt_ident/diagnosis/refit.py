@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.fit import Fit, fit_at
+from pzt_ident.diagnosis.fit import NO_WORSE, Fit, fit_at
 from pzt_ident.diagnosis.modes import mechanics_at_main_mode, mechanics_without_payload
 from pzt_ident.search.descent import FAR
 from pzt_ident.search.halving import change_by_halving
@@ -24,16 +24,34 @@ SHARES = 0.5 ** np.arange(15)  # of a range, at which the amount of a part is tr
 
 def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, float], rival: float = np.inf) -> Fit:
     """The model with other effects, started from the parameters of the fit `before` and from a guess (user's units) of
-    the new ones. The new effects act on all axes or on the measured ones only, whichever fits better. rival: an RMSE
-    that a refit which stays far above it is given up for."""
+    the new ones. The new effects act on all axes or on the measured ones only, whichever fits better. A guess that
+    leads to a model which fits worse than the one it is added to is astray: the new effects then begin at their null.
+    rival: an RMSE that a refit which stays far above it is given up for."""
     problem = case.problem(effects, before.steps)
     point = start_of(problem, before, guess)
     key = (effects, before.steps, point.tobytes(), rival)
     if key not in case.refits:
-        case.refits[key] = _best_of_axes(case, before, effects, problem, point, rival)
+        fit = _best_of_axes(case, before, effects, problem, point, rival)
+        if leads_astray(before, fit):
+            point = start_of(problem, before, guess | nulls_of_new(problem, before))
+            fit = min(fit, _best_of_axes(case, before, effects, problem, point, rival), key=lambda each: each.identify)
+        case.refits[key] = fit
     fit = case.refits[key]
     case.on_event({"event": "refitted", "effects": effects, "identify": fit.identify, "validate": fit.validate})
     return fit
+
+
+def leads_astray(before: Fit, fit: Fit) -> bool:
+    """Whether a fit with all that another one has, and more, is worse."""
+    holds = {*before.problem.names} <= {*fit.problem.names} and {*before.effects} <= {*fit.effects}
+    return holds and not fit.identify <= (1 + NO_WORSE) * before.identify
+
+
+def nulls_of_new(problem: Problem, before: Fit) -> dict[str, float]:
+    """The amounts that a fit does not have, by name, each at its null."""
+    entries = {name: problem.model.entries[i] for name, i in zip(problem.names, problem.free, strict=True)}
+    nulls = {name: entry.parameter.null for name, entry in entries.items() if name not in before.values}
+    return {name: null for name, null in nulls.items() if null is not None}
 
 
 def refit_from(

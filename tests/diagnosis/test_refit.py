@@ -55,6 +55,19 @@ def test_a_refit_goes_on_from_what_was_found(creeping):
     assert back.identify == pytest.approx(before.identify, rel=1e-3)
 
 
+@pytest.mark.parametrize("guess", [{"creep.ratio": 0.4, "creep.tau": 0.01}, {"creep.ratio": 0.4, "creep.tau": 0.5}])
+def test_a_model_with_an_effect_fits_no_worse_than_without_it_wherever_a_guess_leads(creeping, monkeypatch, guess):
+    """A descent rests where it starts; without the guess it goes on from the fit without the effect."""
+    before = first_fit(creeping, 0)
+    monkeypatch.setattr(Case, "descend", lambda case, problem, start, rival=np.inf: start)
+    problem = creeping.problem(("creep",))
+    astray = fit_at(("creep",), problem, refit.start_of(problem, before, guess))
+    found = refit.refit(creeping, before, ("creep",), guess)
+    assert astray.identify > 1.5 * before.identify
+    assert found.identify == pytest.approx(before.identify, rel=1e-6)
+    assert found.values["creep.tau"] == pytest.approx(guess["creep.tau"])
+
+
 def test_a_refit_without_an_effect_starts_with_what_it_adds_to_another_parameter():
     """Without the payload the moving mass has both, and the same resonance."""
     loaded = stage.case(model=("bouc_wen", "lumped"))
