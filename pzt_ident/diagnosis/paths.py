@@ -169,16 +169,16 @@ def take_back(case: Case, first: Fit, staircase: Staircase) -> Fit | None:
     """Steps that take effects out again: those that the last model can do without, which may only have led the fit out
     of a side minimum, such as that to which the bounds of the job had led it or in which several stand in for one, and
     the unproven ones; or back to what is proven of an earlier model, where that is better than what is then left.
-    Returns the fit with the unproven ones, None where there are none beside those of the last model."""
+    Returns the fit with the unproven ones, None where there are none."""
     now, wider = staircase.end, any(step.change == WIDER for step in staircase.steps)
     many = len(now.effects) - len(first.effects) > FEW
     steps = remove_unneeded(case, first, now, newest=0, restarted=wider or many) if near_noise(case, first, now) else []
     now = steps[-1].fit if steps else now
     if not near_noise(case, first, now):
         drop_outdone_rivals(case, now, staircase.steps)
-    doubted, suspects = now, unproven_of(case, first, now, staircase.steps)
-    end = suspects[-1].without if suspects else now
-    proven = proven_before(case, first, end, staircase.steps)
+    suspects = unproven_of(case, first, now, staircase.steps)
+    doubted, end = (now, suspects[-1].without) if suspects else (None, now)
+    proven, doubted = proven_before(case, first, end, staircase.steps) or (None, doubted)
     kept = {*map(word_of, (proven or end).effects)}
     staircase.suspects = [item for item in suspects if word_of(item.effect) not in kept]
     if proven:
@@ -188,7 +188,7 @@ def take_back(case: Case, first: Fit, staircase: Staircase) -> Fit | None:
         steps.append(Step(suspect.without, None, suspect.effect, {}, share))
         now = suspect.without
     staircase.steps += steps
-    return doubted if suspects and proven is None else None
+    return doubted
 
 
 def unproven_of(case: Case, first: Fit, fit: Fit, steps: Sequence[Step]) -> list[Suspect]:
@@ -197,11 +197,11 @@ def unproven_of(case: Case, first: Fit, fit: Fit, steps: Sequence[Step]) -> list
     return unproven(case, first, fit, rivals, [first, *(step.fit for step in steps)])
 
 
-def proven_before(case: Case, first: Fit, end: Fit, steps: Sequence[Step]) -> Fit | None:
+def proven_before(case: Case, first: Fit, end: Fit, steps: Sequence[Step]) -> tuple[Fit, Fit | None] | None:
     """What is proven of the fits of the case short of the last one: the lowest that leaves clearly less than the model
-    at the end; None where there is none."""
+    at the end, and the fit with the unproven ones, None where there are none; None where there is no lower one."""
     since = max(number for number, step in enumerate(steps) if number == 0 or step.case)
-    best = end
+    best, doubted = end, None
     for number in sorted(range(since + 1, len(steps) - 1), key=lambda number: steps[number].fit.total):
         fit = steps[number].fit
         if removed_rms(best.total, fit.total) <= TIE * case.floor:
@@ -210,8 +210,9 @@ def proven_before(case: Case, first: Fit, end: Fit, steps: Sequence[Step]) -> Fi
             break
         suspects = unproven_of(case, first, fit, steps[: number + 1])
         left = suspects[-1].without if suspects else fit
-        best = left if removed_rms(best.total, left.total) > TIE * case.floor else best
-    return None if best is end else best
+        if removed_rms(best.total, left.total) > TIE * case.floor:
+            best, doubted = left, fit if suspects else None
+    return None if best is end else (best, doubted)
 
 
 def conclude(case: Case, first: Fit, staircase: Staircase) -> None:

@@ -153,8 +153,9 @@ def test_where_little_is_left_of_the_last_model_the_lowest_one_before_it_that_is
     assert [step.change for step in found.steps[len(steps) :]] == {"abc": [], "": [""]}.get(end, [PROVEN])
 
 
-@pytest.mark.parametrize(("of_two", "end"), [(4.0, "b"), (6.0, "a"), (19.95, "a")])
-def test_what_is_proven_of_an_earlier_model_counts_without_the_rest_of_it(monkeypatch, of_two, end):
+@pytest.mark.parametrize(("of_two", "end", "beside"), [(4.0, "b", "ab"), (6.0, "a", None), (19.95, "a", None)])
+def test_what_is_proven_of_an_earlier_model_counts_without_the_rest_of_it(monkeypatch, of_two, end, beside):
+    """beside: the earlier model with that rest, in which ties are looked for, too."""
     totals = {"": 20.0, "a": 5.0, "ab": 3.0, "abc": 2.0, "b": of_two}
     fits = {word: Fit(tuple(word), None, np.zeros(1), total, total) for word, total in totals.items()}
     left = {"ab": "b", "abc": ""}
@@ -167,8 +168,9 @@ def test_what_is_proven_of_an_earlier_model_counts_without_the_rest_of_it(monkey
     monkeypatch.setattr(paths, "near_noise", lambda *arguments: False)
     monkeypatch.setattr(paths, "drop_outdone_rivals", lambda *arguments: None)
     found = Staircase([Step(fits[word], *word[-1:]) for word in ("", "a", "ab", "abc")], None)
-    take_back(SimpleNamespace(floor=1.0, budget=Budget()), fits[""], found)
+    doubted = take_back(SimpleNamespace(floor=1.0, budget=Budget()), fits[""], found)
     assert (found.end, found.steps[-1].change) == (fits[end], PROVEN)
+    assert doubted is fits.get(beside)
 
 
 def test_an_effect_of_the_last_model_is_no_suspect_in_another_form(monkeypatch):
