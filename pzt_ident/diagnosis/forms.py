@@ -28,6 +28,7 @@ from pzt_ident.model.registry import blocks, word_of
 FORM_GAIN = 0.02  # of the misfit, by which another form of an effect explains more than the first one
 LIKELY = 0.65  # of the misfit: an effect that explains as much by its score is tried in its other forms before others
 NEARLY_ALL = 0.9  # of the misfit: what explains as much may be a look-alike of what is missing, in another form
+FAR = 5.0  # noise floors: what nearly all leaves above that is a second effect's
 NOT_ALL = 0.3  # of the misfit: an effect that scores less is no account of nearly all of it
 
 
@@ -195,7 +196,7 @@ def refit_other_forms(
     nearly_all = share >= NEARLY_ALL
     if nearly_all:
         wanted = alternatives(case, best, candidates)
-        if not adequate(case, first, best):
+        if not adequate(case, first, best) and best.identify < FAR * case.floor:
             others = [item for item in candidates if item not in wanted]
             wanted += nearly_all_in_another_form(case, before, others, share_of_others(case, first, before, fits))
     else:
