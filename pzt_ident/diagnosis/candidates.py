@@ -84,6 +84,16 @@ def promises_most(case: Case, first: Fit, fit: Fit) -> bool:
     return best is not None and not any(are_look_alikes(effect, best.effect) for effect in added)
 
 
+def likeliest(case: Case, first: Fit) -> Fit | None:
+    """The model as given with the effect that explains most by its score, in its first form; None where none explains
+    most."""
+    scores = [item.score for item in score_all(case, first, first, scorer_of(case, first), in_every_form=False)]
+    best = max(scores, key=lambda score: score.explained_in_bounds, default=None)
+    if best is None or best.explained_in_bounds < DECISIVE:
+        return None
+    return refit_from(case, first, (*first.effects, best.effect), best.guesses)
+
+
 def simpler_first(candidates: list[Candidate]) -> list[Candidate]:
     """The candidates in the order in which they are refitted: ahead of one with many amounts that explains most by its
     score the best of the others, if that explains nearly as much. Many amounts follow anything a little better, and

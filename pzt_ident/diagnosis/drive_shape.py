@@ -48,6 +48,11 @@ def smooth_beside(case: Case, first: Fit, fit: Fit, least: float) -> tuple[Case,
     return None
 
 
+def has_smooth(case: Case) -> bool:
+    """Whether drives may be smooth between their samples."""
+    return smoothed(case) is not case
+
+
 def better_on_lines(case: Case, end: Fit) -> bool:
     """Whether the last model of a staircase with smooth drives leaves clearly less with drives on lines. case: that of
     the job."""

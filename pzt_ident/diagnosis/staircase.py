@@ -7,11 +7,12 @@ from dataclasses import replace
 
 from pzt_ident.diagnosis.bounds import are_too_narrow, beyond_bounds, brought_back, continued, stands_in, widened
 from pzt_ident.diagnosis.budget import WHOLE
+from pzt_ident.diagnosis.candidates import likeliest
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, near_noise, removed_rms
 from pzt_ident.diagnosis.drive_noise import QUIET, quiet_behind, with_quiet_drives
-from pzt_ident.diagnosis.drive_shape import SMOOTH, better_on_lines, smooth_behind, with_smooth_drives
+from pzt_ident.diagnosis.drive_shape import SMOOTH, better_on_lines, has_smooth, smooth_behind, with_smooth_drives
 from pzt_ident.diagnosis.faults import fault_instead
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.history import BEFORE, at_rest, fits_at_rest, has_history, history_behind, with_history
@@ -59,8 +60,12 @@ def improve_on_lines(case: Case, first: Fit, on_step: StepListener) -> Staircase
             on_step(step)
         return mended
     case.budget.begin_path()
-    diagnosis = None if good or needs_wider_bounds(case, first) else diagnose(case, first)
-    if diagnosis and (behind := smooth_behind(case, first, diagnosis.best.fit if diagnosis.best else None)):
+    wide = not good and needs_wider_bounds(case, first)
+    behind = None if good or wide or not has_smooth(case) else smooth_behind(case, first, likeliest(case, first))
+    diagnosis = None if good or wide or behind else diagnose(case, first)
+    if diagnosis and diagnosis.best:
+        behind = smooth_behind(case, first, diagnosis.best.fit)
+    if behind:
         return improve_otherwise(case, first, *behind, SMOOTH, on_step)
     told = with_history(case, first, diagnosis) if diagnosis else None
     aged = improve_aged(case, first, *told, on_step) if told else None

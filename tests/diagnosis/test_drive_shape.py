@@ -8,11 +8,16 @@ import pytest
 
 import rig
 import stage
-from pzt_ident.diagnosis import drive_shape
+from pzt_ident.diagnosis import candidates, drive_shape, staircase
 from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.climb import Staircase
 from pzt_ident.diagnosis.drive_shape import SMOOTH, better_on_lines, smooth_behind, smoothed, with_smooth_drives
+from pzt_ident.diagnosis.forms import Candidate
+from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.diagnosis.step import Step
+from pzt_ident.diagnosis.verdict import Diagnosis
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.model.chain import Chain
 from pzt_ident.model.registry import blocks, word_of
@@ -68,6 +73,27 @@ def test_a_delay_of_smooth_drives_is_named_and_nothing_for_the_lines_between_sam
     assert [*map(word_of, end.effects)] == ([effect] if effect else [])
     assert (SMOOTH in [step.change for step in found.steps]) == bool(effect)
     assert all(record.smooth_drive == bool(effect) for record in end.problem.records)
+
+
+@pytest.mark.parametrize("explained", [0.9, 0.4])
+def test_smooth_drives_are_looked_for_behind_the_likeliest_effect_ahead_of_a_diagnosis(monkeypatch, explained):
+    """explained: by the score of an effect; what explains less than half of the misfit has none."""
+    case = Case(("bouc_wen",), (), records(3e-3), LINEAR)
+    first, asked = first_fit(case, 0), []
+    scored = [Candidate(Score("sensor_lag", explained_in_bounds=explained)), Candidate(Score("drift"))]
+    monkeypatch.setattr(candidates, "score_all", lambda *arguments, **more: scored)
+    monkeypatch.setattr(staircase, "with_smooth_drives", lambda *arguments: None)
+    monkeypatch.setattr(staircase, "smooth_behind", lambda case, first, best: asked.append(best) or (best and "smooth"))
+    monkeypatch.setattr(staircase, "improve_otherwise", lambda *arguments: "smooth")
+    monkeypatch.setattr(staircase, "diagnose", lambda *arguments: Diagnosis("refused", "", first, [], []))
+    monkeypatch.setattr(
+        staircase,
+        "improve_judged",
+        lambda *arguments: Staircase([Step(first)], Diagnosis("adequate", "", first, [], [])),
+    )
+    found = staircase.improve_on_lines(case, first, lambda step: None)
+    assert (found == "smooth") == (explained > 0.5)
+    assert [fit and fit.effects for fit in asked] == [("sensor_lag",) if explained > 0.5 else None]
 
 
 def test_drives_that_are_linear_between_samples_stay_so():
