@@ -38,7 +38,7 @@ from pzt_ident.diagnosis.threads import side_by_side
 from pzt_ident.diagnosis.ties import TIE, are_look_alikes
 from pzt_ident.model.registry import blocks, word_of
 
-PROMISING = 0.75  # of the misfit: what an effect explains by its score, so that it is tried ahead of anything else
+PROMISING = 0.6  # of the misfit: what an effect explains by its score, so that it is tried ahead of anything else
 AS_LIKELY = 0.9  # of what the best score explains: what scores as much is refitted as long as others are
 LOOK_ALIKE_STARTS = 8  # starts of a look-alike's own parameters
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave

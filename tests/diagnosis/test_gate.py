@@ -158,7 +158,7 @@ def test_of_pairs_that_earn_the_best_on_both_uses_is_taken(monkeypatch):
 
 @pytest.mark.parametrize(
     ("alone", "promised", "together", "found"),
-    [(15.0, 0.9, 1.0, True), (25.0, 0.9, 1.0, False), (15.0, 0.7, 1.0, False), (15.0, 0.9, 29.0, False)],
+    [(15.0, 0.9, 1.0, True), (25.0, 0.9, 1.0, False), (15.0, 0.5, 1.0, False), (15.0, 0.9, 29.0, False)],
     ids=["both", "not most", "no promise", "not both"],
 )
 def test_a_second_effect_is_sought_behind_one_that_loses_the_validation_records(
