@@ -40,7 +40,7 @@ class Shown:
         self.item, self.block = item, blocks[item]
         self.effect = blocks.is_effect(word_of(item)) or self.block.lead > 0
         words, self.fixed = fitted(self._host() if self.effect else item)
-        words = [*words, *([SENSOR] if self.block.ahead_of == Place.SENSOR else [])]
+        words += (SENSOR,) if self.block.ahead_of == Place.SENSOR else ()
         self.stage = self._stage([*words, *([item] if self.effect else [])])
         self.rest = [word for word in words if word != item]
         self.share = self._share() if self.effect else 0.0
