@@ -13,6 +13,7 @@ from pzt_ident.diagnosis.budget import PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, climb
 from pzt_ident.diagnosis.criteria import adequate, near_noise, removed_rms, removes_enough
+from pzt_ident.diagnosis.damped import exchange_damped
 from pzt_ident.diagnosis.exchange import (
     add_rivals_beside,
     drop_outdone_rivals,
@@ -104,7 +105,7 @@ def finish_all(case: Case, first: Fit, paths: Sequence[Staircase]) -> list[tuple
 
 def finish(case: Case, first: Fit, path: Staircase) -> Fit | None:
     """Take back what a path can do without, or does not prove; see `take_back`. Its verdict is no longer that it is
-    adequate where it is not without these."""
+    adequate where it is not without these. Mechanics that do not ring give way to a lag."""
     path.steps += exchange_main_mode(case, first, path.end)
     path.steps += exchange_limits(case, first, path.end)
     if wider := exchange_for_bounds(case, first, path.end):
@@ -113,6 +114,10 @@ def finish(case: Case, first: Fit, path: Staircase) -> Fit | None:
     doubted = take_back(case, first, path)
     if path.last.verdict == "adequate" and not adequate(case, first, path.end):
         path.last = replace(path.last, verdict="unexplained")
+    if damped := exchange_damped(case, first, path.end):
+        path.steps += damped[0]
+        path.suspects = [*path.suspects, damped[1]]
+        path.case = damped[0][0].case
     return doubted
 
 

@@ -15,7 +15,7 @@ from pzt_ident.diagnosis.drive_noise import QUIET, quiet_behind, with_quiet_driv
 from pzt_ident.diagnosis.drive_shape import SMOOTH, better_on_lines, has_smooth, smooth_behind, with_smooth_drives
 from pzt_ident.diagnosis.faults import fault_instead
 from pzt_ident.diagnosis.fit import Fit
-from pzt_ident.diagnosis.history import BEFORE, at_rest, fits_at_rest, has_history, history_behind, with_history
+from pzt_ident.diagnosis.history import BEFORE, at_rest, fits_at_rest, history_behind, with_history
 from pzt_ident.diagnosis.judges import judged
 from pzt_ident.diagnosis.lean import lean_or_begun, settles_for, steps_without
 from pzt_ident.diagnosis.misfit import share_explained
@@ -34,7 +34,7 @@ from pzt_ident.diagnosis.unmeasured import (
 )
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
 from pzt_ident.model.block import Coupling
-from pzt_ident.model.registry import blocks, word_of
+from pzt_ident.model.registry import Choice, blocks, word_of
 
 BESIDE = 4  # of the refits with one effect: those that are gone on with beyond the bounds of the job
 
@@ -290,9 +290,17 @@ def with_least_bounds(case: Case, staircase: Staircase) -> Staircase:
     if brought_back(home, staircase.end) is None:
         return staircase
     kept = [step for step in staircase.steps if step.change != WIDER]
-    homes = [home if has_history(step.fit) else case for step in kept]
+    of_words = {tuple(case.words): case, tuple(home.words): home}
+    homes = [case_of_words(case, of_words, tuple(case.words_of(step.fit))) for step in kept]
     steps = [
         replace(step, fit=brought_back(at, step.fit) or step.fit, case=step.case and at)
         for step, at in zip(kept, homes, strict=True)
     ]
     return replace(staircase, steps=steps, case=None if home is case else home)
+
+
+def case_of_words(case: Case, known: dict[tuple[str | Choice, ...], Case], words: tuple[str | Choice, ...]) -> Case:
+    """The known case of some blocks, or one that is then known."""
+    if words not in known:
+        known[words] = case.with_words(words)
+    return known[words]

@@ -1,4 +1,5 @@
-"""Mechanics that the data do not determine: a suspect like any effect, so the model is tried without them."""
+"""Mechanics that the data do not determine, or that do not ring: a suspect like any effect, so the model is tried
+without them."""
 
 from __future__ import annotations
 
@@ -9,6 +10,7 @@ import numpy as np
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import CLEAR, adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.modes import modes_of, values_of
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.score import fits
 from pzt_ident.diagnosis.starts import restart
@@ -17,35 +19,48 @@ from pzt_ident.model.chain import Entry
 from pzt_ident.model.registry import blocks, word_of
 
 SURE = 0.1  # of the search range: a direction of parameters with a smaller standard error is determined
+MODE = "resonance"  # the effect that declares how much a mode of a stage is damped at most
 OF_A_MODE = 2  # numbers that the data determine of a mode which they show: its frequency and its damping
 
 
 @dataclass(frozen=True)
 class Undetermined:
-    """Mechanics that the last model does without: their word, the share of the misfit that they took up, and the RMSE
-    in noise floors at which the staircase without them ends."""
+    """Mechanics that the last model does without: their word, the share of the misfit that they took up, the RMSE in
+    noise floors at which the staircase without them ends, and their damping ratio where they do not ring."""
 
     effect: str
     share: float
     end: float
+    damping: float | None = None
 
     @property
     def why_not(self) -> str:
         """A sentence on why the last model does without them."""
         shared = f"{self.effect} takes up {self.share:.0%} of the misfit without it".replace("%", " %")
         reason = "these data determine at most one number of it, where a mode has a frequency and a damping"
+        if self.damping is not None:
+            reason = f"with a damping ratio of {self.damping:.2g} it does not ring as a mode does, and may be a lag"
         return f"{shared}, but {reason}: the model without it ends at {self.end:.3g} noise floors."
 
 
 def without_mechanics(case: Case, first: Fit) -> tuple[str, Case, Fit] | None:
     """The word of the mechanics, the case without them and its fit, where the data do not determine the mechanics and
     the model is clearly worse without them; None elsewhere."""
-    word = undetermined_mechanics(first)
+    return clearly_worse_without(case, first, undetermined_mechanics(first))
+
+
+def without_damped_mechanics(case: Case, end: Fit) -> tuple[str, Case, Fit] | None:
+    """The same where the mechanics of a fit do not ring."""
+    return clearly_worse_without(case, end, word_of_mechanics(end) if damping_of(end) else None)
+
+
+def clearly_worse_without(case: Case, fit: Fit, word: str | None) -> tuple[str, Case, Fit] | None:
+    """The word of mechanics, the case without them and its fit, if that is clearly worse; None elsewhere."""
     lean = without(case, word) if word else None
-    if word is None or lean is None:
+    if word is None or lean is None or not all(fits(lean, (), effect) for effect in fit.effects):
         return None
-    fit = restart(lean, refit(lean, first, first.effects, {}))
-    return (word, lean, fit) if removed_rms(fit.total, first.total) > CLEAR * case.floor else None
+    worse = restart(lean, refit(lean, fit, fit.effects, {}))
+    return (word, lean, worse) if removed_rms(worse.total, fit.total) > CLEAR * case.floor else None
 
 
 def enough_without_mechanics(case: Case, first: Fit) -> tuple[str, Case, Fit] | None:
@@ -68,9 +83,22 @@ def without(case: Case, word: str) -> Case | None:
 
 def undetermined_mechanics(fit: Fit) -> str | None:
     """The word of the mechanics, if the data determine them on no axis."""
-    entries = mechanics_of(fit).values()
-    word = next((entry.block.name for entry in entries), None)
-    return word if undetermined_axes(fit) == {entry.axis for entry in entries} else None
+    axes = {entry.axis for entry in mechanics_of(fit).values()}
+    return word_of_mechanics(fit) if undetermined_axes(fit) == axes else None
+
+
+def word_of_mechanics(fit: Fit) -> str | None:
+    """The word of the mechanics; None without any."""
+    return next((entry.block.name for entry in mechanics_of(fit).values()), None)
+
+
+def damping_of(fit: Fit) -> float | None:
+    """The least damping ratio of the mechanics where all of their parameters are free and no mode of theirs rings: all
+    are damped more than any mode of a stage. None elsewhere."""
+    most = blocks[MODE].parameters()["damping"].bounds[1]
+    ratios = [mode.damping for mode in modes_of(fit, values_of(fit))]
+    free = mechanics_of(fit).keys() <= {*fit.problem.free}
+    return min(ratios) if free and ratios and min(ratios) > most else None
 
 
 def undetermined_axes(fit: Fit) -> set[int]:

@@ -1,0 +1,50 @@
+"""Mechanics that do not ring in the last model: they stand in for a lag."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pzt_ident.diagnosis.budget import WHOLE
+from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.criteria import adequate
+from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.forms import NEARLY_ALL
+from pzt_ident.diagnosis.refit import refit_from
+from pzt_ident.diagnosis.score import applicable, scorer_of
+from pzt_ident.diagnosis.step import Step, explained_share
+from pzt_ident.diagnosis.ties import is_tied
+from pzt_ident.diagnosis.undetermined import Undetermined, damping_of, without_damped_mechanics
+from pzt_ident.model.registry import blocks
+
+DAMPER = "viscous_damping"  # the effect whose trace they leave
+
+
+def exchange_damped(case: Case, first: Fit, end: Fit) -> tuple[list[Step], Undetermined] | None:
+    """The steps from an adequate model to the one without mechanics that do not ring, and to the effect in their place
+    that leads to the noise as well, of several that with the fewest parameters; and these mechanics, as a suspect. None
+    where there is no such effect."""
+    if not adequate(case, first, end) or not damping_of(end) or not case.budget.allows("effects like a damper", WHOLE):
+        return None
+    alternative = without_damped_mechanics(case, end)
+    if alternative is None:
+        return None
+    word, lean, start = alternative
+    fits = [fit for fit in fits_like_a_damper(lean, start) if adequate(case, first, fit)]
+    if not fits:
+        return None
+    best = min(fits, key=lambda fit: (fit.freedom, fit.total))
+    effect, share = best.effects[-1], explained_share(case, start, best)
+    rivals = {fit.effects[-1]: fit for fit in fits if is_tied(case, effect, best, fit)}
+    steps = [
+        Step(start, explained=explained_share(case, end, start), change=f"without {word}", case=lean),
+        Step(best, effect, None, {effect: best} | rivals, share),
+    ]
+    return steps, Undetermined(word, explained_share(case, start, end), best.total / case.floor, damping_of(end))
+
+
+def fits_like_a_damper(case: Case, start: Fit) -> Iterator[Fit]:
+    """The refits with the effects that leave the trace of a damper, in each form that explains nearly all by its
+    score."""
+    for word in (word for word in blocks[DAMPER].look_alikes if word in applicable(case, start.effects)):
+        scores = [score for score in scorer_of(case, start).scores(word) if score.explained >= NEARLY_ALL]
+        yield from (refit_from(case, start, (*start.effects, score.effect), score.guesses) for score in scores)

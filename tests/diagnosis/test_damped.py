@@ -1,0 +1,64 @@
+"""Mechanics that do not ring in an adequate model stand in for a lag."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stage
+from pzt_ident.diagnosis.criteria import adequate
+from pzt_ident.diagnosis.damped import exchange_damped
+from pzt_ident.diagnosis.staircase import improve
+from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.diagnosis.undetermined import damping_of
+from pzt_ident.model.registry import blocks
+
+BLOCKS = ("bouc_wen", "lumped")
+MOST = blocks["resonance"].parameters()["damping"].bounds[1]
+RINGING = np.repeat([0.0, 40.0, 10.0, 60.0, 0.0], 200)
+
+
+def stiff(parameters, fixed=None):
+    """A stage without mechanics, and a model that has some."""
+    return stage.case(parameters, fixed).with_words(BLOCKS)
+
+
+@pytest.mark.parametrize("effect", ["sensor_lag", "amplifier_lag"])
+def test_a_lag_is_named_in_the_place_of_mechanics_that_do_not_ring(effect):
+    case = stiff(stage.EFFECTS[effect])
+    first = first_fit(case, 0)
+    assert adequate(case, first, first) and damping_of(first) > MOST
+    found = improve(case, first)
+    assert found.last.verdict == "adequate" and [step.change for step in found.steps] == ["", "without lumped", ""]
+    assert effect in {item.partition(".")[0] for item in found.steps[-1].tied}
+    assert [suspect.effect for suspect in found.suspects] == ["lumped"]
+    assert f"a damping ratio of {damping_of(first):.2g}" in found.suspects[0].why_not
+    assert found.case.words == ("bouc_wen",)
+
+
+def test_mechanics_that_ring_are_kept():
+    case = stage.case(model=BLOCKS, drives=[RINGING, 0.8 * RINGING], dt=2e-5)
+    first = first_fit(case, 0)
+    assert adequate(case, first, first) and damping_of(first) is None
+    assert exchange_damped(case, first, first) is None
+
+
+@pytest.mark.parametrize("fixed", ["lumped.mass", "lumped.damping", "lumped.stiffness"])
+def test_mechanics_of_which_the_job_knows_something_are_kept(fixed):
+    case = stiff(stage.EFFECTS["sensor_lag"])
+    first = first_fit(case, 0)
+    known = stiff(stage.EFFECTS["sensor_lag"], {fixed: first.values[fixed]})
+    assert damping_of(first_fit(known, 0)) is None
+
+
+def test_mechanics_that_an_effect_acts_in_are_kept():
+    case = stiff(stage.EFFECTS["sensor_lag"])
+    first = first_fit(case, 0)
+    damped = replace(first, effects=("viscous_damping",))
+    assert damping_of(damped) and exchange_damped(case, first, damped) is None
+
+
+def test_mechanics_that_take_up_nothing_are_kept():
+    case = stiff({})
+    first = first_fit(case, 0)
+    assert exchange_damped(case, first, first) is None
