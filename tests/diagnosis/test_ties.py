@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from made_fits import CASE, fit
-from pzt_ident.diagnosis.ties import generalises, is_tied, is_twin
+from pzt_ident.diagnosis.ties import generalises, is_tied, is_twin, nearness_of
 
 
 @pytest.mark.parametrize(("total", "apart", "close"), [(2.0, 0.39, True), (2.0, 0.41, False)])
@@ -39,3 +39,9 @@ def test_a_form_of_more_parameters_than_the_best_effect_may_contain_it():
     assert generalises(fit(1.0, effects=["slew_limit.lag"], dimensions=6), lag)
     assert not generalises(fit(1.0, effects=["slew_limit"], dimensions=6), lag)
     assert not generalises(fit(1.0, effects=["sensor_lag.second_order"], dimensions=5), lag)
+
+
+@pytest.mark.parametrize("form", ["", ".voltage"])
+def test_how_near_to_the_reading_an_effect_is_does_not_depend_on_its_form(form):
+    """A coupling of what the sensor reads and one of forces are one model where the other axis has no hysteresis."""
+    assert nearness_of(f"kinematic_coupling{form}") > nearness_of(f"cross_coupling{form}")
