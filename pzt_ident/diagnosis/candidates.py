@@ -27,8 +27,10 @@ from pzt_ident.diagnosis.forms import (
     from_each_other,
     from_where,
     is_far_behind,
+    likely_forms,
     refit_anew,
     refit_likely_forms,
+    rests_on_bounds,
     share_of_others,
 )
 from pzt_ident.diagnosis.refit import refit_from
@@ -150,12 +152,16 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
 
 
 def refit_further(case: Case, first: Fit, before: Fit, candidate: Candidate) -> None:
-    """Refit the best candidate in its other likely forms; where it drives the model onto bounds, from random points,
-    unless another effect promises most of what it leaves."""
+    """Refit the best candidate in its other likely forms; from random points where it and the model as given rest on
+    bounds far from the noise, or where it drives the model onto bounds, unless another effect promises most of what it
+    leaves."""
     refit_likely_forms(case, first, before, candidate)
-    astray = before is first and drives_onto_bounds(case, first, candidate)
-    if astray and not promises_most(case, first, candidate.best):
-        refit_anew(case, first, candidate)
+    if before is not first:
+        return
+    if rests_on_bounds(case, first, candidate.best):
+        refit_anew(case, first, candidate, [candidate.best.effects[-1]])
+    elif drives_onto_bounds(case, first, candidate) and not promises_most(case, first, candidate.best):
+        refit_anew(case, first, candidate, [score.effect for score in likely_forms(candidate)])
 
 
 def restart_unconfirmed(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:

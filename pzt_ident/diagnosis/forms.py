@@ -101,11 +101,18 @@ def drives_onto_bounds(case: Case, first: Fit, candidate: Candidate) -> bool:
     return leaves_some(case, first, first, candidate.best) and rests_anew(first, candidate.best)
 
 
-def refit_anew(case: Case, first: Fit, candidate: Candidate) -> None:
-    """Fit an effect that drives the model onto its bounds in its likely forms from random points, but for those with
-    amounts of each record, until one is adequate or rests where the model did without it."""
-    for item in [score.effect for score in likely_forms(candidate)]:
-        if not drives_onto_bounds(case, first, candidate):
+def rests_on_bounds(case: Case, first: Fit, fit: Fit) -> bool:
+    """Whether an effect beside the model as given explains most and leaves far more than the noise, and parameters of
+    the model rest on bounds without it and with it: both may be in a side minimum, which no second effect mends."""
+    held = {*first.on_bounds} & {*fit.on_bounds} & {*first.problem.names}
+    return bool(held) and leaves_some(case, first, first, fit) and fit.identify > FAR * case.floor
+
+
+def refit_anew(case: Case, first: Fit, candidate: Candidate, items: Sequence[str]) -> None:
+    """Fit an effect in some of its forms from random points, but for those with amounts of each record, until one is
+    adequate or rests where the model did without it."""
+    for item in items:
+        if not (drives_onto_bounds(case, first, candidate) or rests_on_bounds(case, first, candidate.best)):
             return
         if not blocks[item].amounts() and case.budget.allows("other starts"):
             anew = first_fit(case, 0, effects=(*first.effects, item), rival=candidate.best.identify)

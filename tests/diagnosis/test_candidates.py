@@ -59,21 +59,33 @@ def test_a_look_alike_in_another_form_is_started_anew_by_the_name_of_its_block(m
 
 
 @pytest.mark.parametrize(
-    ("astray", "promised", "anew"), [(True, False, True), (True, True, False), (False, False, False)]
+    ("driven", "promised", "rests", "anew"),
+    [
+        (True, False, False, ["friction.coulomb", "friction"]),
+        (True, True, False, None),
+        (False, False, False, None),
+        (True, True, True, ["friction.coulomb"]),
+    ],
 )
 def test_an_effect_is_fitted_from_random_points_unless_another_promises_what_it_leaves(
-    monkeypatch, astray, promised, anew
+    monkeypatch, driven, promised, rests, anew
 ):
-    """A friction that leaves a coupling rests on bounds for want of that."""
+    """A friction that leaves a coupling rests on bounds for want of that; where the model as given rests there, too,
+    far from the noise, a second effect mends nothing. driven: onto bounds; rests: there all along; anew: the forms."""
     first, tried = fit(12.0, 12.0), []
-    candidate = Candidate.of([Score("friction", explained=0.8)])
-    monkeypatch.setattr(candidates, "refit_from", lambda case, before, effects, guesses, rival: fit(5.0, 5.0, effects))
-    monkeypatch.setattr(candidates, "refit_likely_forms", lambda case, first, before, candidate: None)
-    monkeypatch.setattr(candidates, "drives_onto_bounds", lambda case, first, candidate: astray)
+    candidate = Candidate.of([Score("friction", explained=0.7), Score("friction.coulomb", explained=0.8)])
+    errors = {"friction": 6.0, "friction.coulomb": 5.0}
+    refits = {item: fit(error, error, (item,)) for item, error in errors.items()}
+    monkeypatch.setattr(candidates, "refit_from", lambda case, before, effects, *_: refits[effects[-1]])
+    monkeypatch.setattr(
+        candidates, "refit_likely_forms", lambda case, first, before, candidate: candidate.take("friction.coulomb")
+    )
+    monkeypatch.setattr(candidates, "drives_onto_bounds", lambda case, first, candidate: driven)
+    monkeypatch.setattr(candidates, "rests_on_bounds", lambda case, first, fit: rests)
     monkeypatch.setattr(candidates, "promises_most", lambda case, first, best: promised)
-    monkeypatch.setattr(candidates, "refit_anew", lambda case, first, candidate: tried.append(candidate))
+    monkeypatch.setattr(candidates, "refit_anew", lambda case, first, candidate, items: tried.append(items))
     assert candidates.refit_all(CASE, first, first, [candidate]) == [candidate]
-    assert bool(tried) == anew
+    assert tried == ([anew] if anew else [])
 
 
 @pytest.mark.parametrize(("bend", "first"), [(0.86, "saturation"), (0.82, "distributed_memory")])

@@ -77,7 +77,7 @@ def test_an_effect_that_drives_the_model_onto_bounds_is_fitted_from_random_point
     monkeypatch.setattr(forms, "refit_from", lambda case, before, effects, *_: fit(4.5, 4.5, effects))
     monkeypatch.setattr(forms, "rests_anew", lambda before, fit: rests)
     forms.refit_likely_forms(CASE, first, first, candidate)
-    forms.refit_anew(CASE, first, candidate)
+    forms.refit_anew(CASE, first, candidate, ["friction", "friction.commanded"])
     assert tried == (["friction", "friction.commanded"] if sought else [])
     assert candidate.best.identify == (1.0 if sought else left)
 
@@ -103,6 +103,23 @@ def test_only_parameters_of_the_model_itself_rest_anew(before, after, anew):
     problem = SimpleNamespace(names=["bouc_wen.alpha", "bouc_wen.beta"])
     bare, with_effect = SimpleNamespace(problem=problem, on_bounds=before), SimpleNamespace(on_bounds=after)
     assert forms.rests_anew(bare, with_effect) == anew
+
+
+@pytest.mark.parametrize(
+    ("given", "after", "left", "rests"),
+    [
+        (["gain"], ["gain"], 6.0, True),
+        (["gain"], ["gain"], 4.0, False),
+        (["gain"], [], 6.0, False),
+        ([], ["gain"], 6.0, False),
+        (["gain"], ["knee"], 6.0, False),
+    ],
+)
+def test_a_side_minimum_is_one_that_rests_on_the_same_bounds_far_from_the_noise(given, after, left, rests):
+    problem = SimpleNamespace(names=["gain"])
+    first = SimpleNamespace(identify=20.0, validate=20.0, total=20.0, problem=problem, on_bounds=given)
+    best = SimpleNamespace(identify=left, validate=left, total=left, on_bounds=after)
+    assert forms.rests_on_bounds(CASE, first, best) == rests
 
 
 @pytest.mark.parametrize(("ahead", "first"), [(0.001, "sensor_lag"), (0.1, "friction")])
