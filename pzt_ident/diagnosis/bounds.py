@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removes_enough
-from pzt_ident.diagnosis.fit import Fit, fit_at
+from pzt_ident.diagnosis.fit import NO_WORSE, Fit, fit_at
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refine_steps
 from pzt_ident.diagnosis.undetermined import undetermined_mechanics
@@ -95,15 +95,27 @@ def scanned(case: Case, problem: Problem, point: Array, numbers: Iterable[int]) 
 
 
 def stands_in(wide: Case, case: Case, fit: Fit) -> bool:
-    """Whether a parameter rests on its wider bound too: then it makes up for something else."""
+    """Whether a parameter rests on its wider bound too, and the model is worse with it within the narrower ones: then
+    it makes up for something else."""
     given, problem = case.problem(fit.effects, fit.steps, fit.measured_only), fit.problem
-    bounds = {name: ends for name, *ends in zip(given.names, given.lower, given.upper, strict=True)}
+    ends = zip(given.lower.tolist(), given.upper.tolist(), strict=True)
+    bounds = dict(zip(given.names, ends, strict=True))
 
     def is_wider(i: int) -> bool:
         side = int(fit.point[i] >= 0.5)
         return bounds.get(problem.names[i], (None, None))[side] != (problem.lower, problem.upper)[side][i]
 
-    return any(rests(case, fit, i) and is_wider(i) for i in range(problem.dimensions))
+    def is_needed(i: int) -> bool:
+        name = problem.names[i]
+        return name not in bounds or is_worse_within(fit, {name: bounds[name]})
+
+    return any(rests(case, fit, i) and is_wider(i) and is_needed(i) for i in range(problem.dimensions))
+
+
+def is_worse_within(fit: Fit, bounds: Mapping[str, tuple[float, float]]) -> bool:
+    """Whether a fit is worse with some parameters, by name, on the bounds beyond which they are."""
+    inside = {name: float(np.clip(fit.values[name], low, high)) for name, (low, high) in bounds.items()}
+    return not float(fit.problem.loss(fit.problem.unit_point(fit.values | inside))[0]) <= (1 + NO_WORSE) * fit.identify
 
 
 def widened(case: Case, fit: Fit, slip: float = SLIP) -> dict[str, Widened]:
@@ -209,11 +221,12 @@ def bounds_that_changed(case: Case, fit: Fit) -> dict[str, tuple[float, float]]:
 
 
 def brought_back(case: Case, fit: Fit) -> Fit | None:
-    """The fit of a case with wider bounds in the case as given; None where it lies beyond the bounds there."""
+    """The fit of a case with wider bounds in the case as given; None where it is worse within the bounds there."""
     problem = case.problem(fit.effects, fit.steps, fit.measured_only)
     values = fit.values
-    inside = zip(problem.names, problem.lower, problem.upper, strict=True)
-    if freed_names(case, fit) or not all(low <= values[name] <= high for name, low, high in inside):
+    ends = zip(problem.names, problem.lower, problem.upper, strict=True)
+    beyond = {name: (low, high) for name, low, high in ends if not low <= values[name] <= high}
+    if freed_names(case, fit) or (beyond and is_worse_within(fit, beyond)):
         return None
     return fit_at(fit.effects, problem, problem.unit_point(values), fit.converged, fit.measured_only)
 

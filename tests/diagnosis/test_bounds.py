@@ -274,6 +274,18 @@ def test_both_ends_of_a_bound_that_axes_share_are_widened_and_only_these_may_sta
     assert not stands_in(one_end, case, continued(one_end, first))
 
 
+@pytest.mark.parametrize(("alpha", "felt"), [(0.5, True), (0.0, False)])
+def test_a_parameter_that_no_record_feels_makes_up_for_nothing_beyond_its_bounds(alpha, felt):
+    """Without a hysteretic part the shape of a loop is any."""
+    case = stage.case(fixed={"bouc_wen.alpha": alpha}).with_specs({"bouc_wen.beta": Widened((0.01, 0.012))})
+    wide = case.with_specs({"bouc_wen.beta": Widened((0.01, 0.0135))})
+    problem, first = wide.problem(()), first_fit(case, 0)
+    there = fit_at((), problem, problem.unit_point(first.values | {"bouc_wen.beta": 0.0135}))
+    assert "bouc_wen.beta" in there.on_bounds
+    assert stands_in(wide, case, there) == felt
+    assert (brought_back(case, there) is None) == felt
+
+
 def test_without_a_budget_for_both_the_wider_bounds_are_kept_that_clear_up_most(monkeypatch):
     case = bounded(1.05, 1.3)
     first = first_fit(case, 0)

@@ -376,7 +376,7 @@ def test_a_look_alike_is_asked_for_in_the_form_of_the_effect_and_that_in_which_i
 
 
 @pytest.mark.parametrize("first", ["kinematic_coupling.voltage", "cross_coupling.voltage"])
-def test_a_model_that_has_two_names_is_told_by_the_first_of_them(monkeypatch, first):
+def test_a_model_that_has_two_names_is_told_by_the_one_that_acts_nearest_to_the_reading(monkeypatch, first):
     def fitted(word, total=1.1):
         return SimpleNamespace(effects=("creep", word), total=total, identify=total, freedom=3)
 
@@ -388,7 +388,7 @@ def test_a_model_that_has_two_names_is_told_by_the_first_of_them(monkeypatch, fi
     monkeypatch.setattr(exchange, "is_tied", lambda *arguments: True)
     steps = [Step(now, first, "drift")]
     exchange.find_rivals(SimpleNamespace(floor=1.0, budget=Budget()), SimpleNamespace(effects=("creep",)), steps, repr)
-    assert steps[-1].fit.effects[-1] == "cross_coupling.voltage"
+    assert steps[-1].fit.effects[-1] == "kinematic_coupling.voltage"
     assert {*steps[-1].tied} == {*words, "amplitude_gain"}
 
 
