@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removes_enough
+from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough
 from pzt_ident.diagnosis.fit import NO_WORSE, Fit, fit_at
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refine_steps
+from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.undetermined import undetermined_mechanics
 from pzt_ident.model.chain import Entry
 from pzt_ident.model.registry import word_of
@@ -95,11 +96,11 @@ def scanned(case: Case, problem: Problem, point: Array, numbers: Iterable[int]) 
 
 
 def stands_in(wide: Case, case: Case, fit: Fit) -> bool:
-    """Whether a parameter rests on its wider bound too, and the model is worse with it within the narrower ones: then
-    it makes up for something else."""
+    """Whether a parameter rests on its wider bound too, and the model is clearly worse with it within the narrower
+    ones: then it makes up for something else."""
     given, problem = case.problem(fit.effects, fit.steps, fit.measured_only), fit.problem
     ends = zip(given.lower.tolist(), given.upper.tolist(), strict=True)
-    bounds = dict(zip(given.names, ends, strict=True))
+    bounds, least = dict(zip(given.names, ends, strict=True)), TIE * case.floor
 
     def is_wider(i: int) -> bool:
         side = int(fit.point[i] >= 0.5)
@@ -107,15 +108,15 @@ def stands_in(wide: Case, case: Case, fit: Fit) -> bool:
 
     def is_needed(i: int) -> bool:
         name = problem.names[i]
-        return name not in bounds or is_worse_within(fit, {name: bounds[name]})
+        return name not in bounds or removed_rms(loss_within(fit, {name: bounds[name]}), fit.identify) > least
 
     return any(rests(case, fit, i) and is_wider(i) and is_needed(i) for i in range(problem.dimensions))
 
 
-def is_worse_within(fit: Fit, bounds: Mapping[str, tuple[float, float]]) -> bool:
-    """Whether a fit is worse with some parameters, by name, on the bounds beyond which they are."""
+def loss_within(fit: Fit, bounds: Mapping[str, tuple[float, float]]) -> float:
+    """The loss of a fit with some parameters, by name, on the bounds beyond which they are."""
     inside = {name: float(np.clip(fit.values[name], low, high)) for name, (low, high) in bounds.items()}
-    return not float(fit.problem.loss(fit.problem.unit_point(fit.values | inside))[0]) <= (1 + NO_WORSE) * fit.identify
+    return float(fit.problem.loss(fit.problem.unit_point(fit.values | inside))[0])
 
 
 def widened(case: Case, fit: Fit, slip: float = SLIP) -> dict[str, Widened]:
@@ -226,7 +227,7 @@ def brought_back(case: Case, fit: Fit) -> Fit | None:
     values = fit.values
     ends = zip(problem.names, problem.lower, problem.upper, strict=True)
     beyond = {name: (low, high) for name, low, high in ends if not low <= values[name] <= high}
-    if freed_names(case, fit) or (beyond and is_worse_within(fit, beyond)):
+    if freed_names(case, fit) or (beyond and not loss_within(fit, beyond) <= (1 + NO_WORSE) * fit.identify):
         return None
     return fit_at(fit.effects, problem, problem.unit_point(values), fit.converged, fit.measured_only)
 

@@ -146,7 +146,8 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener, diagnosis: Dia
         wide = improve_beyond(case, first, *beyond, on_step)
         if accounts(wide, case, first):
             return wide
-        if keeps_within(wide, case) and not case.budget.allows("effects within the bounds of the job"):
+        may_do = keeps_within(wide, case) or near_noise(case, first, wide.end)
+        if may_do and not case.budget.allows("effects within the bounds of the job"):
             return wide
     diagnosis = diagnosis or diagnose(case, first)
     behind = fit_behind(case, first, diagnosis)
