@@ -3,6 +3,7 @@ effect first."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from pzt_ident.diagnosis.bounds import are_too_narrow, beyond_bounds, brought_back, continued, stands_in, widened
@@ -291,8 +292,8 @@ def with_least_bounds(case: Case, staircase: Staircase) -> Staircase:
     if brought_back(home, staircase.end) is None:
         return staircase
     kept = [step for step in staircase.steps if step.change != WIDER]
-    of_words = {tuple(case.words): case, tuple(home.words): home}
-    homes = [case_of_words(case, of_words, tuple(case.words_of(step.fit))) for step in kept]
+    known = [case, home]
+    homes = [case_with_words(known, case.words_of(step.fit)) for step in kept]
     steps = [
         replace(step, fit=brought_back(at, step.fit) or step.fit, case=step.case and at)
         for step, at in zip(kept, homes, strict=True)
@@ -300,8 +301,10 @@ def with_least_bounds(case: Case, staircase: Staircase) -> Staircase:
     return replace(staircase, steps=steps, case=None if home is case else home)
 
 
-def case_of_words(case: Case, known: dict[tuple[str | Choice, ...], Case], words: tuple[str | Choice, ...]) -> Case:
-    """The known case of some blocks, or one that is then known."""
-    if words not in known:
-        known[words] = case.with_words(words)
-    return known[words]
+def case_with_words(known: list[Case], words: Sequence[str | Choice]) -> Case:
+    """The one of the known cases that has these blocks, or one that is then known."""
+    for case in known:
+        if tuple(case.words) == tuple(words):
+            return case
+    known.append(known[0].with_words(words))
+    return known[-1]
