@@ -13,7 +13,7 @@ from pzt_ident.diagnosis.refit import refit_from
 from pzt_ident.diagnosis.score import applicable, scorer_of
 from pzt_ident.diagnosis.step import Step, explained_share
 from pzt_ident.diagnosis.ties import is_tied
-from pzt_ident.diagnosis.undetermined import Undetermined, damping_of, without_damped_mechanics
+from pzt_ident.diagnosis.undetermined import Undetermined, mode_that_is_silent, without_damped_mechanics
 from pzt_ident.model.registry import blocks
 
 DAMPER = "viscous_damping"  # the effect whose trace they leave
@@ -23,7 +23,8 @@ def exchange_damped(case: Case, first: Fit, end: Fit) -> tuple[list[Step], Undet
     """The steps from an adequate model to the one without mechanics that do not ring, and to the effect in their place
     that leads to the noise as well, of several that with the fewest parameters; and these mechanics, as a suspect. None
     where there is no such effect."""
-    if not adequate(case, first, end) or not damping_of(end) or not case.budget.allows("effects like a damper", WHOLE):
+    mode = mode_that_is_silent(end) if adequate(case, first, end) else None
+    if mode is None or not case.budget.allows("effects like a damper", WHOLE):
         return None
     alternative = without_damped_mechanics(case, end)
     if alternative is None:
@@ -39,7 +40,7 @@ def exchange_damped(case: Case, first: Fit, end: Fit) -> tuple[list[Step], Undet
         Step(start, explained=explained_share(case, end, start), change=f"without {word}", case=lean),
         Step(best, effect, None, {effect: best} | rivals, share),
     ]
-    return steps, Undetermined(word, explained_share(case, start, end), best.total / case.floor, damping_of(end))
+    return steps, Undetermined(word, explained_share(case, start, end), best.total / case.floor, mode)
 
 
 def fits_like_a_damper(case: Case, start: Fit) -> Iterator[Fit]:

@@ -10,7 +10,7 @@ import numpy as np
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import CLEAR, adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit
-from pzt_ident.diagnosis.modes import modes_of, values_of
+from pzt_ident.diagnosis.modes import Mode, modes_of, values_of
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.score import fits
 from pzt_ident.diagnosis.starts import restart
@@ -26,20 +26,21 @@ OF_A_MODE = 2  # numbers that the data determine of a mode which they show: its 
 @dataclass(frozen=True)
 class Undetermined:
     """Mechanics that the last model does without: their word, the share of the misfit that they took up, the RMSE in
-    noise floors at which the staircase without them ends, and their damping ratio where they do not ring."""
+    noise floors at which the staircase without them ends, and their mode where it does not ring."""
 
     effect: str
     share: float
     end: float
-    damping: float | None = None
+    mode: Mode | None = None
 
     @property
     def why_not(self) -> str:
         """A sentence on why the last model does without them."""
         shared = f"{self.effect} takes up {self.share:.0%} of the misfit without it".replace("%", " %")
         reason = "these data determine at most one number of it, where a mode has a frequency and a damping"
-        if self.damping is not None:
-            reason = f"with a damping ratio of {self.damping:.2g} it does not ring as a mode does, and may be a lag"
+        if self.mode:
+            where = f"{self.mode.frequency:.3g} Hz with a damping ratio of {self.mode.damping:.2g}"
+            reason = f"its mode at {where} rings in no record, and may be a lag"
         return f"{shared}, but {reason}: the model without it ends at {self.end:.3g} noise floors."
 
 
@@ -51,7 +52,7 @@ def without_mechanics(case: Case, first: Fit) -> tuple[str, Case, Fit] | None:
 
 def without_damped_mechanics(case: Case, end: Fit) -> tuple[str, Case, Fit] | None:
     """The same where the mechanics of a fit do not ring."""
-    return clearly_worse_without(case, end, word_of_mechanics(end) if damping_of(end) else None)
+    return clearly_worse_without(case, end, word_of_mechanics(end) if mode_that_is_silent(end) else None)
 
 
 def clearly_worse_without(case: Case, fit: Fit, word: str | None) -> tuple[str, Case, Fit] | None:
@@ -92,13 +93,15 @@ def word_of_mechanics(fit: Fit) -> str | None:
     return next((entry.block.name for entry in mechanics_of(fit).values()), None)
 
 
-def damping_of(fit: Fit) -> float | None:
-    """The least damping ratio of the mechanics where all of their parameters are free and no mode of theirs rings: all
-    are damped more than any mode of a stage. None elsewhere."""
-    most = blocks[MODE].parameters()["damping"].bounds[1]
-    ratios = [mode.damping for mode in modes_of(fit, values_of(fit))]
+def mode_that_is_silent(fit: Fit) -> Mode | None:
+    """The least damped mode of the mechanics where all of their parameters are free and none of their modes rings in
+    any record: each is damped more than any mode of a stage, or above half of all sampling rates. None elsewhere."""
+    most, rate = blocks[MODE].parameters()["damping"].bounds[1], max(1 / record.dt for record in fit.problem.records)
+    modes = modes_of(fit, values_of(fit))
     free = mechanics_of(fit).keys() <= {*fit.problem.free}
-    return min(ratios) if free and ratios and min(ratios) > most else None
+    if not free or any(mode.damping <= most and 2 * mode.frequency < rate for mode in modes):
+        return None
+    return min(modes, key=lambda mode: mode.damping, default=None)
 
 
 def undetermined_axes(fit: Fit) -> set[int]:

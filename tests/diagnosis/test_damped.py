@@ -9,11 +9,12 @@ import stage
 from pzt_ident.diagnosis.climb import Staircase
 from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.damped import exchange_damped
+from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.staircase import improve, with_least_bounds
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step
-from pzt_ident.diagnosis.undetermined import damping_of
+from pzt_ident.diagnosis.undetermined import mode_that_is_silent
 from pzt_ident.job.sections import Choice
 from pzt_ident.model.registry import blocks
 
@@ -31,19 +32,35 @@ def stiff(parameters, fixed=None):
 def test_a_lag_is_named_in_the_place_of_mechanics_that_do_not_ring(effect):
     case = stiff(stage.EFFECTS[effect])
     first = first_fit(case, 0)
-    assert adequate(case, first, first) and damping_of(first) > MOST
+    mode = mode_that_is_silent(first)
+    assert adequate(case, first, first) and mode.damping > MOST
     found = improve(case, first)
     assert found.last.verdict == "adequate" and [step.change for step in found.steps] == ["", "without lumped", ""]
     assert effect in {item.partition(".")[0] for item in found.steps[-1].tied}
     assert [suspect.effect for suspect in found.suspects] == ["lumped"]
-    assert f"a damping ratio of {damping_of(first):.2g}" in found.suspects[0].why_not
+    assert (
+        f"at {mode.frequency:.3g} Hz with a damping ratio of {mode.damping:.2g} rings in no record"
+        in found.suspects[0].why_not
+    )
     assert found.case.words == ("bouc_wen",)
+
+
+@pytest.mark.parametrize(("share", "ratio", "silent"), [(0.4, 0.25, False), (0.4, 0.35, True), (0.6, 0.25, True)])
+def test_a_mode_that_is_damped_or_faster_than_all_samples_rings_in_no_record(share, ratio, silent):
+    """share: of the sampling rate."""
+    case = stiff({})
+    problem, mass = case.problem(()), 0.1
+    stiffness = mass * (2 * np.pi * share / case.records[0].dt) ** 2
+    lumped = {"mass": mass, "stiffness": stiffness, "damping": 2 * ratio * np.sqrt(stiffness * mass)}
+    values = stage.STAGE | {f"lumped.{word}": value for word, value in lumped.items()}
+    there = fit_at((), problem, problem.unit_point(values))
+    assert bool(mode_that_is_silent(there)) == silent
 
 
 def test_mechanics_that_ring_are_kept():
     case = stage.case(model=BLOCKS, drives=[RINGING, 0.8 * RINGING], dt=2e-5)
     first = first_fit(case, 0)
-    assert adequate(case, first, first) and damping_of(first) is None
+    assert adequate(case, first, first) and mode_that_is_silent(first) is None
     assert exchange_damped(case, first, first) is None
 
 
@@ -52,14 +69,14 @@ def test_mechanics_of_which_the_job_knows_something_are_kept(fixed):
     case = stiff(stage.EFFECTS["sensor_lag"])
     first = first_fit(case, 0)
     known = stiff(stage.EFFECTS["sensor_lag"], {fixed: first.values[fixed]})
-    assert damping_of(first_fit(known, 0)) is None
+    assert mode_that_is_silent(first_fit(known, 0)) is None
 
 
 def test_mechanics_that_an_effect_acts_in_are_kept():
     case = stiff(stage.EFFECTS["sensor_lag"])
     first = first_fit(case, 0)
     damped = replace(first, effects=("viscous_damping",))
-    assert damping_of(damped) and exchange_damped(case, first, damped) is None
+    assert mode_that_is_silent(damped) and exchange_damped(case, first, damped) is None
 
 
 def test_mechanics_that_take_up_nothing_are_kept():
