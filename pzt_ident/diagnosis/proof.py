@@ -10,6 +10,7 @@ import numpy as np
 
 from pzt_ident.data.notation import listed
 from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.cost import has_many_amounts
 from pzt_ident.diagnosis.criteria import (
     DECISIVE,
     MOST_OF_OTHERS,
@@ -32,6 +33,7 @@ from pzt_ident.model.registry import blocks, phrase_of, word_of
 
 ENOUGH = 3 / 4  # of the misfit as given, of all records together: what the first of several effects must remove
 SINGLE = 0.9  # of it, which one effect must remove that is alone
+OF_MANY = 0.95  # the same of one with many amounts, which take up a part of anything
 EACH = 1 / 2  # of that of the identification and of the validation records
 ALONE = 1 / 3  # of the misfit beside the others: what each of several must remove that leave no more than they may
 SHADED = 1 / 2  # root mean square, of what an effect removes that is something else: less may be its form
@@ -108,19 +110,20 @@ def unproven(
 
     Each takes up more than the form of the others may leave. Where a model does not reach the noise, effects may stand
     in for what is not in the catalogue: they must also remove together as much of the misfit as given as if the first
-    removed ENOUGH of all records (SINGLE, if it is alone), or DECISIVE where the identification records are at the
-    noise, and EACH of either kind of them, and each of the others half of the rest, and each the share ALONE beside the
-    others; of several that leave more than that each must remove more in proportion, and none is proven where that is
-    more than BESIDE. None may have rivals that fit as well and are not its look-alikes: what any effect takes up is not
-    that of one. And none may have a shape, or all its amounts, on a bound, as a cyclic error that the stroke does not
-    hold twice: it stands for what it is like there, unless the model is adequate with it. Even then none may be in a
-    limit that is declared to be something else, or a low harmonic of the drive, or of another size in each record where
-    it is the device's. Beside an effect that leaves its trace where its form is another one each must remove SINGLE, as
-    if it were alone: a gain by the swing beside a memory. A line of the spectrum that takes up all of its band is
-    proven whatever is left elsewhere. Nor may one take the place of the model's operator, whose loops are gone beside
-    it, unless the model is adequate. What takes up enough and only may be something else is a suspect beside which the
-    others are judged: without it what they take up is nothing; of those that remove little beside what is in a limit
-    none is proven. What is proven on one of several axes, and clear there, is proven, whatever another lacks.
+    removed ENOUGH of all records (SINGLE, or OF_MANY, if it is alone), or DECISIVE where the identification records are
+    at the noise, and EACH of either kind of them, and each of the others half of the rest, and each the share ALONE
+    beside the others; of several that leave more than that each must remove more in proportion, and none is proven
+    where that is more than BESIDE. None may have rivals that fit as well and are not its look-alikes: what any effect
+    takes up is not that of one. And none may have a shape, or all its amounts, on a bound, as a cyclic error that the
+    stroke does not hold twice: it stands for what it is like there, unless the model is adequate with it. Even then
+    none may be in a limit that is declared to be something else, or a low harmonic of the drive, or of another size in
+    each record where it is the device's. Beside an effect that leaves its trace where its form is another one each must
+    remove SINGLE, as if it were alone: a gain by the swing beside a memory. A line of the spectrum that takes up all of
+    its band is proven whatever is left elsewhere. Nor may one take the place of the model's operator, whose loops are
+    gone beside it, unless the model is adequate. What takes up enough and only may be something else is a suspect
+    beside which the others are judged: without it what they take up is nothing; of those that remove little beside what
+    is in a limit none is proven. What is proven on one of several axes, and clear there, is proven, whatever another
+    lacks.
     """
     judge = partial(taken_out, case, first, now, rivals, known)
     suspects, axes = judge(), len(now.problem.model.measured)
@@ -157,7 +160,7 @@ def taken_out(
     suspects, held, judged = list[Suspect](), list[str](), list[Suspect]()
     while added := now.effects[len(first.effects) :]:
         near, explained = near_noise(view, given, seen(now)), adequate(view, given, seen(now))
-        left = left_of_allowed(view, given, seen(now), len(added))
+        left = left_of_allowed(view, given, seen(now), added)
         judged = [
             suspect(case, first, now, item, rivals.get(item, ()), known, axis) for item in added if item not in held
         ]
@@ -211,15 +214,20 @@ def least_of(case: Case, suspected: Sequence[Suspect]) -> Suspect:
     return min(equal, key=lambda item: (item.without.freedom, item.rank))
 
 
-def left_of_allowed(case: Case, first: Fit, now: Fit, effects: int) -> float:
-    """What a fit leaves of the misfit as given, in multiples of what so many effects may leave: of all records
+def left_of_allowed(case: Case, first: Fit, now: Fit, added: Sequence[str]) -> float:
+    """What a fit leaves of the misfit as given, in multiples of what the effects added may leave: of all records
     together, or of the identification or of the validation records, whichever is more."""
-    above = SINGLE if effects == 1 else ENOUGH
-    one, rest = DECISIVE if reaches_noise(case, first, now) else above, (1 - DECISIVE) ** (effects - 1)
+    above = (OF_MANY if is_of_many(added[0]) else SINGLE) if len(added) == 1 else ENOUGH
+    one, rest = DECISIVE if reaches_noise(case, first, now) else above, (1 - DECISIVE) ** (len(added) - 1)
     of_all = share_explained(first.total, now.total, case.floor)
     both = [(first.identify, now.identify), (first.validate, now.validate)]
     least = min(share_explained(before, after, case.floor) for before, after in both if before and after)
     return max((1 - of_all) / (1 - one), (1 - least) / (1 - EACH)) / rest
+
+
+def is_of_many(effect: str) -> bool:
+    """Whether an effect has many amounts, as a density of plays."""
+    return has_many_amounts(blocks[effect])
 
 
 def least_share(left: float, effects: int) -> float:

@@ -54,17 +54,19 @@ def suspects_of(monkeypatch):
         lines=(),
         harmonics=(),
         traces=(),
+        many=(),
         **declared,
     ):
         """sizes: the parameters of a model without each effect. larger: those that would settle beyond their bounds.
         instead: those that take the place of the operator. lines: those of the spectrum. harmonics: those of the drive.
-        traces: those that others leave. declared: of the parameters with shapes."""
+        traces: those that others leave. many: those with many amounts. declared: of the parameters with shapes."""
         validation = validation or errors
         operator = lambda case, first, now, effect: "bouc_wen" if effect in instead else ""  # noqa: E731
         monkeypatch.setattr(proof, "displaced_operator", operator)
         monkeypatch.setattr(proof, "harmonic_of", lambda now, effect: "the drive's" if effect in harmonics else "")
         monkeypatch.setattr(proof, "size_of", lambda now, effect: "")
         monkeypatch.setattr(proof, "is_trace", lambda effect, others: effect in traces and bool(others))
+        monkeypatch.setattr(proof, "is_of_many", many.__contains__)
         monkeypatch.setattr(proof, "is_own_line", lambda case, without, now, effect: effect in lines)
 
         def refitted(case, before, effects, guess):
@@ -100,6 +102,16 @@ def test_one_removes_90_percent_of_what_there_was_and_two_together_seven_eighths
     assert taken_out(of(a=9.6, none=30.0)) == ["a"]
     assert taken_out(of(ab=10.6, a=13.0, b=13.5, none=30.0)) == []
     assert taken_out(of(ab=10.7, a=13.0, b=13.5, none=30.0)) == ["b", "a"]
+
+
+def test_one_with_many_amounts_removes_95_percent_if_it_is_alone(taken_out):
+    assert taken_out(of(a=6.7, none=30.0), many="a") == []
+    assert taken_out(of(a=6.9, none=30.0), many="a") == ["a"]
+    assert taken_out(of(ab=10.6, a=13.0, b=13.5, none=30.0), many="a") == []
+
+
+def test_a_density_of_plays_has_many_amounts():
+    assert proof.is_of_many("distributed_memory.bent_plays") and not proof.is_of_many("drift")
 
 
 @pytest.mark.parametrize(
