@@ -11,7 +11,7 @@ from pzt_ident.diagnosis.bounds import are_too_narrow, beyond_bounds, stands_in
 from pzt_ident.diagnosis.budget import PROVING
 from pzt_ident.diagnosis.candidates import promises_most
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.criteria import DECISIVE, adequate, clears_an_axis, removed_rms, removes_enough
+from pzt_ident.diagnosis.criteria import DECISIVE, FAR, adequate, clears_an_axis, removed_rms, removes_enough
 from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, remove_unneeded, separate_accounts
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import Candidate
@@ -27,7 +27,6 @@ from pzt_ident.model.registry import blocks, word_of
 MOST_STEPS = 8
 PATIENCE = 3  # effects that take up less than half of the misfit, after which no other is tried
 WIDER = "wider bounds"  # the step that widens those of the job
-HOPELESS = 5.0  # noise floors: where the first path ends above that, another order of the same effects does not help
 
 
 @dataclass
@@ -181,7 +180,7 @@ def next_steps(
 def is_astray(case: Case, first: Fit, now: Fit, best: Fit) -> bool:
     """Whether the model as given is far from the noise, and the best effect takes up less than half of its misfit, and
     of that of each axis: the fit may rest where no effect helps it."""
-    far = max(now.identify, now.validate or 0.0) > HOPELESS * case.floor
+    far = max(now.identify, now.validate or 0.0) > FAR * case.floor
     part = share_explained(now.total, best.total, case.floor) < DECISIVE
     return far and now.effects == first.effects and part and not clears_an_axis(case, first, now, best)
 
@@ -212,7 +211,7 @@ def add_pair(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Ste
 
 def add_restarted(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Step]:
     """An effect of the short list that fits once its own or another block, such as the hysteresis, starts elsewhere."""
-    far, alone = now.identify > HOPELESS * case.floor, now.effects == first.effects
+    far, alone = now.identify > FAR * case.floor, now.effects == first.effects
     restarted = started_anew(case, diagnosis) if far else restarted_by_block(case, diagnosis, every_block=alone)
     passing = [(score, fit) for score, fit in restarted if removes_enough(case, first, now, fit)]
     if not passing:

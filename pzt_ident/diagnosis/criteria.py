@@ -19,6 +19,7 @@ FORM_OF_OTHERS = 0.15  # of the initial RMS misfit: what the form of the other e
 NEARLY_ALL = 0.95  # of a misfit, and NOT_LITTLE noise floors: no form leaves what another effect explains so well
 NOT_LITTLE = 0.9
 MOST_OF_OTHERS = 1.5  # noise floors: the most that it may leave, however large the initial misfit
+FAR = 5.0  # noise floors: what leaves more lacks another effect or rests elsewhere, whatever the noise says
 MOST_FORM = 2.0  # noise floors: what a model leaves above this is not adequate, whatever there was before
 
 

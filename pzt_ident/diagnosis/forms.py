@@ -12,6 +12,7 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.cost import has_many_amounts
 from pzt_ident.diagnosis.criteria import (
     DECISIVE,
+    FAR,
     adequate,
     only_all_counts,
     removed_rms,
@@ -28,7 +29,6 @@ from pzt_ident.model.registry import blocks, word_of
 FORM_GAIN = 0.02  # of the misfit, by which another form of an effect explains more than the first one
 LIKELY = 0.65  # of the misfit: an effect that explains as much by its score is tried in its other forms before others
 NEARLY_ALL = 0.9  # of the misfit: what explains as much may be a look-alike of what is missing, in another form
-FAR = 5.0  # noise floors: what nearly all leaves above that is a second effect's
 NOT_ALL = 0.3  # of the misfit: an effect that scores less is no account of nearly all of it
 
 

@@ -11,8 +11,8 @@ import numpy as np
 from pzt_ident.diagnosis.bounds import continued, freed, stands_in, widened
 from pzt_ident.diagnosis.budget import PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.climb import HOPELESS, WIDER, Staircase, climb
-from pzt_ident.diagnosis.criteria import adequate, near_noise, removed_rms, removes_enough
+from pzt_ident.diagnosis.climb import WIDER, Staircase, climb
+from pzt_ident.diagnosis.criteria import FAR, adequate, near_noise, removed_rms, removes_enough
 from pzt_ident.diagnosis.damped import exchange_damped
 from pzt_ident.diagnosis.exchange import (
     add_rivals_beside,
@@ -73,7 +73,7 @@ def improve_within(
     paths, told = [path], None if begun else path
     for candidate in first_candidates(case, first, diagnosis)[1:]:
         last = paths[-1]
-        if last.last.verdict in SETTLED or last.end.identify / case.floor > HOPELESS or len(paths) == PATHS:
+        if last.last.verdict in SETTLED or last.end.identify / case.floor > FAR or len(paths) == PATHS:
             break
         if not case.budget.allows("another effect first"):
             break

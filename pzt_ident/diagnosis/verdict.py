@@ -20,6 +20,7 @@ from pzt_ident.diagnosis.candidates import (
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import (
     DECISIVE,
+    FAR,
     adequate,
     beyond_form,
     clears_an_axis,
@@ -57,7 +58,6 @@ from pzt_ident.diagnosis.ties import (
 from pzt_ident.model.registry import blocks, word_of
 
 SHORTLIST = 6  # effects that are refitted
-FAR = 5.0  # noise floors, above which it is not the noise that tells fits from each other
 STEP_FAULT = 0.6  # of the misfit: where halving the simulation step changes more, the step is to blame
 
 

@@ -157,7 +157,7 @@ def test_two_effects_that_hide_each_other_are_two_stairs_the_better_one_first():
 
 @pytest.mark.parametrize("hopeless", [0, np.inf])
 def test_an_effect_that_rests_in_a_side_minimum_is_a_stair_once_nothing_else_is_left(monkeypatch, hopeless):
-    monkeypatch.setattr(climb, "HOPELESS", hopeless)
+    monkeypatch.setattr(climb, "FAR", hopeless)
     case = stage.case(stage.EFFECTS["quadratic_gain"])
     first = first_fit(case, 0)
     problem = case.problem(("quadratic_gain",))
