@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
 from pzt_ident.errors import DamagedError, InputError, LostError, printable
@@ -36,6 +37,8 @@ from pzt_ident.run.folder import make_empty, read_job
 from pzt_ident.run.place import HERE, Place
 
 NOT_A_FLEET = "give the folder that `pzt-ident fleet` wrote"
+AGAIN = 10.0  # s, at least, after which the table is written again as devices are done
+SHARE = 0.05  # of the time, at most, for that
 
 
 def fleet(
@@ -135,6 +138,7 @@ class Identification:
     done: int = 0
     kept: int = 0
     broken: int = 0
+    due: float = field(default_factory=lambda: monotonic() + AGAIN)  # when the table is written again
 
     def identify(self, place: Place) -> Path:
         self.by_name = {device.name: device for device in self.devices}
@@ -236,6 +240,7 @@ class Identification:
         shutil.rmtree(home, ignore_errors=True)
         home.parent.mkdir(parents=True, exist_ok=True)
         new.rename(home)
+        self.refresh_table()
         self.tell({"device": name})
 
     def break_(self, name: str, reason: str) -> None:
@@ -246,7 +251,15 @@ class Identification:
         shutil.rmtree(home, ignore_errors=True)
         row = {"device": name, "key": "", "sha256": self.sha256.pop(name, ""), "state": "broken", "reason": reason}
         write_sealed(home / "device.json", row)
+        self.refresh_table()
         self.tell({"device": name, "failed": reason})
+
+    def refresh_table(self) -> None:
+        """Write the table as it is by now, if it is due: a kill that nothing can be done after leaves it so."""
+        begun = monotonic()
+        if begun >= self.due:
+            write_table(self.folder, self.devices)
+            self.due = monotonic() + max(AGAIN, (monotonic() - begun) / SHARE)
 
     def note(self, event: dict[str, Any]) -> None:
         """Events of the workers; those of single searches are not told on."""

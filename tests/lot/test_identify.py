@@ -11,6 +11,7 @@ import time
 from html import unescape
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -20,6 +21,7 @@ from lot.conftest import DEVICES
 from pzt_ident.errors import InputError, LostError
 from pzt_ident.files import read_sealed, write_sealed
 from pzt_ident.job.schema import load_job
+from pzt_ident.lot import identify
 from pzt_ident.lot.identify import fleet, resume
 from pzt_ident.lot.outcome import read_lot
 from pzt_ident.lot.report import page
@@ -226,6 +228,27 @@ def test_a_device_that_is_gone_is_left_out_and_that_is_said(lot, identified, tmp
     assert sorted(table(out)["device"]) == names[2:]
 
 
+@pytest.mark.parametrize(("again", "fresh"), [(0.0, True), (np.inf, False)])
+def test_the_table_keeps_up_with_the_devices_in_case_of_a_kill_that_nothing_can_be_done_after(
+    lot, tmp_path, monkeypatch, again, fresh
+):
+    """again: seconds after which it is due."""
+    monkeypatch.setattr(identify, "AGAIN", again)
+    monkeypatch.setattr(identify, "SHARE", np.inf)
+    out, found = tmp_path / "out", []
+
+    def listen(event):
+        if event["event"] == "devices" and "device" in event:
+            written = pd.read_csv(out / "devices.csv") if (out / "devices.csv").exists() else pd.DataFrame({"state": []})
+            found.append((written["state"] != "not done").sum() == event["done"] + event["broken"])
+
+    few = pd.read_csv(lot / "lot.csv")[:4]
+    few.assign(folder=[lot / folder for folder in few.folder]).to_csv(tmp_path / "few.csv", index=False)
+    fleet(load_job(lot / "job.yaml"), [str(tmp_path / "few.csv")], out, listen=listen)
+    assert len(found) == len(few) and all(item == fresh for item in found)
+    assert set(table(out)["state"]) <= {"done", "broken"}
+
+
 def test_a_fleet_killed_hard_goes_on_to_the_same_results_bit_for_bit(lot, identified, tmp_path):
     out = tmp_path / "out"
     command = ["fleet", str(lot / "job.yaml"), str(lot / "lot.csv"), "--out", str(out), "--on", "local:1", "--quiet"]
@@ -235,7 +258,6 @@ def test_a_fleet_killed_hard_goes_on_to_the_same_results_bit_for_bit(lot, identi
         time.sleep(0.005)
     os.killpg(process.pid, signal.SIGKILL)
     process.wait()
-    assert not (out / "devices.csv").exists()
     assert f"process {process.pid} on" in (out / LOCK).read_text()
     resume(out, place=Local(2))
     assert differences(essence(identified[0]), essence(out)) == []
