@@ -239,7 +239,9 @@ def test_the_table_keeps_up_with_the_devices_in_case_of_a_kill_that_nothing_can_
 
     def listen(event):
         if event["event"] == "devices" and "device" in event:
-            written = pd.read_csv(out / "devices.csv") if (out / "devices.csv").exists() else pd.DataFrame({"state": []})
+            written = (
+                pd.read_csv(out / "devices.csv") if (out / "devices.csv").exists() else pd.DataFrame({"state": []})
+            )
             found.append((written["state"] != "not done").sum() == event["done"] + event["broken"])
 
     few = pd.read_csv(lot / "lot.csv")[:4]
