@@ -70,9 +70,11 @@ def half_a_sample(case: Case) -> dict[str, float]:
 
 def smoothed(case: Case) -> Case:
     """The case with drives that are smooth between their samples; the same where that is hardly off the lines."""
-    records = [smooth(record) for record in case.records]
-    changed = any(new is not old for new, old in zip(records, case.records, strict=True))
-    return case.with_records(records) if changed else case
+    if case.smooth is None:
+        records = [smooth(record) for record in case.records]
+        changed = any(new is not old for new, old in zip(records, case.records, strict=True))
+        case.smooth = case.with_records(records) if changed else case
+    return case.smooth
 
 
 def smooth(record: Record) -> Record:

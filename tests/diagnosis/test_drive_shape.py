@@ -128,8 +128,9 @@ def test_slow_drives_are_the_same_either_way():
 
 
 def test_drives_are_made_smooth_once():
-    smooth = smoothed(Case(("bouc_wen",), (), records(0.0), LINEAR))
-    assert smoothed(smooth) is smooth
+    case = Case(("bouc_wen",), (), records(0.0), LINEAR)
+    smooth = smoothed(case)
+    assert smoothed(smooth) is smooth and smoothed(case) is smooth
 
 
 @pytest.mark.parametrize(("removed", "first_of_all", "behind"), [(0.01, 0, 0), (0.1, 1, 0), (0.6, 1, 1)])
