@@ -3,10 +3,9 @@ effect first."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
-from pzt_ident.diagnosis.bounds import are_too_narrow, beyond_bounds, brought_back, continued, stands_in, widened
+from pzt_ident.diagnosis.bounds import are_too_narrow, beyond_bounds, continued, stands_in, widened
 from pzt_ident.diagnosis.budget import WHOLE
 from pzt_ident.diagnosis.candidates import likeliest
 from pzt_ident.diagnosis.case import Case
@@ -19,6 +18,7 @@ from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.history import BEFORE, at_rest, fits_at_rest, history_behind, with_history
 from pzt_ident.diagnosis.judges import judged
 from pzt_ident.diagnosis.lean import lean_or_begun, settles_for, steps_without
+from pzt_ident.diagnosis.least_bounds import with_least_bounds
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.paths import SETTLED, best_path, conclude, improve_within
 from pzt_ident.diagnosis.refit import refit
@@ -35,7 +35,7 @@ from pzt_ident.diagnosis.unmeasured import (
 )
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
 from pzt_ident.model.block import Coupling
-from pzt_ident.model.registry import Choice, blocks, word_of
+from pzt_ident.model.registry import blocks, word_of
 
 BESIDE = 4  # of the refits with one effect: those that are gone on with beyond the bounds of the job
 
@@ -282,29 +282,3 @@ def improve_beyond(case: Case, first: Fit, wide: Case, start: Fit, on_step: Step
     on_step(steps[0])
     aged = improve_aged(wide, start, *told, on_step)
     return with_least_bounds(case, replace(aged, steps=[*steps, *aged.steps[1:]], case=aged.case or wide))
-
-
-def with_least_bounds(case: Case, staircase: Staircase) -> Staircase:
-    """The staircase, within the bounds of the job where its last model is."""
-    if staircase.case is None:
-        return staircase
-    home = case if staircase.case.words == case.words else case.with_words(staircase.case.words)
-    if brought_back(home, staircase.end) is None:
-        return staircase
-    kept = [step for step in staircase.steps if step.change != WIDER]
-    known = [case, home]
-    homes = [case_with_words(known, case.words_of(step.fit)) for step in kept]
-    steps = [
-        replace(step, fit=brought_back(at, step.fit) or step.fit, case=step.case and at)
-        for step, at in zip(kept, homes, strict=True)
-    ]
-    return replace(staircase, steps=steps, case=None if home is case else home)
-
-
-def case_with_words(known: list[Case], words: Sequence[str | Choice]) -> Case:
-    """The one of the known cases that has these blocks, or one that is then known."""
-    for case in known:
-        if tuple(case.words) == tuple(words):
-            return case
-    known.append(known[0].with_words(words))
-    return known[-1]

@@ -6,16 +6,12 @@ import numpy as np
 import pytest
 
 import stage
-from pzt_ident.diagnosis.climb import Staircase
 from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.damped import exchange_damped
 from pzt_ident.diagnosis.fit import fit_at
-from pzt_ident.diagnosis.refit import refit
-from pzt_ident.diagnosis.staircase import improve, with_least_bounds
+from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
-from pzt_ident.diagnosis.step import Step
 from pzt_ident.diagnosis.undetermined import mode_that_is_silent
-from pzt_ident.job.sections import Choice
 from pzt_ident.model.registry import blocks
 
 BLOCKS = ("bouc_wen", "lumped")
@@ -83,12 +79,3 @@ def test_mechanics_that_take_up_nothing_are_kept():
     case = stiff({})
     first = first_fit(case, 0)
     assert exchange_damped(case, first, first) is None
-
-
-def test_a_block_with_settings_is_left_out_like_any():
-    case = stage.case().with_words(("bouc_wen", Choice("modal", {"modes": 2})))
-    lean, first = case.with_words(("bouc_wen",)), first_fit(case, 0)
-    end = refit(lean, first, (), {})
-    found = with_least_bounds(case, Staircase([Step(first), Step(end, case=lean)], None, case=lean))
-    assert [step.fit.problem.names for step in found.steps] == [first.problem.names, end.problem.names]
-    assert found.case.words == found.steps[1].case.words == ("bouc_wen",)
