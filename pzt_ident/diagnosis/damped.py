@@ -13,7 +13,12 @@ from pzt_ident.diagnosis.refit import refit_from
 from pzt_ident.diagnosis.score import applicable, scorer_of
 from pzt_ident.diagnosis.step import Step, explained_share
 from pzt_ident.diagnosis.ties import is_tied
-from pzt_ident.diagnosis.undetermined import Undetermined, mode_that_is_silent, without_damped_mechanics
+from pzt_ident.diagnosis.undetermined import (
+    Undetermined,
+    clearly_worse_without,
+    mode_that_is_silent,
+    word_of_mechanics,
+)
 from pzt_ident.model.registry import blocks
 
 DAMPER = "viscous_damping"  # the effect whose trace they leave
@@ -26,7 +31,7 @@ def exchange_damped(case: Case, first: Fit, end: Fit) -> tuple[list[Step], Undet
     mode = mode_that_is_silent(end) if adequate(case, first, end) else None
     if mode is None or not case.budget.allows("effects like a damper", WHOLE):
         return None
-    alternative = without_damped_mechanics(case, end)
+    alternative = clearly_worse_without(case, end, word_of_mechanics(end))
     if alternative is None:
         return None
     word, lean, start = alternative

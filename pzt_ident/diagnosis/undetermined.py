@@ -50,11 +50,6 @@ def without_mechanics(case: Case, first: Fit) -> tuple[str, Case, Fit] | None:
     return clearly_worse_without(case, first, undetermined_mechanics(first))
 
 
-def without_damped_mechanics(case: Case, end: Fit) -> tuple[str, Case, Fit] | None:
-    """The same where the mechanics of a fit do not ring."""
-    return clearly_worse_without(case, end, word_of_mechanics(end) if mode_that_is_silent(end) else None)
-
-
 def clearly_worse_without(case: Case, fit: Fit, word: str | None) -> tuple[str, Case, Fit] | None:
     """The word of mechanics, the case without them and its fit, if that is clearly worse; None elsewhere."""
     lean = without(case, word) if word else None
