@@ -14,7 +14,17 @@ class Rubbing:
 
     form = Form(
         "lugre",
-        ("lugre", "lugre_viscous", "commanded", "commanded_lugre", "coulomb", "motion", "coulomb_motion", "slip"),
+        (
+            "lugre",
+            "lugre_viscous",
+            "commanded",
+            "commanded_lugre",
+            "coulomb",
+            "commanded_coulomb",
+            "motion",
+            "coulomb_motion",
+            "slip",
+        ),
         "The law of friction, and where it acts.",
     )
     sizes = (0.02, 0.1, 0.5)
@@ -171,6 +181,24 @@ class Coulomb(Ahead, Block):
         return w, u, u + w, u + w - force * (grown / (grown + 2))
 
 
+class CommandedCoulomb(Coulomb):
+    """Dry friction of the commanded displacement f, and viscous friction: x = w - force tanh(v / speed),
+    viscous dw/dt + w = f,  v = df/dt.
+
+    Coulomb's law, smoothed over `speed`, with f in the place of x: Olsson, Astrom, Canudas de Wit, Gafvert &
+    Lischinsky (1998), Eur. J. Control 4, 176. The viscous part against the stiffness is a lag, stepped exactly.
+    """
+
+    def start(u, force, fast, keep, share):
+        return 0.0, u
+
+    def step(w, before, u, force, fast, keep, share):
+        pull = u - before
+        w = keep * w - share * pull
+        grown = expm1(max(min(pull * fast, 40.0), -40.0))
+        return w, u, u + w - force * (grown / (grown + 2))
+
+
 class Motion(Rubbing, Term):
     """The moving mass rubs as it is accelerated: m x'' + b x' + k (x + F) = k f, with the law of the first form in x.
 
@@ -208,6 +236,7 @@ Friction.forms = {
     "commanded": Commanded,
     "commanded_lugre": CommandedLuGre,
     "coulomb": Coulomb,
+    "commanded_coulomb": CommandedCoulomb,
     "motion": Motion,
     "coulomb_motion": CoulombMotion,
     "slip": Slip,

@@ -135,6 +135,8 @@ def test_coulomb_friction_depends_on_the_velocity_alone(speed):
     np.testing.assert_allclose(found, DRIVE - 0.5 * np.tanh(rate / speed), atol=1e-9)
     lagging = alone("friction.coulomb", force=0.0, speed=speed, viscous=3e-3)
     np.testing.assert_allclose(lagging, alone("amplifier_lag", tau=3e-3), atol=1e-12)
+    commanded = alone("friction.commanded_coulomb", force=0.5, speed=speed, viscous=3e-3)
+    np.testing.assert_allclose(commanded, lagging - 0.5 * np.tanh(rate / speed), atol=1e-9)
 
 
 @pytest.mark.parametrize("reach", [0.05, 0.5])
