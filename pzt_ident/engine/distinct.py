@@ -28,6 +28,14 @@ class Distinct(NamedTuple):
             return values
         return np.stack([values[rows, i] for i, rows in enumerate(self.rows)], axis=1)
 
+    def put(self, values: Array, axis: int, out: Array) -> None:
+        """Put what was simulated of a measured axis, (simulated, samples), into `out`, (candidates, samples)."""
+        if self.rows is None:
+            out[:] = values
+            return
+        for place, row in zip(out, self.rows[axis].tolist(), strict=True):
+            place[:] = values[row]
+
     def chosen(self, axis: int) -> Array:
         """Of each candidate (rows) a one for what has its measured axis of this number (columns)."""
         rows = np.arange(len(self.theta)) if self.rows is None else self.rows[axis]

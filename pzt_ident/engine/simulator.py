@@ -170,18 +170,30 @@ class Simulator:
             sure = ~(squared < SURE * table[:, :, 1]).any(axis=1)
         return np.maximum(squared, 0), sure  # negative by rounding for a perfect fit
 
-    def residuals(self, theta: Array) -> Array:
-        """Model minus measurement over the scored samples, without offset and additions; see `errors`."""
-        return self.errors(theta)[:, :, self.record.settle :]
+    def residuals(self, theta: Array, sizes: Array, out: Array) -> None:
+        """Put model minus measurement over the scored samples, see `errors`, over a size of each measured axis into
+        `out`: (candidates, measured axes * scored samples)."""
+        fewer, errors = self._distinct_errors(theta)
+        scaled = errors[:, :, self.record.settle :]
+        scaled /= sizes[:, None]
+        for i, part in enumerate(np.split(out, len(sizes), axis=1)):
+            fewer.put(scaled[:, i], i, part)
 
     def errors(self, theta: Array) -> Array:
         """Model minus measurement over all samples: (candidates, measured axes, samples). The offset of the record and
         the amounts of its additions are subtracted; they follow from least squares over the scored samples."""
-        theta = np.atleast_2d(theta)
-        error = self.simulate(self.amounts.complete(theta))
-        error -= self.record.response[list(self.model.measured)]
-        self.additions.remove(error, theta)
-        return error
+        fewer, errors = self._distinct_errors(theta)
+        return fewer.of_candidates(errors)
+
+    def _distinct_errors(self, theta: Array) -> tuple[Distinct, Array]:
+        """Those of the fewest candidates that have each axis, or where there are additions, which are solved for in
+        groups of candidates, of all."""
+        apart = not self.model.additions and not self.additions.follow
+        fewer = self.distinct(theta) if apart else Distinct(self.amounts.complete(np.atleast_2d(theta)))
+        errors = self.simulate(fewer.theta)
+        errors -= self.record.response[list(self.model.measured)]
+        self.additions.remove(errors, fewer.theta)
+        return fewer, errors
 
     def added(self, theta: Array) -> dict[str, Array]:
         """Standard deviation over time of what each block with amounts of the record adds to the response with one

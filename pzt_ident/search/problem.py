@@ -147,12 +147,11 @@ class Problem(Cube):
         return residuals
 
     def _scaled(self, theta: Array) -> Array:
+        scaled, end = np.empty((len(theta), self.scored)), 0
         with np.errstate(all="ignore"):
-            scaled, end = np.empty((len(theta), self.scored)), 0
             for simulator in self.simulators["identify"]:
-                for error, size in zip(simulator.residuals(theta).swapaxes(0, 1), self.sizes, strict=True):
-                    begin, end = end, end + simulator.scored
-                    np.divide(error, size * np.sqrt(self.scored), out=scaled[:, begin:end])
+                begin, end = end, end + simulator.scored * len(self.sizes)
+                simulator.residuals(theta, self.sizes * np.sqrt(self.scored), scaled[:, begin:end])
             return self._tangent.follow(scaled) if self._tangent else scaled
 
     def _changes(self, theta: Array) -> Array:

@@ -298,7 +298,7 @@ def test_run_in_is_the_drive_again(words):
 def test_squares_are_those_of_the_residuals(words, more):
     chain, measured, theta = made(words, waves(5), count=LANES, **more)
     measured.response[:] = np.random.default_rng(6).normal(size=measured.response.shape)
-    simulator, residuals = Simulator(chain, measured), Simulator(chain, measured).residuals(theta)
+    simulator, residuals = Simulator(chain, measured), Simulator(chain, measured).errors(theta)[:, :, measured.settle :]
     squares = simulator.squares(theta)
     alive = np.isfinite(residuals).all(axis=(1, 2))
     assert np.array_equal(np.isfinite(squares).all(axis=1), alive) and alive.sum() > LANES / 2

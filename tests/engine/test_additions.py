@@ -20,7 +20,7 @@ def candidates(made, count=30):
 
 
 def summed(simulator, theta):
-    return np.square(simulator.residuals(theta)).sum(axis=2)
+    return np.square(simulator.errors(theta)[:, :, simulator.record.settle :]).sum(axis=2)
 
 
 @pytest.mark.parametrize(

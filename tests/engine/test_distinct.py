@@ -29,7 +29,7 @@ def stepped(*words):
 
 
 def results(simulator, theta):
-    return simulator.simulate(theta), simulator.residuals(theta), simulator.squares(theta)
+    return simulator.simulate(theta), simulator.errors(theta)[:, :, simulator.record.settle :], simulator.squares(theta)
 
 
 def weights_of(count):

@@ -60,7 +60,7 @@ def test_a_remainder_is_that_of_least_squares(count, lengths, seed):
 @pytest.mark.parametrize("more", [{}, {"steps": 2}, {"run_in": 1}], ids=["plain", "finer steps", "run-in"])
 def test_squares_and_rotated_errors_are_those_of_the_residuals(words, more):
     where, theta = made(words, **more)
-    residuals = where.residuals(theta)
+    residuals = where.errors(theta)[:, :, where.record.settle :]
     expected = np.einsum("mas,nas->amn", residuals, residuals)
     np.testing.assert_allclose(gather.squares(where, theta), expected.diagonal(axis1=1, axis2=2).T, rtol=1e-9)
     np.testing.assert_allclose(where.squares(theta), expected.diagonal(axis1=1, axis2=2).T, rtol=1e-9)
@@ -82,7 +82,7 @@ def test_the_length_of_a_stretch_changes_nothing(words, length, monkeypatch):
     found = [
         np.concatenate([error for i, error in gather.stretches(where, theta) if i == axis], axis=1) for axis in (0, 1)
     ]
-    residuals = where.residuals(theta)
+    residuals = where.errors(theta)[:, :, where.record.settle :]
     np.testing.assert_allclose(np.swapaxes(found, 0, 1), residuals, atol=1e-9 * np.abs(residuals).max())
 
 
@@ -101,6 +101,6 @@ def test_squares_of_which_rounding_leaves_little_are_those_of_the_errors():
     theta = np.array([[1e-7, 0.5, 0.02, 0.05]]) * (1 + np.array([[0], [1e-12], [1e-3]]))
     response = Simulator(made, record(drive)).simulate(theta)[0, 0] + 5e-5
     simulator = Simulator(made, record(drive, response=response[None]))
-    errors = np.square(simulator.residuals(theta)).sum(axis=2)
+    errors = np.square(simulator.errors(theta)[:, :, simulator.record.settle :]).sum(axis=2)
     np.testing.assert_allclose(simulator.sure_squares(theta), errors, rtol=1e-7, atol=1e-28 * response.size)
     assert abs(simulator.squares(theta)[1] / errors[1] - 1) > 1e-3

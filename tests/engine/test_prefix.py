@@ -25,7 +25,7 @@ def sharing(*words, axes=2, count=30):
 
 
 def results(simulator, theta):
-    return simulator.simulate(theta), simulator.residuals(theta), simulator.squares(theta)
+    return simulator.simulate(theta), simulator.errors(theta)[:, :, simulator.record.settle :], simulator.squares(theta)
 
 
 @pytest.mark.parametrize("form", FORMS)

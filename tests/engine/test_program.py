@@ -32,5 +32,5 @@ def test_the_simulator_of_another_record_is_the_one_made_on_it(base, form):
     theta = candidates(made, np.array(OTHER), 2, seed=4, response=1e-5)
     moved, fresh = Simulator(made, first).on(other), Simulator(made, other)
     np.testing.assert_array_equal(moved.simulate(theta), fresh.simulate(theta))
-    np.testing.assert_array_equal(moved.residuals(theta), fresh.residuals(theta))
+    np.testing.assert_array_equal(moved.errors(theta), fresh.errors(theta))
     np.testing.assert_array_equal(moved.squares(theta), fresh.squares(theta))
