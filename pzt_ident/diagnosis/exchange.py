@@ -9,11 +9,10 @@ from itertools import permutations
 from pzt_ident.diagnosis.budget import PROOF, PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
-from pzt_ident.diagnosis.fit import Fit, fit_at
+from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.limit import is_limited, own_bounds
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.modes import mechanics_at_main_mode
-from pzt_ident.diagnosis.refit import refit, refit_beside, refit_holding, start_of
+from pzt_ident.diagnosis.refit import refit, refit_beside, refit_holding
 from pzt_ident.diagnosis.score import applicable, fitting_forms, scorer_of
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explained_share
@@ -34,6 +33,7 @@ from pzt_ident.diagnosis.verdict import diagnose
 from pzt_ident.model.registry import blocks, form_of, word_of
 
 COMPARABLE = 0.3  # of the share that an effect explains by its score: what explains less cannot take its place
+PART = 0.3  # of the misfit beside a plainer form: what explains less by its score was no part of an effect
 LEAST_GAIN = 0.05  # noise floors by which one effect fits better than another: less may be simulation error
 
 
@@ -96,12 +96,12 @@ def separate_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
     for effect in () if adequate(case, first, now) else now.effects[len(first.effects) :]:
         parts, plain = parts_of(case, now, effect), other_forms(case, now, effect)
         bare = [item for item in plain if not blocks[item].contains]
-        bare = [item for item in bare if issubclass(blocks[effect], blocks[item])] or bare
         if not parts or not bare or not case.budget.allows("other forms"):
             continue
-        others = effects_without(now, effect)
-        base = min((refit(case, now, (*others, item), {}) for item in bare), key=lambda fit: fit.total)
-        scores = map(scorer_of(case, base).score, parts)
+        base = refit_bare(case, now, effect, bare)
+        scores = [score for score in map(scorer_of(case, base).score, parts) if score.explained >= PART]
+        if not scores:
+            continue
         fits = [refit_beside(case, (base, now), (*base.effects, s.effect), s.guess, now.identify) for s in scores]
         best = min(fits, key=lambda fit: fit.total)
         if fits_better(case, now, best) and clears_up(case, now, best):
@@ -110,6 +110,18 @@ def separate_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
             alone = exchange_step(case, now, base, effect)
             return [alone, Step(best, part, None, rivals, explained_share(case, base, best))]
     return []
+
+
+def refit_bare(case: Case, now: Fit, effect: str, items: Sequence[str]) -> Fit:
+    """The model with one of some forms in the place of an effect: with that of which the effect is an extension, else
+    with that which explains most."""
+    others = effects_without(now, effect)
+    extended = [item for item in items if issubclass(blocks[effect], blocks[item])]
+    if extended:
+        return refit(case, now, (*others, extended[0]), {})
+    without = refit(case, now, others, {})
+    best = max(map(scorer_of(case, without).score, items), key=lambda score: score.explained)
+    return refit_beside(case, (without, now), (*others, best.effect), best.guess)
 
 
 def parts_of(case: Case, now: Fit, effect: str) -> list[str]:
@@ -261,23 +273,6 @@ def exchange_any(case: Case, first: Fit, now: Fit) -> list[Step]:
         if rival and rival.fit and rival.fit.total < best.total:
             best, removed = rival.fit, effect
     return [exchange_step(case, now, best, removed)] if fits_better(case, now, best) else []
-
-
-def exchange_main_mode(case: Case, first: Fit, now: Fit) -> list[Step]:
-    """The step that takes out a second mode which is the main one, with the mechanics of the job where that is, or puts
-    the effect in its place for which they stood in, any that fits as well."""
-    for effect in now.effects[len(first.effects) :]:
-        others = case.problem(effects_without(now, effect), now.steps)
-        if not mechanics_at_main_mode(now, others.names) or not case.budget.allows("mechanics at another mode", WHOLE):
-            continue
-        without = refit(case, now, effects_without(now, effect), {})
-        if removed_rms(without.total, now.total) < TIE * case.floor:
-            return [Step(without, None, effect, {}, explained_share(case, now, without))]
-        there = fit_at(without.effects, others, start_of(others, now, {}))
-        best = diagnose(case, there, first).best
-        if best and best.fit and removed_rms(best.fit.total, now.total) < TIE * case.floor:
-            return [exchange_step(case, now, best.fit, effect)]
-    return []
 
 
 def fits_better(case: Case, now: Fit, other: Fit) -> bool:

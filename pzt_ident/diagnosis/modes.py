@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import ChainMap
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -83,17 +83,36 @@ def mechanics_at_second_mode(fit: Fit, given: Fit) -> tuple[tuple[str, ...], Val
 
 
 def with_aliases(fit: Fit) -> list[Values]:
-    """The parameters of a fit with one mode of its mechanics, which has few samples a period in all records, at another
-    frequency of which the samples look alike: f, r - f, r + f, 2 r - f for a rate r. A fit may rest at any of these."""
+    """The parameters of a fit with one mode of its mechanics at another frequency of which the samples look alike: it
+    may rest at any of these."""
+    values = values_of(fit)
+    return [point for mode in modes_of(fit, values) for point in moved_to(fit, values, mode, aliases(fit, mode))]
+
+
+def with_modes_at_second(fit: Fit, kept: Collection[str]) -> list[Values]:
+    """The parameters of a fit with one mode of its mechanics where a second mode is that is not kept, or at a frequency
+    of which the samples look alike: the second mode may be that one, which rests elsewhere."""
     values, found = values_of(fit), list[Values]()
-    rate = max(1 / record.dt for record in fit.problem.records)
-    for mode in modes_of(fit, values):
-        least = abs(mode.frequency - round(mode.frequency / rate) * rate)
-        alike = (least, rate - least, rate + least, 2 * rate - least) if COARSE * mode.frequency > rate else ()
-        others = [f for f in alike if f > 0 and abs(f - mode.frequency) > SAME * mode.frequency]
-        moved = (mode_at(fit, values, mode._replace(frequency=frequency)) for frequency in others)
-        found += [fit.values | point for point in moved if point and is_within(fit, point)]
+    for share, second in second_modes(fit, values):
+        for mode in modes_of(fit, values) if share.name not in kept else ():
+            moved = mode._replace(damping=second.damping)
+            found += moved_to(fit, values, moved, [second.frequency, *aliases(fit, second)])
     return found
+
+
+def aliases(fit: Fit, mode: Mode) -> list[float]:
+    """Other frequencies of which the samples look like one that has few samples a period in all records: f, r - f,
+    r + f, 2 r - f for a rate r."""
+    rate = max(1 / record.dt for record in fit.problem.records)
+    least = abs(mode.frequency - round(mode.frequency / rate) * rate)
+    alike = (least, rate - least, rate + least, 2 * rate - least) if COARSE * mode.frequency > rate else ()
+    return [f for f in alike if f > 0 and abs(f - mode.frequency) > SAME * mode.frequency]
+
+
+def moved_to(fit: Fit, values: Values, mode: Mode, frequencies: Iterable[float]) -> list[Values]:
+    """The parameters of a fit with a mode at each of some frequencies, of those that its bounds allow."""
+    moved = (mode_at(fit, values, mode._replace(frequency=frequency)) for frequency in frequencies)
+    return [fit.values | point for point in moved if point and is_within(fit, point)]
 
 
 def modes_of(fit: Fit, values: Values) -> list[Mode]:

@@ -18,7 +18,6 @@ from pzt_ident.diagnosis.exchange import (
     add_rivals_beside,
     drop_outdone_rivals,
     exchange_limits,
-    exchange_main_mode,
     find_rivals,
     remove_unneeded,
 )
@@ -26,6 +25,7 @@ from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.proof import Suspect, unproven
 from pzt_ident.diagnosis.refit import refit
+from pzt_ident.diagnosis.second_mode import exchange_main_mode, exchange_second_mode
 from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explained_share
 from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
@@ -107,6 +107,7 @@ def finish(case: Case, first: Fit, path: Staircase) -> Fit | None:
     """Take back what a path can do without, or does not prove; see `take_back`. Its verdict is no longer that it is
     adequate where it is not without these. Mechanics that do not ring give way to a lag."""
     path.steps += exchange_main_mode(case, first, path.end)
+    path.steps += exchange_second_mode(case, first, path.end)
     path.steps += exchange_limits(case, first, path.end)
     if wider := exchange_for_bounds(case, first, path.end):
         path.steps += wider

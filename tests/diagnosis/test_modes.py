@@ -8,10 +8,10 @@ import pytest
 import stage
 from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.exchange import exchange_main_mode
 from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.modes import mechanics_at_main_mode, with_aliases
 from pzt_ident.diagnosis.refit import refit, start_of
+from pzt_ident.diagnosis.second_mode import exchange_main_mode, exchange_second_mode
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import best_alias
 from pzt_ident.job.sections import Choice
@@ -77,6 +77,24 @@ def test_what_the_mechanics_stood_in_for_takes_the_place_of_the_main_mode():
     (step,) = exchange_main_mode(case, first, now)
     assert (step.removed, step.added) == ("resonance.series", "sensor_lag")
     assert step.fit.identify < 1.3 * stage.NOISE < 0.2 * first.identify
+
+
+def test_a_second_mode_that_is_the_mode_of_the_mechanics_is_taken_out():
+    """641 Hz, sampled at 500 Hz: the mechanics rest elsewhere, and a second mode where the samples look alike."""
+
+    def at(frequency, damping):
+        pace = 2 * np.pi * frequency
+        return {"lumped.mass": 1e6 / pace**2, "lumped.damping": 2 * damping * 1e6 / pace, "lumped.stiffness": 1e6}
+
+    drives = [np.random.default_rng(seed).normal(0, 12, 60).repeat(25) + 50 for seed in (1, 2)]
+    fixed = {"lumped.stiffness": 1e6}
+    case = stage.case(at(641, 0.01), fixed, model=("bouc_wen", "lumped"), drives=drives, dt=2e-3, steps=16)
+    second = {"resonance.share": -0.15, "resonance.frequency": 359.0, "resonance.damping": 0.02}
+    found = fit_with(case, {"bouc_wen.gain": 0.082} | at(499, 0.03) | second)  # um/V
+    now = replace(found, identify=case.floor, validate=case.floor)  # as if it fitted as well
+    (step,) = exchange_second_mode(case, replace(now, effects=()), now)
+    assert (step.removed, step.added) == ("resonance", None)
+    assert step.fit.values["lumped.mass"] == pytest.approx(at(641, 0.01)["lumped.mass"], rel=0.02)
 
 
 @pytest.mark.parametrize("rest", [415.0, 585.0, 1085.0])

@@ -49,7 +49,14 @@ def taken_of(several, taken_back, monkeypatch):
     monkeypatch.setattr(paths, "diagnose", lambda case, first: SimpleNamespace())
     monkeypatch.setattr(paths, "first_candidates", lambda case, first, diagnosis: [*range(len(several))])
     monkeypatch.setattr(paths, "climb", climb)
-    for exchange in ("exchange_main_mode", "exchange_limits", "exchange_for_bounds", "exchange_damped"):
+    exchanges = (
+        "exchange_main_mode",
+        "exchange_second_mode",
+        "exchange_limits",
+        "exchange_for_bounds",
+        "exchange_damped",
+    )
+    for exchange in exchanges:
         monkeypatch.setattr(paths, exchange, lambda *arguments: [])
     monkeypatch.setattr(paths, "take_back", take_back)
     monkeypatch.setattr(paths, "adequate", lambda case, first, fit: fit.identify < 1.5)
