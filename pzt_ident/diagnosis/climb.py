@@ -95,12 +95,13 @@ def climb(
 
 def complete(case: Case, first: Fit, steps: Sequence[Step], new: list[Step]) -> bool:
     """Add to new steps what settles them; whether that is put off, since another effect promises most of the rest."""
-    if not adequate(case, first, new[-1].fit):
-        fit_anew(case, (*steps, *new)[-2].fit, new[-1], best_alias(case, new[-1].fit))
-    new += separate_accounts(case, first, new[-1].fit)
-    hurried = not adequate(case, first, new[-1].fit) and promises_most(case, first, new[-1].fit)
-    new += [] if hurried else settle(case, first, (*steps, *new)[-2].fit, new[-1])
-    return hurried
+    before, last = (*steps, *new)[-2].fit, new[-1]
+    if not adequate(case, first, last.fit):
+        fit_anew(case, before, last, best_alias(case, last.fit))
+        if promises_most(case, first, last.fit):
+            return True
+    new += settle(case, first, before, last)
+    return False
 
 
 def joins(case: Case, fit: Fit, known: Sequence[Fit]) -> bool:
@@ -128,15 +129,24 @@ def stuck(steps: list[Step]) -> bool:
 
 
 def settle(case: Case, first: Fit, before: Fit, step: Step) -> list[Step]:
-    """Restart the fit of a step that does not reach the noise before anything else is blamed; it is kept where the
-    restart leads hardly lower, since what was scored beside it holds then. Returns the steps that remove what is not
-    needed any more, and exchange what fits better in another form."""
-    if not adequate(case, first, step.fit) and case.budget.allows("other starts"):
-        restarted = restart(case, step.fit)
-        if removed_rms(step.fit.total, restarted.total) > TIE * case.floor:
-            fit_anew(case, before, step, restarted)
-    unneeded = remove_unneeded(case, first, step.fit)
-    return [*unneeded, *exchange_accounts(case, first, (unneeded or [step])[-1].fit)]
+    """The steps behind one that part what it holds, remove what is not needed any more and exchange what fits better in
+    another form. Where these do not reach the noise, the last fit is restarted before anything else is blamed; it is
+    kept where the restart leads hardly lower, since what was scored beside it holds then."""
+    steps = [step, *separate_accounts(case, first, step.fit)]
+    steps += tidied(case, first, steps[-1].fit)
+    last = steps[-1]
+    if not adequate(case, first, last.fit) and case.budget.allows("other starts"):
+        restarted = restart(case, last.fit)
+        if removed_rms(last.fit.total, restarted.total) > TIE * case.floor:
+            fit_anew(case, (before, *(each.fit for each in steps))[-2], last, restarted)
+            steps += tidied(case, first, restarted)
+    return steps[1:]
+
+
+def tidied(case: Case, first: Fit, fit: Fit) -> list[Step]:
+    """The steps that remove what a fit does not need, and exchange what fits better in another form."""
+    unneeded = remove_unneeded(case, first, fit)
+    return [*unneeded, *exchange_accounts(case, first, unneeded[-1].fit if unneeded else fit)]
 
 
 def fit_anew(case: Case, before: Fit, step: Step, fit: Fit) -> None:
