@@ -177,7 +177,7 @@ class Problem(Cube):
 
     def held(self, point: Array) -> tuple[Held, ...]:
         """The amounts of each identification record beside a point, if the model has any."""
-        return self._amounts(self.parameters(point)[0])
+        return self._amounts(self.parameters(point)[0]) if self.model.amounts else ()
 
     def _amounts(self, theta: Array) -> tuple[Held, ...]:
         return tuple(filter(None, (simulator.held(theta) for simulator in self.simulators["identify"])))
@@ -189,7 +189,7 @@ class Problem(Cube):
     def begun_at(self, point: Array) -> Problem:
         """The problem whose amounts of the records, and what is solved for, are sought from those of a point, which
         takes fewer steps beside it; itself without any."""
-        begun = self._with_amounts(Simulator.begun_at, self.held(point)) if self.model.amounts else self
+        begun = self._with_amounts(Simulator.begun_at, self.held(point))
         if self.linear.columns.size:
             begun = copy(begun)
             begun.linear = self.linear.begun_at(self.parameters(point)[0], begun._changes)
