@@ -95,12 +95,15 @@ def at_rest(case: Case) -> Case:
 
 
 def fits_at_rest(rested: Case, end: Fit) -> Iterator[Fit]:
-    """The last model where every record starts from rest, as it is and with each effect that leaves the same trace."""
+    """The last model where every record starts from rest, as it is and with each effect that leaves the same trace, if
+    the model is clearly worse without it."""
     fit = refit(rested, end, end.effects, {})
     yield fit
     words = [word for word in ALIKE if word in applicable(rested, end.effects)]
     for score in (scorer_of(rested, fit).score(word) for word in words):
-        yield refit_from(rested, fit, (*end.effects, score.effect), score.guesses)
+        other = refit_from(rested, fit, (*end.effects, score.effect), score.guesses)
+        if removed_rms(fit.total, other.total) > CLEAR * rested.floor:
+            yield other
 
 
 def has_history(fit: Fit) -> bool:

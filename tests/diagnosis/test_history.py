@@ -12,11 +12,14 @@ from pzt_ident.diagnosis.bounds import Widened, continued
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase
 from pzt_ident.diagnosis.criteria import DECISIVE
+from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.history import (
     BEFORE,
     PROMISING,
+    at_rest,
     beside,
+    fits_at_rest,
     has_history,
     history_behind,
     history_sentence,
@@ -141,3 +144,13 @@ def test_a_path_that_is_refused_with_what_was_before_leaves_that_from_rest(monke
     monkeypatch.setattr(staircase, "improve_aged", lambda *arguments: refused)
     found = improve(case, first)
     assert found is not refused and found.last.verdict != "refused"
+
+
+@pytest.mark.parametrize("slope", [0.0, 4e-7])
+def test_a_drift_takes_the_place_of_what_was_before_only_where_records_drift(slope):
+    made = [replace(record, response=record.response + slope * record.time) for record in stage.records({})]
+    case = Case(("history", "bouc_wen"), (), made, {})
+    problem = case.problem(())
+    end = fit_at((), problem, case.descend(problem, problem.unit_point(stage.STAGE | {"bouc_wen.gain": 0.082})))
+    fits = [fit.effects for fit in fits_at_rest(at_rest(case), end)]
+    assert fits == [(), ("drift",)][: 1 + (slope > 0)]
