@@ -15,6 +15,7 @@ from pzt_ident.diagnosis.criteria import (
     FAR,
     adequate,
     only_all_counts,
+    reaches_noise,
     removed_rms,
     removes_enough,
 )
@@ -93,10 +94,10 @@ def likely_forms(candidate: Candidate) -> list[Score]:
 
 
 def drives_onto_bounds(case: Case, first: Fit, candidate: Candidate) -> bool:
-    """Whether an effect beside the model as given explains most and leaves more than the noise, and drives the model
-    onto bounds where it did not rest without it; not one with many amounts, which takes the place of what the model
-    has."""
-    if has_many_amounts(blocks[candidate.score.effect]):
+    """Whether an effect beside the model as given explains most and leaves more than the noise of the identification
+    records, and drives the model onto bounds where it did not rest without it; not one with many amounts, which takes
+    the place of what the model has."""
+    if has_many_amounts(blocks[candidate.score.effect]) or reaches_noise(case, first, candidate.best):
         return False
     return leaves_some(case, first, first, candidate.best) and rests_anew(first, candidate.best)
 
