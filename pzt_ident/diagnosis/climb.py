@@ -12,7 +12,13 @@ from pzt_ident.diagnosis.budget import PROVING
 from pzt_ident.diagnosis.candidates import promises_most
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, FAR, adequate, clears_an_axis, removed_rms, removes_enough
-from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, remove_unneeded, separate_accounts
+from pzt_ident.diagnosis.exchange import (
+    exchange_accounts,
+    exchange_any,
+    forms_instead,
+    remove_unneeded,
+    separate_accounts,
+)
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.misfit import share_explained
@@ -56,9 +62,9 @@ def climb(
 ) -> Staircase | None:
     """One path: the candidate is added first, then always the best one, within wider bounds where these are a cheaper
     account. Where another effect promises most of what a step leaves, that is tried first, and the step is settled only
-    if the promise is not kept. The last model is not diagnosed where no time is left for another. known: the fits of
-    other paths; None where it joins one of them."""
-    steps, first = list[Step](), base[-1].fit
+    if the promise is not kept; where it is, another form may do in its place. The last model is not diagnosed where no
+    time is left for another. known: the fits of other paths; None where it joins one of them."""
+    steps, first, hurried = list[Step](), base[-1].fit, False
 
     def take(new: Sequence[Step]) -> None:
         for step in new:
@@ -73,12 +79,14 @@ def climb(
         new = next_steps(case, first, steps, diagnosis, candidate, known)
         if not new:
             break
-        hurried = complete(case, first, steps, new)
+        unsettled, hurried = hurried, complete(case, first, steps, new)
         if {*new[-1].fit.effects} in [{*step.fit.effects} for step in steps]:
             break
         if joins(case, new[-1].fit, known):
             return None
         take(new)
+        if unsettled and adequate(case, first, steps[-1].fit):
+            take(forms_instead(case, first, steps[-1].fit))
         if (wider := wider_bounds(case, first, steps[-1].fit)) and wider.case:
             case = wider.case
             take([wider])

@@ -71,6 +71,22 @@ def exchange_accounts(case: Case, first: Fit, now: Fit) -> list[Step]:
     return [*steps, *join_look_alikes(case, first, now)]
 
 
+def forms_instead(case: Case, first: Fit, now: Fit) -> list[Step]:
+    """The steps from an adequate model that take out an effect and put another form in the place of one beside it,
+    where that does as well: the effect made up for the form."""
+    added = now.effects[len(first.effects) :]
+    for needless, effect in permutations(reversed(added), 2):
+        if not other_forms(case, now, effect) or not case.budget.allows("other forms", PROVING):
+            continue
+        without = refit(case, now, effects_without(now, needless), {})
+        fits = fits_in_place(case, without, effect, other_forms(case, without, effect))
+        best = min(fits, key=lambda fit: fit.total, default=without)
+        if adequate(case, first, best) and removed_rms(best.total, now.total) < TIE * case.floor:
+            taken_out = Step(without, None, needless, {}, explained_share(case, now, without))
+            return [taken_out, exchange_step(case, without, best, effect)]
+    return []
+
+
 def join_look_alikes(case: Case, first: Fit, now: Fit) -> list[Step]:
     """The steps that take out one of two look-alikes and put another form in the place of the other, where that alone
     does as well: a lag of two poles is a lag and a delay."""

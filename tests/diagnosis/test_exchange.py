@@ -9,7 +9,14 @@ import stage
 from pzt_ident.diagnosis import exchange
 from pzt_ident.diagnosis import refit as refitting
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.exchange import exchange_limits, in_its_limit, join_look_alikes, parts_of, separate_accounts
+from pzt_ident.diagnosis.exchange import (
+    exchange_limits,
+    forms_instead,
+    in_its_limit,
+    join_look_alikes,
+    parts_of,
+    separate_accounts,
+)
 from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.starts import first_fit
@@ -73,6 +80,25 @@ def test_a_lag_of_two_poles_is_one_effect_and_a_lag_behind_a_delay_is_two(stage_
     told = [(None, "delay"), ("amplifier_lag.two_poles", "amplifier_lag")]
     assert [(step.added, step.removed) for step in steps] == (told if joined else [])
     assert not joined or steps[-1].fit.total < now.total
+
+
+@pytest.mark.parametrize(
+    ("stage_has", "values", "instead"),
+    [
+        (("amplifier_lag.two_poles",), {"amplifier_lag.tau": 0.03, "amplifier_lag.damping": 1.0}, True),
+        (("amplifier_lag", "quadratic_gain"), {"amplifier_lag.tau": 0.03, "quadratic_gain.curvature": 3e-4}, False),
+    ],
+)
+def test_what_made_up_for_a_form_is_taken_out_where_that_form_does_as_well(stage_has, values, instead):
+    made = stage.records(values, model=("bouc_wen", *stage_has), effects={})
+    case = Case(("bouc_wen",), (), made, {})
+    problem = case.problem(())
+    first = fit_at((), problem, case.descend(problem, problem.unit_point(stage.STAGE)))
+    found = refit(case, first, ("amplifier_lag", "quadratic_gain"), {"amplifier_lag.tau": 0.03})
+    steps = forms_instead(case, first, replace(found, identify=case.floor, validate=case.floor))
+    told = [(None, "quadratic_gain"), ("amplifier_lag.two_poles", "amplifier_lag")]
+    assert [(step.added, step.removed) for step in steps] == (told if instead else [])
+    assert not instead or steps[-1].fit.total < 1.1 * case.floor
 
 
 @pytest.fixture(scope="module")
