@@ -11,14 +11,9 @@ from pzt_ident.diagnosis.bounds import are_too_narrow, beyond_bounds, stands_in
 from pzt_ident.diagnosis.budget import PROVING
 from pzt_ident.diagnosis.candidates import promises_most
 from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.contained import join_look_alikes, separate_accounts
 from pzt_ident.diagnosis.criteria import DECISIVE, FAR, adequate, clears_an_axis, removed_rms, removes_enough
-from pzt_ident.diagnosis.exchange import (
-    exchange_accounts,
-    exchange_any,
-    forms_instead,
-    remove_unneeded,
-    separate_accounts,
-)
+from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, forms_instead, remove_unneeded
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.misfit import share_explained
@@ -152,9 +147,12 @@ def settle(case: Case, first: Fit, before: Fit, step: Step) -> list[Step]:
 
 
 def tidied(case: Case, first: Fit, fit: Fit) -> list[Step]:
-    """The steps that remove what a fit does not need, and exchange what fits better in another form."""
-    unneeded = remove_unneeded(case, first, fit)
-    return [*unneeded, *exchange_accounts(case, first, unneeded[-1].fit if unneeded else fit)]
+    """The steps that remove what a fit does not need, exchange what fits better in another form, and join what one
+    form holds."""
+    steps = list[Step]()
+    for find in (remove_unneeded, exchange_accounts, join_look_alikes):
+        steps += find(case, first, steps[-1].fit if steps else fit)
+    return steps
 
 
 def fit_anew(case: Case, before: Fit, step: Step, fit: Fit) -> None:
