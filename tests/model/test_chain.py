@@ -164,7 +164,7 @@ def test_any_number_of_candidates(count):
 def test_one_candidate_may_be_a_row_alone():
     chain, made = model(*AXIS), record(*noise(1))
     theta = candidates(chain, SPAN, 1, 1)
-    for of in (Simulator(chain, made).simulate, Simulator(chain, made).squares, Simulator(chain, made).residuals):
+    for of in (Simulator(chain, made).simulate, Simulator(chain, made).squares, Simulator(chain, made).errors):
         np.testing.assert_array_equal(of(theta[0]), of(theta))
 
 
