@@ -42,7 +42,7 @@ class Machine(NamedTuple):
 
 
 @compiled
-def arithmetic(samples, first, fresh, drive, runs, scratch, tile):
+def arithmetic(samples, first, fresh, drive, runs, scratch, tile, lanes):
     """CHAINS * STEPS multiplications with an addition a sample and lane, in registers."""
     widen()
     for _ in range(samples):
@@ -55,7 +55,7 @@ def arithmetic(samples, first, fresh, drive, runs, scratch, tile):
 
 
 @compiled
-def memory(samples, first, fresh, drive, runs, scratch, tile):
+def memory(samples, first, fresh, drive, runs, scratch, tile, lanes):
     """One reading and one writing a sample and lane, within the first cache."""
     widen()
     for i in range(samples):
@@ -66,7 +66,7 @@ def memory(samples, first, fresh, drive, runs, scratch, tile):
 @njit
 def repeat(address, times, scratch, tile):
     for _ in range(times):
-        call(address, TILE, 0, 0, tile.ctypes.data, tile.ctypes.data, scratch.ctypes.data, tile.ctypes.data)
+        call(address, TILE, 0, 0, tile.ctypes.data, tile.ctypes.data, scratch.ctypes.data, tile.ctypes.data, WIDTH)
 
 
 def machine() -> Machine:
