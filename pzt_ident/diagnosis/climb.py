@@ -74,14 +74,12 @@ def climb(
         new = next_steps(case, first, steps, diagnosis, candidate, known)
         if not new:
             break
-        unsettled, hurried = hurried, complete(case, first, steps, new)
+        hurried = complete(case, first, steps, new, hurried)
         if {*new[-1].fit.effects} in [{*step.fit.effects} for step in steps]:
             break
         if joins(case, new[-1].fit, known):
             return None
         take(new)
-        if unsettled and adequate(case, first, steps[-1].fit):
-            take(forms_instead(case, first, steps[-1].fit))
         if (wider := wider_bounds(case, first, steps[-1].fit)) and wider.case:
             case = wider.case
             take([wider])
@@ -96,14 +94,17 @@ def climb(
     return Staircase(steps, diagnosis, case=changed)
 
 
-def complete(case: Case, first: Fit, steps: Sequence[Step], new: list[Step]) -> bool:
-    """Add to new steps what settles them; whether that is put off, since another effect promises most of the rest."""
+def complete(case: Case, first: Fit, steps: Sequence[Step], new: list[Step], unsettled: bool) -> bool:
+    """Add to new steps what settles them; whether that is put off, since another effect promises most of the rest.
+    unsettled: whether it was put off before them."""
     before, last = (*steps, *new)[-2].fit, new[-1]
     if not adequate(case, first, last.fit):
         fit_anew(case, before, last, best_alias(case, last.fit))
         if promises_most(case, first, last.fit):
             return True
     new += settle(case, first, before, last)
+    if unsettled and adequate(case, first, new[-1].fit):
+        new += forms_instead(case, first, new[-1].fit)
     return False
 
 
