@@ -170,7 +170,7 @@ class Simulator:
             sure = ~(squared < SURE * table[:, :, 1]).any(axis=1)
         return np.maximum(squared, 0), sure  # negative by rounding for a perfect fit
 
-    def residuals(self, theta: Array, sizes: Array, out: Array) -> None:
+    def put_residuals(self, theta: Array, sizes: Array, out: Array) -> None:
         """Put model minus measurement over the scored samples, see `errors`, over a size of each measured axis into
         `out`: (candidates, measured axes * scored samples)."""
         fewer, errors = self._distinct_errors(theta)

@@ -151,7 +151,7 @@ class Problem(Cube):
         with np.errstate(all="ignore"):
             for simulator in self.simulators["identify"]:
                 begin, end = end, end + simulator.scored * len(self.sizes)
-                simulator.residuals(theta, self.sizes * np.sqrt(self.scored), scaled[:, begin:end])
+                simulator.put_residuals(theta, self.sizes * np.sqrt(self.scored), scaled[:, begin:end])
             return self._tangent.follow(scaled) if self._tangent else scaled
 
     def _changes(self, theta: Array) -> Array:
