@@ -1,4 +1,4 @@
-"""One measurement told in other words: other units, other names, another order, every second sample."""
+"""One measurement told in other words: other units, other names, another order, another clock, every second sample."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ SI = {"s": 1.0, "ms": 1e-3, "V": 1.0, "kV": 1e3, "mV": 1e-3, "um": 1e-6, "m": 1.
 @dataclass(frozen=True)
 class Telling:
     """units: of time, drives and responses. columns, axes: other names. backwards: `records` or `axes`. every: of so
-    many samples one is told."""
+    many samples one is told. clock: the time of the first sample, s, which rounds no other to more than 1e-11 s."""
 
     name: str
     units: tuple[str, str, str] = PLAIN_UNITS
@@ -39,6 +39,7 @@ class Telling:
     axes: Mapping[str, str] = field(default_factory=dict)
     backwards: str = ""
     every: int = 1
+    clock: float = 0.0
 
     def header(self, plain: str) -> str:
         word, unit = plain.rstrip("]").split(" [")
@@ -46,7 +47,8 @@ class Telling:
 
     def values(self, plain: str, values: Array) -> Array:
         old, new = (header.rstrip("]").split(" [")[1] for header in (plain, self.header(plain)))
-        return values[:: self.every] * (SI[old] / SI[new])
+        begun = self.clock if old == "s" else 0.0
+        return (begun + values[:: self.every]) * (SI[old] / SI[new])
 
     def write(self, folder: Path, records: Mapping[str, Columns], model: str, seed: int) -> Path:
         """A job and its records into a new folder, which is returned. model: further lines of the job."""
@@ -84,6 +86,7 @@ OTHERWISE = (
     ALL_UNITS,
     RECORDS_BACKWARDS,
     Telling("an axis of another name", axes={"x": "piezo"}),
+    Telling("a clock that has run for hours", clock=2.0**15),
     Telling("columns of other names", columns={"time": "t", "u": "drive", "x": "path"}),
 )
 OF_TWO_AXES = (

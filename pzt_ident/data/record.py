@@ -154,8 +154,14 @@ class Record:
         return {axis: unit for axis, unit in zip(self.axes, self.response_units, strict=True) if unit is not None}
 
     @property
+    def elapsed(self) -> NDArray[np.float64]:
+        """The time since the first sample, s: (samples,)."""
+        return self.dt * np.arange(self.samples, dtype=np.float64)
+
+    @property
     def time(self) -> NDArray[np.float64]:
-        return self.start + self.dt * np.arange(self.samples, dtype=np.float64)
+        """The time stamps, s: (samples,)."""
+        return self.start + self.elapsed
 
 
 def interpolated(drive: NDArray[np.float64], steps: int, periodic: bool, smooth: bool) -> NDArray[np.float64]:

@@ -283,7 +283,7 @@ class Scorer:
         measured, simulators = problem.model.measured, self.fit.problem.simulators["identify"]
         ends = np.cumsum([simulator.scored * len(measured) for simulator in simulators])
         residuals = [part.reshape(len(measured), -1) for part in np.split(self.residual, ends[:-1])]
-        times = [simulator.record.time[simulator.record.settle :] for simulator in simulators]
+        times = [simulator.record.elapsed[simulator.record.settle :] for simulator in simulators]
         drives = [simulator.record.drive[:, simulator.record.settle :] for simulator in simulators]
         guesses = []
         for i in columns:

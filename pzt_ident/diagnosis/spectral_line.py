@@ -58,7 +58,7 @@ def in_band(case: Case, fit: Fit, lines: Sequence[Line]) -> Array:
         left = errors[:, record.settle :] / fit.problem.sizes[:, None]
         moved = (record.response[[*record.measured]] + errors)[:, record.settle :]
         for line in lines:
-            course = record.time[record.settle :] if line.over_time else moved[line.row]
+            course = record.elapsed[record.settle :] if line.over_time else moved[line.row]
             if np.ptp(course) * line.wave >= FEWEST:
                 motion = moved[line.row] / fit.problem.sizes[line.row] if line.over_time else np.zeros(course.size)
                 rest, motion_power = power_near(np.array([left[line.row], motion]), course, line.wave).tolist()

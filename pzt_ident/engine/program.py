@@ -243,7 +243,7 @@ class Program:
         record = self.record
         same = {"dt": record.dt / self.substeps, "duration": record.dt * (record.samples - 1)}
         same |= {"from_rest": float(self.model.from_rest), "lead": float(self.model.lead * self.substeps)}
-        same |= {"_first": self.lead, "_start": record.start, "_dt": record.dt}
+        same |= {"_first": self.lead, "_dt": record.dt}
         peaks = np.maximum(record.peaks, np.abs(record.levels))
         return [same | {"span": span, "peak": peak} for span, peak in zip(record.spans, peaks, strict=True)]
 

@@ -1,6 +1,7 @@
 """Laws that every block of the registry keeps. A new block is tested by existing."""
 
 import re
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -221,6 +222,14 @@ def test_tiles_leave_no_seam(words, samples):
         pytest.skip("no spline through one sample")
     expected = plain.simulate(chain, measured, theta[0])
     assert_close(simulate(chain, measured, theta)[0], expected, rounding(chain, measured, theta)[0])
+
+
+@pytest.mark.parametrize("words", CHAINS)
+def test_time_begins_with_the_record_whatever_its_clock_says(words):
+    chain, measured, theta = made(words, waves(3))
+    at_once, since_1970 = (Simulator(chain, replace(measured, start=start)) for start in (0.0, 1.8e9))
+    assert np.array_equal(at_once.squares(theta), since_1970.squares(theta), equal_nan=True)
+    assert np.array_equal(at_once.simulate(theta), since_1970.simulate(theta), equal_nan=True)
 
 
 @pytest.mark.parametrize("words", CHAINS)

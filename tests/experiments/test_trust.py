@@ -37,7 +37,7 @@ def test_the_same_measurement_in_other_words(tmp_path):
             *numerics.told_otherwise(bench, tmp_path / "two", 77, coupled_record, numerics.COUPLED, [AXES_BACKWARDS]),
             numerics.thinned(bench, tmp_path / "thinned", 77),
         ]
-        wholly = Telling("wholly", ("ms", "kV", "m"), {"u": "drive"}, {"x": "piezo"}, "records")
+        wholly = Telling("wholly", ("ms", "kV", "m"), {"u": "drive"}, {"x": "piezo"}, "records", clock=-7200.0)
         (diagnosis,) = numerics.diagnosed_otherwise(bench, tmp_path, 77, [wholly])
     assert not wrong([*told, diagnosis]) and diagnosis.came == "missing"
 

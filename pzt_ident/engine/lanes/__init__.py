@@ -42,7 +42,7 @@ FUNCTIONS = (
     *("field", "coercive_field", "mass", "leave", "basis"),
 )
 
-TIME = ("_first", "_start", "_dt")  # what gives an addition its time, ahead of the arguments of `basis`
+TIME = ("_first", "_dt")  # what gives an addition its time, ahead of the arguments of `basis`
 
 
 class Layout(NamedTuple):
