@@ -14,12 +14,12 @@ JITTER = 0.01
 """Largest accepted deviation of a time stamp from the uniform grid, in sample times."""
 
 COARSEST = 0.2
-"""Coarsest decimal that time stamps may be rounded to, in sample times: of coarser ones one may be missing."""
+"""Coarsest digit that time stamps may be rounded to, in sample times: of coarser ones one may be missing."""
 
 
 @dataclass(frozen=True)
 class Grid:
-    """Sample time and first time stamp, s; the decimal that the stamps are rounded to where that is seen."""
+    """Sample time and first time stamp, s; what the stamps are rounded to where that is seen."""
 
     dt: float
     start: float = 0.0
@@ -37,7 +37,7 @@ def grid_of_stamps(stamps: Signal) -> Grid:
     """The uniform grid through the first and the last time stamp.
 
     Raises InputError where time stands still or runs backward, or where a stamp is off the grid by more than JITTER
-    and by more than its last decimal.
+    and by more than its last digit.
     """
     times, steps = stamps.values, np.diff(stamps.values)
     if steps.size == 0:
@@ -51,8 +51,8 @@ def grid_of_stamps(stamps: Signal) -> Grid:
         raise InputError(problem, where=stamps.where, remedy=remedy)
     dt = float(times[-1] - times[0]) / steps.size
     off = float(np.abs(times - times[0] - dt * np.arange(times.size)).max())
-    rounded = last_decimal(times) if off > JITTER * dt else 0.0
-    if off > max(JITTER * dt, rounded if rounded <= COARSEST * dt else 0.0):
+    rounded = last_digit(times, COARSEST * dt) if off > JITTER * dt else 0.0
+    if off > max(JITTER * dt, rounded):
         usual = float(np.median(steps))
         row = int(np.argmax(np.abs(steps - usual)))
         step = f"{steps[row]:.6g} s, {steps[row] / usual:.4g} times the usual {usual:.6g} s"
@@ -62,13 +62,16 @@ def grid_of_stamps(stamps: Signal) -> Grid:
     return Grid(dt, float(times[0]), rounded)
 
 
-def last_decimal(times: NDArray[np.float64]) -> float:
-    """The coarsest power of ten, s, of which all time stamps are multiples; 0 where none is."""
+def last_digit(times: NDArray[np.float64], most: float) -> float:
+    """The coarsest power of ten up to `most`, s, of which all time stamps are multiples, or what their last bit is
+    worth, 0.2 us of seconds that are counted from 1970; 0 where neither is."""
+    bit = float(np.spacing(np.abs(times).max()))
     for exponent in range(13):
-        counts = times * 10.0**exponent
-        if np.abs(counts - np.round(counts)).max() < 1e-3:
-            return 10.0**-exponent
-    return 0.0
+        counts, decimal = times * 10.0**exponent, 10.0**-exponent
+        blurred = bit / decimal / 2
+        if decimal <= most and blurred < 0.2 and np.abs(counts - np.round(counts)).max() < 1e-3 + blurred:
+            return decimal
+    return bit if bit <= most else 0.0
 
 
 def check_rate(grid: Grid, rate: float | None, where: str) -> None:
