@@ -12,7 +12,7 @@ class Growing:
     """What all forms of a gain that grows with the amplitude declare."""
 
     form = Form("record", ("record", "running", "rayleigh"), "What the amplitude is taken from.")
-    growth = Parameter("1/drive", (-1, 1), "Relative growth of the gain per volt peak to peak.", null=0)
+    growth = Parameter("1/drive", (-1, 1), "Relative growth of the gain per drive, peak to peak.", null=0)
     look_alikes = ("distributed_memory", "creep")
     separate_by = "Run equal loops at several amplitudes and several biases, and nested loops with revisits."
     remedy = "Calibrate at the amplitude that is used, or let the feedforward take the amplitude."
@@ -65,7 +65,7 @@ class Rayleigh(Growing, Plays):
     """
 
     place = Place.READOUT
-    growth = Parameter("1/drive", (-5, 5), "Growth of the gain per volt of amplitude.", null=0)
+    growth = Parameter("1/drive", (-5, 5), "Growth of the gain per amplitude of the drive.", null=0)
     branches = PLAYS
 
     def prepare(growth, peak, branch):

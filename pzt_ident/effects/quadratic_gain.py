@@ -14,7 +14,7 @@ class QuadraticGain(Block):
 
     place = Place.READOUT
     form = Form("voltage", ("voltage", "displacement"), "What the gain grows with.")
-    curvature = Parameter("1/drive", (-0.5, 0.5), "Growth of the gain per volt, over twice the gain.", null=0)
+    curvature = Parameter("1/drive", (-0.5, 0.5), "Growth of the gain per drive, over twice the gain.", null=0)
     look_alikes = ("saturation", "cubic_stiffness", "encoder_cyclic_error")
     separate_by = (
         "Drive to both polarities: the parabola is even, saturation odd; repeat under a known preload, and with the "

@@ -12,7 +12,7 @@ from pzt_ident.model.registry import blocks
 class BoucWen(Operator):
     """y = d u - h,  dh/dt = alpha d du/dt - beta |du/dt| h - gamma du/dt |h|.
 
-    Lin & Lin (2012), Mechatronics 22, 614, eq. 5. The state is h / (alpha d), in volts. On a monotone step of length s
+    Lin & Lin (2012), Mechatronics 22, 614, eq. 5. The state is h / (alpha d), a drive. On a monotone step of length s
     the state along the motion, q, is q(s) = q0 exp(-r s) + (1 - exp(-r s)) / r, with r = beta - gamma where q < 0 and
     r = beta + gamma where q > 0.
 
@@ -25,10 +25,10 @@ class BoucWen(Operator):
 
     place = Place.OPERATOR
     wrong_way = "Bouc-Wen does so after a reversal where alpha max(1, 2 beta / (beta + gamma)) > 1"
-    gain = Parameter("response/drive", (0, 3), "Displacement per volt without hysteresis, d.")
+    gain = Parameter("response/drive", (0, 3), "Displacement per drive without hysteresis, d.")
     alpha = Parameter("1", (0, 1), "Share of the prompt response that hysteresis takes back just after a rest.")
-    beta = Parameter("1/drive", (0, 60), "Decay of h per volt on both branches.")
-    gamma = Parameter("1/drive", (-30, 60), "Decay of h per volt, with the sign of h along the motion.")
+    beta = Parameter("1/drive", (0, 60), "Decay of h per drive on both branches.")
+    gamma = Parameter("1/drive", (-30, 60), "Decay of h per drive, with the sign of h along the motion.")
 
     asymmetry = Parameter(
         "1/drive", (-2, 2), "Part of the drive term that grows with the voltage.", 0, effect="asymmetry.voltage"
@@ -101,7 +101,7 @@ class Activated(BoucWen):
     """dh/dt = ... - relaxation sinh(activation h) / activation: the barrier to a jump falls with h, so that h relaxes
     with the logarithm of time while it is large; over a sample tanh(activation h / 2) fades by exp(-dt relaxation).
 
-    Eyring (1936), J. Chem. Phys. 4, 283. `activation` is one over the h, in volts, at which the rate has grown by 1.2.
+    Eyring (1936), J. Chem. Phys. 4, 283. `activation` is one over the h at which the rate has grown by 1.2.
     """
 
     def fade(h, asymmetry, lean, rate, faster, slow, exponent, root, keep, activation):

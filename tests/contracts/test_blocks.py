@@ -106,6 +106,9 @@ def test_declarations_are_complete(word):
     assert word == block.name == block.__module__.rpartition(".")[2]
     for name, declared in block.parameters().items():
         assert re.fullmatch(r"[A-Z].{8,}\.", declared.doc), name
+        assert not re.search(r"\b(volts?|met(re|er)s?|microns?|newtons?)\b", declared.doc, re.I), (
+            "the unit is that of the data"
+        )
         assert (declared.count is not None) == (name != declared.name)
 
 
