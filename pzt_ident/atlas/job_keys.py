@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 
@@ -48,18 +50,28 @@ def key_tables() -> list[Section]:
 
     schema = Job.model_json_schema()
     kinds = sorted(schema["$defs"], key=lambda kind: list(PLACES).index(kind) if kind in PLACES else len(PLACES))
-    first = Section("The file", "What to identify from which records, and how.", _rows(schema))
+    about = {key: item["description"] for key, item in schema["properties"].items()}
+    first = Section("The file", "What to identify from which records, and how.", _rows(schema, about))
     return [first, *(_section(kind, schema["$defs"][kind]) for kind in kinds)]
 
 
 def _section(kind: str, schema: dict[str, Any]) -> Section:
-    return Section(PLACES.get(kind, kind), " ".join(schema.get("description", "").split()), _rows(schema))
+    doc, about = documented(schema["description"], schema["properties"])
+    return Section(PLACES.get(kind, kind), doc, _rows(schema, about))
 
 
-def _rows(schema: dict[str, Any]) -> list[Key]:
+def documented(text: str, keys: Iterable[str]) -> tuple[str, dict[str, str]]:
+    """What a docstring says of the whole, and of each key: `key: what it is.`, the first one behind an empty line."""
+    doc, _, rest = text.partition("\n\n")
+    parts = re.split(rf"(?:^|(?<=\. ))({'|'.join(keys)}): ", " ".join(rest.split()))
+    about = {key: part.strip() for key, part in zip(parts[1::2], parts[2::2], strict=True)}
+    return " ".join(doc.split()), {key: part[:1].upper() + part[1:] for key, part in about.items()}
+
+
+def _rows(schema: dict[str, Any], about: Mapping[str, str]) -> list[Key]:
     required = schema.get("required", ())
     return [
-        Key(key, _value(item), "required" if key in required else _default(item), item.get("description", ""))
+        Key(key, _value(item), "required" if key in required else _default(item), about.get(key, ""))
         for key, item in schema["properties"].items()
     ]
 

@@ -1,4 +1,4 @@
-"""The commands on the words that a job may use: `list`, `show`, `atlas`."""
+"""The commands on the words and keys that a job may use: `list`, `show`, `atlas`."""
 
 from __future__ import annotations
 
@@ -12,11 +12,14 @@ KINDS = ("blocks", "effects", "optimizers")
 
 
 @click.command("list")
-@click.argument("kind", type=click.Choice(KINDS), required=False)
+@click.argument("kind", type=click.Choice((*KINDS, "keys")), required=False)
 @plugins_option
 @output_options
 def list_(kind: str | None, as_json: bool, quiet: bool) -> None:
-    """List the words that a job may use, of one kind or all."""
+    """List the words that a job may use, of one kind or all, or its keys."""
+    if kind == "keys":
+        list_keys(as_json, quiet)
+        return
     from pzt_ident.cli.table import table
     from pzt_ident.model.description import words
 
@@ -27,6 +30,21 @@ def list_(kind: str | None, as_json: bool, quiet: bool) -> None:
             table((each, "what it is"), list(some.items()))
 
     answer(docs[kind] if kind else docs, show_lists, as_json, quiet)
+
+
+def list_keys(as_json: bool, quiet: bool) -> None:
+    from pzt_ident.atlas.job_keys import key_tables
+    from pzt_ident.cli.table import table
+
+    sections = key_tables()
+
+    def show_sections() -> None:
+        for section in sections:
+            click.echo(f"{section.title}. {section.doc}\n")
+            table(("key", "value", "default", "what it is"), section.rows)
+
+    keys = {section.title: {row.key: row._asdict() for row in section.rows} for section in sections}
+    answer(keys, show_sections, as_json, quiet)
 
 
 @click.command()

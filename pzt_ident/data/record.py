@@ -15,9 +15,11 @@ Use = Literal["identify", "validate"]
 
 @dataclass(frozen=True)
 class Channel:
-    """Where a signal is in a file: the `name` in the header, such as `u_x [V]`, a `column` counted from 1, or a
-    `dataset`, of an array with an `index` (then `file` may be another file than the record's). `unit` overrides that in
-    the header."""
+    """Where a signal is in a file: by its name, its column or its dataset.
+
+    name: in the header, such as `u_x [V]`. column: counted from 1. unit: where it is not that in the header. dataset:
+    which one of a file with several. index: which part of an array. file: where it is not that of the record.
+    """
 
     name: str | None = None
     column: int | None = None
@@ -29,7 +31,10 @@ class Channel:
 
 @dataclass(frozen=True)
 class Axis:
-    """An axis of the stage: its drive and, where it is measured, its response."""
+    """An axis of the stage.
+
+    drive: where the drive is. response: where the response is, of an axis that is measured.
+    """
 
     drive: Channel
     response: Channel | None = None
@@ -37,7 +42,10 @@ class Axis:
 
 @dataclass(frozen=True)
 class Level:
-    """A constant drive, a value in a unit, or in the unit of the drive where none is given: `0 V`."""
+    """A constant drive: `0 V`.
+
+    value: the number. unit: by default that of the drive.
+    """
 
     value: float
     unit: str | None = None
@@ -45,20 +53,21 @@ class Level:
 
 @dataclass(frozen=True)
 class Source:
-    """One record as the job names it: `file`, relative to the job, its `use`, and the `name` in results.
+    """One record as the job names it.
 
-    sample_rate: Hz, where no column has the time. rows: counted from 0, the end excluded. time: an interval, s. settle:
-    the time at the start that is simulated but not scored, s. decimate: every n-th sample is taken, after a low-pass.
-    run_in: how often the drive is simulated before the first sample, for a periodic record in steady state. rest_at:
-    the drive at which the stage rested until one sample before the first, from where it goes there on a line, of all
-    axes or by axis, for a record that begins with a step. denoise_drive: whether noise of the recorded drive is left
-    out; it turns where that goes back by more. steps: of the simulation in a sample. smooth_drive: whether the drive is
-    smooth between its samples, as behind a filter against aliasing, and not linear: with `run_in` it is the Fourier
-    series of the record, else a cubic spline; steps of 2 and more feel it.
-    dataset, table, sheet and index: which part of a file with several ones, and of an array.
-
-    `channels` overrides channels in this record, by `time`, `drive`, `response` or, of one axis, `x.drive`:
-    `{response: {file: y.npy}}` takes every response from another file.
+    file: relative to the job. use: whether it is fitted or kept back. name: in results and messages, by default that of
+    the file. sample_rate: Hz, where no column has the time. rows: a part of the file, counted from 0, the end excluded.
+    time: a part of the file, from its stamps, s. What counts time from the start, as a drift, begins with the part.
+    settle: the time at the start that is simulated but not scored, s. decimate: every n-th sample is taken, after a
+    low-pass. run_in: how often the drive is simulated before the first sample, for a periodic record in steady state.
+    rest_at: the drive at which the stage rested until one sample before the first, from where it goes there on a line,
+    of all axes or by axis, for a record that begins with a step. denoise_drive: whether noise of the recorded drive is
+    left out; it turns where that goes back by more. smooth_drive: whether the drive is smooth between its samples, as
+    behind a filter against aliasing, and not linear: with `run_in` it is the Fourier series of the record, else a cubic
+    spline; steps of 2 and more feel it. steps: simulation steps in a sample. dataset: which one of a file with several.
+    table: which one of a text export with several. index: which part of an array. sheet: which one of a workbook.
+    channels: what is elsewhere in this record, by `time`, `drive`, `response` or, of one axis, `x.drive`: `{response:
+    {file: y.npy}}` takes every response from another file.
     """
 
     file: str

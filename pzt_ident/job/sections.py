@@ -16,7 +16,10 @@ Repeats = Annotated[int, Field(ge=1, le=1000)]
 
 @dataclass(frozen=True)
 class Channels:
-    """Where the `time` and, by axis, the drives and responses (`axes`) stand in the files of the records."""
+    """Where signals stand in the files of the records.
+
+    axes: drives and responses, by the name of the axis. time: not needed where the job gives a `sample_rate`.
+    """
 
     axes: dict[str, Axis]
     time: Channel | None = None
@@ -24,7 +27,10 @@ class Channels:
 
 @dataclass(frozen=True)
 class Setting:
-    """`bounds` free a parameter, a `value` fixes it: one of the two, in the user's units."""
+    """What is known of a parameter, one of the two, in the user's units.
+
+    bounds: between which it is searched. value: at which it is fixed.
+    """
 
     bounds: tuple[float, float] | None = None
     value: float | None = None
@@ -32,7 +38,10 @@ class Setting:
 
 @dataclass(frozen=True)
 class Choice:
-    """An optimizer or block by its `name`, its `settings` as keys beside that: `{name: rod, elements: 12}`."""
+    """An optimizer or block and what is set of it: `{name: rod, elements: 12}`.
+
+    name: its word. settings: as keys beside that.
+    """
 
     name: str
     settings: dict[str, Any] = field(default_factory=dict)
@@ -48,7 +57,10 @@ Item = Annotated[Annotated[str, Tag("word")] | Annotated[Choice, Tag("choice")],
 
 @dataclass(frozen=True)
 class Quantity:
-    """A value in a unit, or in the unit of the response where none is given: `0.05 um`."""
+    """A value in a unit: `0.05 um`.
+
+    value: a number above zero. unit: by default that of the response.
+    """
 
     value: Positive
     unit: str | None = None
@@ -56,8 +68,11 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Stopping:
-    """When a search ends, whichever comes first: evaluations, seconds of wall time, the RMSE reached (target), or
-    generations without progress (stagnation)."""
+    """When a search ends, whichever comes first.
+
+    evaluations: how often the model is evaluated. seconds: wall time. target: the RMSE that is reached. stagnation:
+    generations without progress.
+    """
 
     evaluations: Count | None = None
     seconds: Positive | None = None
@@ -67,8 +82,10 @@ class Stopping:
 
 @dataclass(frozen=True)
 class Limits:
-    """What a proposed drive may do, in the user's units: lowest and highest drive, its rate per second (slew), and its
-    duration in s."""
+    """What a proposed drive may do, in the user's units.
+
+    drive: the lowest and the highest. slew: the largest change per second. duration: how long it may last, s.
+    """
 
     drive: tuple[float, float] | None = None
     slew: Positive | None = None

@@ -2,18 +2,26 @@
 
 import re
 
-from pzt_ident.atlas.job_keys import PLACES, key_tables
+from pzt_ident.atlas.job_keys import PLACES, documented, key_tables
 from pzt_ident.job.schema import Job
 
 
 def test_every_key_of_a_job_is_there_and_described():
     first, *others = key_tables()
     assert {row.key for row in first.rows} == set(Job.model_fields)
-    assert all(row.doc.endswith(".") for row in first.rows)
     assert [section.title for section in others] == list(PLACES.values())
-    for section in others:
+    for section in (first, *others):
+        assert section.doc.endswith((".", "`."))
         for row in section.rows:
-            assert re.search(rf"\b{row.key}\b", section.doc), (section.title, row.key)
+            assert re.fullmatch(r"[A-Z].*\.", row.doc), (section.title, row.key)
+
+
+def test_each_key_has_its_part_of_a_docstring():
+    text = "One of two.\n\n    file: of `a: b`.\n    use: whether\n    it is fitted: or not. rows: some.\n    "
+    assert documented(text, ["file", "use", "rows"]) == (
+        "One of two.",
+        {"file": "Of `a: b`.", "use": "Whether it is fitted: or not.", "rows": "Some."},
+    )
 
 
 def test_values_are_in_words():

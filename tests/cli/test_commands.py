@@ -18,6 +18,7 @@ import pzt_ident.report.page
 import pzt_ident.run.identify
 from pzt_ident.cli.commands import main
 from pzt_ident.errors import InputError, RunError
+from pzt_ident.job.schema import Job
 from pzt_ident.model.registry import blocks, optimizers
 from pzt_ident.run.place import Local
 
@@ -258,6 +259,14 @@ class TestWords:
         assert all(line for kind in listed.values() for line in kind.values())
         assert json.loads(call("list", "--json").stdout) == listed
         assert all(word in call("list").stdout for kind in listed.values() for word in kind)
+
+    def test_every_key_of_a_job_is_listed(self):
+        listed, printed = json.loads(call("list", "keys", "--json").stdout), call("list", "keys").stdout
+        assert listed["The file"].keys() == Job.model_fields.keys()
+        assert listed["each item of records"]["settle"]["default"] == "0.0"
+        for section, keys in listed.items():
+            assert f"{section}. " in printed
+            assert all(key in printed and row["doc"] in printed for key, row in keys.items())
 
     def test_a_word_that_only_a_description_has_leads_to_it(self):
         result = call("show", "preisach")
