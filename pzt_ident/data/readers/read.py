@@ -18,6 +18,7 @@ from pzt_ident.data.readers.source_channels import SourceChannels
 from pzt_ident.data.readers.table import Table
 from pzt_ident.data.readers.timebase import Grid, time_slice
 from pzt_ident.data.record import Axis, Channel, Level, Record, Source
+from pzt_ident.data.spikes import spike_phrase
 from pzt_ident.data.start_step import start_step
 from pzt_ident.data.units import factor, same_kind, unscaled
 from pzt_ident.errors import InputError
@@ -117,7 +118,7 @@ def _record(channels: SourceChannels, axes: Mapping[str, Axis], time: Channel | 
         response_units=tuple(unscaled(response.unit) if response else None for response in responses),
         notes=_notes(source, grid),
     )
-    return replace(record, notes=(*record.notes, *_start(record)))
+    return replace(record, notes=(*record.notes, *_start(record), *filter(None, [spike_phrase(record)])))
 
 
 def _rows(signals: Sequence[Signal | None], where: str) -> int:

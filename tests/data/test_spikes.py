@@ -1,0 +1,71 @@
+"""Single readings that no stage makes are seen, and corners, steps, noise and counts are none."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import rig
+from pzt_ident.data.spikes import spike_phrase, spikes
+
+T = np.arange(600) * 1e-2
+TRIANGLE = 50 * (1 - np.abs((T / 2) % 2 - 1))
+MOTIONS = {
+    "triangle": TRIANGLE,
+    "sine": 40 * (1 - np.cos(3 * T)),
+    "steps": 10.0 * np.floor(T),
+    "rest": 0 * T,
+    "ringing": 20 * np.exp(-T) * np.cos(60 * T),
+}
+kinds = st.sampled_from([*MOTIONS])
+seeds = st.integers(0, 10**6)
+
+
+def measured(kind, seed, noise=1e-8, step=0.0):
+    """A record of a response that follows its drive, with noise and counts."""
+    drive = MOTIONS[kind]
+    response = 1e-7 * drive + np.random.default_rng(seed).normal(0, noise, T.size)
+    return rig.record(drive, dt=1e-2, response=[step * np.round(response / step) if step else response])
+
+
+@settings(max_examples=60, deadline=None)
+@given(kind=kinds, seed=seeds, step=st.sampled_from([0.0, 2e-9, 5e-8]))
+def test_noise_counts_corners_and_steps_are_none(kind, seed, step):
+    assert not spikes(measured(kind, seed, step=step), 0).size
+
+
+@settings(max_examples=60, deadline=None)
+@given(kind=kinds, seed=seeds, place=st.integers(0, T.size - 1), up=st.booleans(), step=st.sampled_from([0.0, 2e-9]))
+def test_a_reading_far_off_is_seen_wherever_it_is(kind, seed, place, up, step):
+    record = measured(kind, seed, step=step)
+    record.response[0, place] += 4e-6 if up else -4e-6
+    assert spikes(record, 0).tolist() == [place]
+
+
+def test_what_the_drive_does_as_well_is_none():
+    record = measured("sine", 1)
+    record.response[0, 200] += 4e-6
+    record.drive[0, 200] += 40
+    assert not spikes(record, 0).size
+
+
+@pytest.mark.parametrize(
+    ("places", "phrase"),
+    [
+        ([], ""),
+        (
+            [0],
+            "the reading of x at 0 s stands far beside those around it, as no stage moves: mend the file, or leave it",
+        ),
+        ([100, 300], "the readings of x at 1 and 3 s stand far beside those around them"),
+        ([100, 150, 200, 250, 300, 350], "the readings of x at 1, 1.5, 2 and 2.5 s and 2 more stand"),
+    ],
+)
+def test_it_is_said_which_and_what_to_do(places, phrase):
+    record = measured("sine", 2)
+    record.response[0, places] += 4e-6
+    assert spike_phrase(record).startswith(phrase) and bool(spike_phrase(record)) == bool(places)
+
+
+def test_a_record_of_a_few_samples_has_none():
+    assert not spikes(rig.record([0.0, 1.0, 0.0], response=[[0.0, 9.0, 0.0]]), 0).size
