@@ -29,6 +29,7 @@ ON_STARTS = 0.1  # of the budget, which ends that where two agree
 STARTS_BESIDE = 60  # random points of the model with other effects, and where each costs a solution
 STARTS_SOLVED = 20  # random points of a block where each costs a solution for what the response is linear in
 RESTARTS = 2  # random points of one block that are refined
+NEARER = 4  # power of the distance to a null, of its range, of the points near it
 MOST_RESTARTED = 4  # times that all blocks are restarted, where no two minima agree
 
 
@@ -125,9 +126,31 @@ def settled(case: Case, fit: Fit) -> Fit:
 
 
 def ranked_points(problem: Problem, seed: int, count: int) -> Array:
-    """(count, dimensions) random points, the best first."""
-    points = np.random.default_rng(seed).uniform(size=(count, problem.dimensions))
+    """(count, dimensions) random points, half of them with effects near their nulls, the best first."""
+    rng = np.random.default_rng(seed)
+    points = rng.uniform(size=(count, problem.dimensions))
+    near = np.isfinite(nulls := places_of_nulls(problem)) & (rng.random((count, 1)) < 0.5)
+    points = np.where(near, towards(nulls, points), points)
     return points[np.argsort(problem.rough().loss(points), kind="stable")]
+
+
+def places_of_nulls(problem: Problem) -> Array:
+    """Where in their ranges parameters are null, (dimensions,); NaN for those that have no null there."""
+    nulls = [problem.model.entries[column].parameter.null for column in problem.free]
+    known = {name: null for name, null in zip(problem.names, nulls, strict=True) if null is not None}
+    middle = dict(zip(problem.names, problem.physical(np.full(problem.dimensions, 0.5))[0].tolist(), strict=True))
+    places = problem.unit_point(middle | known)
+    within = [
+        name in known and low <= known[name] <= high
+        for name, low, high in zip(problem.names, problem.lower, problem.upper, strict=True)
+    ]
+    return np.where(within, places, np.nan)
+
+
+def towards(places: Array, points: Array) -> Array:
+    """Points moved towards places in the unit cube, most of them nearly there."""
+    room = np.where(points > places, 1 - places, places)
+    return places + (points - places) * np.abs((points - places) / np.where(room > 0, room, 1.0)) ** (NEARER - 1)
 
 
 def best_of_each_axis(case: Case, problem: Problem, minima: Array) -> Array:
@@ -179,4 +202,4 @@ def random_points(problem: Problem, rng: np.random.Generator) -> Array:
     """(points, dimensions) random points; half of them keep parameters whose lower bound is 0 near it."""
     points = rng.uniform(size=(STARTS_SOLVED if problem.linear.columns.size else STARTS, problem.dimensions))
     near = (problem.lower == 0) & (rng.random((len(points), 1)) < 0.5)
-    return np.where(near, points**4, points)
+    return np.where(near, points**NEARER, points)

@@ -12,16 +12,20 @@ from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.refit import FINEST, STEP_TOLERANCE, step_errors
+from pzt_ident.diagnosis.score import fits
 from pzt_ident.diagnosis.starts import (
     STARTS_SOLVED,
     best_exchange,
     best_of,
     first_fit,
+    places_of_nulls,
     random_points,
+    ranked_points,
     restart,
     restarts,
 )
 from pzt_ident.job.sections import Choice
+from pzt_ident.model.registry import blocks
 from pzt_ident.search.descent import descend
 from pzt_ident.search.problem import Problem
 
@@ -33,6 +37,21 @@ def test_the_first_fit_finds_the_stage(plain):
     assert fit.validate == pytest.approx(stage.NOISE, rel=0.1)
     assert fit.values["bouc_wen.gain"] == pytest.approx(0.082, rel=0.01)
     assert fit.values["bouc_wen.alpha"] == pytest.approx(0.55, rel=0.05)
+
+
+@pytest.mark.parametrize("item", [item for item in blocks.effects() if fits(stage.case({}), (), item)])
+def test_effects_of_the_job_begin_near_their_nulls_or_anywhere(item):
+    """A delay of a tenth of the drive's period is found by its slope, one of several periods is not."""
+    problem = stage.case({}).problem((item,))
+    places, points = places_of_nulls(problem), ranked_points(problem, 1, 400)
+    nulls = [problem.model.entries[column].parameter.null for column in problem.free]
+    values = problem.physical(np.nan_to_num(places, nan=0.5))[0]
+    assert points.min() >= 0 and points.max() <= 1
+    for null, value, place, column in zip(nulls, values, places, points.T, strict=True):
+        if not np.isnan(place):
+            assert value == pytest.approx(null, abs=1e-12)
+        near = np.mean(np.abs(column - (0.5 if np.isnan(place) else place)) < 0.02)
+        assert (near < 0.1) if np.isnan(place) else (0.12 < near < 0.3)
 
 
 def test_the_first_fit_is_a_function_of_its_seed(creeping):
