@@ -258,13 +258,13 @@ def unexplained(case: Case, first: Fit, found: Diagnosis) -> Diagnosis:
 
 def pair_behind(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> Fit | None:
     """The refit with the effect that removes most of the misfit of the identification records, though it may lose the
-    others for lack of a second one, and with that which promises most of what it leaves; None where none does, or both
-    do not remove enough."""
+    others for lack of a second one, and with that which promises most of what it leaves, in any form; None where none
+    does, or both do not remove enough."""
     fits = [fit for item in candidates for fit in item.refits.values()]
     leading = min(fits, key=lambda fit: fit.identify, default=before)
     if share_explained(before.identify, leading.identify, case.floor) < DECISIVE:
         return None
-    beside = score_all(case, first, leading, scorer_of(case, leading), in_every_form=False)
+    beside = score_all(case, first, leading, scorer_of(case, leading))
     most = max((item.score for item in beside), key=lambda score: score.explained_in_bounds, default=None)
     if most is None or most.explained_in_bounds < PROMISING:
         return None

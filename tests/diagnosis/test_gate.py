@@ -167,7 +167,11 @@ def test_a_second_effect_is_sought_behind_one_that_loses_the_validation_records(
     before, lost, both = fit(30.0, 15.0), fit(alone, 40.0, ("slew_limit",)), fit(together, 1.0, ("slew_limit", "creep"))
     beside = [Candidate(Score("drift", 0.1)), Candidate(Score("creep", promised, promised))]
     monkeypatch.setattr(verdict, "scorer_of", lambda *_: None)
-    monkeypatch.setattr(verdict, "score_all", lambda case, first, leading, *_, **__: beside if leading is lost else [])
+
+    def scored(case, first, leading, scorer, in_every_form=True):
+        return beside if leading is lost and in_every_form else []
+
+    monkeypatch.setattr(verdict, "score_all", scored)
     monkeypatch.setattr(verdict, "refit", lambda case, leading, effects, guess: both)
     refits = {"slew_limit": lost, "slew_limit.lag": fit(29.0, 15.0)}
     items = [Candidate(Score("drift", 0.2), fit(28.0, 15.0)), Candidate(Score("slew_limit", 0.8), lost, refits=refits)]
