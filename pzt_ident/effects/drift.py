@@ -10,7 +10,9 @@ class Drifting:
 
     place = Place.OUTPUT
     form = Form(
-        "exponential", ("exponential", "ramp", "read"), "The course of the drift, and whether a sensor reads it."
+        "exponential",
+        ("exponential", "ramp", "curve", "read"),
+        "The course of the drift, and whether a sensor reads it.",
     )
     size = Parameter("response", (-1, 1), "Final drift of a record.", null=0, per_record=True)
     look_alikes = ("creep", "thermal_relaxation")
@@ -45,6 +47,23 @@ class Ramp(Drifting, Addition):
         return (t / duration,)
 
 
+class Curve(Drifting, Addition):
+    """A room that warms and cools drifts to and fro: y = x + size s + bend s^2 + turn s^3,  s = t / T, T the length of
+    the record.
+
+    Mokaberi & Requicha (2006), IEEE Trans. Autom. Sci. Eng. 3, 199: drift is slow and smooth, whatever its course. To
+    third order it is followed over a quarter of a period of an air-conditioning, and in most of a half.
+    """
+
+    flexible = True
+    bend = Parameter("response", (-1, 1), "Part that grows as the square of time.", null=0, per_record=True)
+    turn = Parameter("response", (-1, 1), "Part that grows as the cube of time.", null=0, per_record=True)
+
+    def basis(t, duration):
+        s = t / duration
+        return s, s * s, s * s * s
+
+
 class Read(Drifting, Block):
     """The stage is elsewhere, and the sensor reads that with an error of its own: y = g(x + size (1 - exp(-t / tau))),
     t from the start, with g the blocks of the sensor.
@@ -66,4 +85,4 @@ class Read(Drifting, Block):
         return share + rate * (1 - share), u + size * share
 
 
-Drift.forms = {"ramp": Ramp, "read": Read}
+Drift.forms = {"ramp": Ramp, "curve": Curve, "read": Read}

@@ -91,6 +91,7 @@ class Block:
     refines: ClassVar[tuple[str, ...]] = ()  # operators which with it are no more than finer
     alike: ClassVar[tuple[str, ...]] = ()  # parameters of each record that together are as large in all of them
     line: ClassVar[str] = ""  # its frequency or period, if it is a line of the spectrum over time or displacement
+    flexible: ClassVar[bool] = False  # whether it follows a part of any slow misfit, in the records kept back as well
     loops: ClassVar[bool] = False  # whether it is a hysteresis operator of its own, beside the model's
     solvable: ClassVar[bool] = True  # whether `step` has a stable inverse, sample by sample (see control.inverse)
     margin: ClassVar[type[Block] | None] = None  # variant whose output must stay above zero for the equation to hold

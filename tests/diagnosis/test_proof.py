@@ -14,8 +14,9 @@ from pzt_ident.diagnosis.proof import taken_out, unproven
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.model.parameter import Parameter
+from pzt_ident.model.registry import blocks
 
-CASE = SimpleNamespace(floor=1.0, on_axis=lambda axis: CASE)
+CASE = SimpleNamespace(floor=1.0, on_axis=lambda axis: CASE, with_floor_of=lambda fit: CASE)
 
 
 def fit(identify, validate, effects=(), shapes=None, dimensions=4, felt=True, **declared):
@@ -55,11 +56,13 @@ def suspects_of(monkeypatch):
         harmonics=(),
         traces=(),
         many=(),
+        flexible=(),
         **declared,
     ):
         """sizes: the parameters of a model without each effect. larger: those that would settle beyond their bounds.
         instead: those that take the place of the operator. lines: those of the spectrum. harmonics: those of the drive.
-        traces: those that others leave. many: those with many amounts. declared: of the parameters with shapes."""
+        traces: those that others leave. many: those with many amounts. flexible: those that follow anything. declared:
+        of the parameters with shapes."""
         validation = validation or errors
         operator = lambda case, first, now, effect: "bouc_wen" if effect in instead else ""  # noqa: E731
         monkeypatch.setattr(proof, "displaced_operator", operator)
@@ -67,6 +70,7 @@ def suspects_of(monkeypatch):
         monkeypatch.setattr(proof, "size_of", lambda now, effect: "")
         monkeypatch.setattr(proof, "is_trace", lambda effect, others: effect in traces and bool(others))
         monkeypatch.setattr(proof, "is_of_many", many.__contains__)
+        monkeypatch.setattr(proof, "is_flexible", flexible.__contains__)
         monkeypatch.setattr(proof, "is_own_line", lambda case, without, now, effect: effect in lines)
 
         def refitted(case, before, effects, guess):
@@ -108,6 +112,20 @@ def test_one_with_many_amounts_removes_95_percent_if_it_is_alone(taken_out):
     assert taken_out(of(a=6.7, none=30.0), many="a") == []
     assert taken_out(of(a=6.9, none=30.0), many="a") == ["a"]
     assert taken_out(of(ab=10.6, a=13.0, b=13.5, none=30.0), many="a") == []
+
+
+def test_what_is_flexible_is_proven_only_at_the_noise(taken_out):
+    """It bends to the records kept back as well."""
+    assert taken_out(of(ab=1.3, a=20.0, b=20.0, none=30.0)) == []
+    assert taken_out(of(ab=1.3, a=20.0, b=20.0, none=30.0), flexible="b") == []
+    assert taken_out(of(ab=2.5, a=20.0, b=20.0, none=30.0)) == []
+    assert taken_out(of(ab=2.5, a=5.0, b=20.0, none=30.0), flexible="b") == ["b"]
+
+
+def test_only_a_drift_of_any_course_is_flexible():
+    assert [item for item in blocks.effects() for item in blocks.forms(item) if proof.is_flexible(item)] == [
+        "drift.curve"
+    ]
 
 
 def test_a_density_of_plays_has_many_amounts():
