@@ -20,6 +20,7 @@ from pzt_ident.diagnosis.criteria import (
 )
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import (
+    AS_LIKELY,
     NEARLY_ALL,
     NOT_ALL,
     Candidate,
@@ -41,7 +42,6 @@ from pzt_ident.diagnosis.ties import TIE, are_look_alikes
 from pzt_ident.model.registry import blocks, word_of
 
 PROMISING = 0.6  # of the misfit: what an effect explains by its score, so that it is tried ahead of anything else
-AS_LIKELY = 0.9  # of what the best score explains: what scores as much is refitted as long as others are
 LOOK_ALIKE_STARTS = 8  # starts of a look-alike's own parameters
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
 

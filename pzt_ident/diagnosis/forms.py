@@ -30,6 +30,7 @@ from pzt_ident.model.registry import blocks, word_of
 FORM_GAIN = 0.02  # of the misfit, by which another form of an effect explains more than the first one
 LIKELY = 0.65  # of the misfit: an effect that explains as much by its score is tried in its other forms before others
 NEARLY_ALL = 0.9  # of the misfit: what explains as much may be a look-alike of what is missing, in another form
+AS_LIKELY = 0.9  # of what the best score explains: what scores as much is refitted as long as others are
 NOT_ALL = 0.3  # of the misfit: an effect that scores less is no account of nearly all of it
 
 
@@ -88,8 +89,8 @@ def refit_likely_forms(case: Case, first: Fit, before: Fit, candidate: Candidate
 
 
 def likely_forms(candidate: Candidate) -> list[Score]:
-    """The scores of the forms that explain at least half of what the best one does, that of the most first."""
-    scores = [score for score in candidate.forms if score.explained >= DECISIVE * candidate.score.explained]
+    """The scores of the forms that explain nearly all that the best one does, that of the most first."""
+    scores = [score for score in candidate.forms if score.explained >= AS_LIKELY * candidate.score.explained]
     return sorted(scores, key=lambda score: -score.explained)
 
 

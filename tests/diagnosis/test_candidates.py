@@ -71,9 +71,11 @@ def test_an_effect_is_fitted_from_random_points_unless_another_promises_what_it_
     monkeypatch, driven, promised, rests, anew
 ):
     """A friction that leaves a coupling rests on bounds for want of that; where the model as given rests there, too,
-    far from the noise, a second effect mends nothing. driven: onto bounds; rests: there all along; anew: the forms."""
+    far from the noise, a second effect mends nothing. driven: onto bounds; rests: there all along; anew: the forms, of
+    those that explain nearly as much as the best."""
     first, tried = fit(12.0, 12.0), []
-    candidate = Candidate.of([Score("friction", explained=0.7), Score("friction.coulomb", explained=0.8)])
+    scores = {"friction": 0.75, "friction.coulomb": 0.8, "friction.motion": 0.7}
+    candidate = Candidate.of([Score(item, explained=share) for item, share in scores.items()])
     errors = {"friction": 6.0, "friction.coulomb": 5.0}
     refits = {item: fit(error, error, (item,)) for item, error in errors.items()}
     monkeypatch.setattr(candidates, "refit_from", lambda case, before, effects, *_: refits[effects[-1]])

@@ -39,10 +39,13 @@ def test_the_first_fit_finds_the_stage(plain):
     assert fit.values["bouc_wen.alpha"] == pytest.approx(0.55, rel=0.05)
 
 
-@pytest.mark.parametrize("item", [item for item in blocks.effects() if fits(stage.case({}), (), item)])
+PLAIN = stage.case()
+
+
+@pytest.mark.parametrize("item", [item for item in blocks.effects() if fits(PLAIN, (), item)])
 def test_effects_of_the_job_begin_near_their_nulls_or_anywhere(item):
     """A delay of a tenth of the drive's period is found by its slope, one of several periods is not."""
-    problem = stage.case({}).problem((item,))
+    problem = PLAIN.problem((item,))
     places, points = places_of_nulls(problem), ranked_points(problem, 1, 400)
     nulls = [problem.model.entries[column].parameter.null for column in problem.free]
     values = problem.physical(np.nan_to_num(places, nan=0.5))[0]
