@@ -4,6 +4,7 @@ import math
 
 from pzt_ident.model.block import expm1, log
 
+FROZEN = 45.0  # fluctuation fields short of both edges: in a sample p moves by 3e-20 of one
 BEYOND = 80.0  # fluctuation fields beyond an edge: from farther away it is reached in one sample
 
 
@@ -36,3 +37,9 @@ def relaxed_play(p, before, u, half, width, width_log_dt, per_width):
     above = share * (1 + expm1((p - upper) * per_width))
     below = share * (1 + expm1((lower - p) * per_width))
     return sign * (p + width * log(1 / (1 + above) + below))
+
+
+def relaxed_rests(p, low, high, half, width, width_log_dt):
+    """Whether `relaxed_play` keeps p to rounding for a thousand samples, while its input is between low and high."""
+    reach = half - width_log_dt - FROZEN * width
+    return high - p <= reach and p - low <= reach

@@ -5,7 +5,7 @@ from math import exp, sqrt
 from statistics import NormalDist
 
 from pzt_ident.errors import InputError
-from pzt_ident.hysteresis._play import play, relaxation_coefficients, relaxed_play
+from pzt_ident.hysteresis._play import play, relaxation_coefficients, relaxed_play, relaxed_rests
 from pzt_ident.model.block import Bank, Place, erf
 from pzt_ident.model.parameter import Form, Parameter, Setting
 from pzt_ident.model.registry import blocks
@@ -178,8 +178,6 @@ class Relaxing(HomogenizedEnergy):
     """The model with thermally activated plays (`relaxed_play`). The coercive fields are those at a field rate of one
     fluctuation field per second; in a hold the polarization goes on with the logarithm of time."""
 
-    rests = None
-
     def prepare(
         gain, remanence, coercive, spread, interaction, quadratic, poled, bias, fluctuation, branch, dt, from_rest
     ):
@@ -201,6 +199,26 @@ class Relaxing(HomogenizedEnergy):
         field = (u - bias) * per_width
         p = relaxed_play(p, last, field, half, width, width_log_dt, per_heat)
         return p, field, erf(p)
+
+    def rests(
+        p,
+        last,
+        low,
+        high,
+        gain,
+        remanence,
+        quadratic,
+        bias,
+        zero,
+        per_width,
+        half,
+        before,
+        width,
+        width_log_dt,
+        per_heat,
+    ):
+        least, most = min(last, (low - bias) * per_width), max(last, (high - bias) * per_width)
+        return relaxed_rests(p, least, most, half, width, width_log_dt)
 
     def output(
         u, total, gain, remanence, quadratic, bias, zero, per_width, half, before, width, width_log_dt, per_heat
