@@ -12,7 +12,7 @@ from pzt_ident.diagnosis.forms import NEARLY_ALL
 from pzt_ident.diagnosis.refit import refit_from
 from pzt_ident.diagnosis.score import applicable, scorer_of
 from pzt_ident.diagnosis.step import Step, explained_share
-from pzt_ident.diagnosis.ties import is_tied
+from pzt_ident.diagnosis.ties import is_equal, is_tied
 from pzt_ident.diagnosis.undetermined import (
     Undetermined,
     clearly_worse_without,
@@ -26,8 +26,8 @@ DAMPER = "viscous_damping"  # the effect whose trace they leave
 
 def exchange_damped(case: Case, first: Fit, end: Fit) -> tuple[list[Step], Undetermined] | None:
     """The steps from an adequate model to the one without mechanics that do not ring, and to the effect in their place
-    that leads to the noise as well, of several that with the fewest parameters; and these mechanics, as a suspect. None
-    where there is no such effect."""
+    that leads to the noise as well and fits hardly worse, of several that with the fewest parameters; and these
+    mechanics, as a suspect. None where there is no such effect."""
     mode = mode_that_is_silent(end) if adequate(case, first, end) else None
     if mode is None or not case.budget.allows("effects like a damper", WHOLE):
         return None
@@ -35,7 +35,8 @@ def exchange_damped(case: Case, first: Fit, end: Fit) -> tuple[list[Step], Undet
     if alternative is None:
         return None
     word, lean, start = alternative
-    fits = [fit for fit in fits_like_a_damper(lean, start) if adequate(case, first, fit)]
+    every = fits_like_a_damper(lean, start)
+    fits = [fit for fit in every if adequate(case, first, fit) and is_equal(case, end, fit)]
     if not fits:
         return None
     best = min(fits, key=lambda fit: (fit.freedom, fit.total))

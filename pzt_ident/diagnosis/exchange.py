@@ -8,7 +8,7 @@ from itertools import permutations
 
 from pzt_ident.diagnosis.budget import PROOF, PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
-from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough, threshold
+from pzt_ident.diagnosis.criteria import DECISIVE, adequate, beyond_form, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.limit import is_limited, own_bounds
 from pzt_ident.diagnosis.misfit import share_explained
@@ -36,15 +36,17 @@ LEAST_GAIN = 0.05  # noise floors by which one effect fits better than another: 
 
 
 def remove_unneeded(case: Case, first: Fit, now: Fit, newest: int = 1, restarted: bool = False) -> list[Step]:
-    """Steps that remove effects, other than the newest and those of the job itself, which no longer remove enough and
-    are of no use to the validation records. restarted: whether the model without one is started elsewhere, too."""
+    """Steps that remove effects, other than the newest and those of the job itself, which no longer remove enough, or
+    no more than the form of the others may leave, and are of no use to the validation records. restarted: whether the
+    model without one is started elsewhere, too."""
     steps: list[Step] = []
     for effect in now.effects[len(first.effects) : len(now.effects) - newest]:
         without = refit(case, now, effects_without(now, effect), {})
         if restarted and case.budget.allows("other starts", PROVING):
             without = restart(case, without)
         missed = now.validate is not None and removed_rms(without.validate, now.validate) > threshold(case, first)
-        if not missed and not removes_enough(case, first, without, now):
+        needed = removes_enough(case, first, without, now) or beyond_form(case, first, without, now)
+        if not missed and not needed:
             steps.append(Step(without, None, effect, {}, explained_share(case, now, without)))
             now = without
     return steps
@@ -86,8 +88,8 @@ def forms_instead(case: Case, first: Fit, now: Fit) -> list[Step]:
 
 
 def exchange_limits(case: Case, first: Fit, now: Fit) -> list[Step]:
-    """Steps from effects of which a shape ended on a bound to a form without it that fits as well: a drift that never
-    settles is a ramp."""
+    """Steps from effects of which a shape ended on a bound to the simplest form without it that fits as well: a drift
+    that never settles is a ramp."""
     steps: list[Step] = []
     for effect in now.effects[len(first.effects) :]:
         if not own_bounds(now, effect) or not case.budget.allows("other forms", PROVING):
@@ -95,7 +97,7 @@ def exchange_limits(case: Case, first: Fit, now: Fit) -> list[Step]:
         fits = fits_in_place(case, now, effect, other_forms(case, now, effect))
         free = [fit for fit in fits if is_equal(case, now, fit) and not own_bounds(fit, fit.effects[-1])]
         if free:
-            steps.append(exchange_step(case, now, min(free, key=lambda fit: fit.total), effect))
+            steps.append(exchange_step(case, now, min(free, key=lambda fit: (fit.freedom, fit.total)), effect))
             now = steps[-1].fit
     return steps
 

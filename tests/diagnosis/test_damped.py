@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import stage
+from pzt_ident.diagnosis import damped
 from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.damped import exchange_damped
 from pzt_ident.diagnosis.fit import fit_at
@@ -71,11 +72,22 @@ def test_mechanics_of_which_the_job_knows_something_are_kept(fixed):
 def test_mechanics_that_an_effect_acts_in_are_kept():
     case = stiff(stage.EFFECTS["sensor_lag"])
     first = first_fit(case, 0)
-    damped = replace(first, effects=("viscous_damping",))
-    assert mode_that_is_silent(damped) and exchange_damped(case, first, damped) is None
+    damping = replace(first, effects=("viscous_damping",))
+    assert mode_that_is_silent(damping) and exchange_damped(case, first, damping) is None
 
 
 def test_mechanics_that_take_up_nothing_are_kept():
     case = stiff({})
     first = first_fit(case, 0)
     assert exchange_damped(case, first, first) is None
+
+
+@pytest.mark.parametrize(("times", "exchanged"), [(1.05, True), (1.15, False)])
+def test_mechanics_are_kept_where_an_effect_in_their_place_fits_worse_though_adequately(monkeypatch, times, exchanged):
+    """As a mode above half of the sampling rate in the place of one."""
+    case = stiff(stage.EFFECTS["sensor_lag"])
+    first = first_fit(case, 0)
+    worse = replace(first, effects=("resonance",), identify=times * first.identify, validate=times * first.validate)
+    assert adequate(case, first, worse)
+    monkeypatch.setattr(damped, "fits_like_a_damper", lambda lean, start: [worse])
+    assert bool(exchange_damped(case, first, first)) == exchanged

@@ -269,6 +269,21 @@ def test_an_effect_that_only_led_out_of_a_side_minimum_is_removed(monkeypatch, r
     assert [step.removed for step in steps] == (["load_mass"] if restarted else [])
 
 
+@pytest.mark.parametrize(
+    ("without", "validate", "removed"), [(5.9, 1.46, []), (5.9, 1.6, ["drift"]), (1.3, 1.46, ["drift"])]
+)
+def test_what_takes_up_most_of_the_identification_records_is_needed_near_the_noise_of_the_others(
+    monkeypatch, without, validate, removed
+):
+    """A coupling to an axis that rests in the records kept back, which are a little above the noise."""
+    bare = replace(with_errors(without), validate=validate)
+    monkeypatch.setattr(exchange, "refit", lambda case, now, effects, guess: bare)
+    now = replace(with_errors(1.05), validate=validate, effects=("drift",))
+    first = replace(with_errors(7.85), validate=7.85)
+    steps = remove_unneeded(SimpleNamespace(floor=1.0, budget=Budget()), first, now, newest=0)
+    assert [step.removed for step in steps] == removed
+
+
 def test_a_proxy_is_exchanged_for_what_is_missing():
     case = stage.case(stage.EFFECTS["quadratic_gain"])
     first = first_fit(case, 0)
