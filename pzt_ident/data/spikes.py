@@ -42,22 +42,33 @@ def of_axis(record: Record, axis: str, places: NDArray[np.intp]) -> str:
 
 def spikes(record: Record, axis: int) -> NDArray[np.intp]:
     """The samples at which the response of an axis stands far beside the line through its neighbours, or the first and
-    the last beside that through the next two, and none of the drives does."""
-    strange = stands_out(record.response[axis])
-    return np.flatnonzero(strange & ~np.any([stands_out(drive) for drive in record.drive], axis=0))
-
-
-def stands_out(signal: Array) -> NDArray[np.bool_]:
-    """Of each sample, (samples,), whether it stands far beside those around it."""
-    if signal.size <= 2 * AROUND + 3:
-        return np.zeros(signal.size, bool)
-    off, edge = off_line(signal), AROUND + 1
-    size = np.abs(off)
-    around = np.lib.stride_tricks.sliding_window_view(np.pad(size[1:-1], edge + 1), 2 * edge + 1)
+    the last beside that through the next two, while the drives neither kink nor turn: what sticks jumps as they do."""
+    response = record.response[axis]
+    if response.size <= 2 * AROUND + 3:
+        return np.zeros(0, np.intp)
+    off, edge = off_line(response), AROUND + 1
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(np.abs(off)[1:-1], edge + 1), 2 * edge + 1)
     usual = np.delete(around, (edge - 1, edge, edge + 1), axis=1).max(axis=1)
-    steps = np.abs(np.diff(signal))
-    least = max(CLEAR * float(np.median(size)), 2 * float(steps[steps > 0].min(initial=np.inf)))
-    return np.asarray((size > FAR * usual) & (size > least) & is_single(signal, off))
+    driven = np.max([kinked(drive) * np.ptp(response) for drive in record.drive], axis=0)
+    steps = np.abs(np.diff(response))
+    least = max(CLEAR * float(np.median(np.abs(off))), 2 * float(steps[steps > 0].min(initial=np.inf)))
+    far = np.abs(off) > np.maximum(FAR * np.maximum(usual, driven), least)
+    turning = np.any([turns(drive) for drive in record.drive], axis=0)
+    return np.flatnonzero(far & is_single(response, off) & ~turning)
+
+
+def turns(drive: Array) -> NDArray[np.bool_]:
+    """Of each sample, (samples,), whether a drive turns there or beside it."""
+    moves = np.diff(drive)
+    there = np.pad(moves[:-1] * moves[1:] < 0, 2)
+    return np.asarray(there[:-2] | there[1:-1] | there[2:])
+
+
+def kinked(drive: Array) -> Array:
+    """How far a drive, (samples,), is off the lines through its neighbours at most around each sample, of its range."""
+    width = 2 * AROUND + 1
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(np.abs(off_line(drive)), AROUND), width)
+    return np.asarray(around.max(axis=1) / (np.ptp(drive) or 1.0))
 
 
 def is_single(signal: Array, off: Array) -> NDArray[np.bool_]:
