@@ -18,8 +18,8 @@ from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refit
-from pzt_ident.diagnosis.score import Score
-from pzt_ident.diagnosis.starts import best_alias, first_fit, restart
+from pzt_ident.diagnosis.score import Score, fitting_forms
+from pzt_ident.diagnosis.starts import at_a_glance, best_alias, first_fit, restart
 from pzt_ident.diagnosis.step import Doubt, Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.verdict import Diagnosis, best_pair, diagnose, pair_behind
@@ -27,6 +27,7 @@ from pzt_ident.model.registry import blocks, word_of
 
 MOST_STEPS = 8
 PATIENCE = 3  # effects that take up less than half of the misfit, after which no other is tried
+MOST_ANEW = 6  # effects that are fitted from random points
 WIDER = "wider bounds"  # the step that widens those of the job
 
 
@@ -229,7 +230,7 @@ def add_pair(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Ste
 def add_restarted(case: Case, first: Fit, now: Fit, diagnosis: Diagnosis) -> list[Step]:
     """An effect of the short list that fits once its own or another block, such as the hysteresis, starts elsewhere."""
     far, alone = now.identify > FAR * case.floor, now.effects == first.effects
-    restarted = started_anew(case, diagnosis) if far else restarted_by_block(case, diagnosis, every_block=alone)
+    restarted = started_anew(case, now, diagnosis) if far else restarted_by_block(case, diagnosis, every_block=alone)
     passing = [(score, fit) for score, fit in restarted if removes_enough(case, first, now, fit)]
     if not passing:
         return []
@@ -247,13 +248,20 @@ def restarted_by_block(case: Case, diagnosis: Diagnosis, every_block: bool) -> I
             yield candidate.score, restart(case, candidate.fit, block)
 
 
-def started_anew(case: Case, diagnosis: Diagnosis) -> Iterator[tuple[Score, Fit]]:
-    """The short list in each form that was refitted, with all blocks from random points, but for what has amounts of
-    each record: no random point has its frequency."""
-    least = np.inf
-    for candidate in diagnosis.candidates:
-        for item, fit in candidate.refits.items():
-            if not blocks[item].amounts() and case.budget.allows("other starts"):
-                anew = first_fit(case, 0, effects=fit.effects, rival=least)
-                least = min(least, anew.identify)
-                yield replace(candidate.score, effect=item), anew
+def started_anew(case: Case, now: Fit, diagnosis: Diagnosis) -> Iterator[tuple[Score, Fit]]:
+    """Every effect in every form, with all blocks from random points, those first that are lowest at a glance: beside a
+    fit that rests elsewhere, scores say little. But for what has amounts of each record: no random point has its
+    frequency."""
+    scores = {
+        item: replace(candidate.score, effect=item)
+        for candidate in diagnosis.candidates
+        for item in fitting_forms(case, now.effects, word_of(candidate.score.effect))
+        if not blocks[item].amounts()
+    }
+    glanced = (item for item in scores if case.budget.allows("other starts"))
+    losses, least = {item: at_a_glance(case, (*now.effects, item)) for item in glanced}, np.inf
+    for item in sorted(losses, key=losses.__getitem__)[:MOST_ANEW]:
+        if case.budget.allows("other starts"):
+            anew = first_fit(case, 0, effects=(*now.effects, item), rival=least)
+            least = min(least, anew.identify)
+            yield scores[item], anew

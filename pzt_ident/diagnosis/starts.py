@@ -17,6 +17,7 @@ from pzt_ident.diagnosis.modes import with_aliases
 from pzt_ident.diagnosis.refit import refine_steps
 from pzt_ident.diagnosis.threads import side_by_side
 from pzt_ident.model.block import Modes
+from pzt_ident.search.descent import descend
 from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
@@ -24,6 +25,7 @@ Array = NDArray[np.float64]
 STARTS = 240  # random points; the best are refined, a batch at a time, until two minima agree
 REFINED, MOST_REFINED = 4, 24  # points in a batch, and in all batches
 AGREEMENT = 0.01  # of the loss, between the two best minima
+GLANCED, GLANCES = 2, 6  # points and steps from each that tell where a model leads
 ENOUGH = 12  # minima that agree: a model that is not adequate is fitted from more points than lead to two, until then
 ON_STARTS = 0.1  # of the budget, which ends that where two agree
 STARTS_BESIDE = 60  # random points of the model with other effects, and where each costs a solution
@@ -65,6 +67,14 @@ def first_fit(
     point = min((minima[np.argmin(losses)], best_of_each_axis(case, problem, minima)), key=lambda p: problem.loss(p)[0])
     fit = fit_at(effects, problem, case.descend(problem, point), agreed or known is not None)
     return refine_steps(case, best_exchange(case, fit if fit.converged else settled(case, fit)), fine=True)
+
+
+def at_a_glance(case: Case, effects: tuple[str, ...]) -> float:
+    """The loss to which few steps from few random points lead the model with other effects."""
+    problem = case.problem(effects)
+    starts = ranked_points(problem, 0, STARTS_BESIDE)[:GLANCED]
+    points = np.array([descend(problem, start, GLANCES, going=case.budget.lasts) for start in starts])
+    return float(problem.loss(points).min())
 
 
 def best_exchange(case: Case, fit: Fit) -> Fit:

@@ -13,7 +13,7 @@ from pzt_ident.diagnosis.climb import add_pair, add_restarted
 from pzt_ident.diagnosis.exchange import exchange_any, remove_unneeded
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.refit import refit
-from pzt_ident.diagnosis.score import Score
+from pzt_ident.diagnosis.score import Score, fitting_forms
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step, explained_share
@@ -166,6 +166,27 @@ def test_an_effect_that_rests_in_a_side_minimum_is_a_stair_once_nothing_else_is_
     (step,) = add_restarted(case, first, first, Diagnosis("unexplained", "", first, [candidate], []))
     assert step.added == "quadratic_gain"
     assert step.fit.identify == pytest.approx(stage.NOISE, rel=0.1)
+
+
+def test_far_from_the_noise_those_effects_are_fitted_anew_that_lead_lowest_at_a_glance(monkeypatch):
+    """Whatever their scores, in every form, but for those with amounts of each record."""
+    case, tried = stage.case({}), []
+    words = ("friction", "saturation", "drift", "delay")
+    items = [item for word in words for item in fitting_forms(case, (), word) if word != "drift"]
+    ranked = ["friction.coulomb", "delay", "saturation.knee"]
+    now = replace(with_errors(100.0), effects=())
+
+    def first_fit(case, seed, effects, rival):
+        tried.append((effects[-1], rival))
+        return replace(with_errors(50.0 - len(tried)), effects=effects)
+
+    monkeypatch.setattr(climb, "at_a_glance", lambda case, effects: [*ranked, *items].index(effects[-1]))
+    monkeypatch.setattr(climb, "first_fit", first_fit)
+    diagnosis = Diagnosis("unexplained", "", now, [Candidate(Score(word)) for word in words], [])
+    found = list(climb.started_anew(case, now, diagnosis))
+    assert [score.effect for score, _ in found] == [item for item, _ in tried]
+    assert [item for item, _ in tried[:3]] == ranked and len(tried) == climb.MOST_ANEW
+    assert [rival for _, rival in tried[:3]] == [np.inf, 49.0, 48.0]
 
 
 @pytest.mark.parametrize(("noise", "takes", "astray"), [(1.0, 0.2, True), (1.0, 0.9, False), (30.0, 0.2, False)])

@@ -15,6 +15,7 @@ from pzt_ident.diagnosis.refit import FINEST, STEP_TOLERANCE, step_errors
 from pzt_ident.diagnosis.score import fits
 from pzt_ident.diagnosis.starts import (
     STARTS_SOLVED,
+    at_a_glance,
     best_exchange,
     best_of,
     first_fit,
@@ -55,6 +56,16 @@ def test_effects_of_the_job_begin_near_their_nulls_or_anywhere(item):
             assert value == pytest.approx(null, abs=1e-12)
         near = np.mean(np.abs(column - (0.5 if np.isnan(place) else place)) < 0.02)
         assert (near < 0.1) if np.isnan(place) else (0.12 < near < 0.3)
+
+
+def test_a_glance_leads_lower_than_random_points_and_no_lower_than_a_fit(creeping):
+    problem = creeping.problem(("creep",))
+    glanced = at_a_glance(creeping, ("creep",))
+    assert (
+        first_fit(creeping, 0, effects=("creep",)).identify
+        < glanced
+        < problem.loss(ranked_points(problem, 0, 60)).min()
+    )
 
 
 def test_the_first_fit_is_a_function_of_its_seed(creeping):
