@@ -16,6 +16,7 @@ from pzt_ident.data.windows import Signal, window_noise
 
 Array = NDArray[np.float64]
 
+ROUNDING, UNSEEN = 1e-9, 1e-4  # of the span of a response: what is less is no noise; what stands for it then
 LEAST_SCALE = 5e-3  # of the span of a response
 COARSE = 2.2  # times the noise at rest: a step of the readings of which a rest sees few or none
 LIKE = 1.5  # times that noise: what windows may say instead, in which the response goes through many steps
@@ -33,13 +34,19 @@ class Floor(NamedTuple):
 def noise_floor(records: list[Record], axis: int) -> Floor:
     """Noise of an axis, from the best evidence there is: repeated records, rest segments, repeated periods, else short
     windows. Where repeated records differ far more than a rest is noisy, the stage changed between them, which a model
-    may explain.
+    may explain. Readings of a formula have none, for which a part of their range stands.
 
     The noise is the sensor's, the same in all records, and what a stage adds, such as ringing, only makes an estimate
     larger: those that are clearly above the quietest are left out, and where those of the quietest quarter are not
     alike, windows may know better. A quantiser adds its own. Windows are weak evidence: they take slow noise for
     signal, and fast signal that does not follow the drive for noise.
     """
+    found, span = evident_floor(records, axis), max(float(np.ptp(r.response[axis])) for r in records)
+    return found if found.value > ROUNDING * span else Floor(UNSEEN * span, "no noise: 1e-4 of the range")
+
+
+def evident_floor(records: list[Record], axis: int) -> Floor:
+    """The same by that evidence alone, 0 where the readings have no noise at all."""
     signals = [Signal(r.drive[:, r.settle :], r.response[axis, r.settle :], r.dt) for r in records]
     step = common_step([r.response[axis] for r in records])
     repeats, still = floor_of_repeats(records, axis, step), floor_of_rests(signals, step)

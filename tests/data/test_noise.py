@@ -346,3 +346,11 @@ def test_steps_of_the_readings_that_rests_hardly_see_are_in_the_noise(size, seed
     read = np.round(drive + white(drive.size, size, seed=seed))
     floor = noise_floor([record(drive, read)], 0)
     assert floor.value == pytest.approx(np.hypot(size, 1 / 12**0.5), rel=0.12)
+
+
+def test_readings_without_any_noise_are_good_to_a_part_of_their_range():
+    """As of a formula; a floor of zero would be divided by."""
+    drive = 50 * (1 - np.cos(2 * np.pi * np.arange(6000) / 1000))
+    for made in (record(drive, 1e-7 * drive), record(np.minimum(drive, 60.0), 1e-7 * np.minimum(drive, 60.0))):
+        floor = noise_floor([made], 0)
+        assert floor.value == pytest.approx(1e-4 * np.ptp(made.response)) and floor.source.startswith("no noise")
