@@ -50,7 +50,7 @@ def test_time_changes_nothing_but_on_a_machine_that_is_slower(share, worked, tak
         spent = budget.Budget(60)
         work.add(worked)
         now += taken
-        most = min(share * budget.SLOWER, share + budget.LATER * (1 - share)) * 60
+        most = min(share * budget.SLOWER, share + budget.LATER * max(budget.WHOLE - share, 0)) * 60
         if taken < most - 1e-9:
             assert spent.spent(share) == (worked >= share * 60)
         elif taken > most + 1e-9:
