@@ -10,7 +10,7 @@ import numpy as np
 from pzt_ident.diagnosis.bounds import continued, roomier
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import NO_WORSE, Fit
-from pzt_ident.diagnosis.spectral_line import harmonic_of_the_drive
+from pzt_ident.diagnosis.spectral_line import harmonic_of_the_drive, is_of_the_counts
 from pzt_ident.diagnosis.unequal import differs_in_size
 from pzt_ident.model.chain import Entry
 from pzt_ident.model.parameter import SMALL
@@ -75,9 +75,11 @@ def is_limited(fit: Fit) -> bool:
 
 
 def harmonic_of(fit: Fit, effect: str) -> str:
-    """What an effect is that is a line of the spectrum at a low harmonic of all drives; empty for any other."""
-    order = harmonic_of_the_drive(fit, effect)
-    return f"harmonic {order} of the drive, as a nonlinearity of the stage makes it" if order else ""
+    """What an effect is that is a line of the spectrum at a low harmonic of all drives, or at one over the counts of
+    the sensor; empty for any other."""
+    if order := harmonic_of_the_drive(fit, effect):
+        return f"harmonic {order} of the drive, as a nonlinearity of the stage makes it"
+    return "as short as the counts of the sensor, which are such a line" if is_of_the_counts(fit, effect) else ""
 
 
 def size_of(fit: Fit, effect: str) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.periods import period_of
+from pzt_ident.data.quantiser import common_step
 from pzt_ident.data.record import Record
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import CLEAR, removed_rms
@@ -23,6 +24,7 @@ NEAR = 4  # frequencies of a record on either side of a line that are its band, 
 OWN = 0.9  # of the misfit of its band: what a line takes up that is one
 LOUD = 10.0  # times the noise in its band: a line that is told from it
 FEWEST = 3  # periods of a line in a record that shows it
+COUNTS = 3.5  # of the sensor in a period of a line over the displacement, which may be that of the counts
 LOWEST = 8  # harmonics of a drive up to this one are those that a stage makes
 
 
@@ -83,6 +85,18 @@ def harmonic_of_the_drive(fit: Fit, effect: str) -> int:
     frequencies = [line.wave for line in lines_of(fit, effect) if line.over_time]
     orders = (order_of(record, frequency) for frequency in frequencies for record in fit.problem.records)
     return min(orders, default=0)
+
+
+def is_of_the_counts(fit: Fit, effect: str) -> bool:
+    """Whether a line over the displacement has a period of few counts of the sensor: the rounding of readings to whole
+    counts is such a line and its harmonics."""
+    lines = [line for line in lines_of(fit, effect) if not line.over_time]
+    measured = fit.problem.model.measured
+
+    def count(row: int) -> float:
+        return common_step([record.response[measured[row]] for record in fit.problem.records])
+
+    return any(1 / line.wave < COUNTS * count(line.row) for line in lines)
 
 
 def order_of(record: Record, frequency: float) -> int:

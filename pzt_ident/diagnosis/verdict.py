@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 
 import numpy as np
@@ -248,9 +248,12 @@ def without_effect(case: Case, first: Fit, before: Fit, candidates: list[Candida
 
 
 def unexplained(case: Case, first: Fit, found: Diagnosis) -> Diagnosis:
-    """The diagnosis of a model that unproven effects were taken out of: what is left is not one of them."""
+    """The diagnosis of a model that unproven effects were taken out of: what is left is not one of them, if it is more
+    than the noise."""
     for candidate in found.candidates:
         candidate.decision = "suspect" if candidate.decision == "missing" else candidate.decision
+    if adequate(case, first, found.before):
+        return replace(without_effect(case, first, found.before, found.candidates), passing=found.passing)
     reason = found.reason if found.verdict == "unexplained" else nothing_explains(case, found.before)
     reason = with_proven(case, first, found.before, reason)
     return Diagnosis("unexplained", reason, found.before, found.candidates, [], found.passing)

@@ -7,7 +7,7 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis.fit import fit_at
-from pzt_ident.diagnosis.limit import is_limited
+from pzt_ident.diagnosis.limit import harmonic_of, is_limited
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.spectral_line import is_own_line, order_of, power_near
 from pzt_ident.diagnosis.staircase import improve
@@ -92,6 +92,24 @@ def test_a_low_harmonic_of_the_drive_is_as_well_the_stage_itself(frequency, limi
     problem = case.problem((HUM,))
     point = problem.unit_point(first.values | {f"{HUM}.frequency": frequency})
     assert is_limited(fit_at((HUM,), problem, point)) == limited
+
+
+@pytest.mark.parametrize("step", [0.0, 2e-8, 1e-7])
+def test_the_counts_of_the_sensor_are_no_cyclic_error(step):
+    """The rounding of readings to counts is a function of the displacement, of the period of a count."""
+    rounded = lambda record: step * np.round(record.response / step) - record.response if step else 0.0  # noqa: E731
+    found = improve(case := stage.with_response(stage.case({}), rounded), first_fit(case, 0))
+    assert found.end.effects == () and found.last.verdict == "adequate"
+
+
+@pytest.mark.parametrize(("counts", "limited"), [(1.0, True), (3.0, True), (4.0, False)])
+def test_a_cyclic_error_of_few_counts_may_be_theirs(counts, limited):
+    step = 1e-7
+    case = stage.with_response(stage.case({}), lambda record: step * np.round(record.response / step) - record.response)
+    first, problem = first_fit(case, 0), case.problem((GRATING,))
+    grating = {f"{GRATING}.sine": 0.01, f"{GRATING}.cosine": 0.0, f"{GRATING}.pitch": counts * step * 1e6}
+    fit = fit_at((GRATING,), problem, problem.unit_point(first.values | grating))
+    assert bool(harmonic_of(fit, GRATING)) == limited
 
 
 def test_a_drive_that_does_not_repeat_has_no_harmonics():
