@@ -31,7 +31,10 @@ def rate_or_stamps(t: Any, where: str) -> tuple[float | None, Array | None]:
         if rate is None:
             raise InputError(f"{t!r} is no sample rate", where=where, remedy=remedy)
         return _positive(rate, where, remedy), None
-    values = _flat(np.asarray(t))
+    values = _flat(t if isinstance(t, np.ma.MaskedArray) else np.asarray(t))
+    if values.dtype.kind == "O" and values.size and all(hasattr(each, "timestamp") for each in values.flat):
+        values = np.array([each.timestamp() for each in values.flat])
+        values -= values[0]
     if values.dtype.kind == "M":
         values = values - values[0]
     if values.dtype.kind == "m":
@@ -40,6 +43,17 @@ def rate_or_stamps(t: Any, where: str) -> tuple[float | None, Array | None]:
     if values.ndim > 1:
         raise InputError(f"an array of shape {values.shape}", where=where, remedy=remedy)
     return (None, values) if values.ndim else (_positive(float(values), where, remedy), None)
+
+
+def check_indices(*signals: Any, where: str) -> None:
+    """Raises InputError for pandas objects whose indices say another order than their places: those that do not rise,
+    and two that differ, but for one that only counts."""
+    every = [each for signal in signals for each in (signal.values() if isinstance(signal, dict) else [signal])]
+    indices = [each.index for each in every if hasattr(each, "iloc")]
+    telling = [index for index in indices if not np.array_equal(index, range(len(index)))]
+    if any(not index.is_monotonic_increasing or not index.equals(telling[0]) for index in telling):
+        remedy = "align them, as in a frame that holds all of them, or give their `.to_numpy()`"
+        raise InputError("the signals have different indices", where=where, remedy=remedy)
 
 
 def seconds(value: Any, where: str) -> float:
@@ -72,13 +86,13 @@ def by_axis(signals: Signals, samples: int | None, where: str, axes: Sequence[st
 
 
 def numbers(values: Any, where: str) -> Array:
-    """Real numbers; what is masked is a gap."""
+    """Real numbers, in an array of their own; what is masked is a gap."""
     try:
-        if np.iscomplexobj(values):
+        if np.iscomplexobj(values) or np.asarray(values).dtype.kind == "b":
             raise TypeError
         if isinstance(values, np.ma.MaskedArray):
             return np.ma.filled(values.astype(np.float64), np.nan)
-        return np.asarray(values, dtype=np.float64)
+        return np.array(values, dtype=np.float64)
     except (TypeError, ValueError):
         remedy = "give plain real numbers, NaN where one is missing"
         raise InputError("holds something that is no number", where=where, remedy=remedy) from None

@@ -20,6 +20,7 @@ from pzt_ident.api.arguments import (
     by_axis,
     by_level,
     by_unit,
+    check_indices,
     path_of,
     rate_or_stamps,
     seconds,
@@ -74,6 +75,7 @@ class Record:
         title = name or "record"
         self.name, self.run_in, self.steps = name, run_in, steps
         self.denoise_drive, self.smooth_drive = denoise_drive, smooth_drive
+        check_indices(t, u, y, where=title)
         self.settle = seconds(settle, f"{title}: settle")
         self.rate, self.t = rate_or_stamps(t, f"{title}: t")
         samples = None if self.t is None else self.t.size
@@ -111,7 +113,9 @@ class Record:
         )
         stamps: Any = time
         if isinstance(time, str) and (time in frame.columns or not QUANTITY.match(time)):
-            stamps = _column(frame, time) * _seconds_in(_header_unit(time, "s"))
+            stamps = _column(frame, time)
+            if np.asarray(stamps).dtype.kind in "iuf":
+                stamps = stamps * _seconds_in(_header_unit(time, "s"))
         signals = [{axis: _column(frame, column) for axis, column in side.items()} for side in (drives, responses)]
         units = [{axis: _header_unit(column) for axis, column in side.items()} for side in (drives, responses)]
         return cls(stamps, signals[0], signals[1] or None, drive=units[0], response=units[1], **more)

@@ -115,3 +115,47 @@ def test_what_is_masked_is_a_gap(part, quick):
     t, u, y = part
     with pytest.raises(pzt.InputError, match="y: axis x: 1 value is missing: row 5"):
         quick(t, u, np.ma.masked_array(y, np.arange(t.size) == 5))
+
+
+class TestArraysOfOthers:
+    """What a lab has in its hands: buffers that are filled again, frames, masks and dates."""
+
+    T = np.arange(300) * 1e-2
+    U = 50 - 50 * np.cos(T)
+
+    def test_a_buffer_that_is_filled_again_changes_no_record(self):
+        t, u, y = self.T.copy(), self.U.copy(), 0.1 * self.U
+        record = pzt.Record(t, u, y)
+        t[:], u[:], y[:] = 0, 0, 0
+        assert np.array_equal(record.t, self.T) and np.array_equal(record.u["x"], self.U) and record.y["x"].any()
+
+    def test_series_of_other_indices_are_refused(self):
+        u, y = pd.Series(self.U, index=self.T), pd.Series(0.1 * self.U, index=self.T)
+        for same in (y, y.reset_index(drop=True), y.to_numpy()):
+            assert pzt.Record("100 Hz", u, same).samples == 300
+        for other in (y.sample(frac=1, random_state=1), y.rename(lambda second: second + 0.1)):
+            with pytest.raises(pzt.InputError, match="different indices"):
+                pzt.Record("100 Hz", u, other)
+            with pytest.raises(pzt.InputError, match="different indices"):
+                pzt.Record("100 Hz", {"x": u}, {"x": other})
+
+    def test_a_time_that_is_masked_is_a_gap(self):
+        masked = np.ma.masked_array(self.T, mask=np.arange(300) == 5)
+        with pytest.raises(pzt.InputError):
+            pzt.identify(pzt.Model("bouc_wen"), pzt.Record(masked, self.U, 0.1 * self.U))
+
+    @pytest.mark.parametrize("zone", [None, "Europe/Berlin"])
+    def test_dates_are_stamps_however_they_are_held(self, zone):
+        dates = pd.date_range("2026-03-01 10:00", periods=300, freq="10ms", tz=zone)
+        frame = pd.DataFrame({"time": dates, "u [V]": self.U, "x [um]": 0.1 * self.U})
+        records = [
+            pzt.Record(held, self.U, 0.1 * self.U)
+            for held in (dates, pd.Series(dates), list(dates), dates.to_pydatetime())
+        ]
+        records.append(pzt.Record.from_frame(frame, time="time", drive="u [V]", response="x [um]"))
+        for record in records:
+            assert np.allclose(record.t, self.T, atol=1e-6)
+
+    def test_true_and_false_are_no_drive(self):
+        with pytest.raises(pzt.InputError, match="no number"):
+            pzt.Record("100 Hz", self.U > 50, 0.1 * self.U)
