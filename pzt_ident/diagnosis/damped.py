@@ -14,6 +14,7 @@ from pzt_ident.diagnosis.score import applicable, scorer_of
 from pzt_ident.diagnosis.step import Step, explained_share
 from pzt_ident.diagnosis.ties import is_equal, is_tied
 from pzt_ident.diagnosis.undetermined import (
+    MODE,
     Undetermined,
     clearly_worse_without,
     mode_that_is_silent,
@@ -51,7 +52,8 @@ def exchange_damped(case: Case, first: Fit, end: Fit) -> tuple[list[Step], Undet
 
 def fits_like_a_damper(case: Case, start: Fit) -> Iterator[Fit]:
     """The refits with the effects that leave the trace of a damper, in each form that explains nearly all by its
-    score."""
-    for word in (word for word in blocks[DAMPER].look_alikes if word in applicable(case, start.effects)):
+    score; not with another mode, which the mechanics are."""
+    words = [word for word in applicable(case, start.effects) if word in blocks[DAMPER].look_alikes and word != MODE]
+    for word in words:
         scores = [score for score in scorer_of(case, start).scores(word) if score.explained >= NEARLY_ALL]
         yield from (refit_from(case, start, (*start.effects, score.effect), score.guesses) for score in scores)

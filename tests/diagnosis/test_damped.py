@@ -1,6 +1,7 @@
 """Mechanics that do not ring in an adequate model stand in for a lag."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -91,3 +92,12 @@ def test_mechanics_are_kept_where_an_effect_in_their_place_fits_worse_though_ade
     assert adequate(case, first, worse)
     monkeypatch.setattr(damped, "fits_like_a_damper", lambda lean, start: [worse])
     assert bool(exchange_damped(case, first, first)) == exchanged
+
+
+def test_a_mode_is_no_account_of_mechanics_that_do_not_ring(monkeypatch):
+    scored = []
+    scores = lambda word: scored.append(word) or []  # noqa: E731
+    monkeypatch.setattr(damped, "scorer_of", lambda case, fit: SimpleNamespace(scores=scores))
+    case = stiff({})
+    assert list(damped.fits_like_a_damper(case, SimpleNamespace(effects=()))) == []
+    assert {*scored} == {*blocks["viscous_damping"].look_alikes} - {"resonance"}
