@@ -249,18 +249,23 @@ def restarted_by_block(case: Case, diagnosis: Diagnosis, every_block: bool) -> I
 
 
 def started_anew(case: Case, now: Fit, diagnosis: Diagnosis) -> Iterator[tuple[Score, Fit]]:
-    """Every effect in every form, with all blocks from random points, those first that are lowest at a glance: beside a
-    fit that rests elsewhere, scores say little. But for what has amounts of each record: no random point has its
-    frequency."""
+    """The short list in each form that was refitted, with all blocks from random points, but for what has amounts of
+    each record: no random point has its frequency. Beside a fit that rests on bounds, where scores say little, every
+    effect in every form, those first that are lowest at a glance."""
     scores = {
         item: replace(candidate.score, effect=item)
         for candidate in diagnosis.candidates
-        for item in fitting_forms(case, now.effects, word_of(candidate.score.effect))
+        for item in (
+            fitting_forms(case, now.effects, word_of(candidate.score.effect)) if now.on_bounds else candidate.refits
+        )
         if not blocks[item].amounts()
     }
-    glanced = (item for item in scores if case.budget.allows("other starts"))
-    losses, least = {item: at_a_glance(case, (*now.effects, item)) for item in glanced}, np.inf
-    for item in sorted(losses, key=losses.__getitem__)[:MOST_ANEW]:
+    items, least = [*scores], np.inf
+    if now.on_bounds:
+        glanced = (item for item in scores if case.budget.allows("other starts"))
+        losses = {item: at_a_glance(case, (*now.effects, item)) for item in glanced}
+        items = sorted(losses, key=losses.__getitem__)[:MOST_ANEW]
+    for item in items:
         if case.budget.allows("other starts"):
             anew = first_fit(case, 0, effects=(*now.effects, item), rival=least)
             least = min(least, anew.identify)

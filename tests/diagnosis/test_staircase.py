@@ -168,25 +168,30 @@ def test_an_effect_that_rests_in_a_side_minimum_is_a_stair_once_nothing_else_is_
     assert step.fit.identify == pytest.approx(stage.NOISE, rel=0.1)
 
 
-def test_far_from_the_noise_those_effects_are_fitted_anew_that_lead_lowest_at_a_glance(monkeypatch):
-    """Whatever their scores, in every form, but for those with amounts of each record."""
+@pytest.mark.parametrize("on_bounds", [True, False])
+def test_far_from_the_noise_effects_are_fitted_anew(monkeypatch, on_bounds):
+    """Of the short list; beside a fit that rests on bounds those that lead lowest at a glance, whatever their scores,
+    in every form, but for those with amounts of each record."""
     case, tried = stage.case({}), []
     words = ("friction", "saturation", "drift", "delay")
     items = [item for word in words for item in fitting_forms(case, (), word) if word != "drift"]
-    ranked = ["friction.coulomb", "delay", "saturation.knee"]
+    glanced = ["friction.coulomb", "delay", "saturation.knee"]
     now = replace(with_errors(100.0), effects=())
+    now.__dict__["on_bounds"] = ("bouc_wen.alpha",) if on_bounds else ()
 
     def first_fit(case, seed, effects, rival):
         tried.append((effects[-1], rival))
         return replace(with_errors(50.0 - len(tried)), effects=effects)
 
-    monkeypatch.setattr(climb, "at_a_glance", lambda case, effects: [*ranked, *items].index(effects[-1]))
+    monkeypatch.setattr(climb, "at_a_glance", lambda case, effects: [*glanced, *items].index(effects[-1]))
     monkeypatch.setattr(climb, "first_fit", first_fit)
-    diagnosis = Diagnosis("unexplained", "", now, [Candidate(Score(word)) for word in words], [])
-    found = list(climb.started_anew(case, now, diagnosis))
+    refits = {"drift": {"drift": now}, "saturation": {"saturation": now, "saturation.cubic": now}}
+    every = [Candidate(Score(word), refits=refits.get(word, {})) for word in words]
+    found = list(climb.started_anew(case, now, Diagnosis("unexplained", "", now, every, [])))
+    expected = glanced if on_bounds else ["saturation", "saturation.cubic"]
     assert [score.effect for score, _ in found] == [item for item, _ in tried]
-    assert [item for item, _ in tried[:3]] == ranked and len(tried) == climb.MOST_ANEW
-    assert [rival for _, rival in tried[:3]] == [np.inf, 49.0, 48.0]
+    assert [item for item, _ in tried[:3]] == expected and len(tried) == (climb.MOST_ANEW if on_bounds else 2)
+    assert [rival for _, rival in tried[:2]] == [np.inf, 49.0]
 
 
 @pytest.mark.parametrize(("noise", "takes", "astray"), [(1.0, 0.2, True), (1.0, 0.9, False), (30.0, 0.2, False)])
