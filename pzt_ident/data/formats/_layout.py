@@ -7,6 +7,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from operator import methodcaller
 
 from pzt_ident.data.units import is_unit
@@ -14,6 +15,7 @@ from pzt_ident.errors import InputError
 
 DELIMITERS = ("\t", ";", ",", " ")
 COMMENTS = ("#", "%", "//", "!")
+FLAGS = 3  # values of a column of flags, which may have no name at the end of a row
 GAPS = frozenset(("", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--"))
 
 
@@ -71,7 +73,11 @@ def detect_layout(lines: Sequence[str], where: str, delimiter: str | None = None
         remedy = "was the recording stopped before it was saved?" if alone else "is it the right file, sheet or table?"
         raise InputError(problem, where=where, remedy=remedy)
     above = [lines[i].lstrip("".join(COMMENTS) + " ") for i in filled if i < start]
-    return Layout(layout.delimiter, layout.decimal, start, width, _names(above, layout, width))
+    names = _names(above, layout, width)
+    surplus = [{row[k].strip() for row in full} for k in numeric if k >= len(names)]
+    if names and any(len(values) > min(FLAGS, len(full) / 2) and "" not in values for values in surplus):
+        names = _beside_row_names(names, full, width, where)
+    return Layout(layout.delimiter, layout.decimal, start, width, (*names, *[""] * (width - len(names))))
 
 
 def _punctuation(sample: Sequence[str], delimiter: str | None) -> Layout:
@@ -116,29 +122,51 @@ def _start(lines: Sequence[str], data: Sequence[int], layout: Layout, width: int
 
 
 def _names(above: Sequence[str], layout: Layout, width: int) -> tuple[str, ...]:
-    """Header texts from the lines `above` the numbers, joined with the units of a second header line."""
+    """Header texts from the lines `above` the numbers, joined with the units of a second header line; fewer than there
+    are columns where the last have none, and none without a header."""
     last = _fields(above[-1], layout, width) if above else []
     first = _fields(above[-2], layout, width) if len(above) > 1 and _are_units(last) else []
-    if _are_names(first, width):
+    if len(first) == len(last) and _are_names(first):
         return tuple(f"{name} [{unit.strip('[]()- ')}]" for name, unit in zip(first, last, strict=True))
-    return tuple(last) if _are_names(last, width) else ("",) * width
+    return tuple(last) if _are_names(last) else ()
+
+
+def _beside_row_names(names: tuple[str, ...], rows: Sequence[Sequence[str]], width: int, where: str) -> tuple[str, ...]:
+    """The names of columns where those of numbers are more: that of the first is missing where it counts the rows.
+    Raises InputError where it does not and the names have units: none says which column is meant."""
+    if width == len(names) + 1 and _counts(row[0] for row in rows):
+        return ("", *names)
+    if not any(re.search(r"[\[(].+[\])]$", name) for name in names):
+        return ()
+    problem = f"the header names {len(names)} columns, and the rows have {width}"
+    remedy = "name every column; where a comma is the decimal sign, export with semicolons between the columns"
+    raise InputError(problem, where=where, remedy=remedy)
+
+
+def _counts(cells: Iterable[str]) -> bool:
+    """Whether cells are whole numbers, each one more than the one before."""
+    texts = [cell.strip() for cell in cells]
+    numbers = [int(text) for text in texts if text.isdigit()]
+    return len(numbers) == len(texts) and all(b - a == 1 for a, b in pairwise(numbers))
 
 
 def _fields(line: str, layout: Layout, width: int) -> list[str]:
-    """The cells of a header line, by the delimiter of the numbers or another one that gives as many cells."""
+    """The cells of a header line, by the delimiter of the numbers or another one that gives as many cells, without the
+    empty ones at its end."""
     for delimiter in (layout.delimiter, *DELIMITERS):
         if delimiter == " " and '"' not in line:
             cells = re.findall(r"\S+(?:\s*[\[(][^\])]*[\])])?", line)
         else:
             cells = [cell.strip() for cell in Layout(delimiter, ".").split(line)]
-        cells += [""] * (width - len(cells))
-        if 2 * sum(map(bool, cells)) > width and not any(cells[width:]):
-            return cells[:width]
+        while cells and not cells[-1]:
+            cells.pop()
+        if 2 * sum(map(bool, cells)) >= width >= len(cells):
+            return cells
     return []
 
 
-def _are_names(cells: Sequence[str], width: int) -> bool:
-    return len(cells) == width and not any(re.fullmatch(r"[+-]?[\d.,]+(?:[eE][+-]?\d+)?", cell) for cell in cells)
+def _are_names(cells: Sequence[str]) -> bool:
+    return bool(cells) and not any(re.fullmatch(r"[+-]?[\d.,]+(?:[eE][+-]?\d+)?", cell) for cell in cells)
 
 
 def _are_units(cells: Iterable[str]) -> bool:

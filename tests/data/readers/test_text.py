@@ -111,3 +111,28 @@ def test_a_block_of_settings_with_a_table_like_shape_is_no_data(tmp_path, read):
 def test_the_trailing_delimiter_of_an_instrument_is_no_column(tmp_path, read):
     path = write(tmp_path, "t [s]\tu [V]\tx [um]\t\n0\t0\t1\t\n1\t1\t3\t\n2\t0\t2\t\n")
     assert read(path).samples == 3
+
+
+ROW_NAMES = {"of R": "1 2 3 4", "quoted": '"1" "2" "3" "4"', "from zero": "0 1 2 3", "from the middle": "17 18 19 20"}
+
+
+@pytest.mark.parametrize("names", ROW_NAMES.values(), ids=ROW_NAMES)
+@pytest.mark.parametrize("delimiter", [",", ";", "\t"])
+def test_names_of_rows_have_none_in_the_header(tmp_path, read, names, delimiter):
+    lines = [f"{name},{i},{i % 2},{0.5 * i}" for i, name in enumerate(names.split())]
+    record = read(write(tmp_path, "\n".join(["t [s],u [V],x [um]", *lines]).replace(",", delimiter)))
+    assert record.drive[0].tolist() == [0, 1, 0, 1] and record.dt == 1
+
+
+@pytest.mark.parametrize("header", ["t [s],u [V],x [um]", "t (s);u (V);x (um)", "t,u,x\ns,V,um"])
+@pytest.mark.parametrize("row", ["0,{},1,2{}", "0,{},1,7,2,5{}", "{},3.5,1,0.2{}"])
+def test_more_numbers_than_the_header_names_are_refused(tmp_path, problem, header, row):
+    """As where the decimal sign is the comma between the columns: no name says which column is meant."""
+    lines = [row.format(7 * i, i) for i in range(9)]
+    error = problem(write(tmp_path, "\n".join([header, *lines])))
+    assert "the header names 3 columns" in error.message and "semicolons" in error.remedy
+
+
+def test_flags_at_the_end_of_a_row_need_no_name(tmp_path, read):
+    lines = [f"{i},{i % 2},{0.5 * i},{i // 3}" for i in range(8)]
+    assert read(write(tmp_path, "\n".join(["t [s],u [V],x [um]", *lines]))).response[0, -1] == 3.5e-6
