@@ -1,4 +1,8 @@
-"""HDF5 files: every data set by its path; units from the attributes `units` or `unit`, scalar attributes by name."""
+"""HDF5 files: every data set by its path; units from the attributes `units` or `unit`, scalar attributes by name.
+
+Packed data are unpacked as the CF conventions (section 8.1) say: `scale_factor` times what is stored plus `add_offset`,
+and a gap where that is `_FillValue`.
+"""
 
 from __future__ import annotations
 
@@ -44,10 +48,19 @@ def _values(path: Path, name: str, transposed: bool) -> NDArray[Any]:
     import h5py
 
     with h5py.File(path) as file:
-        values = np.asarray(file[name][()])
+        values = _unpacked(np.asarray(file[name][()]), file[name].attrs)
     if values.dtype.names == ("real", "imag"):
         values = values["real"] + 1j * values["imag"]
     return values.T if transposed else values
+
+
+def _unpacked(values: NDArray[Any], attributes: Any) -> NDArray[Any]:
+    packing = {key: attributes[key] for key in ("scale_factor", "add_offset", "_FillValue") if key in attributes}
+    if not packing or values.dtype.kind not in "iuf":
+        return values
+    gaps = values == packing["_FillValue"] if "_FillValue" in packing else np.zeros(values.shape, bool)
+    unpacked = values * np.float64(packing.get("scale_factor", 1.0)) + np.float64(packing.get("add_offset", 0.0))
+    return np.where(gaps, np.nan, unpacked)
 
 
 def _unit(item: Any) -> str | None:

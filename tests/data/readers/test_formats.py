@@ -85,6 +85,27 @@ def test_tdms(tmp_path, read):
     assert_the_loop(read(path, Channel(column=1), Channel(column=2), None, dataset="Log", sample_rate=1 / DT))
 
 
+@pytest.mark.parametrize("scale", [0.01, np.array([0.01])])
+def test_packed_hdf5_is_unpacked(tmp_path, read, problem, scale):
+    import h5py
+
+    path = tmp_path / "packed.nc"
+    with h5py.File(path, "w") as file:
+        file["t"] = TIME
+        for name, counts, unit in (("u", [0, 150, -225, 10], "V"), ("x", [100, 250, 33, 0], "um")):
+            file[name] = np.array(counts, np.int16)
+            file[name].attrs.update({"scale_factor": scale, "add_offset": 5.0, "units": unit, "_FillValue": -9999})
+    channels = {
+        key: Channel(dataset=name, unit="s" if name == "t" else None) for key, name in zip("cux", "tux", strict=True)
+    }
+    record = read(path, channels["u"], channels["x"], channels["c"])
+    np.testing.assert_allclose(record.drive[0], [5.0, 6.5, 2.75, 5.1])
+    np.testing.assert_allclose(record.response[0], [6e-6, 7.5e-6, 5.33e-6, 5e-6])
+    with h5py.File(path, "a") as file:
+        file["u"][2] = -9999
+    assert "1 value is missing: row 2" in problem(path, channels["u"], channels["x"], channels["c"]).message
+
+
 def test_hdf5_groups_units_and_a_rate_that_the_job_names(tmp_path, read):
     import h5py
 
