@@ -12,6 +12,7 @@ Array = NDArray[np.float64]
 
 FAR = 8.0  # times what the readings around it stand off the lines through theirs
 CLEAR = 12.0  # times what half of all readings do
+MOVED = 3.0  # times what the signal moves from one of the readings around it to the next
 AT_AN_END = 0.05  # of the range: the first or last reading is off as much, since it may be beside a corner
 BESIDE = (
     0.25,
@@ -23,8 +24,9 @@ MOST = 4  # that are told by their times
 
 def spike_phrase(record: Record) -> str:
     """Which readings of a record stand far beside those around them, and what to do; empty where none does."""
-    found = {record.axes[axis]: spikes(record, axis) for axis in record.measured}
-    told = [of_axis(record, axis, places) for axis, places in found.items() if places.size]
+    found = {f"the reading of {record.axes[axis]}": spikes(record, axis) for axis in record.measured}
+    found |= {f"the drive of {name}": drive_spikes(record, axis) for axis, name in enumerate(record.axes)}
+    told = [f"{whose} at {times_of(record, places)}" for whose, places in found.items() if places.size]
     if not told:
         return ""
     one = sum(places.size for places in found.values()) == 1
@@ -33,28 +35,53 @@ def spike_phrase(record: Record) -> str:
     return f"{listed(told)} {stand} far beside those around {out}, as no stage moves: {advice}"
 
 
-def of_axis(record: Record, axis: str, places: NDArray[np.intp]) -> str:
-    """The readings of an axis, by the times of the first few."""
+def times_of(record: Record, places: NDArray[np.intp]) -> str:
+    """The first few times, s."""
     times = listed([f"{second:.6g}" for second in record.time[places[:MOST]].tolist()])
-    more = f" and {places.size - MOST} more" if places.size > MOST else ""
-    return f"the reading{'s' * (places.size > 1)} of {axis} at {times} s{more}"
+    return f"{times} s" + (f" and {places.size - MOST} more" if places.size > MOST else "")
 
 
 def spikes(record: Record, axis: int) -> NDArray[np.intp]:
     """The samples at which the response of an axis stands far beside the line through its neighbours, or the first and
     the last beside that through the next two, while the drives neither kink nor turn: what sticks jumps as they do."""
-    response = record.response[axis]
-    if response.size <= 2 * AROUND + 3:
+    if record.samples <= 2 * AROUND + 3:
         return np.zeros(0, np.intp)
-    off, edge = off_line(response), AROUND + 1
-    around = np.lib.stride_tricks.sliding_window_view(np.pad(np.abs(off)[1:-1], edge + 1), 2 * edge + 1)
-    usual = np.delete(around, (edge - 1, edge, edge + 1), axis=1).max(axis=1)
-    driven = np.max([kinked(drive) * np.ptp(response) for drive in record.drive], axis=0)
-    steps = np.abs(np.diff(response))
-    least = max(CLEAR * float(np.median(np.abs(off))), 2 * float(steps[steps > 0].min(initial=np.inf)))
-    far = np.abs(off) > np.maximum(FAR * np.maximum(usual, driven), least)
     turning = np.any([turns(drive) for drive in record.drive], axis=0)
-    return np.flatnonzero(far & is_single(response, off) & ~turning)
+    return np.flatnonzero(stands_out(record.response[axis], record.drive) & ~turning)
+
+
+def drive_spikes(record: Record, axis: int) -> NDArray[np.intp]:
+    """The samples at which a drive stands far beside the line through its neighbours, while no response kinks."""
+    if record.samples <= 2 * AROUND + 3:
+        return np.zeros(0, np.intp)
+    return np.flatnonzero(stands_out(record.drive[axis], record.response[[*record.measured]]))
+
+
+def stands_out(signal: Array, others: Array) -> NDArray[np.bool_]:
+    """Of each sample, (samples,), whether a signal stands far beside those around it, farther than it moves there from
+    one to the next, and than the others, (signals, samples), kink in their ranges."""
+    off, moves = off_line(signal), np.abs(np.diff(signal, prepend=signal[:1]))
+    size, steps = np.abs(off), moves[moves > 0]
+    far = FAR * np.maximum(nearby(np.pad(size[1:-1], 1)), kinked(others) * np.ptp(signal))
+    least = max(CLEAR * float(np.median(size)), 2 * float(steps.min(initial=np.inf)))
+    return np.asarray((size > np.maximum(far, least)) & (size > MOVED * nearby(moves)) & is_single(signal, off))
+
+
+def nearby(values: Array) -> Array:
+    """The largest of the values around each sample, (samples,), but for those beside it."""
+    edge = AROUND + 1
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(values, edge), 2 * edge + 1)
+    return np.asarray(np.delete(around, (edge - 1, edge, edge + 1), axis=1).max(axis=1))
+
+
+def kinked(signals: Array) -> Array:
+    """How far signals, (signals, samples), are off the lines through their neighbours at most around each sample, of
+    their ranges, and beyond their noise."""
+    sizes = np.abs([off_line(signal) for signal in signals])
+    ranges = np.ptp(signals, axis=1, keepdims=True)
+    sizes = np.maximum(sizes - CLEAR * np.median(sizes, axis=1, keepdims=True), 0) / np.where(ranges > 0, ranges, 1)
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(sizes.max(axis=0), AROUND), 2 * AROUND + 1)
+    return np.asarray(around.max(axis=1))
 
 
 def turns(drive: Array) -> NDArray[np.bool_]:
@@ -62,13 +89,6 @@ def turns(drive: Array) -> NDArray[np.bool_]:
     moves = np.diff(drive)
     there = np.pad(moves[:-1] * moves[1:] < 0, 2)
     return np.asarray(there[:-2] | there[1:-1] | there[2:])
-
-
-def kinked(drive: Array) -> Array:
-    """How far a drive, (samples,), is off the lines through its neighbours at most around each sample, of its range."""
-    width = 2 * AROUND + 1
-    around = np.lib.stride_tricks.sliding_window_view(np.pad(np.abs(off_line(drive)), AROUND), width)
-    return np.asarray(around.max(axis=1) / (np.ptp(drive) or 1.0))
 
 
 def is_single(signal: Array, off: Array) -> NDArray[np.bool_]:

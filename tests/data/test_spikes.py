@@ -6,7 +6,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import rig
-from pzt_ident.data.spikes import spike_phrase, spikes
+from pzt_ident.data.spikes import drive_spikes, spike_phrase, spikes
 
 T = np.arange(600) * 1e-2
 TRIANGLE = 50 * (1 - np.abs((T / 2) % 2 - 1))
@@ -61,14 +61,29 @@ def test_where_the_drive_kinks_or_turns_none_is_told(change):
             [0],
             "the reading of x at 0 s stands far beside those around it, as no stage moves: mend the file, or leave it",
         ),
-        ([100, 300], "the readings of x at 1 and 3 s stand far beside those around them"),
-        ([100, 150, 200, 250, 300, 350], "the readings of x at 1, 1.5, 2 and 2.5 s and 2 more stand"),
+        ([100, 300], "the reading of x at 1 and 3 s stand far beside those around them"),
+        ([100, 150, 200, 250, 300, 350], "the reading of x at 1, 1.5, 2 and 2.5 s and 2 more stand"),
     ],
 )
 def test_it_is_said_which_and_what_to_do(places, phrase):
     record = measured("sine", 2)
     record.response[0, places] += 4e-6
     assert spike_phrase(record).startswith(phrase) and bool(spike_phrase(record)) == bool(places)
+
+
+@pytest.mark.parametrize("kind", ["triangle", "sine"])
+def test_a_drive_that_is_read_wrong_once_is_told_and_a_pulse_that_the_stage_follows_is_not(kind):
+    record = measured(kind, 3)
+    record.drive[0, 260] += 60
+    assert drive_spikes(record, 0).tolist() == [260] and not spikes(record, 0).size
+    assert spike_phrase(record).startswith("the drive of x at 2.6 s stands far beside")
+    record.response[0, 260] += 6e-6
+    assert not drive_spikes(record, 0).size and not spike_phrase(record)
+
+
+@pytest.mark.parametrize("kind", [*MOTIONS])
+def test_no_drive_is_told_that_moves_as_drives_do(kind):
+    assert not drive_spikes(measured(kind, 4), 0).size
 
 
 def test_a_record_of_a_few_samples_has_none():
