@@ -10,6 +10,7 @@ from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.score import squared_misfit
 
 CLEAR = 0.6  # noise floors: an effect removes at least this much, root mean square
+WORSE = 0.25  # noise floors, root mean square: what the parameters of an effect that is there do not make worse
 LEAST_SHARE = 0.15  # and at least this much of the misfit
 DECISIVE = 0.5  # of the misfit: removing less is not yet the account of a model that stays above the noise
 NEAR = 1.5  # noise floors, up to which an error may be that of the floor itself
@@ -109,9 +110,11 @@ def clears_an_axis(case: Case, first: Fit, before: Fit, after: Fit) -> bool:
 
 
 def not_in_validation(case: Case, first: Fit, before: Fit, after: Fit) -> bool:
-    """Whether an effect explains all of the misfit, and the validation records are at the noise with it and without."""
+    """Whether an effect explains all of the misfit, and the validation records are at the noise with it and without,
+    and no worse with it: what follows a few wrong readings of the others is."""
     noise = np.hypot(case.floor, tolerance(case, first))
-    return all(error is not None and error <= noise for error in (before.validate, after.validate, after.identify))
+    at_noise = all(error is not None and error <= noise for error in (before.validate, after.validate, after.identify))
+    return at_noise and removed_rms(before.validate, after.validate) > -WORSE * case.floor
 
 
 def adequate(case: Case, first: Fit, fit: Fit) -> bool:

@@ -130,3 +130,11 @@ def test_an_adequate_model_leaves_little_above_the_noise_and_thrice_that_of_what
     model = above(fitted * enough, unfitted and np.hypot(1, unfitted * 3 * enough))
     assert adequate(CASE, above(first), model) == fine
     assert reaches_noise(CASE, above(first), model) == (fitted < 1)
+
+
+@pytest.mark.parametrize(("after", "unseen"), [(1.0, True), (1.02, True), (1.05, False)])
+def test_what_makes_the_records_kept_back_worse_is_not_merely_unseen_there(after, unseen):
+    """As a resonance that follows a few wrong readings of the others."""
+    first, before, now = fit(5.0, 5.0), fit(5.0, 1.0), fit(1.0, after)
+    assert not_in_validation(CASE, first, before, now) == unseen
+    assert removes_enough(CASE, first, before, now) == unseen
