@@ -7,7 +7,7 @@
 from __future__ import annotations
 
 import codecs
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.formats import _analyser
-from pzt_ident.data.formats._layout import COMMENTS, GAPS, detect_layout
+from pzt_ident.data.formats._layout import COMMENTS, GAPS, Layout, detect_layout
 from pzt_ident.data.readers.table import Column, Table
 from pzt_ident.data.record import Source
 from pzt_ident.errors import InputError
@@ -79,6 +79,8 @@ def parse(lines: Sequence[str], where: str, place: str, first: int = 1, delimite
             message = f"{place} {first + i} has {len(row)} fields instead of {layout.width}"
             raise InputError(message, where=where, remedy=f"complete the {place} or delete it")
 
+    check_end(rows, layout, lambda row: f"{place} {first + filled[row]}", where)
+
     def row_place(row: int) -> str:
         return f"row {row} ({place} {first + filled[row]})" if row < len(filled) else f"row {row}"
 
@@ -86,6 +88,15 @@ def parse(lines: Sequence[str], where: str, place: str, first: int = 1, delimite
         return _numbers([row[k] for row in map(split, rows)], layout.decimal)
 
     return [Column(layout.names[k], partial(values, k), None, row_place) for k in range(layout.width)]
+
+
+def check_end(rows: Sequence[str], layout: Layout, place_of: Callable[[int], str], where: str) -> None:
+    """Raises InputError where the last rows begin with a word and those above with a number, as statistics do."""
+    begin = [layout.is_number(layout.split(rows[i])[0]) for i in (0, len(rows) // 2, -1)]
+    if begin == [True, True, False]:
+        word = layout.split(rows[-1])[0].strip()
+        problem = f"{place_of(len(rows) - 1)} begins with {word!r}, where those above hold numbers"
+        raise InputError(problem, where=where, remedy="delete what is no measurement at the end of the file")
 
 
 def _numbers(cells: Sequence[str], decimal: str) -> NDArray[Any]:

@@ -136,3 +136,12 @@ def test_more_numbers_than_the_header_names_are_refused(tmp_path, problem, heade
 def test_flags_at_the_end_of_a_row_need_no_name(tmp_path, read):
     lines = [f"{i},{i % 2},{0.5 * i},{i // 3}" for i in range(8)]
     assert read(write(tmp_path, "\n".join(["t [s],u [V],x [um]", *lines]))).response[0, -1] == 3.5e-6
+
+
+@pytest.mark.parametrize("footer", ["Mean,0.4,2.1", "Mean,0.4,2.1\nStd,0.5,1.2", "Total,,"])
+def test_statistics_at_the_end_are_no_measurement(tmp_path, problem, footer):
+    """Though the column of their names is not asked for."""
+    lines = [f"{i},{i % 2},{0.5 * i}" for i in range(20)]
+    path = write(tmp_path, "\n".join(["t [s],u [V],x [um]", *lines, footer, ""]))
+    error = problem(path, clock=None, sample_rate=10)
+    assert footer.splitlines()[-1].split(",")[0] in error.message and "line" in error.message
