@@ -30,7 +30,7 @@ ARGUMENTS = (
     (r"leave `time` out and give `sample_rate`", "give the sample rate as t"),
     (r"take what is before it with `rows: \[0, (\d+)\]`", r"take what is before it, t[:\1]"),
     (r"give the record a `sample_rate: 1 kHz`, or the job a `time` channel", "give time='t [s]' or sample_rate=1000"),
-    (r"or in the job: `unit: um` of this channel", "or give {'column': 2, 'unit': 'um'}"),
+    (r"or in the job: `unit: (\w+)` of this channel", r"or give {'column': 2, 'unit': '\1'}"),
     (r" with `rows`", ""),
     (r"fix it with `value`", "fix it with `fixed`"),
     (r"widen `rows` or `time`, or decimate less", "give more samples"),

@@ -43,7 +43,7 @@ REMEDIES = (
     (r"give one of them `use: identify`|give at least one record `use: identify`", "choose one for identification"),
     (r"a shorter `settle`", "score it sooner"),
     (
-        r"write it in the header, as in [^,]*, or in the job: `unit: um` of this channel",
+        r"write it in the header, as in [^,]*, or in the job: `unit: \w+` of this channel",
         "type its unit beside its name",
     ),
     (r"see `pzt-ident list blocks`", "under “Choose blocks”"),

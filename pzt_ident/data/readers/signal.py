@@ -13,6 +13,7 @@ from pzt_ident.data.readers.table import Column
 from pzt_ident.data.units import factor
 from pzt_ident.errors import InputError
 
+USUAL = {"time": "s", "drive": "V"}  # units, that of a response is um
 LARGEST = 1e11
 """In SI units: no rig measures as much, and squares of much more overflow."""
 
@@ -57,16 +58,18 @@ def signal_of(
 
     Raises InputError on text, on rows out of range, and on a unit that is missing or unknown.
     """
-    unit = unit or column.unit
+    first, end = _bounds(rows, len(values), where)
+    numbers, unit = _numbers(column, values[first:end], first, where), unit or column.unit
     if unit is None:
-        remedy = f"write it in the header, as in `{column.name or 'x'} [um]`, or in the job: `unit: um` of this channel"
+        usual = next((each for kind, each in USUAL.items() if where.endswith(kind)), "um")
+        header = f"`{column.name or 'x'} [{usual}]`"
+        remedy = f"write it in the header, as in {header}, or in the job: `unit: {usual}` of this channel"
         raise InputError("has no unit", where=where, remedy=remedy)
     try:
         scale = factor(unit)
     except InputError as error:
         raise InputError(error.message, where=where, remedy=error.remedy) from None
-    first, end = _bounds(rows, len(values), where)
-    return Signal(column, scale * _numbers(column, values[first:end], first, where), unit, where, first)
+    return Signal(column, scale * numbers, unit, where, first)
 
 
 def _bounds(rows: tuple[int | None, int | None] | None, total: int, where: str) -> tuple[int, int]:

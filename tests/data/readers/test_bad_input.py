@@ -222,7 +222,14 @@ def test_no_unit_says_how_to_give_one(tmp_path, problem):
     assert error.message == "has no unit"
     assert "`x [um]`" in error.remedy
     assert "`unit: um`" in error.remedy
-    assert problem(write(tmp_path, *ROWS, header="t,u [V],x [um]\n"), clock="t").where.endswith(": time")
+    clock = problem(write(tmp_path, *ROWS, header="t,u [V],x [um]\n"), clock="t")
+    assert clock.where.endswith(": time") and "`t [s]`" in clock.remedy and "`unit: s`" in clock.remedy
+    assert "`u [V]`" in problem(write(tmp_path, *ROWS, header="t [s],u,x [um]\n"), drive="u").remedy
+
+
+def test_dates_without_a_unit_are_dates_first(tmp_path, problem):
+    dates = [f"2026-03-14T09:26:5{i},{i % 2},{i}\n" for i in range(6)]
+    assert "dates" in problem(write(tmp_path, *dates, header="t,u [V],x [um]\n"), clock="t").remedy
 
 
 def test_a_unit_that_is_none(tmp_path, problem):
