@@ -1,4 +1,5 @@
-"""NI TDMS files: `group/channel`, the unit from `unit_string`, the sample time as `group/channel/wf_increment`."""
+"""NI TDMS files: `group/channel`, the unit from `unit_string`, the sample time from `wf_increment`, which is
+`group/channel/wf_increment` as well."""
 
 from __future__ import annotations
 
@@ -33,9 +34,10 @@ def read(path: Path, source: Source) -> Table:
     for channel in (channel for group in content.groups() for channel in group.channels()):
         name = f"{channel.group_name}/{channel.name}"
         unit = str(channel.properties.get("unit_string", "")) or None
-        columns.append(Column(name, partial(_values, path, channel.group_name, channel.name), unit))
-        if "wf_increment" in channel.properties:
-            step = channel.properties["wf_increment"]
+        step = channel.properties.get("wf_increment")
+        load = partial(_values, path, channel.group_name, channel.name)
+        columns.append(Column(name, load, unit, step=step and float(step)))
+        if step is not None:
             scalars.append(Column(f"{name}/wf_increment", partial(np.asarray, step), "s"))
     return Table(path, columns, scalars)
 

@@ -16,7 +16,7 @@ from pzt_ident.data.readers.open import open_table
 from pzt_ident.data.readers.select import select_column
 from pzt_ident.data.readers.signal import Signal, signal_of
 from pzt_ident.data.readers.table import Column, Table
-from pzt_ident.data.readers.timebase import Grid, check_rate, grid_of_rate, grid_of_stamps
+from pzt_ident.data.readers.timebase import Grid, check_rate, grid_of_rate, grid_of_stamps, grid_of_steps
 from pzt_ident.data.record import Axis, Channel, Source
 from pzt_ident.data.units import FREQUENCY, MASS, TIME, dimension
 from pzt_ident.errors import InputError, nearest
@@ -24,12 +24,14 @@ from pzt_ident.errors import InputError, nearest
 
 @dataclass
 class SourceChannels:
-    """The channels of one source. `tables`: the files already open. `used`: the files that this source needs."""
+    """The channels of one source. `tables`: the files already open. `used`: the files that this source needs. `steps`:
+    the times between values, s, that these state for its signals."""
 
     source: Source
     folder: Path
     tables: dict[object, Table]
     used: dict[Path, Table] = field(default_factory=dict)
+    steps: list[float] = field(default_factory=list)
 
     @property
     def where(self) -> str:
@@ -41,6 +43,7 @@ class SourceChannels:
         if channel is None:
             return None
         column, values, where = self._column(label, channel)
+        self.steps += [column.step] if column.step else []
         signal = signal_of(column, values, self.source.rows, channel.unit, where)
         if dimension(signal.unit) in (TIME, FREQUENCY, MASS):
             problem = f"a {label.rpartition('.')[2]} cannot have the unit {signal.unit!r}"
@@ -48,16 +51,20 @@ class SourceChannels:
         return signal
 
     def grid(self, channel: Channel | None, samples: int) -> Grid:
-        """The time grid by a column of time stamps, one value (s: sample time, Hz: sample rate) or `sample_rate`.
+        """The time grid by a column of time stamps, one value (s: sample time, Hz: sample rate), `sample_rate`, or what
+        the file states for its signals.
 
         samples: rows of the signals. Raises InputError where they have no time, or one that does not fit.
         """
         channel, rate = self._channel_here("time", channel), self.source.sample_rate
         if channel is None:
-            if rate is None:
-                remedy = "give the record a `sample_rate: 1 kHz`, or the job a `time` channel"
-                raise InputError("has no time", where=self.where, remedy=remedy)
-            return grid_of_rate(rate, self.where)
+            stated = grid_of_steps(self.steps, self.where)
+            if stated:
+                check_rate(stated, rate, self.where)
+            if grid := stated if rate is None else grid_of_rate(rate, self.where):
+                return grid
+            remedy = "give the record a `sample_rate: 1 kHz`, or the job a `time` channel"
+            raise InputError("has no time", where=self.where, remedy=remedy)
         column, values, where = self._column("time", channel)
         single = values.size == 1
         stamps = signal_of(column, values, None if single else self.source.rows, channel.unit, where).complete()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,6 +32,17 @@ def grid_of_rate(rate: float, where: str) -> Grid:
     if not 0 < rate < np.inf:
         raise InputError(f"the sample rate {rate:g} Hz is not positive", where=where, remedy="give it in Hz or kHz")
     return Grid(1 / rate)
+
+
+def grid_of_steps(steps: Sequence[float], where: str) -> Grid | None:
+    """The grid of the times between values, s, that a file states for its signals; None where it states none. Raises
+    InputError where they differ."""
+    if not steps:
+        return None
+    if max(steps) > (1 + JITTER) * min(steps):
+        problem = f"its signals have different sample times, {min(steps):g} and {max(steps):g} s"
+        raise InputError(problem, where=where, remedy="bring them to one sample time first")
+    return grid_of_rate(1 / steps[0], where)
 
 
 def grid_of_stamps(stamps: Signal) -> Grid:

@@ -69,7 +69,7 @@ def test_parquet_without_pyarrow_names_the_extra(tmp_path, problem, monkeypatch)
     assert "pzt-ident[parquet]" in error.remedy
 
 
-def test_tdms(tmp_path, read):
+def test_tdms(tmp_path, read, problem):
     from nptdms import ChannelObject, TdmsWriter
 
     path = tmp_path / "loop.tdms"
@@ -83,6 +83,13 @@ def test_tdms(tmp_path, read):
     assert_the_loop(read(path, "Log/u", "Log/x", "Log/u/wf_increment"))
     assert_the_loop(read(path, "u", "x", "u/wf_increment", dataset="Log"))
     assert_the_loop(read(path, Channel(column=1), Channel(column=2), None, dataset="Log", sample_rate=1 / DT))
+    assert_the_loop(read(path, "u", "x", None, dataset="Log"))
+    assert "contradicts" in problem(path, "u", "x", None, dataset="Log", sample_rate=1.5 / DT).message
+    with TdmsWriter(path) as writer:
+        other = [ChannelObject("Log", "u", DRIVE, {"unit_string": "V", "wf_increment": DT})]
+        other.append(ChannelObject("Log", "x", RESPONSE, {"unit_string": "um", "wf_increment": 2 * DT}))
+        writer.write_segment(other)
+    assert "different sample times, 0.5 and 1 s" in problem(path, "u", "x", None, dataset="Log").message
 
 
 @pytest.mark.parametrize("scale", [0.01, np.array([0.01])])
