@@ -51,8 +51,9 @@ def spikes(record: Record, axis: int) -> NDArray[np.intp]:
 
 
 def drive_spikes(record: Record, axis: int) -> NDArray[np.intp]:
-    """The samples at which a drive stands far beside the line through its neighbours, while no response kinks."""
-    if record.samples <= 2 * AROUND + 3:
+    """The samples at which a drive stands far beside the line through its neighbours, while no response kinks; none
+    where there is no response."""
+    if record.samples <= 2 * AROUND + 3 or not record.measured:
         return np.zeros(0, np.intp)
     return np.flatnonzero(stands_out(record.drive[axis], record.response[[*record.measured]]))
 

@@ -86,5 +86,11 @@ def test_no_drive_is_told_that_moves_as_drives_do(kind):
     assert not drive_spikes(measured(kind, 4), 0).size
 
 
+def test_a_drive_alone_has_none():
+    record = rig.record(MOTIONS["sine"], dt=1e-2, measured=[])
+    record.drive[0, 260] += 60
+    assert not drive_spikes(record, 0).size and not spike_phrase(record)
+
+
 def test_a_record_of_a_few_samples_has_none():
     assert not spikes(rig.record([0.0, 1.0, 0.0], response=[[0.0, 9.0, 0.0]]), 0).size
