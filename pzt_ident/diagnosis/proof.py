@@ -123,8 +123,8 @@ def unproven(
     gone beside it, unless the model is adequate. What takes up enough and only may be something else is a suspect
     beside which the others are judged: without it what they take up is nothing; of those that remove little beside what
     is in a limit none is proven. What is proven on one of several axes, and clear there, is proven, whatever another
-    lacks. What is flexible is proven only where the model is adequate with it. Where a model leaves less than the noise
-    floor of both kinds of records, that was too high an estimate.
+    lacks. What is flexible is proven only where the model is adequate with it, or if it removes SINGLE. Where a model
+    leaves less than the noise floor of both kinds of records, that was too high an estimate.
     """
     case = case.with_floor_of(now)
     judge = partial(taken_out, case, first, now, rivals, known)
@@ -269,9 +269,9 @@ def suspect(
         of_all = share_explained(before.total, after.total, view.floor)
         clear = removed_rms(before.total, after.total) > form_of_others(view, given.total)
     found = Suspect(effect, identify, validate, without, clear, others, on_bounds, limit, displaced, of_all, is_line)
-    little = is_trace(effect, others_only) and found.share < SINGLE
     bent = is_flexible(effect) and not adequate(view, given, after)
-    return replace(found, beyond_form=False) if little or bent else found
+    little = (bent or is_trace(effect, others_only)) and found.share < SINGLE
+    return replace(found, beyond_form=False) if little else found
 
 
 def is_flexible(effect: str) -> bool:

@@ -114,12 +114,14 @@ def test_one_with_many_amounts_removes_95_percent_if_it_is_alone(taken_out):
     assert taken_out(of(ab=10.6, a=13.0, b=13.5, none=30.0), many="a") == []
 
 
-def test_what_is_flexible_is_proven_only_at_the_noise(taken_out):
+def test_what_is_flexible_is_proven_only_at_the_noise_or_if_it_takes_up_nearly_all(taken_out):
     """It bends to the records kept back as well."""
     assert taken_out(of(ab=1.3, a=20.0, b=20.0, none=30.0)) == []
     assert taken_out(of(ab=1.3, a=20.0, b=20.0, none=30.0), flexible="b") == []
     assert taken_out(of(ab=2.5, a=20.0, b=20.0, none=30.0)) == []
+    assert taken_out(of(ab=2.5, a=5.0, b=20.0, none=30.0)) == []
     assert taken_out(of(ab=2.5, a=5.0, b=20.0, none=30.0), flexible="b") == ["b"]
+    assert taken_out(of(ab=2.5, a=20.0, b=20.0, none=30.0), flexible="b") == []
 
 
 def test_only_a_drift_of_any_course_is_flexible():
