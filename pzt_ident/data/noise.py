@@ -21,6 +21,7 @@ LEAST_SCALE = 5e-3  # of the span of a response
 COARSE = 2.2  # times the noise at rest: a step of the readings of which a rest sees few or none
 LIKE = 1.5  # times that noise: what windows may say instead, in which the response goes through many steps
 SAME_CLOCK = 0.1  # sample times: records that are farther apart at their ends were not sampled alike
+HALF = 0.51  # of a decimal, by which a rounded value is beside it
 CHANGED = 3.0  # times the noise at rest: what repeated records differ by more is a stage that changed
 
 
@@ -103,14 +104,28 @@ def floor_of(value: float, source: str, step: float) -> Floor:
 
 
 def is_repeat(record: Record, other: Record, axis: int, tolerance: float = 2e-3) -> bool:
-    """Whether all drives differ by no more than a share of their spans; the same data listed twice are no repeat."""
+    """Whether all drives differ by no more than a share of their spans; the same data listed twice are no repeat, nor a
+    copy that was rounded."""
     apart = abs(record.dt - other.dt) * record.samples  # at their ends, where both clocks start together
     if record.drive.shape != other.drive.shape or apart > SAME_CLOCK * record.dt:
         return False
-    if np.array_equal(record.response[axis], other.response[axis]):
-        return False
     span = np.ptp(record.drive, axis=1)
-    return bool((np.abs(record.drive - other.drive).max(axis=1) <= tolerance * span).all())
+    alike = bool((np.abs(record.drive - other.drive).max(axis=1) <= tolerance * span).all())
+    return alike and not is_copy(record.response[axis], other.response[axis])
+
+
+def is_copy(response: Array, other: Array) -> bool:
+    """Whether two responses differ by no more than the rounding of one of them to its last decimal."""
+    apart = float(np.abs(response - other).max())
+    return apart == 0 or any(apart <= HALF * last_decimal(each) for each in (response, other))
+
+
+def last_decimal(values: Array) -> float:
+    """The coarsest power of ten, SI units, of which all values are multiples; 0 where none is."""
+    span = np.ptp(values)
+    decimals = [10.0**-exponent for exponent in range(3, 16) if 10.0**-exponent < span]
+    whole = (decimal for decimal in decimals if np.abs(values / decimal - np.round(values / decimal)).max() < 1e-3)
+    return next(whole, 0.0)
 
 
 def error_scales(records: list[Record]) -> Array:

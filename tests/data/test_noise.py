@@ -354,3 +354,16 @@ def test_readings_without_any_noise_are_good_to_a_part_of_their_range():
     for made in (record(drive, 1e-7 * drive), record(np.minimum(drive, 60.0), 1e-7 * np.minimum(drive, 60.0))):
         floor = noise_floor([made], 0)
         assert floor.value == pytest.approx(1e-4 * np.ptp(made.response)) and floor.source.startswith("no noise")
+
+
+@pytest.mark.parametrize("decimals", [8, 9, 10, 12])
+def test_a_copy_that_was_rounded_is_no_repeat(noise, decimals):
+    """Its differences are those of the rounding, and no noise; a wide-band response is no other."""
+    for drive in (50 * (1 - np.cos(2 * np.pi * np.arange(6000) / 6000)), np.random.default_rng(3).normal(size=6000)):
+        first = record(drive, 1e-7 * drive + noise)
+        copy = dataclasses.replace(first, response=np.round(first.response, decimals))
+        assert noise_floor([first, copy], 0).source != "repeated records"
+        again = 1e-7 * drive + np.random.default_rng(12).normal(0, SIGMA, 6000)
+        for other in (again, np.round(again, decimals)):
+            floor = noise_floor([copy, dataclasses.replace(first, response=other[None])], 0)
+            assert floor.source == "repeated records" and floor.value == pytest.approx(SIGMA, rel=0.1)
