@@ -1,4 +1,4 @@
-"""Single readings that stand far beside those around them, as no stage moves."""
+"""Single readings, and values of a drive, that stand far beside those around them."""
 
 from __future__ import annotations
 
@@ -14,58 +14,71 @@ FAR = 8.0  # times what the readings around it stand off the lines through their
 CLEAR = 12.0  # times what half of all readings do
 MOVED = 3.0  # times what the signal moves from one of the readings around it to the next
 AT_AN_END = 0.05  # of the range: the first or last reading is off as much, since it may be beside a corner
-BESIDE = (
-    0.25,
-    0.75,
-)  # times as far a spike takes the next readings to the other side of their lines: a corner takes none
+BESIDE = 0.25, 0.75  # times as far it takes the next readings to the other side of their lines, as no corner does
 AROUND = 3  # readings on each side
 MOST = 4  # that are told by their times
+STRETCH, OVERLAP = 2**16, 2**6  # samples that are looked at together, so that a long record takes no more room
 
 
 def spike_phrase(record: Record) -> str:
     """Which readings of a record stand far beside those around them, and what to do; empty where none does."""
-    found = {f"the reading of {record.axes[axis]}": spikes(record, axis) for axis in record.measured}
-    found |= {f"the drive of {name}": drive_spikes(record, axis) for axis, name in enumerate(record.axes)}
-    told = [f"{whose} at {times_of(record, places)}" for whose, places in found.items() if places.size]
+    found = {("reading", axis): spikes(record, number) for number, axis in enumerate(record.axes)}
+    found |= {("value", f"the drive of {axis}"): drive_spikes(record, i) for i, axis in enumerate(record.axes)}
+    told = [told_of(record, *of_what, places) for of_what, places in found.items() if places.size]
     if not told:
         return ""
     one = sum(places.size for places in found.values()) == 1
-    stand, out = ("stands", "it") if one else ("stand", "them")
-    advice = f"mend the file, or leave {out} out at an end by `rows` or `settle`"
-    return f"{listed(told)} {stand} far beside those around {out}, as no stage moves: {advice}"
+    stand, are, them = ("stands", "is", "it") if one else ("stand", "are", "them")
+    advice = (
+        f"mend the file, or leave {them} out by `rows` or `settle` where {'it is' if one else 'they are'} at an end"
+    )
+    return f"{listed(told)} {stand} far beside those around {them} and {are} most likely wrong: {advice}"
 
 
-def times_of(record: Record, places: NDArray[np.intp]) -> str:
-    """The first few times, s."""
+def told_of(record: Record, kind: str, whose: str, places: NDArray[np.intp]) -> str:
+    """The spikes of a signal, by the times of the first few."""
     times = listed([f"{second:.6g}" for second in record.time[places[:MOST]].tolist()])
-    return f"{times} s" + (f" and {places.size - MOST} more" if places.size > MOST else "")
+    more = f" and {places.size - MOST} more" if places.size > MOST else ""
+    return f"the {kind}{'s' * (places.size > 1)} of {whose} at {times} s{more}"
 
 
 def spikes(record: Record, axis: int) -> NDArray[np.intp]:
     """The samples at which the response of an axis stands far beside the line through its neighbours, or the first and
-    the last beside that through the next two, while the drives neither kink nor turn: what sticks jumps as they do."""
-    if record.samples <= 2 * AROUND + 3:
+    the last beside that through the next two, while the drives neither kink nor turn: what sticks jumps as they do.
+    None of an axis that is not measured."""
+    if axis not in record.measured:
         return np.zeros(0, np.intp)
-    turning = np.any([turns(drive) for drive in record.drive], axis=0)
-    return np.flatnonzero(stands_out(record.response[axis], record.drive) & ~turning)
+    places = spikes_beside(record.response[axis], record.drive)
+    return places[[not any(turns_at(drive, place) for drive in record.drive) for place in places]]
 
 
 def drive_spikes(record: Record, axis: int) -> NDArray[np.intp]:
     """The samples at which a drive stands far beside the line through its neighbours, while no response kinks; none
     where there is no response."""
-    if record.samples <= 2 * AROUND + 3 or not record.measured:
-        return np.zeros(0, np.intp)
-    return np.flatnonzero(stands_out(record.drive[axis], record.response[[*record.measured]]))
+    return spikes_beside(record.drive[axis], record.response[[*record.measured]])
 
 
-def stands_out(signal: Array, others: Array) -> NDArray[np.bool_]:
-    """Of each sample, (samples,), whether a signal stands far beside those around it, farther than it moves there from
+def spikes_beside(signal: Array, others: Array) -> NDArray[np.intp]:
+    """The samples at which a signal, (samples,), stands far beside those around it, farther than it moves there from
     one to the next, and than the others, (signals, samples), kink in their ranges."""
+    if signal.size <= 2 * AROUND + 3 or not len(others):
+        return np.zeros(0, np.intp)
+    span, spans, found = float(np.ptp(signal)), np.ptp(others, axis=1, keepdims=True), []
+    for begin in range(0, signal.size, STRETCH):
+        part = slice(max(begin - OVERLAP, 0), begin + STRETCH + OVERLAP)
+        kinks = span * kinked(others[:, part], spans)
+        places = part.start + np.flatnonzero(stands_out(signal[part], kinks, span))
+        found.append(places[(places >= begin) & (places < begin + STRETCH)])
+    return np.concatenate(found)
+
+
+def stands_out(signal: Array, kinks: Array, span: float) -> NDArray[np.bool_]:
+    """Of each sample, (samples,), whether a signal of that range does. kinks: what others do there."""
     off, moves = off_line(signal), np.abs(np.diff(signal, prepend=signal[:1]))
     size, steps = np.abs(off), moves[moves > 0]
-    far = FAR * np.maximum(nearby(np.pad(size[1:-1], 1)), kinked(others) * np.ptp(signal))
     least = max(CLEAR * float(np.median(size)), 2 * float(steps.min(initial=np.inf)))
-    return np.asarray((size > np.maximum(far, least)) & (size > MOVED * nearby(moves)) & is_single(signal, off))
+    far = np.maximum(FAR * np.maximum(nearby(np.pad(size[1:-1], 1)), kinks), least)
+    return np.asarray((size > far) & (size > MOVED * nearby(moves)) & is_single(off, span))
 
 
 def nearby(values: Array) -> Array:
@@ -75,27 +88,26 @@ def nearby(values: Array) -> Array:
     return np.asarray(np.delete(around, (edge - 1, edge, edge + 1), axis=1).max(axis=1))
 
 
-def kinked(signals: Array) -> Array:
+def kinked(signals: Array, spans: Array) -> Array:
     """How far signals, (signals, samples), are off the lines through their neighbours at most around each sample, of
     their ranges, and beyond their noise."""
     sizes = np.abs([off_line(signal) for signal in signals])
-    ranges = np.ptp(signals, axis=1, keepdims=True)
-    sizes = np.maximum(sizes - CLEAR * np.median(sizes, axis=1, keepdims=True), 0) / np.where(ranges > 0, ranges, 1)
-    around = np.lib.stride_tricks.sliding_window_view(np.pad(sizes.max(axis=0), AROUND), 2 * AROUND + 1)
+    beyond = np.maximum(sizes - CLEAR * np.median(sizes, axis=1, keepdims=True), 0)
+    most = (beyond / np.where(spans > 0, spans, 1)).max(axis=0)
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(most, AROUND), 2 * AROUND + 1)
     return np.asarray(around.max(axis=1))
 
 
-def turns(drive: Array) -> NDArray[np.bool_]:
-    """Of each sample, (samples,), whether a drive turns there or beside it."""
-    moves = np.diff(drive)
-    there = np.pad(moves[:-1] * moves[1:] < 0, 2)
-    return np.asarray(there[:-2] | there[1:-1] | there[2:])
+def turns_at(drive: Array, place: int) -> bool:
+    """Whether a drive turns at a sample or beside it."""
+    moves = np.diff(drive[max(place - 2, 0) : place + 3])
+    return bool((moves[:-1] * moves[1:] < 0).any())
 
 
-def is_single(signal: Array, off: Array) -> NDArray[np.bool_]:
+def is_single(off: Array, span: float) -> NDArray[np.bool_]:
     """Of each sample, whether it takes both neighbours, but for the first and last, to the other side, or is far off at
     an end."""
-    ends = np.abs(off) > AT_AN_END * np.ptp(signal)
+    ends = np.abs(off) > AT_AN_END * span
     shares = np.array([-off[:-2], -off[2:]]) / np.where(off[1:-1], off[1:-1], np.inf)
     shares[0, 0], shares[1, -1] = shares[1, 0], shares[0, -1]
     inner = ((shares > BESIDE[0]) & (shares < BESIDE[1])).all(axis=0)
