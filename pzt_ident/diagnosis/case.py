@@ -78,16 +78,6 @@ class Case:
         other.floor = float(self.floors[axis])
         return other
 
-    def with_floor_of(self, fit: Fit) -> Case:
-        """The same case with noise floors that are no higher than what a fit leaves, of the records kept back as well:
-        the noise is no more than that. The case itself where the fit leaves more."""
-        left = max(fit.identify, fit.validate or np.inf)
-        if left >= self.floor:
-            return self
-        other = copy(self)
-        other.floor, other.floors = left, self.floors * (left / self.floor)
-        return other
-
     def _altered(self, words: Sequence[str | Choice], specs: Any, records: Sequence[Record] | None = None) -> Case:
         other = Case(words, self.effects, records or self.records, specs, self.ruled_out, self.shared, self.on_event)
         if records is None:

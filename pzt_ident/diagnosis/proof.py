@@ -123,10 +123,8 @@ def unproven(
     gone beside it, unless the model is adequate. What takes up enough and only may be something else is a suspect
     beside which the others are judged: without it what they take up is nothing; of those that remove little beside what
     is in a limit none is proven. What is proven on one of several axes, and clear there, is proven, whatever another
-    lacks. What is flexible is proven only where the model is adequate with it, or if it removes SINGLE. Where a model
-    leaves less than the noise floor of both kinds of records, that was too high an estimate.
+    lacks. What is flexible is proven only where the model is adequate with it, or if it removes SINGLE.
     """
-    case = case.with_floor_of(now)
     judge = partial(taken_out, case, first, now, rivals, known)
     suspects, axes = judge(), len(now.problem.model.measured)
     doubted = [item.effect for item in suspects]

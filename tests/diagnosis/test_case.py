@@ -1,7 +1,6 @@
 """The noise floor of a case, and the axes that its effects act on."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -20,16 +19,6 @@ from pzt_ident.model.registry import blocks
 
 def test_the_floor_is_the_noise(plain):
     assert plain.floor == pytest.approx(stage.NOISE, rel=0.1)
-
-
-@pytest.mark.parametrize(
-    ("identify", "validate", "floor"), [(0.6, 0.7, 0.7), (0.6, 1.2, 1.0), (0.9, 0.5, 0.9), (0.6, None, 1.0)]
-)
-def test_the_noise_is_no_more_than_what_a_model_leaves_of_records_kept_back(plain, identify, validate, floor):
-    fit = SimpleNamespace(identify=identify * plain.floor, validate=validate and validate * plain.floor)
-    seen = plain.with_floor_of(fit)
-    assert seen.floor == pytest.approx(floor * plain.floor) and seen.floors == pytest.approx(floor * plain.floors)
-    assert seen.on_axis(0).floor == pytest.approx(seen.floors[0])
 
 
 COUPLED = ("bouc_wen", "lumped", "kinematic_coupling")

@@ -16,7 +16,7 @@ from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks
 
-CASE = SimpleNamespace(floor=1.0, on_axis=lambda axis: CASE, with_floor_of=lambda fit: CASE)
+CASE = SimpleNamespace(floor=1.0, on_axis=lambda axis: CASE)
 
 
 def fit(identify, validate, effects=(), shapes=None, dimensions=4, felt=True, **declared):
