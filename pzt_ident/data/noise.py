@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.data.decimals import last_decimal
 from pzt_ident.data.evidence import alike, mean_deviation, of_one_noise, period_noise, quiet_deviation, rest_noise
 from pzt_ident.data.projections import deviation, without_lines
 from pzt_ident.data.quantiser import common_step, errors_of_readings, with_quantiser
@@ -117,15 +118,7 @@ def is_repeat(record: Record, other: Record, axis: int, tolerance: float = 2e-3)
 def is_copy(response: Array, other: Array) -> bool:
     """Whether two responses differ by no more than the rounding of one of them to its last decimal."""
     apart = float(np.abs(response - other).max())
-    return apart == 0 or any(apart <= HALF * last_decimal(each) for each in (response, other))
-
-
-def last_decimal(values: Array) -> float:
-    """The coarsest power of ten, SI units, of which all values are multiples; 0 where none is."""
-    span = np.ptp(values)
-    decimals = [10.0**-exponent for exponent in range(3, 16) if 10.0**-exponent < span]
-    whole = (decimal for decimal in decimals if np.abs(values / decimal - np.round(values / decimal)).max() < 1e-3)
-    return next(whole, 0.0)
+    return apart == 0 or any(apart <= HALF * last_decimal(each, np.ptp(each)) for each in (response, other))
 
 
 def error_scales(records: list[Record]) -> Array:

@@ -36,7 +36,7 @@ def read(path: Path, source: Source) -> Table:
         unit = str(channel.properties.get("unit_string", "")) or None
         step = channel.properties.get("wf_increment")
         load = partial(_values, path, channel.group_name, channel.name)
-        columns.append(Column(name, load, unit, step=step and float(step)))
+        columns.append(Column(name, load, unit, sample_time=step and float(step)))
         if step is not None:
             scalars.append(Column(f"{name}/wf_increment", partial(np.asarray, step), "s"))
     return Table(path, columns, scalars)

@@ -16,7 +16,7 @@ from pzt_ident.data.readers.open import open_table
 from pzt_ident.data.readers.select import select_column
 from pzt_ident.data.readers.signal import Signal, signal_of
 from pzt_ident.data.readers.table import Column, Table
-from pzt_ident.data.readers.timebase import Grid, check_rate, grid_of_rate, grid_of_stamps, grid_of_steps
+from pzt_ident.data.readers.timebase import Grid, check_rate, grid_of_rate, grid_of_sample_times, grid_of_stamps
 from pzt_ident.data.record import Axis, Channel, Source
 from pzt_ident.data.units import FREQUENCY, MASS, TIME, dimension
 from pzt_ident.errors import InputError, nearest
@@ -24,14 +24,14 @@ from pzt_ident.errors import InputError, nearest
 
 @dataclass
 class SourceChannels:
-    """The channels of one source. `tables`: the files already open. `used`: the files that this source needs. `steps`:
-    the times between values, s, that these state for its signals."""
+    """The channels of one source. `tables`: the files already open. `used`: the files that this source needs.
+    `sample_times`: s, that these state for its signals."""
 
     source: Source
     folder: Path
     tables: dict[object, Table]
     used: dict[Path, Table] = field(default_factory=dict)
-    steps: list[float] = field(default_factory=list)
+    sample_times: list[float] = field(default_factory=list)
 
     @property
     def where(self) -> str:
@@ -43,7 +43,7 @@ class SourceChannels:
         if channel is None:
             return None
         column, values, where = self._column(label, channel)
-        self.steps += [column.step] if column.step else []
+        self.sample_times += [column.sample_time] if column.sample_time else []
         signal = signal_of(column, values, self.source.rows, channel.unit, where)
         if dimension(signal.unit) in (TIME, FREQUENCY, MASS):
             problem = f"a {label.rpartition('.')[2]} cannot have the unit {signal.unit!r}"
@@ -58,7 +58,7 @@ class SourceChannels:
         """
         channel, rate = self._channel_here("time", channel), self.source.sample_rate
         if channel is None:
-            stated = grid_of_steps(self.steps, self.where)
+            stated = grid_of_sample_times(self.sample_times, self.where)
             if stated:
                 check_rate(stated, rate, self.where)
             if grid := stated if rate is None else grid_of_rate(rate, self.where):

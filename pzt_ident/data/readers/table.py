@@ -18,15 +18,15 @@ SUFFIXED = TIME, dimension("m"), dimension("V")  # kinds of units that may end a
 class Column:
     """One signal or array. `header` is its text in the file, unit included, or its path `group/name`.
 
-    `load` returns the values; text that is no number stays text. `place` names a row in messages: `line 17`. `step`:
-    the time between values, s, where the file states one for the column.
+    `load` returns the values; text that is no number stays text. `place` names a row in messages: `line 17`.
+    `sample_time`: s, where the file states one for the column.
     """
 
     header: str
     load: Callable[[], NDArray[Any]]
     given_unit: str | None = None
     place: Callable[[int], str] = "row {}".format
-    step: float | None = None
+    sample_time: float | None = None
 
     @property
     def name(self) -> str:

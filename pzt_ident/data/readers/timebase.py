@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.data.decimals import last_bit, last_decimal
 from pzt_ident.data.readers.signal import Signal
 from pzt_ident.errors import InputError
 
@@ -34,15 +35,16 @@ def grid_of_rate(rate: float, where: str) -> Grid:
     return Grid(1 / rate)
 
 
-def grid_of_steps(steps: Sequence[float], where: str) -> Grid | None:
-    """The grid of the times between values, s, that a file states for its signals; None where it states none. Raises
+def grid_of_sample_times(sample_times: Sequence[float], where: str) -> Grid | None:
+    """The grid of the sample times, s, that a file states for its signals; None where it states none. Raises
     InputError where they differ."""
-    if not steps:
+    if not sample_times:
         return None
-    if max(steps) > (1 + JITTER) * min(steps):
-        problem = f"its signals have different sample times, {min(steps):g} and {max(steps):g} s"
+    least, most = min(sample_times), max(sample_times)
+    if most > (1 + JITTER) * least:
+        problem = f"its signals have different sample times, {least:g} and {most:g} s"
         raise InputError(problem, where=where, remedy="bring them to one sample time first")
-    return grid_of_rate(1 / steps[0], where)
+    return grid_of_rate(1 / sample_times[0], where)
 
 
 def grid_of_stamps(stamps: Signal) -> Grid:
@@ -75,15 +77,10 @@ def grid_of_stamps(stamps: Signal) -> Grid:
 
 
 def last_digit(times: NDArray[np.float64], most: float) -> float:
-    """The coarsest power of ten up to `most`, s, of which all time stamps are multiples, or what their last bit is
-    worth, 0.2 us of seconds that are counted from 1970; 0 where neither is."""
-    bit = float(np.spacing(np.abs(times).max()))
-    for exponent in range(13):
-        counts, decimal = times * 10.0**exponent, 10.0**-exponent
-        blurred = bit / decimal / 2
-        if decimal <= most and blurred < 0.2 and np.abs(counts - np.round(counts)).max() < 1e-3 + blurred:
-            return decimal
-    return bit if bit <= most else 0.0
+    """Their last decimal up to `most`, s, or what their last bit is worth, 0.2 us of seconds that are counted from
+    1970; 0 where neither is so small."""
+    bit = last_bit(times)
+    return last_decimal(times, most) or (bit if bit <= most else 0.0)
 
 
 def check_rate(grid: Grid, rate: float | None, where: str) -> None:
