@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from itertools import product
 
+from pzt_ident.data.faults import fault_phrases
 from pzt_ident.data.noise import noise_floor
 from pzt_ident.data.notation import listed
-from pzt_ident.data.spikes import spike_phrase
 from pzt_ident.data.start_step import start_step
 from pzt_ident.data.units import factor
 from pzt_ident.diagnosis.case import Case
@@ -27,7 +27,7 @@ def caveats(case: Case, fit: Fit, said: str = "") -> str:
         measured_only_sentence(case, fit),
         bounds_sentence(fit),
     )
-    sentences = *of_fit, start_step_sentence(case, fit), spike_sentences(case), case.caveat
+    sentences = *of_fit, start_step_sentence(case, fit), fault_sentences(case), case.caveat
     return "".join(sentence for sentence in sentences if sentence not in said)
 
 
@@ -81,10 +81,9 @@ def start_step_sentence(case: Case, fit: Fit) -> str:
     return f" {listed(stepped)} {begin} as after a step: {advice}."
 
 
-def spike_sentences(case: Case) -> str:
-    """A sentence on each record with readings that stand far beside those around them."""
-    phrases = {record.name: spike_phrase(record) for record in case.records}
-    return "".join(f" In record {name} {phrase}." for name, phrase in phrases.items() if phrase)
+def fault_sentences(case: Case) -> str:
+    """What looks wrong with the readings of each record."""
+    return "".join(f" In record {record.name} {phrase}." for record in case.records for phrase in fault_phrases(record))
 
 
 def broken_conditions(fit: Fit) -> str:

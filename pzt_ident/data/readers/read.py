@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.data.faults import fault_phrases
 from pzt_ident.data.notation import listed
 from pzt_ident.data.readers.decimate import decimated
 from pzt_ident.data.readers.signal import Signal
@@ -18,7 +19,6 @@ from pzt_ident.data.readers.source_channels import SourceChannels
 from pzt_ident.data.readers.table import Table
 from pzt_ident.data.readers.timebase import Grid, time_slice
 from pzt_ident.data.record import Axis, Channel, Level, Record, Source
-from pzt_ident.data.spikes import spike_phrase
 from pzt_ident.data.start_step import start_step
 from pzt_ident.data.units import factor, same_kind, unscaled
 from pzt_ident.errors import InputError
@@ -118,7 +118,7 @@ def _record(channels: SourceChannels, axes: Mapping[str, Axis], time: Channel | 
         response_units=tuple(unscaled(response.unit) if response else None for response in responses),
         notes=_notes(source, grid),
     )
-    return replace(record, notes=(*record.notes, *_start(record), *filter(None, [spike_phrase(record)])))
+    return replace(record, notes=(*record.notes, *_start(record), *fault_phrases(record)))
 
 
 def _rows(signals: Sequence[Signal | None], where: str) -> int:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.data.faults.moves import CLEAR, kinked, off_line
 from pzt_ident.data.notation import listed
 from pzt_ident.data.record import Record
 
 Array = NDArray[np.float64]
 
 FAR = 8.0  # times what the readings around it stand off the lines through theirs
-CLEAR = 12.0  # times what half of all readings do
 MOVED = 3.0  # times what the signal moves from one of the readings around it to the next
 AT_AN_END = 0.05  # of the range: the first or last reading is off as much, since it may be beside a corner
 BESIDE = 0.25, 0.75  # times as far it takes the next readings to the other side of their lines, as no corner does
@@ -66,17 +66,19 @@ def spikes_beside(signal: Array, others: Array) -> NDArray[np.intp]:
     span, spans, found = float(np.ptp(signal)), np.ptp(others, axis=1, keepdims=True), []
     for begin in range(0, signal.size, STRETCH):
         part = slice(max(begin - OVERLAP, 0), begin + STRETCH + OVERLAP)
-        kinks = span * kinked(others[:, part], spans)
-        places = part.start + np.flatnonzero(stands_out(signal[part], kinks, span))
+        places = part.start + np.flatnonzero(stands_out(signal[part], span, others[:, part], spans))
         found.append(places[(places >= begin) & (places < begin + STRETCH)])
     return np.concatenate(found)
 
 
-def stands_out(signal: Array, kinks: Array, span: float) -> NDArray[np.bool_]:
-    """Of each sample, (samples,), whether a signal of that range does. kinks: what others do there."""
+def stands_out(signal: Array, span: float, others: Array, spans: Array) -> NDArray[np.bool_]:
+    """Of each sample, (samples,), whether a signal of that range does."""
     off, moves = off_line(signal), np.abs(np.diff(signal, prepend=signal[:1]))
     size, steps = np.abs(off), moves[moves > 0]
     least = max(CLEAR * float(np.median(size)), 2 * float(steps.min(initial=np.inf)))
+    if size.max() <= least:
+        return np.zeros(signal.size, np.bool_)
+    kinks = span * kinked(others, spans, AROUND)
     far = np.maximum(FAR * np.maximum(nearby(np.pad(size[1:-1], 1)), kinks), least)
     return np.asarray((size > far) & (size > MOVED * nearby(moves)) & is_single(off, span))
 
@@ -86,16 +88,6 @@ def nearby(values: Array) -> Array:
     edge = AROUND + 1
     around = np.lib.stride_tricks.sliding_window_view(np.pad(values, edge), 2 * edge + 1)
     return np.asarray(np.delete(around, (edge - 1, edge, edge + 1), axis=1).max(axis=1))
-
-
-def kinked(signals: Array, spans: Array) -> Array:
-    """How far signals, (signals, samples), are off the lines through their neighbours at most around each sample, of
-    their ranges, and beyond their noise."""
-    sizes = np.abs([off_line(signal) for signal in signals])
-    beyond = np.maximum(sizes - CLEAR * np.median(sizes, axis=1, keepdims=True), 0)
-    most = (beyond / np.where(spans > 0, spans, 1)).max(axis=0)
-    around = np.lib.stride_tricks.sliding_window_view(np.pad(most, AROUND), 2 * AROUND + 1)
-    return np.asarray(around.max(axis=1))
 
 
 def turns_at(drive: Array, place: int) -> bool:
@@ -112,10 +104,3 @@ def is_single(off: Array, span: float) -> NDArray[np.bool_]:
     shares[0, 0], shares[1, -1] = shares[1, 0], shares[0, -1]
     inner = ((shares > BESIDE[0]) & (shares < BESIDE[1])).all(axis=0)
     return np.concatenate([ends[:1], inner, ends[-1:]])
-
-
-def off_line(signal: Array) -> Array:
-    """How far each sample is off the line through its neighbours, and those at the ends off that through the next
-    two."""
-    inner = signal[1:-1] - (signal[:-2] + signal[2:]) / 2
-    return np.concatenate([[signal[0] - 2 * signal[1] + signal[2]], inner, [signal[-1] - 2 * signal[-2] + signal[-3]]])

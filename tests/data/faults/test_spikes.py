@@ -6,26 +6,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import rig
-from pzt_ident.data.spikes import drive_spikes, spike_phrase, spikes
+from data.faults.motions import MOTIONS, T, measured
+from pzt_ident.data.faults.spikes import drive_spikes, spike_phrase, spikes
 
-T = np.arange(600) * 1e-2
-TRIANGLE = 50 * (1 - np.abs((T / 2) % 2 - 1))
-MOTIONS = {
-    "triangle": TRIANGLE,
-    "sine": 40 * (1 - np.cos(3 * T)),
-    "steps": 10.0 * np.floor(T),
-    "rest": 0 * T,
-    "ringing": 20 * np.exp(-T) * np.cos(60 * T),
-}
 kinds = st.sampled_from([*MOTIONS])
 seeds = st.integers(0, 10**6)
-
-
-def measured(kind, seed, noise=1e-8, step=0.0):
-    """A record of a response that follows its drive, with noise and counts."""
-    drive = MOTIONS[kind]
-    response = 1e-7 * drive + np.random.default_rng(seed).normal(0, noise, T.size)
-    return rig.record(drive, dt=1e-2, response=[step * np.round(response / step) if step else response])
 
 
 @settings(max_examples=60, deadline=None)
@@ -102,5 +87,5 @@ def test_a_long_record_is_looked_at_in_stretches_that_overlap(monkeypatch):
     places = [0, 95, 127, 128, 129, 255, 256, 400, 599]
     record.response[0, places] += np.where(np.arange(len(places)) % 2, -4e-6, 4e-6)
     whole = spikes(record, 0).tolist()
-    monkeypatch.setattr("pzt_ident.data.spikes.STRETCH", 128)
+    monkeypatch.setattr("pzt_ident.data.faults.spikes.STRETCH", 128)
     assert spikes(record, 0).tolist() == whole and {0, 95, 400, 599} <= {*whole}

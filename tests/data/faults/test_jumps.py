@@ -1,0 +1,76 @@
+"""Readings that jump and a drive that does not are told, by where they do."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from data.faults.motions import MOTIONS, TRIANGLE, T, followed, measured
+from pzt_ident.data.faults.jumps import LONGEST, dropout_phrase, dropouts, join_phrase, joins
+
+smooth = st.sampled_from(["triangle", "sine"])
+seeds = st.integers(0, 10**6)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    kind=smooth,
+    seed=seeds,
+    first=st.integers(20, 500),
+    length=st.integers(2, LONGEST),
+    kept=st.booleans(),
+    step=st.sampled_from([0.0, 2e-9]),
+)
+def test_a_sensor_that_drops_out_is_told_from_its_first_to_its_last_sample(kind, seed, first, length, kept, step):
+    """At a value that it cannot have, or away by as much as it moves in the record."""
+    record = measured(kind, seed, step=step)
+    gap = slice(first, first + length)
+    record.response[0, gap] = record.response[0, gap] + 9e-6 if kept else -2e-5
+    assert dropouts(record, 0) == [(first, first + length - 1)] and not joins(record)
+    assert not join_phrase(record) and dropout_phrase(record).startswith("the readings of x from ")
+
+
+def test_a_sensor_that_holds_its_last_reading_is_told():
+    record = measured("sine", 1)
+    record.response[0, 110:140] = record.response[0, 110]
+    assert dropouts(record, 0) == [(110, 139)] and not joins(record)
+    assert dropout_phrase(record) == (
+        "the readings of x from 1.1 to 1.39 s are away from those around them: the sensor most likely dropped out; "
+        "mend the file, or leave them out by `rows` or `time`"
+    )
+
+
+@settings(max_examples=60, deadline=None)
+@given(kind=smooth, place=st.integers(20, 580), seed=seeds, moved=st.sampled_from([-3e-6, 2e-6, 2e-5]))
+def test_readings_that_jump_without_the_drive_are_told(kind, place, seed, moved):
+    record = measured(kind, seed)
+    record.response[0, place:] += moved
+    assert joins(record) == [place] and not dropouts(record, 0)
+
+
+@settings(max_examples=60, deadline=None)
+@given(first=st.integers(100, 160), second=st.integers(10, 60), seed=seeds)
+def test_measurements_that_were_joined_are_told_where_the_drive_moves_on_both_sides(first, second, seed):
+    """The drive goes on from another value, and the response with it."""
+    record = followed(np.concatenate([TRIANGLE[:first], TRIANGLE[second : second + 130]]), seed)
+    assert joins(record) == [first]
+    assert f"in one sample at {record.time[first]:.6g} s, as where measurements were joined" in join_phrase(record)
+
+
+@pytest.mark.parametrize("kind", [*MOTIONS])
+def test_a_response_that_follows_the_drive_at_once_is_one_measurement(kind):
+    assert not joins(measured(kind, 7))
+
+
+def test_one_step_of_the_drive_is_one_measurement():
+    assert not joins(followed(np.where(T < 3, 0.0, 40.0), 8))
+
+
+def test_the_largest_jump_of_several_axes_is_told():
+    import rig
+
+    response = 1e-7 * MOTIONS["sine"] + np.random.default_rng(9).normal(0, 1e-8, T.size)
+    both = np.array([response, response])
+    both[:, 300:] += [[1e-6], [3e-6]]
+    record = rig.record(MOTIONS["sine"], MOTIONS["triangle"], dt=1e-2, response=both)
+    assert join_phrase(record).startswith("the readings of y jump by 3.1e-06 m in one sample at 3 s, as")
