@@ -35,7 +35,7 @@ def dropout_phrase(record: Record) -> str:
         gaps = dropouts(record, number)
         if gaps:
             spans = [f"{times[first]:.6g} to {times[last]:.6g} s" for first, last in gaps[:MOST]]
-            more = f" and {len(gaps) - MOST} times more" if len(gaps) > MOST else ""
+            more = f" and {len(gaps) - MOST} more" if len(gaps) > MOST else ""
             told.append(f"of {record.axes[number]} from {listed(spans)}{more}")
     advice = "the sensor most likely dropped out; mend the file, or leave them out by `rows` or `time`"
     return f"the readings {listed(told)} are away from those around them: {advice}" if told else ""
@@ -50,7 +50,7 @@ def join_phrase(record: Record) -> str:
     unit = str(record.response_units[number])
     size = f"{abs(step_at(record, number, places[0])) / factor(unit):.2g} {unit}"
     seconds = listed([f"{record.time[place]:.6g}" for place in places[:MOST]])
-    more = f" and {len(places) - MOST} times more" if len(places) > MOST else ""
+    more = f" and at {len(places) - MOST} more" if len(places) > MOST else ""
     jump = f"the readings of {record.axes[number]} jump by {size} in one sample at {seconds} s{more}"
     return f"{jump}, {JOINED}"
 
@@ -78,7 +78,7 @@ def jumps(record: Record, axis: int) -> list[int]:
 
 def joins(record: Record) -> list[int]:
     """The samples at which a record may go on with another measurement: a response jumps there and does not come back,
-    while the drives go on as before, or jump in the same sample between two stretches in which they move."""
+    while the drives go on as before, or jump in the same sample amid a motion."""
     alone, all_jumps = set(), set()
     for axis in record.measured:
         gaps = dropouts(record, axis)
@@ -89,21 +89,25 @@ def joins(record: Record) -> list[int]:
 
 
 def driven_jumps(record: Record) -> set[int]:
-    """The samples to which a drive jumps in one step between two stretches in which it moves; none where all of its
-    jumps are alike, as those of a sawtooth."""
+    """The samples to which a drive jumps in one step amid a motion; none where all of its jumps are alike, as those of
+    a sawtooth."""
     found = set()
     for drive in record.drive:
-        places = [place for place in lone_jumps(drive) if moves_beside(drive, place)]
+        places = [place for place in lone_jumps(drive) if is_amid_motion(drive, place)]
         sizes = [drive[place] - drive[place - 1] for place in places]
         if len(places) == 1 or (places and np.ptp(sizes) > LEAST * np.ptp(drive)):
             found |= {*places}
     return found
 
 
-def moves_beside(drive: Array, place: int) -> bool:
-    """Whether a drive moves in half of the samples on either side of a jump to a place."""
-    before, after = np.diff(drive[max(place - AROUND, 0) : place]), np.diff(drive[place : place + AROUND])
-    return all(part.size > 1 and float(np.mean(part != 0)) > 0.5 for part in (before, after))
+def is_amid_motion(drive: Array, place: int) -> bool:
+    """Whether a drive moves in half of the samples on either side of a jump to a place, or on one side and is at no end
+    of its range there."""
+    sides = drive[max(place - AROUND, 0) : place], drive[place : place + AROUND]
+    moves = [float(np.mean(np.diff(side) != 0)) > 0.5 for side in sides]
+    value = drive[place - 1] if moves[0] else drive[place]
+    inside = min(drive.max() - value, value - drive.min()) > LEAST * np.ptp(drive)
+    return all(moves) or (any(moves) and bool(inside))
 
 
 def lone_jumps(signal: Array) -> list[int]:

@@ -57,6 +57,16 @@ def test_measurements_that_were_joined_are_told_where_the_drive_moves_on_both_si
     assert f"in one sample at {record.time[first]:.6g} s, as where measurements were joined" in join_phrase(record)
 
 
+@pytest.mark.parametrize("rest", [0.0, 20.0])
+def test_one_that_broke_off_and_one_that_begins_with_a_rest_are_told(rest):
+    record = followed(np.concatenate([TRIANGLE[:130], np.full(80, rest), TRIANGLE]), 5)
+    assert joins(record) == [130]
+
+
+def test_a_ramp_that_ends_with_a_drop_and_a_rest_is_one_measurement():
+    assert not joins(followed(np.concatenate([TRIANGLE[:200], np.zeros(300)]), 6))
+
+
 @pytest.mark.parametrize("kind", [*MOTIONS])
 def test_a_response_that_follows_the_drive_at_once_is_one_measurement(kind):
     assert not joins(measured(kind, 7))
