@@ -16,6 +16,7 @@ from pzt_ident.errors import InputError
 DELIMITERS = ("\t", ";", ",", " ")
 COMMENTS = ("#", "%", "//", "!")
 FLAGS = 3  # values of a column of flags, which may have no name at the end of a row
+NUMBER_AND_UNIT = re.compile(r"[+-]?\d+[.,]?\d*(?:[eE][+-]?\d+)?\s*([^\W\d_]+)")
 GAPS = frozenset(("", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--"))
 
 
@@ -70,7 +71,7 @@ def detect_layout(lines: Sequence[str], where: str, delimiter: str | None = None
     if start is None:
         alone = any(_is_complete(layout.split(lines[i]), layout, width, range(width)) for i in data)
         problem = "holds one row of numbers" if alone else "holds no table of numbers"
-        remedy = "was the recording stopped before it was saved?" if alone else "is it the right file, sheet or table?"
+        remedy = "was the recording stopped before it was saved?" if alone else no_table_remedy(sample)
         raise InputError(problem, where=where, remedy=remedy)
     above = [lines[i].lstrip("".join(COMMENTS) + " ") for i in filled if i < start]
     names = _names(above, layout, width)
@@ -78,6 +79,15 @@ def detect_layout(lines: Sequence[str], where: str, delimiter: str | None = None
     if names and any(len(values) > min(FLAGS, len(full) / 2) and "" not in values for values in surplus):
         names = _beside_row_names(names, full, width, where)
     return Layout(layout.delimiter, layout.decimal, start, width, (*names, *[""] * (width - len(names))))
+
+
+def no_table_remedy(lines: Sequence[str]) -> str:
+    """What may help where the fields of lines are no numbers."""
+    cells = [cell.strip() for line in lines for cell in re.split(r"[,;\t]", line)]
+    with_unit = (cell for cell in cells if (match := NUMBER_AND_UNIT.fullmatch(cell)) and is_unit(match[1]))
+    if cell := next(with_unit, None):
+        return f"it holds {cell!r}: put the unit into the header, as in `x [um]`, and leave it out of every line"
+    return "is it the right file, sheet or table?"
 
 
 def _punctuation(sample: Sequence[str], delimiter: str | None) -> Layout:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import io
 import re
 import zipfile
 from pathlib import Path
+from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 from pzt_ident.data.formats.text import parse
 from pzt_ident.data.readers.table import Table
 from pzt_ident.data.record import Source
 from pzt_ident.errors import InputError, nearest
+
+if TYPE_CHECKING:
+    from python_calamine import CalamineWorkbook
 
 SUFFIXES = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
 MAGIC = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
@@ -19,21 +24,21 @@ MAGIC = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
 MOST_CELLS = 20_000_000
 """Of a sheet from its first cell to its last: its reader keeps them all, empty ones too, and takes the process along
 where they do not fit into memory."""
+PARTS = {"[Content_Types].xml", "mimetype"}
+"""Of a workbook that is an archive, one or the other."""
 CELL = re.compile(rb'<c\b[^>]*?\br="([A-Z]{1,3})(\d{1,7})"')
 
 
 def parts(path: Path) -> tuple[str, dict[str, str]]:
     """The sheets of a workbook."""
-    from python_calamine import CalamineWorkbook
-
-    return "sheet", {name: name for name in CalamineWorkbook.from_path(path).sheet_names}
+    return "sheet", {name: name for name in _book(path).sheet_names}
 
 
 def read(path: Path, source: Source) -> Table:
     """The columns of the sheet `source.sheet`, of the first one where the job names none."""
-    from python_calamine import CalamineWorkbook
-
-    book = CalamineWorkbook.from_path(path)
+    if zipfile.is_zipfile(path) and not PARTS & {*zipfile.ZipFile(path).namelist()}:
+        raise InputError("is an archive and no workbook", where=str(path), remedy="unpack it, and name a file of it")
+    book = _book(path)
     sheet = source.sheet or book.sheet_names[0]
     if sheet not in book.sheet_names:
         raise InputError(f"has no sheet {sheet!r}", where=str(path), remedy=nearest(sheet, book.sheet_names))
@@ -41,6 +46,13 @@ def read(path: Path, source: Source) -> Table:
     rows = book.get_sheet_by_name(sheet).to_python(skip_empty_area=False)
     lines = ["\t".join(" ".join(str(cell).split()) for cell in row) for row in rows]
     return Table(path, parse(lines, f"{path}: sheet {sheet!r}", "row", delimiter="\t"))
+
+
+def _book(path: Path) -> CalamineWorkbook:
+    """A workbook of the kind that its content says, whatever its name does."""
+    from python_calamine import CalamineWorkbook
+
+    return CalamineWorkbook.from_filelike(io.BytesIO(path.read_bytes()))
 
 
 def _check_size(path: Path, sheet: str) -> None:

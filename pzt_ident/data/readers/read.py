@@ -20,7 +20,7 @@ from pzt_ident.data.readers.table import Table
 from pzt_ident.data.readers.timebase import Grid, time_slice
 from pzt_ident.data.record import Axis, Channel, Level, Record, Source
 from pzt_ident.data.start_step import start_step
-from pzt_ident.data.units import factor, same_kind, unscaled
+from pzt_ident.data.units import factor, is_unit, same_kind, unscaled
 from pzt_ident.errors import InputError
 
 SHORTEST = 3
@@ -116,7 +116,7 @@ def _record(channels: SourceChannels, axes: Mapping[str, Axis], time: Channel | 
         axes=tuple(axes),
         drive_units=tuple(unscaled(drive.unit) for drive in drives if drive),
         response_units=tuple(unscaled(response.unit) if response else None for response in responses),
-        notes=_notes(source, grid),
+        notes=(*_notes(source, grid), *filter(None, map(unit_note, [*drives, *responses]))),
     )
     return replace(record, notes=(*record.notes, *_start(record), *fault_phrases(record)))
 
@@ -186,6 +186,15 @@ def _notes(source: Source, grid: Grid) -> tuple[str, ...]:
     rounded = f"time stamps are rounded to {grid.rounded:g} s: the samples are taken as every {grid.dt:.6g} s"
     thinned = f"decimated by {source.decimate} after a zero-phase low-pass, which rounds the corners of the drive"
     return (*([rounded] if grid.rounded else []), *([thinned] if source.decimate > 1 else []))
+
+
+def unit_note(signal: Signal | None) -> str:
+    """That a signal is taken in another unit than its file says, scales aside; else empty."""
+    stated = signal.column.unit if signal else None
+    if signal is None or not stated or not is_unit(stated) or factor(stated) == factor(unscaled(signal.unit)):
+        return ""
+    role = signal.where.rpartition(": ")[2]
+    return f"{role} is taken in {signal.unit}, as the job says, where the file says {stated}"
 
 
 def _start(record: Record) -> list[str]:

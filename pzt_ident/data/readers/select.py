@@ -40,6 +40,8 @@ def select_column(table: Table, source: Source, channel: Channel, where: str) ->
 def _loaded(column: Column, where: str) -> NDArray[Any]:
     try:
         return column.load()
+    except InputError as error:
+        raise InputError(error.message, where=where, remedy=error.remedy) from None
     except Exception as error:  # a damaged file can raise anything in the library that reads its format
         problem = f"cannot be read: {in_words(error)}"
         raise InputError(problem, where=where, remedy="is the file complete?") from error

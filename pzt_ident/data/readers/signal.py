@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.readers.table import Column
-from pzt_ident.data.units import factor
+from pzt_ident.data.units import factor, plain
 from pzt_ident.errors import InputError
 
 USUAL = {"time": "s", "drive": "V"}  # units, that of a response is um
@@ -87,7 +87,12 @@ def _numbers(column: Column, values: NDArray[Any], first: int, where: str) -> ND
     row = next(i for i, value in enumerate(values) if not _is_number(value))
     problem = f"{column.place(first + row)} holds {str(values[row])!r} instead of a number"
     remedy = "correct the value, or leave the row out with `rows`"
-    if re.search(r"\d[:-]\d", str(values[row])):
+    if plain(str(values[row])) in (plain(column.header), plain(column.name)):
+        parts = f"`rows: [{first}, {first + row}]` and `rows: [{first + row + 1}, {first + len(values)}]`"
+        remedy = f"another measurement begins there: give each a record of its own, by {parts}"
+    elif re.fullmatch(r"[+-]?\d{1,3}([,'’ \u00a0\u202f]\d{3})+(\.\d*)?", str(values[row])):
+        remedy = "export the numbers without signs between the thousands"
+    elif re.search(r"\d[:-]\d", str(values[row])):
         remedy = "dates and times of day are not read: leave `time` out and give `sample_rate`"
     raise InputError(problem, where=where, remedy=remedy)
 

@@ -60,8 +60,12 @@ def grid_of_stamps(stamps: Signal) -> Grid:
         row = int(np.argmax(steps <= 0)) + 1
         verb = "repeats" if steps[row - 1] == 0 else "runs backward"
         problem = f"time {verb} at {stamps.place(row)}: {times[row]:.9g} s after {times[row - 1]:.9g} s"
-        rows = f"`rows: [{stamps.first}, {stamps.first + row}]`"
-        remedy = f"remove the row, take what is before it with {rows}, or leave `time` out and give `sample_rate`"
+        before, after = (stamps.first, stamps.first + row), (stamps.first + row, stamps.first + times.size)
+        rows = " and ".join(f"`rows: [{first}, {last}]`" for first, last in (before, after))
+        remedy = (
+            f"remove the row, give what is before it and after it records of their own with {rows}, or leave `time` "
+        )
+        remedy += "out and give `sample_rate`"
         raise InputError(problem, where=stamps.where, remedy=remedy)
     dt = float(times[-1] - times[0]) / steps.size
     off = float(np.abs(times - times[0] - dt * np.arange(times.size)).max())

@@ -1,6 +1,8 @@
 """The same loop through every format: values, units, sample time."""
 
+import gzip
 import sys
+import zipfile
 
 import numpy as np
 import pytest
@@ -201,3 +203,29 @@ def test_a_damaged_file_of_any_format_is_an_input_error(tmp_path, problem, suffi
     path = tmp_path / f"broken{suffix}"
     path.write_bytes(b"\x00\x01 neither text nor anything else" * 20)
     assert problem(path).message
+
+
+def test_npz_has_an_array_a_signal(tmp_path, read):
+    path = tmp_path / "loop.npz"
+    np.savez(path, t=TIME, u=DRIVE, x=RESPONSE)
+    assert_the_loop(read(path, U, X, Channel(name="t", unit="s")))
+
+
+@pytest.mark.parametrize("name", ["loop.csv.gz", "loop.csv"])
+def test_text_that_is_packed_is_unpacked(tmp_path, read, name):
+    path = tmp_path / name
+    rows = "".join(f"{float(t)!r},{float(u)!r},{float(x)!r}\n" for t, u, x in zip(TIME, DRIVE, RESPONSE, strict=True))
+    path.write_bytes(gzip.compress(("t [s],u [V],x [um]\n" + rows).encode()))
+    assert_the_loop(read(path))
+
+
+def test_an_archive_is_no_workbook(tmp_path, problem):
+    with zipfile.ZipFile(tmp_path / "loop.zip", "w") as archive:
+        archive.writestr("loop.csv", "t [s],u [V],x [um]\n")
+    error = problem(tmp_path / "loop.zip")
+    assert error.message == "is an archive and no workbook" and error.remedy.startswith("unpack it")
+
+
+def test_a_workbook_is_read_by_its_content(tmp_path, read):
+    write_sheets(tmp_path / "rig.xlsx", Loop=ROWS)
+    assert_the_loop(read((tmp_path / "rig.xlsx").rename(tmp_path / "rig.xls")))

@@ -1,5 +1,6 @@
 """Laws over the readers: what is a reader of a file format, is tested by being there."""
 
+import gzip
 import subprocess
 import sys
 from importlib.metadata import EntryPoint
@@ -106,6 +107,15 @@ def write_npy(path):
     np.save(path, np.stack(list(SIGNALS.values()), axis=1))
 
 
+def write_npz(path):
+    np.savez_compressed(path, **SIGNALS)
+
+
+def write_gz(path):
+    write_text(path)
+    path.write_bytes(gzip.compress(path.read_bytes()))
+
+
 def write_tdms(path):
     from nptdms import ChannelObject, TdmsWriter
 
@@ -127,6 +137,8 @@ WRITERS = {
     ".mat": write_mat,
     ".h5": write_hdf5,
     ".npy": write_npy,
+    ".npz": write_npz,
+    ".gz": write_gz,
     ".tdms": write_tdms,
     ".parquet": write_parquet,
     ".xlsx": write_excel,

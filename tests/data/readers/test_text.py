@@ -145,3 +145,70 @@ def test_statistics_at_the_end_are_no_measurement(tmp_path, problem, footer):
     path = write(tmp_path, "\n".join(["t [s],u [V],x [um]", *lines, footer, ""]))
     error = problem(path, clock=None, sample_rate=10)
     assert footer.splitlines()[-1].split(",")[0] in error.message and "line" in error.message
+
+
+@pytest.mark.parametrize(
+    ("mark", "delimiter", "decimal"),
+    [(".", ",", "."), (".", ";", "."), (".", ";", ","), (",", ";", "."), (",", ";", ","), (",", "\t", ".")],
+)
+def test_thousands_are_told_from_decimals(tmp_path, problem, mark, delimiter, decimal):
+    """Whole numbers below a thousand have no mark, and those above it have three digits behind each."""
+    lines = [[f"{0.1 * i:.1f}".replace(".", decimal), str(i % 7), f"{40 * i:,}".replace(",", mark)] for i in range(60)]
+    path = write(tmp_path, "\n".join(delimiter.join(line) for line in [["t [s]", "u [V]", "x [nm]"], *lines]))
+    error = problem(path, response="x [nm]")
+    assert error.message.startswith(f"row 25 (line 27) holds '1{mark}000', which reads as a decimal or as thousands")
+    assert error.where.endswith("x.response")
+
+
+@pytest.mark.parametrize("mark", ["'", " ", "’"])
+def test_thousands_with_decimals_are_told(tmp_path, problem, mark):
+    lines = [f"{i};{i % 7};" + f"{40.5 * i:,.2f}".replace(",", mark) for i in range(60)]
+    error = problem(write(tmp_path, "\n".join(["t [s];u [V];x [um]", *lines])))
+    assert error.remedy == "export the numbers without signs between the thousands"
+
+
+@given(st.lists(st.integers(-4000, 4000), min_size=3, max_size=40), st.sampled_from([1, 2, 3, 4]), st.booleans())
+def test_decimals_are_no_thousands(read, values, digits, short):
+    """However many digits they have, with or without the zeros at their end."""
+    written = [f"{value / 10**digits:.{digits}f}" for value in values]
+    cells = [text.rstrip("0").rstrip(".") if short else text for text in written]
+    if short and {len(cell.partition(".")[2]) for cell in cells} <= {0, 3}:
+        return
+    lines = [f"{i};{i % 3};{cell}".replace(".", ",") for i, cell in enumerate([*cells, "0,5", "0,25"])]
+    with tempfile.TemporaryDirectory() as folder:
+        record = read(write(Path(folder), "\n".join(["t [s];u [V];x [um]", *lines])))
+    np.testing.assert_allclose(record.response[0, :-2], 1e-6 * np.array(values) / 10**digits, atol=1e-18)
+
+
+def test_the_exponents_of_fortran_are_read(tmp_path, read):
+    rows = [f"{i:.1f}D+00 {2 * i:.2f}D-01 {i * i:.3f}D-03" for i in range(4)]
+    record = read(write(tmp_path, "\n".join(["t[s] u[V] x[um]", *rows])), "u", "x", "t")
+    np.testing.assert_allclose(record.drive[0], [0, 0.2, 0.4, 0.6])
+    np.testing.assert_allclose(record.response[0], 1e-9 * np.array([0, 1, 4, 9]))
+
+
+def test_units_in_the_cells_are_told(tmp_path, problem):
+    path = write(tmp_path, "t,u,x\n" + "".join(f"{i} ms,{i % 3}.5 V,{i}.25 um\n" for i in range(6)))
+    assert problem(path, "u", "x", "t").remedy.endswith(" ms': put the unit into the header, as in `x [um]`, and leave it out of every line")
+
+
+def test_a_second_header_is_another_measurement(tmp_path, problem):
+    text = f"t [s],u [V],x [um]\n{BODY}"
+    error = problem(write(tmp_path, text + text), clock=None, sample_rate=1)
+    assert "holds 'u [V]' instead of a number" in error.message
+    assert error.remedy.endswith("a record of its own, by `rows: [0, 3]` and `rows: [4, 7]`")
+
+
+@pytest.mark.parametrize(
+    ("unit", "note"),
+    [
+        ("um", "x.response is taken in um, as the job says, where the file says nm"),
+        ("nm", ""),
+        ("20 nm", ""),
+        ("V", "x.response is taken in V, as the job says, where the file says nm"),
+    ],
+)
+def test_a_unit_of_the_job_beside_another_one_of_the_file_is_said(tmp_path, read, unit, note):
+    path = write(tmp_path, f"t [s],u [V],x [nm]\n{BODY}")
+    notes = read(path, response=Channel(name="x", unit=unit)).notes
+    assert [text for text in notes if "is taken in" in text] == ([note] if note else [])
