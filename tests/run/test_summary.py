@@ -21,12 +21,22 @@ def notes_of(folder: Path, model: str, parameters: str) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    ("bounds", "told"), [("[0.05, 0.1]", False), ("[5.0e-5, 1.0e-4]", True), ("[50, 100]", True), ("[0, 1000]", False)]
+    ("bounds", "told"),
+    [("[0.05, 0.1]", False), ("[5.0e-5, 1.0e-4]", True), ("[50, 100]", True), ("[0, 1000]", False), ("[-2, 2]", False)],
 )
 def test_a_gain_in_another_unit_is_asked_about(tmp_path, bounds, told):
     """Of a stage that moves by 0.08 um/V."""
     notes = notes_of(tmp_path, "[bouc_wen]", f"{{bouc_wen.gain: {{bounds: {bounds}}}}}")
     assert [note.endswith("are the units right?") for note in notes] == [True] * told
+
+
+@pytest.mark.parametrize(
+    ("setting", "told"),
+    [("value: 156.6", True), ("value: 0.1566", False), ("bounds: [100, 200]", True), ("bounds: [5, 15]", False)],
+)
+def test_a_mass_in_another_unit_is_asked_about(tmp_path, setting, told):
+    notes = notes_of(tmp_path, "[bouc_wen, lumped]", f"{{lumped.mass: {{{setting}}}}}")
+    assert [note.startswith("lumped.mass is 1") for note in notes] == [True] * told
 
 
 @pytest.mark.parametrize(("setting", "told"), [("bounds: [0.05, 0.1]", True), ("value: 0.08", False)])

@@ -189,7 +189,9 @@ def test_the_exponents_of_fortran_are_read(tmp_path, read):
 
 def test_units_in_the_cells_are_told(tmp_path, problem):
     path = write(tmp_path, "t,u,x\n" + "".join(f"{i} ms,{i % 3}.5 V,{i}.25 um\n" for i in range(6)))
-    assert problem(path, "u", "x", "t").remedy.endswith(" ms': put the unit into the header, as in `x [um]`, and leave it out of every line")
+    assert problem(path, "u", "x", "t").remedy.endswith(
+        " ms': put the unit into the header, as in `x [um]`, and leave it out of every line"
+    )
 
 
 def test_a_second_header_is_another_measurement(tmp_path, problem):
