@@ -21,6 +21,7 @@ from pzt_ident.diagnosis.ties import (
     TIE,
     TWIN,
     at_noise,
+    generalises,
     is_equal,
     is_tied,
     is_twin,
@@ -168,9 +169,7 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
     known = added == (last.added,) and last.removed is None
     for effect in added if not known and case.budget.allows("ties", WHOLE + PROOF) else ():
         step = next(step for step in reversed(steps) if step.added == effect)
-        in_every_form = len(added) > 1 and not at_noise(case, now)
-        items = look_alikes(case, now, effect, step.tied, in_every_form)
-        fits = fits_in_place(case, now, effect, items, as_rivals=True)
+        fits = rivals_in_place(case, now, effect, step.tied, in_every_form=len(added) > 1)
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
         rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
         taken = min(rivals, key=partial(simplicity, case, now, rivals))
@@ -181,6 +180,16 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
             steps.append(step)
         step.rivals = {taken: rivals[taken]} | rivals
         now = rivals[taken]
+
+
+def rivals_in_place(case: Case, now: Fit, effect: str, tied: Collection[str], in_every_form: bool) -> list[Fit]:
+    """The model refitted with the look-alikes of an effect in its place, at the noise without other forms of these that
+    may contain it."""
+    fits = fits_in_place(case, now, effect, look_alikes(case, now, effect, tied, in_every_form), as_rivals=True)
+    if not in_every_form or not at_noise(case, now):
+        return fits
+    meant = look_alikes(case, now, effect, tied)
+    return [fit for fit in fits if fit.effects[-1] in meant or not generalises(fit, now)]
 
 
 def simplicity(case: Case, now: Fit, rivals: Mapping[str, Fit], item: str) -> tuple[int, bool, int, str]:

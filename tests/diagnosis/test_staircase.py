@@ -372,12 +372,22 @@ def test_the_rivals_of_an_effect_that_is_alone_again_are_asked_for_anew(monkeypa
         assert steps[-1].fit is alone and {"sensor_lag", "delay"} in [set(step.tied) for step in steps]
 
 
-@pytest.mark.parametrize(("total", "tied"), [(1.05, {"delay"}), (1.5, {"delay", "sensor_lag.third_order"})])
-def test_far_above_the_noise_a_form_that_may_be_in_its_limit_is_no_exchange_but_a_tie(monkeypatch, total, tied):
-    def fitted(item, total):
-        return SimpleNamespace(effects=("creep", item), total=total, identify=total, freedom=1)
+THIRD_ORDER = {"delay", "sensor_lag.third_order"}
 
-    now, better, worse = fitted("delay", total), fitted("sensor_lag.third_order", total - 0.01), fitted("creep", 9)
+
+@pytest.mark.parametrize(
+    ("total", "freedom", "tied"), [(1.05, 2, {"delay"}), (1.05, 1, THIRD_ORDER), (1.5, 2, THIRD_ORDER)]
+)
+def test_a_form_that_may_contain_the_effect_is_no_exchange_but_a_tie_far_above_the_noise(
+    monkeypatch, total, freedom, tied
+):
+    """And one of no more parameters is a tie at the noise as well."""
+
+    def fitted(item, total, freedom=1):
+        return SimpleNamespace(effects=("creep", item), total=total, identify=total, freedom=freedom)
+
+    now, worse = fitted("delay", total), fitted("creep", 9)
+    better = fitted("sensor_lag.third_order", total - 0.01, freedom)
     fits = {better.effects[-1]: better}
 
     def in_place(case, now, effect, items, **_):
