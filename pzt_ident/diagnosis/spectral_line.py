@@ -21,6 +21,7 @@ from pzt_ident.model.registry import blocks, word_of
 Array = NDArray[np.float64]
 
 NEAR = 4  # frequencies of a record on either side of a line that are its band, and at most half of its own
+SIDES = 3, 4, 5, 6, 7, 8  # frequencies of a record on either side of a line that are beside it in a Hann window
 OWN = 0.9  # of the misfit of its band: what a line takes up that is one
 LOUD = 10.0  # times the noise in its band: a line that is told from it
 FEWEST = 3  # periods of a line in a record that shows it
@@ -41,7 +42,7 @@ class Line:
 def is_own_line(case: Case, without: Fit, now: Fit, effect: str) -> bool:
     """Whether an effect is a line of the spectrum, over time or displacement, and takes up nearly all of the misfit of
     its band on the identification and on the validation records: nothing else is in the place of that. Over time the
-    stage itself moves less there."""
+    stage itself moves less there, or has no line of its own."""
     lines = lines_of(now, effect)
     if not lines or removed_rms(without.identify, now.identify) < CLEAR * case.floor:
         return False
@@ -53,8 +54,8 @@ def is_own_line(case: Case, without: Fit, now: Fit, effect: str) -> bool:
 
 
 def in_band(case: Case, fit: Fit, lines: Sequence[Line]) -> Array:
-    """Mean squares a frequency in the bands of some lines of what a fit leaves, of the noise, and, of lines over time,
-    of the response of its model, in units of the loss: (3, uses that show a line)."""
+    """Mean squares a frequency in the bands of some lines of what a fit leaves, of the noise, and, of lines over time
+    that do not stand alone, of the response of its model, in units of the loss: (3, uses that show a line)."""
     powers: dict[str, list[list[float]]] = {}
     for record, errors in fit.problem.errors(fit.point):
         left = errors[:, record.settle :] / fit.problem.sizes[:, None]
@@ -63,21 +64,43 @@ def in_band(case: Case, fit: Fit, lines: Sequence[Line]) -> Array:
             course = record.elapsed[record.settle :] if line.over_time else moved[line.row]
             if np.ptp(course) * line.wave >= FEWEST:
                 motion = moved[line.row] / fit.problem.sizes[line.row] if line.over_time else np.zeros(course.size)
-                rest, motion_power = power_near(np.array([left[line.row], motion]), course, line.wave).tolist()
+                signals = np.array([left[line.row], motion])
+                rest, motion_power = power_near(signals, course, line.wave).tolist()
+                if line.over_time and stands_alone(signals, course, line.wave):
+                    motion_power = 0.0
                 row = [rest, float(case.floors[line.row] ** 2), motion_power]
                 powers.setdefault(record.use, []).append(row)
     return np.array([np.mean(rows, axis=0) for rows in powers.values()]).reshape(-1, 3).T
 
 
+def stands_alone(signals: Array, course: Array, wave: float) -> bool:
+    """Whether the first of two signals (2, samples) is a line and the second is none there: what the form of a model
+    leaves has the spectrum of its motion."""
+    if np.ptp(course) * wave < 2 * SIDES[-1]:
+        return False
+    powers = powers_near(signals, course, wave, np.array([*-np.array(SIDES[::-1]), -1, 0, 1, *SIDES]))
+    sides, peak = np.delete(powers, slice(len(SIDES), len(SIDES) + 3), axis=0), powers[len(SIDES) : len(SIDES) + 3]
+    of_line, of_motion = peak.mean(axis=0) / np.maximum(sides.mean(axis=0), np.finfo(float).tiny)
+    return bool(of_line > LOUD * max(of_motion, 1.0))
+
+
 def power_near(signals: Array, course: Array, wave: float) -> Array:
-    """Mean square a frequency of signals (signals, samples) in the band of a line over a course, (samples,), of which
-    each stretch counts as it is long, in a Hann window; that of white noise is its mean square."""
-    span, places = np.ptp(course), np.arange(-NEAR, NEAR + 1)
-    waves = wave + places[np.abs(places) <= span * wave / 2] / span
+    """Mean square a frequency of signals (signals, samples) in the band of a line over a course, (samples,)."""
+    places = np.arange(-NEAR, NEAR + 1)
+    places = places[np.abs(places) <= np.ptp(course) * wave / 2]
+    return np.asarray(powers_near(signals, course, wave, places).mean(axis=0))
+
+
+def powers_near(signals: Array, course: Array, wave: float, places: NDArray[np.int_]) -> Array:
+    """Squares of signals (signals, samples) at places beside a line over a course, (samples,), counted in frequencies
+    of the record, (places, signals). Each stretch counts as it is long, in a Hann window; that of white noise is its
+    mean square."""
+    span = np.ptp(course)
     weights = np.abs(np.gradient(course)) * np.sin(np.pi * (course - course.min()) / span) ** 2
     weighted = (signals - np.average(signals, axis=1, weights=weights)[:, None]) * weights
-    lines = np.array([weighted @ np.exp(-2j * np.pi * line * course) for line in waves])  # one by one: records are long
-    return np.asarray(np.mean(np.abs(lines) ** 2, axis=0) / np.sum(weights**2))
+    waves = wave + places / span
+    lines = np.array([weighted @ np.exp(-2j * np.pi * each * course) for each in waves])  # one by one: records are long
+    return np.asarray(np.abs(lines) ** 2 / np.sum(weights**2))
 
 
 def harmonic_of_the_drive(fit: Fit, effect: str) -> int:

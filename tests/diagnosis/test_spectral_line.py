@@ -9,7 +9,7 @@ import stage
 from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.limit import harmonic_of, is_limited
 from pzt_ident.diagnosis.refit import refit
-from pzt_ident.diagnosis.spectral_line import is_own_line, order_of, power_near
+from pzt_ident.diagnosis.spectral_line import is_own_line, order_of, power_near, stands_alone
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.model.registry import blocks, word_of
@@ -76,6 +76,38 @@ def test_a_band_is_that_of_its_course_whatever_its_pace(course):
     line = np.sin(2 * np.pi * 20 * course)[None]
     there, elsewhere = power_near(line, course, 20.0)[0], power_near(line, course, 10.0)[0]
     assert elsewhere < 1e-3 * there
+
+
+def line_of(course, wave, seed):
+    """A line in noise, and the noise."""
+    noise = np.random.default_rng(seed).normal(size=course.size)
+    return np.sin(2 * np.pi * wave * course + seed) + noise, noise
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_line_stands_alone_where_the_stage_moves_more_and_has_none(seed):
+    course = np.arange(4000) * 1e-3
+    line, noise = line_of(course, 60.0, seed)
+    motion = 1e3 * np.random.default_rng(seed + 100).normal(size=course.size)
+    assert stands_alone(np.array([line, motion]), course, 60.0)
+    assert not stands_alone(np.array([noise, motion]), course, 60.0)
+    assert not stands_alone(np.array([line, 1e3 * line]), course, 60.0)
+    assert not stands_alone(np.array([line, motion])[:, :200], course[:200], 60.0)
+
+
+@pytest.mark.parametrize("frequency", [31.3, 12.9])
+def test_a_hum_is_a_line_beside_a_drive_that_moves_the_stage_at_its_frequency(frequency):
+    """And what a drive leaves that moves it there is none."""
+    noise = [np.random.default_rng(seed).normal(0, 60, 3000) for seed in (1, 2)]
+    drives = [np.pad(np.convolve(drive, np.ones(9) / 9, "valid"), 400) for drive in noise]
+    for hum in (25e-9, 0.0):
+        case = stage.with_response(
+            stage.case({"amplifier_lag.tau": 3e-4}, drives=drives),
+            lambda record, hum=hum: hum_of(record, frequency, hum),
+        )
+        first = first_fit(case, 0)
+        now = refit(case, first, (HUM,), {f"{HUM}.frequency": frequency})
+        assert is_own_line(case, first, now, HUM) == (hum > 0)
 
 
 def periodic(frequency):
