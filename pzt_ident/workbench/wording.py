@@ -30,7 +30,13 @@ FIELDS = (
     (r"\b(model|effect)s?\[\d+\]" + KEY, r"\1"),
 )
 REMEDIES = (
-    (r"take what is before it with `rows: [^`]*`", "crop the record before it"),
+    (
+        r"give what is before it and after it records of their own with `rows: [^`]*` and `rows: [^`]*`",
+        "divide the record there",
+    ),
+    (r"give each a record of its own, by `rows: [^`]*` and `rows: [^`]*`", "divide the record there"),
+    (r"give what is before and after it a record of its own, by `rows`", "divide the record there"),
+    (r"(the row|it|them) out by `rows`(?: or `(?:settle|time)`)?", r"\1 out by cropping the record"),
     (r"(the row |it )out with `rows`", r"\1out by cropping the record"),
     (r"cut them with `rows`", "crop the records"),
     (r"widen `rows`(?: or `time`, or decimate less)?", "take more of the record"),
