@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.data.faults import fault_phrases
 from pzt_ident.data.noise import noise_floor
 from pzt_ident.data.notation import unit as printed_unit
 from pzt_ident.data.record import Record
@@ -17,6 +18,7 @@ from pzt_ident.data.units import factor
 from pzt_ident.errors import InputError
 from pzt_ident.report.style import decimate
 from pzt_ident.workbench.columns import columns_of, hertz, values_of
+from pzt_ident.workbench.wording import in_page_words
 
 Array = NDArray[np.float64]
 Files = Sequence[tuple[Path, str | None]]
@@ -148,7 +150,7 @@ def encoded(values: NDArray[Any]) -> str:
 
 def guess_of(records: Sequence[Record | None], roles: Roles) -> dict[str, Any]:
     """What the page says of the measurement at the drop: by axis the largest amplitude and frequency of the drive and
-    the noise floor; of each record its rests."""
+    the noise floor; of each record its rests, and what looks wrong with its readings."""
     complete = [record for record in records if record is not None]
     columns = {
         role: {key: column.get(key) for key in ("number", "of", "name", "unit")} for role, column in roles.items()
@@ -160,6 +162,9 @@ def guess_of(records: Sequence[Record | None], roles: Roles) -> dict[str, Any]:
     guess["frequency"] = {axis: max(main_frequency(r.drive[number], r.dt) for r in complete) for number, axis in axes}
     measured_axes = [(number, axis) for number, axis in axes if number in complete[0].measured]
     guess["noise_floor"] = {axis: floor_of(complete, number) for number, axis in measured_axes}
+    guess["faults"] = [
+        {"record": r.name, "said": in_page_words(phrase)} for r in complete for phrase in fault_phrases(r)
+    ]
     return guess
 
 

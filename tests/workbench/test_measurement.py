@@ -52,6 +52,16 @@ def test_it_is_seen_whole_with_what_can_be_guessed(tmp_path):
     assert (guess["noise_floor"]["x"]["unit"], guess["noise_floor"]["x"]["source"]) == ("µm", "rest segments")
 
 
+def test_what_looks_wrong_with_its_readings_is_said_in_the_words_of_the_page(tmp_path):
+    wrong = RESPONSE.copy()
+    wrong[300:320] += 9.0
+    path = table(tmp_path / "a.csv", {"time [s]": TIME, "u [V]": DRIVE, "x [um]": wrong})
+    (fault,) = measured(whole(path))["guess"]["faults"]
+    assert fault["record"] == "a"
+    assert fault["said"].startswith(f"the readings of x from {TIME[300]:.6g} to {TIME[319]:.6g} s are away from those")
+    assert fault["said"].endswith("mend the file, or leave them out by cropping the record")
+
+
 def test_a_long_record_is_thinned_to_its_extremes(tmp_path):
     size = 50_000
     spike = np.zeros(size)

@@ -193,6 +193,7 @@ export class Measurement {
     const rests = guess.rests.flat();
     if (this.records.axes().length) fact("rests", rests.length ? rests.slice(0, 3).map(([a, b]) => `${short(a)} to ${short(b)} ${clock}`).join("; ") + (rests.length > 3 ? ` and ${rests.length - 3} more` : "") : "none");
     for (const [axis, floor] of usable(guess.noise_floor)) fact(`noise floor of ${axis}`, floor?.value ? `${number(floor.value, 2)} ${floor.unit}, from ${floor.source}` : "not known");
+    if (timed) for (const { record: name, said: what } of guess.faults) fact(guess.rests.length > 1 ? `readings of ${name}` : "readings", what);
   }
 
   /** There is a job now: the panes are its own. */
