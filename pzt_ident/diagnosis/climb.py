@@ -16,6 +16,7 @@ from pzt_ident.diagnosis.criteria import DECISIVE, FAR, adequate, clears_an_axis
 from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, forms_instead, remove_unneeded
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import Candidate
+from pzt_ident.diagnosis.merging import merge_effects
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.score import Score, fitting_forms
@@ -106,6 +107,7 @@ def complete(case: Case, first: Fit, steps: Sequence[Step], new: list[Step], uns
     new += settle(case, first, before, last)
     if unsettled and adequate(case, first, new[-1].fit):
         new += forms_instead(case, first, new[-1].fit)
+    new += merge_effects(case, first, new[-1].fit)
     return False
 
 
