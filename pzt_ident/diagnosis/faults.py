@@ -11,6 +11,7 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import Staircase
 from pzt_ident.diagnosis.criteria import adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.limit import own_bounds
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.paths import SETTLED
 from pzt_ident.diagnosis.proof import SINGLE, suspect
@@ -61,14 +62,14 @@ def faults_of(case: Case, first: Fit) -> Iterator[tuple[str, Fit]]:
 
 
 def fault_instead(case: Case, first: Fit) -> Staircase | None:
-    """The staircase of the model as given where a fault of the set-up alone leads to the noise, and any effect leaves
-    clearly more."""
+    """The staircase of the model as given where a fault of the set-up alone leads to the noise, and no effect stands
+    beside it."""
     at_noise = [(word, fit) for word, fit in faults_of(case, first) if adequate(case, first, fit)]
     if not at_noise:
         return None
     word, fit = min(at_noise, key=lambda account: account[1].total)
     diagnosis = diagnose(case, first)
-    if any(item.fit and not leaves_less(case, fit, item.fit) for item in diagnosis.candidates):
+    if any(item.fit and stands_beside(case, fit, item.fit) for item in diagnosis.candidates):
         return None
     steps = [Step(first), *there_and_back(case, first, word, fit)]
     return Staircase(steps, blamed_on(case, first, diagnosis, word), [fault_in(case, first, word, fit)])
@@ -81,6 +82,14 @@ def with_faults(case: Case, diagnosis: Diagnosis) -> Diagnosis:
     if mended is None:
         return diagnosis
     return replace(mended.last, reason=f"{mended.last.reason} {mended.suspects[0].why_not}")
+
+
+def stands_beside(case: Case, fit: Fit, other: Fit) -> bool:
+    """Whether an effect may be there as well as a fault: it leaves hardly more, and is not in a limit of its own in
+    which it leaves hardly less. Dry friction without inertia is a play."""
+    return not leaves_less(case, fit, other) and (
+        leaves_less(case, other, fit) or not own_bounds(other, other.effects[-1])
+    )
 
 
 def leaves_less(case: Case, fit: Fit, other: Fit) -> bool:

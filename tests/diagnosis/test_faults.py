@@ -105,6 +105,18 @@ def test_a_fault_is_fitted_where_it_may_be_most_of_what_is_missing(monkeypatch, 
     assert [word for word, _ in faults.faults_of(CASE, first)] == ["backlash"] * fitted
 
 
+@pytest.mark.parametrize(
+    ("total", "on_bounds", "stands"),
+    [(1.5, (), False), (1.01, (), True), (1.01, ("friction.speed",), False), (0.8, ("friction.speed",), True)],
+)
+def test_an_effect_in_a_limit_of_its_own_stands_beside_no_fault_that_fits_as_well(
+    monkeypatch, total, on_bounds, stands
+):
+    """Dry friction that needs no speed to be there is a play."""
+    monkeypatch.setattr(faults, "own_bounds", lambda fit, effect: on_bounds)
+    assert faults.stands_beside(CASE, fit(1.0, 1.0), fit(total, total, ["friction"])) == stands
+
+
 @pytest.mark.parametrize("word", blocks.faults())
 def test_a_fault_is_no_candidate_and_may_be_ruled_out(word):
     case = stage.case()
