@@ -34,8 +34,9 @@ from pzt_ident.diagnosis.forms import (
     rests_on_bounds,
     share_of_others,
 )
+from pzt_ident.diagnosis.possible import applicable
 from pzt_ident.diagnosis.refit import refit_from
-from pzt_ident.diagnosis.score import LEAST_SCORE, Scorer, applicable, scorer_of
+from pzt_ident.diagnosis.score import LEAST_SCORE, Scorer, scorer_of
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.threads import side_by_side
 from pzt_ident.diagnosis.ties import TIE, are_look_alikes

@@ -18,8 +18,9 @@ from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.merging import merge_effects
 from pzt_ident.diagnosis.misfit import share_explained
+from pzt_ident.diagnosis.possible import fitting_forms
 from pzt_ident.diagnosis.refit import refit
-from pzt_ident.diagnosis.score import Score, fitting_forms
+from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.starts import at_a_glance, best_alias, first_fit, restart
 from pzt_ident.diagnosis.step import Doubt, Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE

@@ -11,8 +11,9 @@ from pzt_ident.diagnosis.criteria import adequate, removed_rms
 from pzt_ident.diagnosis.exchange import clears_up, exchange_step, fits_better, fits_in_place, other_forms
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.limit import own_bounds
+from pzt_ident.diagnosis.possible import applicable
 from pzt_ident.diagnosis.refit import refit, refit_beside, refit_holding
-from pzt_ident.diagnosis.score import applicable, scorer_of
+from pzt_ident.diagnosis.score import scorer_of
 from pzt_ident.diagnosis.step import Step, effects_without, explained_share
 from pzt_ident.diagnosis.ties import TIE, are_look_alikes, is_tied
 from pzt_ident.model.registry import blocks, word_of

@@ -9,8 +9,9 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import NEARLY_ALL
+from pzt_ident.diagnosis.possible import applicable
 from pzt_ident.diagnosis.refit import refit_from
-from pzt_ident.diagnosis.score import applicable, scorer_of
+from pzt_ident.diagnosis.score import scorer_of
 from pzt_ident.diagnosis.step import Step, explained_share
 from pzt_ident.diagnosis.ties import is_equal, is_tied
 from pzt_ident.diagnosis.undetermined import (

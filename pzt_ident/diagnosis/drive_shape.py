@@ -12,8 +12,8 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
+from pzt_ident.diagnosis.possible import applicable
 from pzt_ident.diagnosis.refit import refit
-from pzt_ident.diagnosis.score import applicable
 
 SMOOTH = "drives smooth between their samples"  # the step after which they are
 PROBE = "delay"  # the effect that feels it most

@@ -12,8 +12,9 @@ from pzt_ident.diagnosis.criteria import DECISIVE, adequate, beyond_form, remove
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.limit import is_limited, own_bounds
 from pzt_ident.diagnosis.misfit import share_explained
+from pzt_ident.diagnosis.possible import applicable, fitting_forms
 from pzt_ident.diagnosis.refit import refit, refit_beside
-from pzt_ident.diagnosis.score import applicable, fitting_forms, scorer_of
+from pzt_ident.diagnosis.score import scorer_of
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explained_share
 from pzt_ident.diagnosis.ties import (

@@ -14,10 +14,11 @@ from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.limit import own_bounds
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.paths import SETTLED
+from pzt_ident.diagnosis.possible import applicable
 from pzt_ident.diagnosis.proof import SINGLE, suspect
 from pzt_ident.diagnosis.reasons import fault_explains
 from pzt_ident.diagnosis.refit import refit
-from pzt_ident.diagnosis.score import applicable, scorer_of
+from pzt_ident.diagnosis.score import scorer_of
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.step import Step, explained_share
 from pzt_ident.diagnosis.ties import TIE

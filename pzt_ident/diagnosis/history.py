@@ -13,8 +13,9 @@ from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, LEAST_SHARE, adequate,
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.forms import NEARLY_ALL
 from pzt_ident.diagnosis.misfit import share_explained, squared_misfit
+from pzt_ident.diagnosis.possible import applicable
 from pzt_ident.diagnosis.refit import refit, refit_from, start_of
-from pzt_ident.diagnosis.score import applicable, scorer_of
+from pzt_ident.diagnosis.score import scorer_of
 from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.undetermined import has_operator
 from pzt_ident.diagnosis.verdict import Diagnosis

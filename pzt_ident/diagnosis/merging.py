@@ -12,8 +12,9 @@ from pzt_ident.diagnosis.exchange import exchange_step
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.limit import is_limited
+from pzt_ident.diagnosis.possible import applicable
 from pzt_ident.diagnosis.refit import refit, refit_beside
-from pzt_ident.diagnosis.score import applicable, scorer_of
+from pzt_ident.diagnosis.score import scorer_of
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step, effects_without, explained_share
 from pzt_ident.diagnosis.ties import TIE

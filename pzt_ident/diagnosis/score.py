@@ -18,10 +18,10 @@ from pzt_ident.diagnosis import misfit
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.cost import MOST_SIMULATIONS, has_many_trials, is_costly, simulations
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.possible import fitting_forms
 from pzt_ident.diagnosis.projection import Projection, Sets, Split
 from pzt_ident.diagnosis.trials import MOST_SHAPES, ShapesByAxis, Trial, parameter_grid, planned_trials, trials_beside
-from pzt_ident.model.block import Coupling, Term
-from pzt_ident.model.registry import blocks, word_of
+from pzt_ident.model.registry import blocks
 from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
@@ -59,43 +59,6 @@ class Score:
     def guess(self) -> dict[str, float]:
         """The best guess; empty where there is none."""
         return self.guesses[0] if self.guesses else {}
-
-
-def applicable(case: Case, effects: tuple[str, ...], in_setup: bool = False) -> list[str]:
-    """The effects of the stage that can be added to this model, which has `effects`, or the faults of its set-up."""
-    present = (*map(word_of, effects), *case.ruled_out)
-    words = (word for word in blocks.effects() if blocks[word].in_setup == in_setup)
-    return [word for word in words if word not in present and fitting_forms(case, effects, word)]
-
-
-def fitting_forms(case: Case, effects: tuple[str, ...], word: str) -> list[str]:
-    """The items of the forms of an effect that can act in the model with `effects`, in the order of the declaration; of
-    those that are one there, as in a block that has the effect in one form only, the first."""
-    forms: dict[object, str] = {}
-    for item in blocks.forms(word):
-        if fits(case, effects, item):
-            forms.setdefault(held_by(case, effects, item), item)
-    return list(forms.values())
-
-
-def held_by(case: Case, effects: tuple[str, ...], item: str) -> object:
-    """What tells a form from others: in the equations of blocks, their parameters and their own forms with it."""
-    if not issubclass(blocks[item], Term):
-        return item
-    names, chain = {word_of(item), item}, blocks.chain((*case.words, *effects))
-    declared = ((block, word) for block in chain for word, each in block.parameters().items() if each.effect in names)
-    return frozenset((*declared, *((block, name) for block in chain for name in names if name in block.forms)))
-
-
-def fits(case: Case, effects: tuple[str, ...], item: str) -> bool:
-    """Whether the model with `effects` has what a form of an effect acts in: a block with the term, a second axis, a
-    block that it is ahead of."""
-    form, chain = blocks[item], blocks.chain((*case.words, *effects))
-    if issubclass(form, Term):
-        return any(block.holds(form) for block in chain)
-    if form.ahead_of is not None and form.ahead_of not in {getattr(block, "place", None) for block in chain}:
-        return False
-    return not issubclass(form, Coupling) or len(case.records[0].axes) > 1
 
 
 def scorer_of(case: Case, fit: Fit) -> Scorer:

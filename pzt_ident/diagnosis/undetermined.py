@@ -11,8 +11,8 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import CLEAR, adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.modes import Mode, modes_of, values_of
+from pzt_ident.diagnosis.possible import fits
 from pzt_ident.diagnosis.refit import refit
-from pzt_ident.diagnosis.score import fits
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.model.block import Place
 from pzt_ident.model.chain import Entry

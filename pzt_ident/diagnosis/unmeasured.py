@@ -11,7 +11,8 @@ from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE
 from pzt_ident.diagnosis.fit import Fit, fit_at
-from pzt_ident.diagnosis.score import applicable, scorer_of
+from pzt_ident.diagnosis.possible import applicable
+from pzt_ident.diagnosis.score import scorer_of
 from pzt_ident.model.block import Coupling, Place
 from pzt_ident.model.registry import blocks
 

@@ -11,8 +11,9 @@ from made_fits import CASE, fit
 from pzt_ident.diagnosis import faults, thinning
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.faults import Fault, fault_instead, without_outdone
+from pzt_ident.diagnosis.possible import applicable
 from pzt_ident.diagnosis.refit import refit
-from pzt_ident.diagnosis.score import Score, applicable
+from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step

@@ -11,14 +11,12 @@ from pzt_ident.diagnosis import cost
 from pzt_ident.diagnosis import score as score_module
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.cost import MOST_SIMULATIONS, simulations
+from pzt_ident.diagnosis.possible import applicable, fits, fitting_forms
 from pzt_ident.diagnosis.refit import refit, refit_from
 from pzt_ident.diagnosis.score import (
     KEPT,
     LEAST_SCORE,
     Scorer,
-    applicable,
-    fits,
-    fitting_forms,
     scorer_of,
     squared_misfit,
 )

@@ -12,8 +12,9 @@ from pzt_ident.diagnosis.budget import EXPLORING, Budget
 from pzt_ident.diagnosis.climb import add_pair, add_restarted
 from pzt_ident.diagnosis.exchange import exchange_any, remove_unneeded
 from pzt_ident.diagnosis.fit import Fit, fit_at
+from pzt_ident.diagnosis.possible import fitting_forms
 from pzt_ident.diagnosis.refit import refit
-from pzt_ident.diagnosis.score import Score, fitting_forms
+from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step, explained_share

@@ -11,8 +11,8 @@ from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import fit_at
+from pzt_ident.diagnosis.possible import fits
 from pzt_ident.diagnosis.refit import FINEST, STEP_TOLERANCE, step_errors
-from pzt_ident.diagnosis.score import fits
 from pzt_ident.diagnosis.starts import (
     STARTS_SOLVED,
     at_a_glance,

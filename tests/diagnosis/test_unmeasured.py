@@ -10,8 +10,8 @@ import stage
 from pzt_ident.diagnosis.bounds import bounds_that_changed
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import fit_at
+from pzt_ident.diagnosis.possible import fits
 from pzt_ident.diagnosis.refit import values_in
-from pzt_ident.diagnosis.score import fits
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.unmeasured import (

@@ -8,7 +8,7 @@ from click.testing import CliRunner
 
 from pzt_ident.atlas.manual import code_blocks, source
 from pzt_ident.cli.commands import main
-from pzt_ident.diagnosis.score import applicable
+from pzt_ident.diagnosis.possible import applicable
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import load_job
 from pzt_ident.model.registry import blocks, optimizers
