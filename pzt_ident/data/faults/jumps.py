@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -29,16 +29,20 @@ MOST = 3  # that are told by their times
 
 
 def dropout_phrase(record: Record) -> str:
-    """For how long readings of a record do not go with the drive, and what to do; empty where all do."""
-    times, told = record.time, []
-    for number in record.measured:
-        gaps = dropouts(record, number)
-        if gaps:
-            spans = [f"{times[first]:.6g} to {times[last]:.6g} s" for first, last in gaps[:MOST]]
-            more = f" and {len(gaps) - MOST} more" if len(gaps) > MOST else ""
-            told.append(f"of {record.axes[number]} from {listed(spans)}{more}")
-    advice = "the sensor most likely dropped out; mend the file, or leave them out by `rows` or `time`"
-    return f"the readings {listed(told)} are away from those around them: {advice}" if told else ""
+    """For how long readings of a record, or values of a drive, do not go with what is around them, and what to do;
+    empty where all do."""
+    gaps = {f"the readings of {record.axes[number]}": dropouts(record, number) for number in record.measured}
+    gaps |= {f"the drive of {axis}": drive_dropouts(record, number) for number, axis in enumerate(record.axes)}
+    told = [f"{whose} from {spans_of(record, found)}" for whose, found in gaps.items() if found]
+    are = "are" if len(told) > 1 or any("readings" in whose for whose in told) else "is"
+    advice = "mend the file, or leave it out by `rows` or `time`"
+    return f"{listed(told)} {are} away from what is around: a channel most likely dropped out; {advice}" if told else ""
+
+
+def spans_of(record: Record, gaps: Sequence[tuple[int, int]]) -> str:
+    """The first few stretches of a record by their times."""
+    spans = [f"{record.time[first]:.6g} to {record.time[last]:.6g} s" for first, last in gaps[:MOST]]
+    return listed(spans) + (f" and {len(gaps) - MOST} more" if len(gaps) > MOST else "")
 
 
 def join_phrase(record: Record) -> str:
@@ -56,7 +60,7 @@ def join_phrase(record: Record) -> str:
 
 
 def step_at(record: Record, axis: int, place: int) -> float:
-    """How far the response moves from the sample before a place to it, of its range."""
+    """How far the response moves from the sample before a place to it."""
     return float(record.response[axis, place] - record.response[axis, place - 1])
 
 
@@ -64,16 +68,26 @@ def jumps(record: Record, axis: int) -> list[int]:
     """The samples to which the response of an axis jumps in one step, while no drive kinks there by as much of its
     range; none where it jumps all the time."""
     response = record.response[axis]
-    places = lone_jumps(response)
-    if not places:
+    steps = {place: abs(step_at(record, axis, place)) for place in lone_jumps(response)}
+    kinks = kinks_at(record.drive, [*steps])
+    return [place for place in steps if steps[place] > FAR * kinks[place] * np.ptp(response)]
+
+
+def kinks_at(signals: Array, places: Sequence[int]) -> dict[int, float]:
+    """How far signals, (signals, samples), kink around places, of their ranges."""
+    spans = np.ptp(signals, axis=1, keepdims=True) if places else np.empty((0, 1))
+    parts = {place: slice(max(place - AROUND - 2, 0), place + AROUND + 2) for place in places}
+    return {place: float(kinked(signals[:, part], spans, AROUND).max()) for place, part in parts.items()}
+
+
+def drive_dropouts(record: Record, axis: int) -> list[tuple[int, int]]:
+    """First and last sample of each stretch to which a drive jumps and from which it jumps back, while no response
+    kinks; none where there is no response."""
+    if not record.measured:
         return []
-    spans = np.ptp(record.drive, axis=1, keepdims=True)
-    span, asked = float(np.ptp(response)), []
-    for place in places:
-        part = slice(max(place - AROUND - 2, 0), place + AROUND + 2)
-        kink = kinked(record.drive[:, part], spans, around=AROUND).max(initial=0.0)
-        asked.append(abs(step_at(record, axis, place)) <= FAR * kink * span)
-    return [place for place, is_asked in zip(places, asked, strict=True) if not is_asked]
+    drive = record.drive[axis]
+    kinks = kinks_at(record.response[[*record.measured]], lone_jumps(drive))
+    return [(first, after - 1) for first, after in returns([place for place in kinks if not kinks[place]], drive)]
 
 
 def joins(record: Record) -> list[int]:

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from data.faults.motions import MOTIONS, TRIANGLE, T, followed, measured
-from pzt_ident.data.faults.jumps import LONGEST, dropout_phrase, dropouts, join_phrase, joins
+from pzt_ident.data.faults.jumps import LONGEST, drive_dropouts, dropout_phrase, dropouts, join_phrase, joins
 
 smooth = st.sampled_from(["triangle", "sine"])
 seeds = st.integers(0, 10**6)
@@ -35,9 +35,29 @@ def test_a_sensor_that_holds_its_last_reading_is_told():
     record.response[0, 110:140] = record.response[0, 110]
     assert dropouts(record, 0) == [(110, 139)] and not joins(record)
     assert dropout_phrase(record) == (
-        "the readings of x from 1.1 to 1.39 s are away from those around them: the sensor most likely dropped out; "
-        "mend the file, or leave them out by `rows` or `time`"
+        "the readings of x from 1.1 to 1.39 s are away from what is around: a channel most likely dropped out; "
+        "mend the file, or leave it out by `rows` or `time`"
     )
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    kind=smooth,
+    seed=seeds,
+    first=st.integers(20, 500),
+    length=st.integers(2, LONGEST),
+    value=st.sampled_from([-90.0, 300.0]),
+)
+def test_a_drive_that_is_read_wrong_for_a_while_is_told_and_one_that_the_stage_follows_is_not(
+    kind, seed, first, length, value
+):
+    record = measured(kind, seed)
+    gap = slice(first, first + length)
+    record.drive[0, gap] = value
+    assert drive_dropouts(record, 0) == [(first, first + length - 1)] and not joins(record)
+    assert dropout_phrase(record).startswith("the drive of x from ") and " s is away from" in dropout_phrase(record)
+    record.response[0, gap] = 1e-7 * value
+    assert not drive_dropouts(record, 0)
 
 
 @settings(max_examples=60, deadline=None)
