@@ -35,7 +35,7 @@ REMEDIES = (
         "divide the record there",
     ),
     (r"give each a record of its own, by `rows: [^`]*` and `rows: [^`]*`", "divide the record there"),
-    (r"give what is before and after it a record of its own, by `rows`", "divide the record there"),
+    (r"give what is before and after(?: it)? a record of its own, by `rows`", "divide the record there"),
     (r"(the row|it|them) out by `rows`(?: or `(?:settle|time)`)?", r"\1 out by cropping the record"),
     (r"(the row |it )out with `rows`", r"\1out by cropping the record"),
     (r"cut them with `rows`", "crop the records"),

@@ -58,8 +58,8 @@ def test_what_looks_wrong_with_its_readings_is_said_in_the_words_of_the_page(tmp
     path = table(tmp_path / "a.csv", {"time [s]": TIME, "u [V]": DRIVE, "x [um]": wrong})
     (fault,) = measured(whole(path))["guess"]["faults"]
     assert fault["record"] == "a"
-    assert fault["said"].startswith(f"the readings of x from {TIME[300]:.6g} to {TIME[319]:.6g} s are away from what")
-    assert fault["said"].endswith("mend the file, or leave it out by cropping the record")
+    assert fault["said"].startswith(f"the readings of x from {TIME[300]:.6g} s to {TIME[319]:.6g} s jump away and back")
+    assert fault["said"].endswith("a channel most likely dropped out; divide the record there")
 
 
 def test_a_long_record_is_thinned_to_its_extremes(tmp_path):

@@ -7,13 +7,18 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.data.faults.moves import scatter
+from pzt_ident.data.faults.places import place_of
+from pzt_ident.data.faults.standstill import is_noisy
 from pzt_ident.data.record import Record
 from pzt_ident.data.units import factor
 
 Array = NDArray[np.float64]
 
 SHORTEST = 6  # readings in a row at the end of a range
+OFTENER = 4  # times as many as are next to it
 BEFORE = 24  # samples ahead of them that say how fast the response went
+MOST = 0.9  # of the samples of a stretch beyond which its drive goes on: fewer may be wrong
 BEYOND = 5.0  # times the step and the noise of the readings: what the drive asked for meanwhile
 
 
@@ -22,18 +27,24 @@ def clipping_phrase(record: Record) -> str:
     told = []
     for number in record.measured:
         for name, side in (("largest", 1), ("least", -1)):
-            response = record.response[number]
-            if count := clipped(side * response, record.drive[number]):
+            response = side * record.response[number]
+            if clipped(response, record.drive[number]):
+                places = np.flatnonzero(response == response.max())
                 unit = str(record.response_units[number])
-                value = f"{side * float((side * response).max()) / factor(unit):.4g}"
-                told.append(f"{count} readings of {record.axes[number]} are the {name} one, {value} {unit}")
-    advice = "a converter or a sensor at the end of its range reads so; leave them out by `rows`, or measure again"
-    return f"{' and '.join(told)}, and stay there while the drive goes on: {advice}" if told else ""
+                value = f"{side * float(response.max()) / factor(unit):.4g} {unit}, the {name} of all"
+                first = place_of(record, int(places[0]))
+                told.append(f"{places.size} readings of {record.axes[number]} are exactly {value}, first at {first}")
+    advice = "leave them out by `rows`, or measure again in a wider one"
+    return f"{' and '.join(told)}: the end of the range of a sensor or converter; {advice}" if told else ""
 
 
-def clipped(response: Array, drive: Array) -> int:
-    """How many readings, (samples,), are the largest one in runs over which the drive asks for clearly more."""
-    return sum(stop - start for start, stop in runs(response == response.max()) if asks(response, drive, start, stop))
+def clipped(response: Array, drive: Array) -> bool:
+    """Whether readings, (samples,), are the largest one far oftener than noise would have it, or in a run over which
+    the drive asks for clearly more."""
+    at_end = response == response.max()
+    count, next_to_it = int(at_end.sum()), int((response == response[~at_end].max(initial=-np.inf)).sum())
+    often = count >= SHORTEST and count > OFTENER * next_to_it and is_noisy(response)
+    return often or any(asks(response, drive, start, stop) for start, stop in runs(at_end))
 
 
 def runs(where: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
@@ -51,7 +62,9 @@ def asks(response: Array, drive: Array, start: int, stop: int) -> bool:
     rise, travel = float(response[start] - values[0]), float(drive[start] - driven[0])
     if travel == 0 or rise <= 0:
         return False
-    onward = max(float(np.max((drive[start:stop] - drive[start]) * np.sign(travel))), 0.0)
+    onward = max(float(np.quantile((drive[start:stop] - drive[start]) * np.sign(travel), MOST)), 0.0)
+    if onward < BEYOND * scatter(drive):
+        return False
     moves = np.abs(np.diff(values))
     line = values[0] + rise * (driven - driven[0]) / travel
     return rise / abs(travel) * onward > BEYOND * max(float(np.abs(values - line).max()), smallest(moves))

@@ -1,4 +1,5 @@
-"""Readings that jump while the drive does not: a sensor that drops out, and measurements joined to one record."""
+"""Readings that jump while the drive does not: a sensor that drops out or holds its last value, and measurements joined
+to one record."""
 
 from __future__ import annotations
 
@@ -8,7 +9,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.faults.moves import CLEAR, kinked
+from pzt_ident.data.faults.moves import CLEAR, kinked, scatter
+from pzt_ident.data.faults.places import places_of, span_of
+from pzt_ident.data.faults.standstill import SHORTEST, still_stretches
 from pzt_ident.data.notation import listed
 from pzt_ident.data.record import Record
 from pzt_ident.data.units import factor
@@ -18,14 +21,14 @@ Array = NDArray[np.float64]
 FAR = 8.0  # times what the signal moves from one sample to the next around a jump
 LEAST = 0.01  # of the range of the readings
 AROUND = 8  # samples on each side
-MANY = 12  # jumps: a signal that has more moves so
-LONGEST = 64  # samples that a sensor drops out for: what is away for longer is another measurement
-HELD = 4  # readings that are equal to the last digit
+MANY = 12  # jumps that no drive asks for: a stage that has more moves so
+MOST_MOVES = 2000  # moves that may be jumps: a signal that has more moves so
+LONGEST, LONG = 64, 0.05  # samples, or of all, that a channel drops out for: what is away for longer is no dropout
 JOINED = (
     "as where measurements were joined, a sensor lost counts or a stage slipped: "
     "give what is before and after it a record of its own, by `rows`"
 )
-MOST = 3  # that are told by their times
+MOVING = 6.0  # times the scatter of a drive: one that goes farther in AROUND samples moves
 
 
 def dropout_phrase(record: Record) -> str:
@@ -33,16 +36,18 @@ def dropout_phrase(record: Record) -> str:
     empty where all do."""
     gaps = {f"the readings of {record.axes[number]}": dropouts(record, number) for number in record.measured}
     gaps |= {f"the drive of {axis}": drive_dropouts(record, number) for number, axis in enumerate(record.axes)}
-    told = [f"{whose} from {spans_of(record, found)}" for whose, found in gaps.items() if found]
-    are = "are" if len(told) > 1 or any("readings" in whose for whose in told) else "is"
-    advice = "mend the file, or leave it out by `rows` or `time`"
-    return f"{listed(told)} {are} away from what is around: a channel most likely dropped out; {advice}" if told else ""
+    told = [f"{whose} {span_of(record, found)}" for whose, found in gaps.items() if found]
+    jump = "jumps" if len(told) == 1 and told[0].startswith("the drive") else "jump"
+    advice = "a channel most likely dropped out; give what is before and after a record of its own, by `rows`"
+    return f"{listed(told)} {jump} away and back: {advice}" if told else ""
 
 
-def spans_of(record: Record, gaps: Sequence[tuple[int, int]]) -> str:
-    """The first few stretches of a record by their times."""
-    spans = [f"{record.time[first]:.6g} to {record.time[last]:.6g} s" for first, last in gaps[:MOST]]
-    return listed(spans) + (f" and {len(gaps) - MOST} more" if len(gaps) > MOST else "")
+def hold_phrase(record: Record) -> str:
+    """Where the readings of a record stand still while the drive moves, and what to do; empty where none do."""
+    held = {record.axes[number]: holds(record, number) for number in record.measured}
+    told = [f"of {axis} {span_of(record, found)}" for axis, found in held.items() if found]
+    advice = "a sensor or a recorder held its last value; give what is before and after a record of its own, by `rows`"
+    return f"the readings {listed(told)} are equal to the last digit while the drive moves: {advice}" if told else ""
 
 
 def join_phrase(record: Record) -> str:
@@ -50,13 +55,11 @@ def join_phrase(record: Record) -> str:
     places = joins(record)
     if not places:
         return ""
-    number = max(record.measured, key=lambda axis: abs(step_at(record, axis, places[0])))
+    sizes = {axis: max(abs(step_at(record, axis, place)) for place in places) for axis in record.measured}
+    number = max(sizes, key=lambda axis: sizes[axis] / (np.ptp(record.response[axis]) or 1.0))
     unit = str(record.response_units[number])
-    size = f"{abs(step_at(record, number, places[0])) / factor(unit):.2g} {unit}"
-    seconds = listed([f"{record.time[place]:.6g}" for place in places[:MOST]])
-    more = f" and at {len(places) - MOST} more" if len(places) > MOST else ""
-    jump = f"the readings of {record.axes[number]} jump by {size} in one sample at {seconds} s{more}"
-    return f"{jump}, {JOINED}"
+    size = f"{'up to ' * (len(places) > 1)}{sizes[number] / factor(unit):.2g} {unit}"
+    return f"the readings of {record.axes[number]} jump by {size} in one sample {places_of(record, places)}, {JOINED}"
 
 
 def step_at(record: Record, axis: int, place: int) -> float:
@@ -81,13 +84,15 @@ def kinks_at(signals: Array, places: Sequence[int]) -> dict[int, float]:
 
 
 def drive_dropouts(record: Record, axis: int) -> list[tuple[int, int]]:
-    """First and last sample of each stretch to which a drive jumps and from which it jumps back, while no response
-    kinks; none where there is no response."""
-    if not record.measured:
-        return []
+    """First and last sample of each stretch to which a moving drive jumps and from which it jumps back, while no
+    response kinks; none where there is no response, and none of a drive that jumps elsewhere, too."""
     drive = record.drive[axis]
-    kinks = kinks_at(record.response[[*record.measured]], lone_jumps(drive))
-    return [(first, after - 1) for first, after in returns([place for place in kinks if not kinks[place]], drive)]
+    places = lone_jumps(drive) if record.measured else []
+    kinks = kinks_at(record.response[[*record.measured]], places)
+    gaps = list(returns([place for place in places if not kinks[place]], drive))
+    if 2 * len(gaps) < len(places):
+        return []
+    return [(first, after - 1) for first, after in gaps if all(moves_beside(drive, first - 1, after))]
 
 
 def joins(record: Record) -> list[int]:
@@ -95,11 +100,13 @@ def joins(record: Record) -> list[int]:
     while the drives go on as before, or jump in the same sample amid a motion."""
     alone, all_jumps = set(), set()
     for axis in record.measured:
-        gaps = dropouts(record, axis)
+        unasked = jumps(record, axis)
+        gaps = [*dropouts(record, axis), *holds(record, axis)]
         of_gaps = {place for first, last in gaps for place in (first, last + 1)}
-        alone |= {*jumps(record, axis)} - of_gaps
+        alone |= {*unasked} - of_gaps
         all_jumps |= {*lone_jumps(record.response[axis])} - of_gaps
-    return sorted(alone | (all_jumps & driven_jumps(record)))
+    places = sorted(alone | (all_jumps & driven_jumps(record)))
+    return places if len(places) <= MANY else []
 
 
 def driven_jumps(record: Record) -> set[int]:
@@ -115,13 +122,19 @@ def driven_jumps(record: Record) -> set[int]:
 
 
 def is_amid_motion(drive: Array, place: int) -> bool:
-    """Whether a drive moves in half of the samples on either side of a jump to a place, or on one side and is at no end
-    of its range there."""
-    sides = drive[max(place - AROUND, 0) : place], drive[place : place + AROUND]
-    moves = [float(np.mean(np.diff(side) != 0)) > 0.5 for side in sides]
-    value = drive[place - 1] if moves[0] else drive[place]
+    """Whether a drive moves on either side of a jump to a place, or on one side and is at no end of its range there."""
+    before, after = moves_beside(drive, place - 1, place)
+    value = drive[place - 1] if before else drive[place]
     inside = min(drive.max() - value, value - drive.min()) > LEAST * np.ptp(drive)
-    return all(moves) or (any(moves) and bool(inside))
+    return (before and after) or ((before or after) and bool(inside))
+
+
+def moves_beside(drive: Array, last: int, first: int) -> tuple[bool, bool]:
+    """Whether a drive moves up to a sample, and from another one on, farther than its noise goes."""
+    least = MOVING * scatter(drive)
+    sides = drive[max(last - AROUND + 1, 0) : last + 1], drive[first : first + AROUND]
+    before, after = (bool(abs(side[-1] - side[0]) > least) for side in sides)
+    return before, after
 
 
 def lone_jumps(signal: Array) -> list[int]:
@@ -133,41 +146,49 @@ def lone_jumps(signal: Array) -> list[int]:
         return []
     least = max(CLEAR * float(np.median(moves)), 2 * float(steps.min()), LEAST * float(np.ptp(signal)))
     candidates = np.flatnonzero(moves > least)
-    if candidates.size > 2 * MANY:
+    if candidates.size > MOST_MOVES:
         return []
     inside = candidates[(candidates >= AROUND) & (candidates < moves.size - AROUND)]
     return [int(place) + 1 for place in inside if moves[place] > FAR * around(moves, place, candidates)]
 
 
 def around(moves: Array, place: int, others: NDArray[np.intp]) -> float:
-    """The largest move in the samples on each side of a place, but for other jumps that are not beside it."""
+    """The largest move in the samples on each side of a place, but for another jump that is not beside it; infinite
+    among several, as where a stage rings."""
     near = np.arange(max(place - AROUND, 0), min(place + AROUND + 1, moves.size))
-    apart = near[(near != place) & ~(np.isin(near, others) & (np.abs(near - place) > 1))]
-    return float(moves[apart].max(initial=0.0))
+    apart = np.isin(near, others) & (np.abs(near - place) > 1)
+    if np.count_nonzero(apart) > 1:
+        return float(np.inf)
+    return float(moves[near[~apart & (near != place)]].max(initial=0.0))
 
 
 def dropouts(record: Record, axis: int) -> list[tuple[int, int]]:
-    """First and last sample of each stretch to which the response of an axis jumps and from which it jumps back, or in
-    which it stands still until it jumps."""
-    places, response = jumps(record, axis), record.response[axis]
-    gaps = [*returns(places, response)]
-    back = {place for pair in gaps for place in pair}
-    held = [(held_since(response, place), place) for place in places if place not in back]
-    gaps += [(first, place) for first, place in held if place - first >= HELD]
-    return sorted((first, after - 1) for first, after in gaps)
+    """First and last sample of each stretch to which the response of an axis jumps and from which it jumps back."""
+    gaps = [(first, after - 1) for first, after in returns(jumps(record, axis), record.response[axis])]
+    return gaps if len(gaps) <= MANY else []
 
 
-def held_since(response: Array, place: int) -> int:
+def holds(record: Record, axis: int) -> list[tuple[int, int]]:
+    """First and last sample of each stretch of equal readings amid noise, or up to a jump that no drive asks for, to
+    which the response did not jump."""
+    response, places = record.response[axis], jumps(record, axis)
+    still = [(first, last) for first, last in still_stretches(record, axis) if first not in places]
+    known = {last + 1 for _, last in still} | {after for pair in returns(places, response) for after in pair}
+    since = {place: equal_since(response, place) for place in places if place not in known}
+    return sorted([*still, *((first, place - 1) for place, first in since.items() if place - first >= SHORTEST)])
+
+
+def equal_since(response: Array, place: int) -> int:
     """The first of the equal readings ahead of a place."""
     changes = np.flatnonzero(response[:place] != response[place - 1])
     return int(changes[-1]) + 1 if changes.size else 0
 
 
-def returns(places: list[int], response: Array) -> Iterator[tuple[int, int]]:
+def returns(places: Sequence[int], signal: Array) -> Iterator[tuple[int, int]]:
     """The pairs of jumps of which the second soon takes most of the first back."""
-    taken = 0
+    taken, longest = 0, max(LONGEST, LONG * signal.size)
     for first, after in pairwise(places):
-        there, back = (response[place] - response[place - 1] for place in (first, after))
-        if first > taken and after - first <= LONGEST and abs(there + back) < 0.5 * max(abs(there), abs(back)):
+        there, back = (signal[place] - signal[place - 1] for place in (first, after))
+        if first > taken and after - first <= longest and abs(there + back) < 0.5 * max(abs(there), abs(back)):
             taken = after
             yield first, after

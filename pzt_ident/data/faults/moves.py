@@ -25,3 +25,8 @@ def kinked(signals: Array, spans: Array, around: int) -> Array:
     most = (beyond / np.where(spans > 0, spans, 1)).max(axis=0)
     windows = np.lib.stride_tricks.sliding_window_view(np.pad(most, around), 2 * around + 1)
     return np.asarray(windows.max(axis=1))
+
+
+def scatter(signal: Array) -> float:
+    """How far half of the samples are off the lines through their neighbours: the noise of a smooth signal."""
+    return float(np.median(np.abs(off_line(signal))))

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pzt_ident.data.faults.clipping import clipping_phrase
-from pzt_ident.data.faults.jumps import dropout_phrase, join_phrase
+from pzt_ident.data.faults.jumps import dropout_phrase, hold_phrase, join_phrase
 from pzt_ident.data.faults.spikes import spike_phrase
 from pzt_ident.data.record import Record
 
-FAULTS = spike_phrase, dropout_phrase, join_phrase, clipping_phrase
+FAULTS = spike_phrase, hold_phrase, dropout_phrase, join_phrase, clipping_phrase
 
 
 def fault_phrases(record: Record) -> list[str]:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.faults.moves import CLEAR, kinked, off_line
+from pzt_ident.data.faults.places import places_of
 from pzt_ident.data.notation import listed
 from pzt_ident.data.record import Record
 
@@ -16,7 +17,6 @@ MOVED = 3.0  # times what the signal moves from one of the readings around it to
 AT_AN_END = 0.05  # of the range: the first or last reading is off as much, since it may be beside a corner
 BESIDE = 0.25, 0.75  # times as far it takes the next readings to the other side of their lines, as no corner does
 AROUND = 3  # readings on each side
-MOST = 4  # that are told by their times
 STRETCH, OVERLAP = 2**16, 2**6  # samples that are looked at together, so that a long record takes no more room
 
 
@@ -36,10 +36,8 @@ def spike_phrase(record: Record) -> str:
 
 
 def told_of(record: Record, kind: str, whose: str, places: NDArray[np.intp]) -> str:
-    """The spikes of a signal, by the times of the first few."""
-    times = listed([f"{second:.6g}" for second in record.time[places[:MOST]].tolist()])
-    more = f" and {places.size - MOST} more" if places.size > MOST else ""
-    return f"the {kind}{'s' * (places.size > 1)} of {whose} at {times} s{more}"
+    """The spikes of a signal, by the places of the first few."""
+    return f"the {kind}{'s' * (places.size > 1)} of {whose} {places_of(record, places.tolist())}"
 
 
 def spikes(record: Record, axis: int) -> NDArray[np.intp]:

@@ -19,10 +19,9 @@ def test_the_readings_at_an_end_of_the_range_are_counted(kind, share, side, seed
     least, largest = record.response[0].min(), record.response[0].max()
     end = least + share * (largest - least) if side > 0 else largest - share * (largest - least)
     record.response[0] = np.minimum(record.response[0], end) if side > 0 else np.maximum(record.response[0], end)
-    inside = np.convolve(record.response[0] == end, np.ones(6), "same") >= 5
-    name = "largest" if side > 0 else "least"
-    assert clipping_phrase(record).partition(" ")[2].startswith(f"readings of x are the {name} one, ")
-    assert 0.5 * inside.sum() < clipped(side * record.response[0], record.drive[0]) <= (record.response[0] == end).sum()
+    name, count = "largest" if side > 0 else "least", int((record.response[0] == end).sum())
+    assert clipping_phrase(record).startswith(f"{count} readings of x are exactly ")
+    assert f" m, the {name} of all, first at " in clipping_phrase(record)
 
 
 @settings(max_examples=60, deadline=None)
@@ -39,8 +38,22 @@ def test_a_stage_that_saturates_has_readings_with_noise(noise):
 def test_it_is_said_how_many_and_where():
     record = followed(TRIANGLE, 4)
     record.response[0] = np.minimum(record.response[0], 4e-6)
-    count = clipped(record.response[0], record.drive[0])
-    assert clipping_phrase(record) == (
-        f"{count} readings of x are the largest one, 4e-06 m, and stay there while the drive goes on: a converter "
-        "or a sensor at the end of its range reads so; leave them out by `rows`, or measure again"
+    at_end = record.response[0] == 4e-6
+    first = f"{record.time[np.argmax(at_end)]:.6g} s"
+    assert clipped(record.response[0], record.drive[0]) and clipping_phrase(record) == (
+        f"{at_end.sum()} readings of x are exactly 4e-06 m, the largest of all, first at {first}: the end of the range "
+        "of a sensor or converter; leave them out by `rows`, or measure again in a wider one"
     )
+
+
+@pytest.mark.parametrize("kind", ["steps", "pulses", "noise"])
+def test_readings_without_noise_at_an_end_are_told_though_the_drive_rests(kind):
+    record = measured(kind, 5)
+    record.response[0] = np.minimum(record.response[0], 2.15e-6)
+    assert clipping_phrase(record).partition(" readings of x are exactly ")[2].startswith("2.15e-06 m")
+
+
+def test_one_wrong_value_of_a_drive_that_rests_makes_no_end():
+    record = followed(np.concatenate([TRIANGLE[:200], np.full(200, 50.0), TRIANGLE[200:]]), 6, noise=0.0)
+    record.drive[0, 300] = 90.0
+    assert not clipping_phrase(record)

@@ -30,16 +30,6 @@ def test_a_sensor_that_drops_out_is_told_from_its_first_to_its_last_sample(kind,
     assert not join_phrase(record) and dropout_phrase(record).startswith("the readings of x from ")
 
 
-def test_a_sensor_that_holds_its_last_reading_is_told():
-    record = measured("sine", 1)
-    record.response[0, 110:140] = record.response[0, 110]
-    assert dropouts(record, 0) == [(110, 139)] and not joins(record)
-    assert dropout_phrase(record) == (
-        "the readings of x from 1.1 to 1.39 s are away from what is around: a channel most likely dropped out; "
-        "mend the file, or leave it out by `rows` or `time`"
-    )
-
-
 @settings(max_examples=60, deadline=None)
 @given(
     kind=smooth,
@@ -55,9 +45,29 @@ def test_a_drive_that_is_read_wrong_for_a_while_is_told_and_one_that_the_stage_f
     gap = slice(first, first + length)
     record.drive[0, gap] = value
     assert drive_dropouts(record, 0) == [(first, first + length - 1)] and not joins(record)
-    assert dropout_phrase(record).startswith("the drive of x from ") and " s is away from" in dropout_phrase(record)
+    assert dropout_phrase(record).startswith(
+        "the drive of x from "
+    ) and " jumps away and back: a channel" in dropout_phrase(record)
     record.response[0, gap] = 1e-7 * value
     assert not drive_dropouts(record, 0)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.05])
+@pytest.mark.parametrize("kind", ["pulses", "steps", "sawtooth"])
+def test_a_drive_that_jumps_is_no_fault_however_noisy_it_is(kind, noise):
+    """Nor where the stage is slow to follow."""
+    record = measured(kind, 11)
+    record.drive[0] += np.random.default_rng(12).normal(0, noise, T.size)
+    assert not drive_dropouts(record, 0) and not joins(record)
+    record.response[0] = 1e-9 * np.cumsum(record.drive[0])
+    assert not drive_dropouts(record, 0) and not joins(record)
+
+
+@pytest.mark.parametrize("kind", ["sawtooth", "steps"])
+def test_a_dropout_is_told_among_jumps_of_the_drive(kind):
+    record = measured(kind, 13)
+    record.response[0, 230:260] = -3e-6
+    assert dropouts(record, 0) == [(230, 259)] and not joins(record)
 
 
 @settings(max_examples=60, deadline=None)

@@ -46,8 +46,8 @@ def test_where_the_drive_kinks_or_turns_none_is_told(change):
             [0],
             "the reading of x at 0 s stands far beside those around it and is most likely wrong: mend the file, or",
         ),
-        ([100, 300], "the readings of x at 1 and 3 s stand far beside those around them"),
-        ([100, 150, 200, 250, 300, 350], "the readings of x at 1, 1.5, 2 and 2.5 s and 2 more stand"),
+        ([100, 300], "the readings of x at 1 s and 3 s stand far beside those around them"),
+        ([100, 150, 200, 250, 300, 350], "the readings of x at 1 s, 1.5 s and 2 s and 3 more stand"),
     ],
 )
 def test_it_is_said_which_and_what_to_do(places, phrase):
