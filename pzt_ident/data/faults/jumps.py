@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.faults.moves import CLEAR, kinked, scatter
+from pzt_ident.data.faults.moves import CLEAR, off_line, scatter
 from pzt_ident.data.faults.places import places_of, span_of
 from pzt_ident.data.faults.standstill import SHORTEST, still_stretches
 from pzt_ident.data.notation import listed
@@ -43,11 +43,22 @@ def dropout_phrase(record: Record) -> str:
 
 
 def hold_phrase(record: Record) -> str:
-    """Where the readings of a record stand still while the drive moves, and what to do; empty where none do."""
+    """Where the readings of a record, or its drive, stand still while the other moves, and what to do; empty where none
+    does."""
     held = {record.axes[number]: holds(record, number) for number in record.measured}
-    told = [f"of {axis} {span_of(record, found)}" for axis, found in held.items() if found]
+    told = [
+        f"the readings of {axis} {span_of(record, found)} are equal to the last digit while the drive moves"
+        for axis, found in held.items()
+        if found
+    ]
+    still = {axis: drive_holds(record, number) for number, axis in enumerate(record.axes)}
+    told += [
+        f"the drive of {axis} {span_of(record, found)} stands still until it jumps, and the readings do not"
+        for axis, found in still.items()
+        if found
+    ]
     advice = "a sensor or a recorder held its last value; give what is before and after a record of its own, by `rows`"
-    return f"the readings {listed(told)} are equal to the last digit while the drive moves: {advice}" if told else ""
+    return f"{listed(told)}: {advice}" if told else ""
 
 
 def join_phrase(record: Record) -> str:
@@ -77,22 +88,40 @@ def jumps(record: Record, axis: int) -> list[int]:
 
 
 def kinks_at(signals: Array, places: Sequence[int]) -> dict[int, float]:
-    """How far signals, (signals, samples), kink around places, of their ranges."""
-    spans = np.ptp(signals, axis=1, keepdims=True) if places else np.empty((0, 1))
+    """How far signals, (signals, samples), kink around places beyond their noise, of their ranges."""
+    if not places:
+        return {}
+    noise, spans = [CLEAR * scatter(signal) for signal in signals], np.ptp(signals, axis=1)
     parts = {place: slice(max(place - AROUND - 2, 0), place + AROUND + 2) for place in places}
-    return {place: float(kinked(signals[:, part], spans, AROUND).max()) for place, part in parts.items()}
+    sizes = {
+        place: [np.abs(off_line(signal)[1:-1]).max() for signal in signals[:, part]] for place, part in parts.items()
+    }
+    beyond = {place: np.maximum(np.subtract(size, noise), 0) for place, size in sizes.items()}
+    return {place: float(np.max(each / np.where(spans > 0, spans, 1))) for place, each in beyond.items()}
 
 
 def drive_dropouts(record: Record, axis: int) -> list[tuple[int, int]]:
     """First and last sample of each stretch to which a moving drive jumps and from which it jumps back, while no
-    response kinks; none where there is no response, and none of a drive that jumps elsewhere, too."""
+    response kinks; none where there is no response."""
     drive = record.drive[axis]
     places = lone_jumps(drive) if record.measured else []
     kinks = kinks_at(record.response[[*record.measured]], places)
-    gaps = list(returns([place for place in places if not kinks[place]], drive))
-    if 2 * len(gaps) < len(places):
-        return []
+    gaps = returns([place for place in places if not kinks[place]], drive)
     return [(first, after - 1) for first, after in gaps if all(moves_beside(drive, first - 1, after))]
+
+
+def drive_holds(record: Record, axis: int) -> list[tuple[int, int]]:
+    """First and last sample of each stretch in which a moving drive stands still until it jumps, while no response
+    kinks; none where there is no response."""
+    drive = record.drive[axis]
+    places = lone_jumps(drive) if record.measured else []
+    kinks = kinks_at(record.response[[*record.measured]], places)
+    since = {place: equal_since(drive, place) for place in places if not kinks[place]}
+    return [
+        (first, place - 1)
+        for place, first in since.items()
+        if place - first >= SHORTEST and all(moves_beside(drive, first, place))
+    ]
 
 
 def joins(record: Record) -> list[int]:

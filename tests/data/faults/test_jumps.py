@@ -2,11 +2,20 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from data.faults.motions import MOTIONS, TRIANGLE, T, followed, measured
-from pzt_ident.data.faults.jumps import LONGEST, drive_dropouts, dropout_phrase, dropouts, join_phrase, joins
+from pzt_ident.data.faults.jumps import (
+    LONGEST,
+    drive_dropouts,
+    drive_holds,
+    dropout_phrase,
+    dropouts,
+    hold_phrase,
+    join_phrase,
+    joins,
+)
 
 smooth = st.sampled_from(["triangle", "sine"])
 seeds = st.integers(0, 10**6)
@@ -42,6 +51,8 @@ def test_a_drive_that_is_read_wrong_for_a_while_is_told_and_one_that_the_stage_f
     kind, seed, first, length, value
 ):
     record = measured(kind, seed)
+    moves = np.diff(record.drive[0, first - 9 : first + length + 9])
+    assume(np.all(moves * moves[0] > 0))
     gap = slice(first, first + length)
     record.drive[0, gap] = value
     assert drive_dropouts(record, 0) == [(first, first + length - 1)] and not joins(record)
@@ -52,13 +63,26 @@ def test_a_drive_that_is_read_wrong_for_a_while_is_told_and_one_that_the_stage_f
     assert not drive_dropouts(record, 0)
 
 
+@settings(max_examples=60, deadline=None)
+@given(kind=smooth, seed=seeds, first=st.integers(20, 500), length=st.integers(20, LONGEST))
+def test_a_drive_that_is_held_is_told_and_one_that_rests_and_jumps_with_the_stage_is_not(kind, seed, first, length):
+    record = measured(kind, seed)
+    moves = np.diff(record.drive[0, first - 9 : first + length + 9])
+    assume(np.all(moves * moves[0] > 0))
+    record.drive[0, first : first + length] = record.drive[0, first]
+    assert drive_holds(record, 0) == [(first, first + length - 1)] and not joins(record)
+    assert " s stands still until it jumps, and the readings do not: a sensor or" in hold_phrase(record)
+    record.response[0, first : first + length] = record.response[0, first]
+    assert not drive_holds(record, 0)
+
+
 @pytest.mark.parametrize("noise", [0.0, 0.05])
 @pytest.mark.parametrize("kind", ["pulses", "steps", "sawtooth"])
 def test_a_drive_that_jumps_is_no_fault_however_noisy_it_is(kind, noise):
     """Nor where the stage is slow to follow."""
     record = measured(kind, 11)
     record.drive[0] += np.random.default_rng(12).normal(0, noise, T.size)
-    assert not drive_dropouts(record, 0) and not joins(record)
+    assert not drive_dropouts(record, 0) and not drive_holds(record, 0) and not joins(record)
     record.response[0] = 1e-9 * np.cumsum(record.drive[0])
     assert not drive_dropouts(record, 0) and not joins(record)
 
