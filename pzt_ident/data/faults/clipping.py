@@ -16,6 +16,7 @@ from pzt_ident.data.units import factor
 Array = NDArray[np.float64]
 
 SHORTEST = 6  # readings in a row at the end of a range
+SEVERAL, LITTLE = 3, 0.01  # times that they are there, or of the range of the drive: once a stage may rest
 OFTENER = 4  # times as many as are next to it
 BEFORE = 24  # samples ahead of them that say how fast the response went
 MOST = 0.9  # of the samples of a stretch beyond which its drive goes on: fewer may be wrong
@@ -31,7 +32,7 @@ def clipping_phrase(record: Record) -> str:
             if clipped(response, record.drive[number]):
                 places = np.flatnonzero(response == response.max())
                 unit = str(record.response_units[number])
-                value = f"{side * float(response.max()) / factor(unit):.4g} {unit}, the {name} of all"
+                value = f"{side * float(response.max()) / factor(unit) + 0.0:.4g} {unit}, the {name} of all"
                 first = place_of(record, int(places[0]))
                 told.append(f"{places.size} readings of {record.axes[number]} are exactly {value}, first at {first}")
     advice = "leave them out by `rows`, or measure again in a wider one"
@@ -39,12 +40,14 @@ def clipping_phrase(record: Record) -> str:
 
 
 def clipped(response: Array, drive: Array) -> bool:
-    """Whether readings, (samples,), are the largest one far oftener than noise would have it, or in a run over which
-    the drive asks for clearly more."""
+    """Whether readings, (samples,), are the largest one far oftener than noise would have it, at several drives or
+    times, or in a run over which the drive asks for clearly more."""
     at_end = response == response.max()
     count, next_to_it = int(at_end.sum()), int((response == response[~at_end].max(initial=-np.inf)).sum())
     often = count >= SHORTEST and count > OFTENER * next_to_it and is_noisy(response)
-    return often or any(asks(response, drive, start, stop) for start, stop in runs(at_end))
+    stretches = int(np.count_nonzero(np.diff(at_end.astype(np.int8)) > 0))
+    varied = stretches >= SEVERAL or bool(np.ptp(drive[at_end]) > LITTLE * np.ptp(drive))
+    return (often and varied) or any(asks(response, drive, start, stop) for start, stop in runs(at_end))
 
 
 def runs(where: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:

@@ -14,6 +14,7 @@ Array = NDArray[np.float64]
 
 NOISY = 0.3  # of all samples: so often noise takes a reading to the other side of the line through its neighbours
 OFTEN = 0.2  # of all samples: where neighbours are equal so often the counts of the sensor are as coarse as its noise
+ROUNDING = 1e-6  # of the largest move: less is none
 COUNTS = 2.0  # of the sensor, at least, half of the readings are off the lines through their neighbours
 CHANCE = 1e-3  # of a run of equal readings in a record
 SHORTEST = 5  # readings in a run
@@ -52,7 +53,7 @@ def is_noisy(signal: Array) -> bool:
     """Whether a signal goes from one side of the line through its neighbours to the other as often as noise does, and
     farther than the counts of its sensor."""
     off, moves = off_line(signal), np.abs(np.diff(signal))
-    least = float(moves[moves > 0].min(initial=np.inf))
+    least = float(moves[moves > ROUNDING * moves.max()].min(initial=np.inf))
     return bool(np.mean(off[1:] * off[:-1] < 0) > NOISY) and scatter(signal) > COUNTS * least
 
 

@@ -57,3 +57,15 @@ def test_one_wrong_value_of_a_drive_that_rests_makes_no_end():
     record = followed(np.concatenate([TRIANGLE[:200], np.full(200, 50.0), TRIANGLE[200:]]), 6, noise=0.0)
     record.drive[0, 300] = 90.0
     assert not clipping_phrase(record)
+
+
+def test_counts_that_are_rounded_to_the_last_bit_are_counts():
+    record = measured("triangle", 7, noise=1e-8, step=5e-8)
+    record.response[0] *= 1 + 1e-16 * np.arange(record.samples)
+    record.response[0, ::7] = np.nextafter(record.response[0, ::7], 1.0)
+    assert not clipping_phrase(record)
+
+
+def test_a_rest_in_counts_beside_a_fast_motion_is_no_end():
+    record = followed(np.concatenate([np.zeros(40), 20 + np.abs(MOTIONS["noise"])]), 8, noise=1e-9, step=5e-8)
+    assert not clipping_phrase(record)
