@@ -100,28 +100,28 @@ def kinks_at(signals: Array, places: Sequence[int]) -> dict[int, float]:
     return {place: float(np.max(each / np.where(spans > 0, spans, 1))) for place, each in beyond.items()}
 
 
-def drive_dropouts(record: Record, axis: int) -> list[tuple[int, int]]:
-    """First and last sample of each stretch to which a moving drive jumps and from which it jumps back, while no
-    response kinks; none where there is no response."""
-    drive = record.drive[axis]
-    places = lone_jumps(drive) if record.measured else []
+def drive_jumps(record: Record, axis: int) -> list[int]:
+    """The samples to which a drive jumps in one step, while no response kinks; none where there is no response."""
+    places = lone_jumps(record.drive[axis]) if record.measured else []
     kinks = kinks_at(record.response[[*record.measured]], places)
-    gaps = returns([place for place in places if not kinks[place]], drive)
+    return [place for place in places if not kinks[place]]
+
+
+def drive_dropouts(record: Record, axis: int) -> list[tuple[int, int]]:
+    """First and last sample of each stretch to which a moving drive jumps and from which it jumps back, unseen by the
+    responses."""
+    drive = record.drive[axis]
+    gaps = returns(drive_jumps(record, axis), drive)
     return [(first, after - 1) for first, after in gaps if all(moves_beside(drive, first - 1, after))]
 
 
 def drive_holds(record: Record, axis: int) -> list[tuple[int, int]]:
-    """First and last sample of each stretch in which a moving drive stands still until it jumps, while no response
-    kinks; none where there is no response."""
+    """First and last sample of each stretch in which a moving drive stands still until it jumps, unseen by the
+    responses."""
     drive = record.drive[axis]
-    places = lone_jumps(drive) if record.measured else []
-    kinks = kinks_at(record.response[[*record.measured]], places)
-    since = {place: equal_since(drive, place) for place in places if not kinks[place]}
-    return [
-        (first, place - 1)
-        for place, first in since.items()
-        if place - first >= SHORTEST and all(moves_beside(drive, first, place))
-    ]
+    since = {place: equal_since(drive, place) for place in drive_jumps(record, axis)}
+    held = [(first, place) for place, first in since.items() if place - first >= SHORTEST]
+    return [(first, place - 1) for first, place in held if all(moves_beside(drive, first, place))]
 
 
 def joins(record: Record) -> list[int]:
