@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pzt_ident.control.identified import Identified
 from pzt_ident.control.inverse import Feedforward, Inverse
 from pzt_ident.data.notation import listed, percent, quantity, spelled
+from pzt_ident.data.stretches import stretches
 from pzt_ident.data.units import factor
 from pzt_ident.model.block import Place
 
@@ -118,10 +119,9 @@ class Notes:
 
     def _times(self, where: NDArray[np.bool_]) -> str:
         """Stretches of time: from 0.2 s to 0.3 s."""
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], where.astype(int), [0]])))
-        stretches = [(a * self.dt, (b - 1) * self.dt) for a, b in edges.reshape(-1, 2)]
-        named = [f"from {quantity(a, 's', 4)} to {quantity(b, 's', 4)}" for a, b in stretches[:SHOWN]]
-        more = [f"{len(stretches) - SHOWN} more times"] if len(stretches) > SHOWN else []
+        parts = [(start * self.dt, (stop - 1) * self.dt) for start, stop in stretches(where)]
+        named = [f"from {quantity(begin, 's', 4)} to {quantity(end, 's', 4)}" for begin, end in parts[:SHOWN]]
+        more = [f"{len(parts) - SHOWN} more times"] if len(parts) > SHOWN else []
         return listed([*named, *more])
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.periods import period_of
 from pzt_ident.data.projections import MOST_MEMORY, ROUNDING, deviation, memory_of, without_lines
+from pzt_ident.data.stretches import rests
 
 Array = NDArray[np.float64]
 
@@ -80,11 +81,8 @@ def with_quieter(order: NDArray[np.int_], values: Array, spreads: Array) -> NDAr
 def rest_noise(drive: Array, response: Array, least: int = 100) -> list[Estimate]:
     """The noise of each rest: of the last four fifths of an interval of constant drive, or of less where these still
     settle, less a quartic, which follows creep, and the lines of the mains and the floor."""
-    span = np.ptp(drive, axis=1, keepdims=True)
-    still = (np.abs(np.diff(drive, axis=1)) <= 1e-6 * np.maximum(span, 1e-300)).all(axis=0)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(int), [0]])))
     estimates = []
-    for first, last in zip(edges[::2], edges[1::2], strict=True):
+    for first, last in rests(drive):
         first += (last - first) // 5
         if last - first >= least:
             noise, basis = settled(response[first:last], least)

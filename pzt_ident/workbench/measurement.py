@@ -14,6 +14,7 @@ from pzt_ident.data.faults import fault_phrases
 from pzt_ident.data.noise import noise_floor
 from pzt_ident.data.notation import unit as printed_unit
 from pzt_ident.data.record import Record
+from pzt_ident.data.stretches import rests
 from pzt_ident.data.units import factor
 from pzt_ident.errors import InputError
 from pzt_ident.report.style import decimate
@@ -156,7 +157,7 @@ def guess_of(records: Sequence[Record | None], roles: Roles) -> dict[str, Any]:
         role: {key: column.get(key) for key in ("number", "of", "name", "unit")} for role, column in roles.items()
     }
     guess: dict[str, Any] = {"columns": columns, "rate": 1 / complete[0].dt if complete else None}
-    guess["rests"] = [rests(record) if record else [] for record in records]
+    guess["rests"] = [long_rests(record) if record else [] for record in records]
     axes = list(enumerate(complete[0].axes)) if complete and len({record.axes for record in complete}) == 1 else []
     guess["amplitude"] = {axis: amplitude_of(complete, number) for number, axis in axes}
     guess["frequency"] = {axis: max(main_frequency(r.drive[number], r.dt) for r in complete) for number, axis in axes}
@@ -188,10 +189,7 @@ def floor_of(records: Sequence[Record], axis: int) -> dict[str, Any]:
     return {"value": floor.value / factor(unit), "unit": printed_unit(unit), "source": floor.source}
 
 
-def rests(record: Record) -> list[list[float]]:
+def long_rests(record: Record) -> list[list[float]]:
     """Begin and end of the intervals in which no drive moves, s, the longer ones."""
-    span = np.ptp(record.drive, axis=1, keepdims=True)
-    still = (np.abs(np.diff(record.drive, axis=1)) <= 1e-6 * np.maximum(span, 1e-300)).all(axis=0)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], still.astype(int), [0]]))).reshape(-1, 2)
-    long = [(a, b) for a, b in edges if b - a >= SHORTEST_REST * record.samples]
-    return [[record.start + a * record.dt, record.start + b * record.dt] for a, b in long]
+    long = [part for part in rests(record.drive) if part[1] - part[0] >= SHORTEST_REST * record.samples]
+    return [[record.start + first * record.dt, record.start + last * record.dt] for first, last in long]

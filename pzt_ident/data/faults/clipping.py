@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,6 +9,7 @@ from pzt_ident.data.faults.moves import scatter
 from pzt_ident.data.faults.places import place_of
 from pzt_ident.data.faults.standstill import is_noisy
 from pzt_ident.data.record import Record
+from pzt_ident.data.stretches import stretches
 from pzt_ident.data.units import factor
 
 Array = NDArray[np.float64]
@@ -25,7 +24,7 @@ BEYOND = 5.0  # times the step and the noise of the readings: what the drive ask
 
 def clipping_phrase(record: Record) -> str:
     """Which readings stay at the end of their range, and what to do; empty where none do."""
-    told = []
+    phrases = []
     for number in record.measured:
         for name, side in (("largest", 1), ("least", -1)):
             response = side * record.response[number]
@@ -34,9 +33,9 @@ def clipping_phrase(record: Record) -> str:
                 unit = str(record.response_units[number])
                 value = f"{side * float(response.max()) / factor(unit) + 0.0:.4g} {unit}, the {name} of all"
                 first = place_of(record, int(places[0]))
-                told.append(f"{places.size} readings of {record.axes[number]} are exactly {value}, first at {first}")
+                phrases.append(f"{places.size} readings of {record.axes[number]} are exactly {value}, first at {first}")
     advice = "leave them out by `rows`, or measure again in a wider one"
-    return f"{' and '.join(told)}: the end of the range of a sensor or converter; {advice}" if told else ""
+    return f"{' and '.join(phrases)}: the end of the range of a sensor or converter; {advice}" if phrases else ""
 
 
 def clipped(response: Array, drive: Array) -> bool:
@@ -45,21 +44,16 @@ def clipped(response: Array, drive: Array) -> bool:
     at_end = response == response.max()
     count, next_to_it = int(at_end.sum()), int((response == response[~at_end].max(initial=-np.inf)).sum())
     often = count >= SHORTEST and count > OFTENER * next_to_it and is_noisy(response)
-    stretches = int(np.count_nonzero(np.diff(at_end.astype(np.int8)) > 0))
-    varied = stretches >= SEVERAL or bool(np.ptp(drive[at_end]) > LITTLE * np.ptp(drive))
-    return (often and varied) or any(asks(response, drive, start, stop) for start, stop in runs(at_end))
-
-
-def runs(where: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
-    """Start and stop of each stretch that is long enough and begins inside."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], where, [False]]).astype(np.int8)))
-    for start, stop in edges.reshape(-1, 2).tolist():
-        if stop - start >= SHORTEST and start >= SHORTEST:
-            yield start, stop
+    runs = stretches(at_end)
+    varied = len(runs) >= SEVERAL or bool(np.ptp(drive[at_end]) > LITTLE * np.ptp(drive))
+    return (often and varied) or any(asks(response, drive, start, stop) for start, stop in runs)
 
 
 def asks(response: Array, drive: Array, start: int, stop: int) -> bool:
-    """Whether the drive goes on in a stretch by more than the readings would hide, as fast as they went before it."""
+    """Whether the drive goes on in a stretch by more than the readings would hide, as fast as they went before it; not
+    in one that is short, or at the beginning."""
+    if stop - start < SHORTEST or start < SHORTEST:
+        return False
     before = slice(max(start - BEFORE, 0), start)
     values, driven = response[before], drive[before]
     rise, travel = float(response[start] - values[0]), float(drive[start] - driven[0])

@@ -36,29 +36,29 @@ def dropout_phrase(record: Record) -> str:
     empty where all do."""
     gaps = {f"the readings of {record.axes[number]}": dropouts(record, number) for number in record.measured}
     gaps |= {f"the drive of {axis}": drive_dropouts(record, number) for number, axis in enumerate(record.axes)}
-    told = [f"{whose} {span_of(record, found)}" for whose, found in gaps.items() if found]
-    jump = "jumps" if len(told) == 1 and told[0].startswith("the drive") else "jump"
+    phrases = [f"{whose} {span_of(record, stretches)}" for whose, stretches in gaps.items() if stretches]
+    jump = "jumps" if len(phrases) == 1 and phrases[0].startswith("the drive") else "jump"
     advice = "a channel most likely dropped out; give what is before and after a record of its own, by `rows`"
-    return f"{listed(told)} {jump} away and back: {advice}" if told else ""
+    return f"{listed(phrases)} {jump} away and back: {advice}" if phrases else ""
 
 
 def hold_phrase(record: Record) -> str:
     """Where the readings of a record, or its drive, stand still while the other moves, and what to do; empty where none
     does."""
     held = {record.axes[number]: holds(record, number) for number in record.measured}
-    told = [
-        f"the readings of {axis} {span_of(record, found)} are equal to the last digit while the drive moves"
-        for axis, found in held.items()
-        if found
+    phrases = [
+        f"the readings of {axis} {span_of(record, stretches)} are equal to the last digit while the drive moves"
+        for axis, stretches in held.items()
+        if stretches
     ]
     still = {axis: drive_holds(record, number) for number, axis in enumerate(record.axes)}
-    told += [
-        f"the drive of {axis} {span_of(record, found)} stands still until it jumps, and the readings do not"
-        for axis, found in still.items()
-        if found
+    phrases += [
+        f"the drive of {axis} {span_of(record, stretches)} stands still until it jumps, and the readings do not"
+        for axis, stretches in still.items()
+        if stretches
     ]
     advice = "a sensor or a recorder held its last value; give what is before and after a record of its own, by `rows`"
-    return f"{listed(told)}: {advice}" if told else ""
+    return f"{listed(phrases)}: {advice}" if phrases else ""
 
 
 def join_phrase(record: Record) -> str:
@@ -97,7 +97,7 @@ def kinks_at(signals: Array, places: Sequence[int]) -> dict[int, float]:
         place: [np.abs(off_line(signal)[1:-1]).max() for signal in signals[:, part]] for place, part in parts.items()
     }
     beyond = {place: np.maximum(np.subtract(size, noise), 0) for place, size in sizes.items()}
-    return {place: float(np.max(each / np.where(spans > 0, spans, 1))) for place, each in beyond.items()}
+    return {place: float(np.max(size / np.where(spans > 0, spans, 1))) for place, size in beyond.items()}
 
 
 def drive_jumps(record: Record, axis: int) -> list[int]:
@@ -141,13 +141,13 @@ def joins(record: Record) -> list[int]:
 def driven_jumps(record: Record) -> set[int]:
     """The samples to which a drive jumps in one step amid a motion; none where all of its jumps are alike, as those of
     a sawtooth."""
-    found = set()
+    jumped = set()
     for drive in record.drive:
         places = [place for place in lone_jumps(drive) if is_amid_motion(drive, place)]
         sizes = [drive[place] - drive[place - 1] for place in places]
         if len(places) == 1 or (places and np.ptp(sizes) > LEAST * np.ptp(drive)):
-            found |= {*places}
-    return found
+            jumped |= {*places}
+    return jumped
 
 
 def is_amid_motion(drive: Array, place: int) -> bool:

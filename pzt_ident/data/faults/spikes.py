@@ -22,17 +22,17 @@ STRETCH, OVERLAP = 2**16, 2**6  # samples that are looked at together, so that a
 
 def spike_phrase(record: Record) -> str:
     """Which readings of a record stand far beside those around them, and what to do; empty where none does."""
-    found = {("reading", axis): spikes(record, number) for number, axis in enumerate(record.axes)}
-    found |= {("value", f"the drive of {axis}"): drive_spikes(record, i) for i, axis in enumerate(record.axes)}
-    told = [told_of(record, *of_what, places) for of_what, places in found.items() if places.size]
-    if not told:
+    standing = {("reading", axis): spikes(record, number) for number, axis in enumerate(record.axes)}
+    standing |= {("value", f"the drive of {axis}"): drive_spikes(record, i) for i, axis in enumerate(record.axes)}
+    phrases = [told_of(record, *whose, places) for whose, places in standing.items() if places.size]
+    if not phrases:
         return ""
-    one = sum(places.size for places in found.values()) == 1
+    one = sum(places.size for places in standing.values()) == 1
     stand, are, them = ("stands", "is", "it") if one else ("stand", "are", "them")
     advice = (
         f"mend the file, or leave {them} out by `rows` or `settle` where {'it is' if one else 'they are'} at an end"
     )
-    return f"{listed(told)} {stand} far beside those around {them} and {are} most likely wrong: {advice}"
+    return f"{listed(phrases)} {stand} far beside those around {them} and {are} most likely wrong: {advice}"
 
 
 def told_of(record: Record, kind: str, whose: str, places: NDArray[np.intp]) -> str:
@@ -61,12 +61,12 @@ def spikes_beside(signal: Array, others: Array) -> NDArray[np.intp]:
     one to the next, and than the others, (signals, samples), kink in their ranges."""
     if signal.size <= 2 * AROUND + 3 or not len(others):
         return np.zeros(0, np.intp)
-    span, spans, found = float(np.ptp(signal)), np.ptp(others, axis=1, keepdims=True), []
+    span, spans, spiked = float(np.ptp(signal)), np.ptp(others, axis=1, keepdims=True), list[NDArray[np.intp]]()
     for begin in range(0, signal.size, STRETCH):
         part = slice(max(begin - OVERLAP, 0), begin + STRETCH + OVERLAP)
         places = part.start + np.flatnonzero(stands_out(signal[part], span, others[:, part], spans))
-        found.append(places[(places >= begin) & (places < begin + STRETCH)])
-    return np.concatenate(found)
+        spiked.append(places[(places >= begin) & (places < begin + STRETCH)])
+    return np.concatenate(spiked)
 
 
 def stands_out(signal: Array, span: float, others: Array, spans: Array) -> NDArray[np.bool_]:

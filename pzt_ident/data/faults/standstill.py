@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.faults.moves import off_line, scatter
 from pzt_ident.data.record import Record
+from pzt_ident.data.stretches import stretches
 
 Array = NDArray[np.float64]
 
@@ -27,26 +28,25 @@ def still_stretches(record: Record, axis: int) -> list[tuple[int, int]]:
     """First and last sample of each run of equal readings amid noise, at no end of their range, over which the drive
     moves and which does not begin where it turns."""
     response, drive = record.response[axis], record.drive[axis]
-    found = [
+    held = [
         (start, stop - 1)
         for start, stop in unlikely_runs(response)
         if response.min() < response[start] < response.max()
         and np.ptp(drive[start:stop]) > CLEAR * scatter(drive)
         and not turns_near(drive, start)
     ]
-    return found if len(found) <= MANY else []
+    return held if len(held) <= MANY else []
 
 
 def unlikely_runs(signal: Array) -> list[tuple[int, int]]:
     """Start and stop of each run of equal values that noise does not make; none without noise."""
     moves = np.diff(signal)
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], moves == 0, [False]]).astype(np.int8))).reshape(-1, 2)
-    lengths = edges[:, 1] - edges[:, 0]
-    often = float(lengths[lengths < SHORTEST - 1].sum()) / signal.size
+    still = stretches(moves == 0)
+    often = sum(stop - start for start, stop in still if stop - start < SHORTEST - 1) / signal.size
     if not is_noisy(signal) or often > OFTEN:
         return []
     least = max(SHORTEST - 1, math.log(CHANCE / signal.size) / math.log(max(often, 1 / signal.size)))
-    return [(start, stop + 1) for (start, stop), length in zip(edges.tolist(), lengths, strict=True) if length >= least]
+    return [(start, stop + 1) for start, stop in still if stop - start >= least]
 
 
 def is_noisy(signal: Array) -> bool:

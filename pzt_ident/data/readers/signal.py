@@ -61,7 +61,7 @@ def signal_of(
     first, end = _bounds(rows, len(values), where)
     numbers, unit = _numbers(column, values[first:end], first, where), unit or column.unit
     if unit is None:
-        usual = next((each for kind, each in USUAL.items() if where.endswith(kind)), "um")
+        usual = next((unit_of_kind for kind, unit_of_kind in USUAL.items() if where.endswith(kind)), "um")
         header = f"`{column.name or 'x'} [{usual}]`"
         remedy = f"write it in the header, as in {header}, or in the job: `unit: {usual}` of this channel"
         raise InputError("has no unit", where=where, remedy=remedy)

@@ -19,17 +19,11 @@ from pzt_ident.data.faults.jumps import (
 
 smooth = st.sampled_from(["triangle", "sine"])
 seeds = st.integers(0, 10**6)
+GAPS = {"kind": smooth, "seed": seeds, "first": st.integers(20, 500), "length": st.integers(2, LONGEST)}
 
 
 @settings(max_examples=60, deadline=None)
-@given(
-    kind=smooth,
-    seed=seeds,
-    first=st.integers(20, 500),
-    length=st.integers(2, LONGEST),
-    kept=st.booleans(),
-    step=st.sampled_from([0.0, 2e-9]),
-)
+@given(**GAPS, kept=st.booleans(), step=st.sampled_from([0.0, 2e-9]))
 def test_a_sensor_that_drops_out_is_told_from_its_first_to_its_last_sample(kind, seed, first, length, kept, step):
     """At a value that it cannot have, or away by as much as it moves in the record."""
     record = measured(kind, seed, step=step)
@@ -40,13 +34,7 @@ def test_a_sensor_that_drops_out_is_told_from_its_first_to_its_last_sample(kind,
 
 
 @settings(max_examples=60, deadline=None)
-@given(
-    kind=smooth,
-    seed=seeds,
-    first=st.integers(20, 500),
-    length=st.integers(2, LONGEST),
-    value=st.sampled_from([-90.0, 300.0]),
-)
+@given(**GAPS, value=st.sampled_from([-90.0, 300.0]))
 def test_a_drive_that_is_read_wrong_for_a_while_is_told_and_one_that_the_stage_follows_is_not(
     kind, seed, first, length, value
 ):
@@ -56,9 +44,8 @@ def test_a_drive_that_is_read_wrong_for_a_while_is_told_and_one_that_the_stage_f
     gap = slice(first, first + length)
     record.drive[0, gap] = value
     assert drive_dropouts(record, 0) == [(first, first + length - 1)] and not joins(record)
-    assert dropout_phrase(record).startswith(
-        "the drive of x from "
-    ) and " jumps away and back: a channel" in dropout_phrase(record)
+    phrase = dropout_phrase(record)
+    assert phrase.startswith("the drive of x from ") and " s jumps away and back: a channel" in phrase
     record.response[0, gap] = 1e-7 * value
     assert not drive_dropouts(record, 0)
 

@@ -22,11 +22,11 @@ def test_a_sensor_that_holds_its_last_reading_is_told_from_its_first_to_its_last
     moves = np.diff(record.drive[0, first - 3 : first + 4])
     assume(kind == "noise" or np.all(moves * moves[0] > 0))
     assume(record.response[0].min() < record.response[0, first] < record.response[0].max())
-    assume(kind != "noise" or not holds_nothing(record, first))
+    assume(kind != "noise" or not turns_at(record, first))
     assert holds(record, 0) == [(first, first + length - 1)] and not dropouts(record, 0) and not joins(record)
 
 
-def holds_nothing(record, place):
+def turns_at(record, place):
     """Whether a drive turns where a stretch begins, as what sticks then stands still."""
     moves = np.diff(record.drive[0, place - 3 : place + 4])
     return (moves > 0).any() and (moves < 0).any()
