@@ -176,6 +176,27 @@ def restart_unconfirmed(case: Case, first: Fit, candidates: Sequence[Candidate])
             candidate.refits[item] = restart(case, fit)
 
 
+def simpler_look_alikes(
+    case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate], shortlist: Sequence[Candidate]
+) -> list[Candidate]:
+    """Where an effect leads to the noise, the look-alikes of fewer parameters that are not on the short list, refitted:
+    where the base made up for what is missing, its side minimum has a score of its own."""
+    best = min((item.fit for item in shortlist if item.fit), key=lambda fit: fit.total, default=before)
+    if not adequate(case, first, best) or best.effects == before.effects:
+        return []
+    simpler = []
+    for candidate in candidates:
+        word, effects = candidate.forms[0].effect, (*before.effects, candidate.forms[0].effect)
+        if candidate in shortlist or not are_look_alikes(word, best.effects[-1]):
+            continue
+        fewer = case.problem(effects, before.steps).dimensions < best.problem.dimensions
+        if fewer and case.budget.allows("ties", PROVING):
+            candidate.fit = refit_from(case, before, effects, candidate.forms[0].guesses, best.identify)
+            candidate.score, candidate.refits = candidate.forms[0], {word: candidate.fit}
+            simpler.append(candidate)
+    return simpler
+
+
 def restart_look_alikes(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> None:
     """Refit the look-alikes that are far behind the best from where that led, and restart those that are hardly worse
     on the identification records: with several parameters they may rest in a side minimum that shows on the validation

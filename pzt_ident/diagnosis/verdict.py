@@ -16,6 +16,7 @@ from pzt_ident.diagnosis.candidates import (
     restart_unconfirmed,
     score_all,
     simpler_first,
+    simpler_look_alikes,
 )
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import (
@@ -101,6 +102,7 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     refit_other_forms(case, first, before, candidates, shortlist)
     restart_unconfirmed(case, first, shortlist)
     choose_forms(case, first, shortlist)
+    shortlist += simpler_look_alikes(case, first, before, candidates, shortlist)
     restart_look_alikes(case, first, before, shortlist)
     candidates.sort(key=lambda item: (item.fit.total if item.fit else np.inf, -item.score.explained))
     decide_by_score(case, first, before, candidates)
