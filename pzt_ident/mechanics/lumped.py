@@ -3,8 +3,8 @@
 from math import pi, sqrt
 
 from pzt_ident.mechanics._oscillator import Oscillator, mode
-from pzt_ident.model.bristles import PLAY, rub, slide, stretch
-from pzt_ident.model.cubic_spring import SOFTEST, cubic_root
+from pzt_ident.model.bristles import PLAY, rub, slide, stretched
+from pzt_ident.model.cubic_spring import SOFTEST, beside_spring, cubic_root
 from pzt_ident.model.first_order_hold import oscillate
 from pzt_ident.model.parameter import Parameter
 from pzt_ident.model.registry import blocks
@@ -116,10 +116,29 @@ class Stiffening(Lumped):
 
 
 class Rubbing(Lumped):
-    """m x'' + b x' + k (x + c x^3 + F) = k f: the linear oscillator with the input f - c x^3 - F, linear in between.
+    """m x'' + b x' + k (x + F) = k f: the linear oscillator with the input f - F, linear between samples.
 
-    A step is implicit in x: x + (1 + b1) (c x^3 + F(x)) = p, F by the law of LuGre, with the cubic spring as its chord
-    from x to where x would be if F stayed as it was.
+    A step is implicit in x: x + (1 + b1) F(x) = p, F by the law of LuGre.
+    """
+
+    def prepare(mass, damping, stiffness, load, extra_damping, friction, reach, stiction, stribeck, dt):
+        linear = mode(mass + load, damping + extra_damping, stiffness, dt)
+        return friction, reach, stiction, 1 / (stribeck * dt), *linear
+
+    def start(u, force, reach, stiction, fast, r11, r12, r21, r22, b1, b2):
+        return 0.0, 0.0, u, 0.0
+
+    def step(w, v, f, held, u, force, reach, stiction, fast, r11, r12, r21, r22, b1, b2):
+        x = u + r11 * w + r12 * v + b1 * (u - f) - (1 + b1) * held
+        friction = rub(held, x - f - w, force, reach, stiction, fast, 1 + b1)
+        now = u - friction
+        w, v = oscillate(w, v, now - f, r11, r12, r21, r22, b1, b2)
+        return w, v, now, friction, now + w
+
+
+class RubbingAndStiffening(Rubbing):
+    """The same under a spring that stiffens: the input is f - c x^3 - F, and the cubic spring enters a step of friction
+    as its chord from x to where x would be if F stayed as it was.
     """
 
     def prepare(mass, damping, stiffness, load, extra_damping, cubic, friction, reach, stiction, stribeck, dt):
@@ -129,11 +148,10 @@ class Rubbing(Lumped):
     def start(u, cubic, force, reach, stiction, fast, r11, r12, r21, r22, b1, b2):
         return 0.0, 0.0, cubic_root(u, cubic, 1.0), 0.0
 
-    def step(w, v, f, friction, u, cubic, force, reach, stiction, fast, r11, r12, r21, r22, b1, b2):
-        before, held = f + w, friction
+    def step(w, v, f, held, u, cubic, force, reach, stiction, fast, r11, r12, r21, r22, b1, b2):
+        before = f + w
         x = cubic_root(u + r11 * w + r12 * v + b1 * (u - f) - (1 + b1) * held, cubic, 1 + b1)
-        chord = max(cubic * (x * x + x * before + before * before), -3 * SOFTEST)
-        share = (1 + b1) / (1 + (1 + b1) * chord)
+        share = beside_spring(x, before, cubic, 1 + b1)
         friction = rub(held, x - before, force, reach, stiction, fast, share)
         x = x - share * (friction - held)
         now = u - x * max(cubic * x * x, -SOFTEST) - friction
@@ -142,9 +160,25 @@ class Rubbing(Lumped):
 
 
 class Sliding(Lumped):
-    """m x'' + b x' + k (x + c x^3 + dry tanh(x' / speed)) = k f, likewise implicit in x' = v omega, which is linear in
-    the friction; the cubic spring enters v at the x that friction as it was leads to.
+    """m x'' + b x' + k (x + dry tanh(x' / speed)) = k f, likewise implicit in x' = v omega, which is linear in the
+    friction.
     """
+
+    def prepare(mass, damping, stiffness, load, extra_damping, dry, speed, dt):
+        linear = mode(mass + load, damping + extra_damping, stiffness, dt)
+        return dry, sqrt(stiffness / (mass + load)) / speed, *linear
+
+    def start(u, dry, fast, r11, r12, r21, r22, b1, b2):
+        return 0.0, 0.0, u
+
+    def step(w, v, f, u, dry, fast, r11, r12, r21, r22, b1, b2):
+        now = u - dry * slide(b2 * dry * fast, fast * (r21 * w + r22 * v + b2 * (u - f)))
+        w, v = oscillate(w, v, now - f, r11, r12, r21, r22, b1, b2)
+        return w, v, now, now + w
+
+
+class SlidingAndStiffening(Sliding):
+    """The same under a spring that stiffens, which enters v at the x that friction as it was leads to."""
 
     def prepare(mass, damping, stiffness, load, extra_damping, cubic, dry, speed, dt):
         linear = mode(mass + load, damping + extra_damping, stiffness, dt)
@@ -153,9 +187,9 @@ class Sliding(Lumped):
     def start(u, cubic, dry, fast, r11, r12, r21, r22, b1, b2):
         return 0.0, 0.0, cubic_root(u, cubic, 1.0), 0.0
 
-    def step(w, v, f, friction, u, cubic, dry, fast, r11, r12, r21, r22, b1, b2):
+    def step(w, v, f, held, u, cubic, dry, fast, r11, r12, r21, r22, b1, b2):
         free = u + r11 * w + r12 * v + b1 * (u - f)
-        x = cubic_root(free - (1 + b1) * friction, cubic, 1 + b1)
+        x = cubic_root(free - (1 + b1) * held, cubic, 1 + b1)
         push = u - x * max(cubic * x * x, -SOFTEST) - f
         friction = dry * slide(b2 * dry * fast, fast * (r21 * w + r22 * v + b2 * push))
         x = cubic_root(free - (1 + b1) * friction, cubic, 1 + b1)
@@ -165,15 +199,31 @@ class Sliding(Lumped):
 
 
 class Slipping(Lumped):
-    """m x'' + b x' + k (x + c x^3 + F) = k f, likewise implicit in x, F the sum of four elements that stretch and slip:
+    """m x'' + b x' + k (x + F) = k f, likewise implicit in x, F the sum of four elements that stretch and slip:
     dF_i/dx = (slip / 4) / r_i while |F_i| < slip / 4, r_i = give spacing^(4 - i).
     """
 
+    def prepare(mass, damping, stiffness, load, extra_damping, slip, give, spacing, dt):
+        linear = mode(mass + load, damping + extra_damping, stiffness, dt)
+        return *elements(slip / 4, give, spacing), *linear
+
+    def start(u, most, ka, kb, kc, kd, r11, r12, r21, r22, b1, b2):
+        return 0.0, 0.0, u, 0.0, 0.0, 0.0, 0.0
+
+    def step(w, v, f, a, b, c, d, u, most, ka, kb, kc, kd, r11, r12, r21, r22, b1, b2):
+        x = u + r11 * w + r12 * v + b1 * (u - f) - (1 + b1) * (a + b + c + d)
+        a, b, c, d = stretched(x - f - w, a, b, c, d, ka, kb, kc, kd, most, 1 + b1)
+        now = u - (a + b + c + d)
+        w, v = oscillate(w, v, now - f, r11, r12, r21, r22, b1, b2)
+        return w, v, now, a, b, c, d, now + w
+
+
+class SlippingAndStiffening(Slipping):
+    """The same under a spring that stiffens, which enters a step of friction as its chord."""
+
     def prepare(mass, damping, stiffness, load, extra_damping, cubic, slip, give, spacing, dt):
-        most = slip / 4
-        stiff, near, nearer = most / give, 1 / spacing, 1 / spacing**2
-        elements = stiff * near * nearer, stiff * nearer, stiff * near, stiff
-        return cubic, most, *elements, *mode(mass + load, damping + extra_damping, stiffness, dt)
+        linear = mode(mass + load, damping + extra_damping, stiffness, dt)
+        return cubic, *elements(slip / 4, give, spacing), *linear
 
     def start(u, cubic, most, ka, kb, kc, kd, r11, r12, r21, r22, b1, b2):
         return 0.0, 0.0, cubic_root(u, cubic, 1.0), 0.0, 0.0, 0.0, 0.0
@@ -181,18 +231,19 @@ class Slipping(Lumped):
     def step(w, v, f, a, b, c, d, u, cubic, most, ka, kb, kc, kd, r11, r12, r21, r22, b1, b2):
         before, held = f + w, a + b + c + d
         x = cubic_root(u + r11 * w + r12 * v + b1 * (u - f) - (1 + b1) * held, cubic, 1 + b1)
-        chord = max(cubic * (x * x + x * before + before * before), -3 * SOFTEST)
-        share = (1 + b1) / (1 + (1 + b1) * chord)
-        sign = 1.0 if x >= before else -1.0
-        a, b, c, d = sign * a, sign * b, sign * c, sign * d
-        dx = stretch(abs(x - before), a, b, c, d, ka, kb, kc, kd, most, share)
-        a, b, c, d = min(a + ka * dx, most), min(b + kb * dx, most), min(c + kc * dx, most), min(d + kd * dx, most)
-        a, b, c, d = sign * a, sign * b, sign * c, sign * d
+        share = beside_spring(x, before, cubic, 1 + b1)
+        a, b, c, d = stretched(x - before, a, b, c, d, ka, kb, kc, kd, most, share)
         friction = a + b + c + d
         x = x - share * (friction - held)
         now = u - x * max(cubic * x * x, -SOFTEST) - friction
         w, v = oscillate(w, v, now - f, r11, r12, r21, r22, b1, b2)
         return w, v, now, a, b, c, d, now + w
+
+
+def elements(most, give, spacing):
+    """The force at which each of four elements slips, and their stiffnesses."""
+    stiff, near, nearer = most / give, 1 / spacing, 1 / spacing**2
+    return most, stiff * near * nearer, stiff * nearer, stiff * near, stiff
 
 
 class Moving(Lumped):
@@ -209,6 +260,9 @@ class Moving(Lumped):
         return w, v, u, u + w
 
 
+Rubbing.joint = {"cubic_stiffness": RubbingAndStiffening}
+Sliding.joint = {"cubic_stiffness": SlidingAndStiffening}
+Slipping.joint = {"cubic_stiffness": SlippingAndStiffening}
 Lumped.forms = {
     "friction.motion": Rubbing,
     "friction.coulomb_motion": Sliding,
@@ -216,4 +270,3 @@ Lumped.forms = {
     "cubic_stiffness": Stiffening,
     "history": Moving,
 }
-"""Where two act at once the first form has the term of the other, too."""

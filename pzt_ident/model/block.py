@@ -85,6 +85,7 @@ class Block:
     trials: ClassVar[Mapping[str, int]] = {}  # values tried of each parameter that has no influence at the null
     chosen_settings: ClassVar[dict[str, Any]] = {}
     forms: ClassVar[Mapping[str, type[Block]]] = {}  # variants, by the word of a `Form` or of an effect in their step
+    joint: ClassVar[Mapping[str, type[Block]]] = {}  # of a form: those with the term of another effect, by its word
     wrong_way: ClassVar[str] = ""  # the condition under which the output first moves against its input
     ahead_of: ClassVar[Place | None] = None  # where a block must be for a form to be another one than the first
     about_rest: ClassVar[bool] = False  # whether it is nonlinear in the displacement from rest

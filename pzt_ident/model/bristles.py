@@ -48,21 +48,33 @@ def slide(load, pull):
     """tanh(y) at the root of y + load tanh(y) = pull: Coulomb's law over the speed y, in units of its smoothing."""
     push = abs(pull)
     y = max(push - load, log1p(2 * min(push, load) / (1 + max(load - push, 0.0))) / 2)
-    y = coulomb_step(coulomb_step(coulomb_step(coulomb_step(y, load, push), load, push), load, push), load, push)
+    y = coulomb_step(coulomb_step(coulomb_step(y, load, push), load, push), load, push)
     return tanh(y) if pull >= 0 else -tanh(y)
 
 
 def coulomb_step(y, load, push):
-    """Halley's step for y + load tanh(y) = push: after four the error is rounding for load <= 1000."""
-    grown = tanh(y)
-    stiff = load * (1 - grown) * (1 + grown)
-    value, slope = y + load * grown - push, 1 + stiff
-    return y - value * slope / (slope * slope + value * stiff * grown)
+    """Halley's step for y + load tanh(y) = push, its terms times powers of b = 2 - g, g = 1 - exp(-2 y), so that
+    tanh(y) = g / b needs no division: after three the error is rounding for load <= 1000."""
+    grown = -expm1(-2 * y)
+    base = 2 - grown
+    stiff = 4 * load * (1 - grown)
+    value, slope = base * (y - push) + load * grown, base * base + stiff
+    return y - value * slope * base / (slope * slope + value * stiff * grown)
 
 
 def tanh(y):
     grown = expm1(2 * min(y, 20.0))
     return grown / (grown + 2)
+
+
+def stretched(pull, a, b, c, d, ka, kb, kc, kd, most, share):
+    """Forces of four elements of these stiffnesses, which slip at the force `most`, after a step dx, the root of
+    dx + share (F(dx) - F) = pull."""
+    sign = 1.0 if pull >= 0 else -1.0
+    a, b, c, d = sign * a, sign * b, sign * c, sign * d
+    dx = stretch(abs(pull), a, b, c, d, ka, kb, kc, kd, most, share)
+    a, b, c, d = min(a + ka * dx, most), min(b + kb * dx, most), min(c + kc * dx, most), min(d + kd * dx, most)
+    return sign * a, sign * b, sign * c, sign * d
 
 
 def stretch(pull, a, b, c, d, ka, kb, kc, kd, most, share):

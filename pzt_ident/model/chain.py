@@ -74,8 +74,9 @@ class Chain:
 
     def form_of(self, block: type[Block]) -> type[Block]:
         """The block, with the listed effects in its equation."""
-        forms = tuple(form for effect, form in block.forms.items() if effect in self._listed)
-        return in_one(forms or (block,))
+        forms = [form for effect, form in block.forms.items() if effect in self._listed]
+        joint = [next((form.joint[item] for item in form.joint if item in self._listed), form) for form in forms]
+        return in_one(tuple(joint) or (block,))
 
     @property
     def has_readout(self) -> bool:

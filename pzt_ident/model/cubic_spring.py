@@ -16,3 +16,9 @@ def halley_step(s, z):
     """Halley's step for s + z s^3 - 1 = 0: after three the error is rounding for all z >= -1/8."""
     value, slope = s + z * s * s * s - 1, 1 + 3 * z * s * s
     return s - value * slope / (slope * slope - 3 * z * s * value)
+
+
+def beside_spring(x, before, c, share):
+    """The share with which a force enters a step beside the chord of the spring between two deflections."""
+    chord = max(c * (x * x + x * before + before * before), -3 * SOFTEST)
+    return share / (1 + share * chord)

@@ -63,8 +63,9 @@ class Text(Kinds):
         self.members: dict[str, str] = {}
         inline = self.scopes(function.body)
         nodes = [node for statement in function.body for node in walk(statement)]
-        elsewhere = {word for node in nodes if isinstance(node, ast.Assign) and hasattr(node, "together")
-                     for word in direct(node)}  # fmt: skip
+        together = [node for node in nodes if isinstance(node, ast.Assign) and hasattr(node, "together")]
+        self.taken = {*self.kinds, *(node.together for node in together)}
+        elsewhere = {word for node in together for word in direct(node)}
         elsewhere |= {
             node.target.id for node in nodes if isinstance(node, ast.For) and isinstance(node.target, ast.Name)
         }
@@ -145,7 +146,7 @@ class Text(Kinds):
 
     def new_word(self) -> str:
         self.tuples += 1
-        return f"r{self.tuples}" if f"r{self.tuples}" not in self.kinds else self.new_word()
+        return f"r{self.tuples}" if f"r{self.tuples}" not in self.taken else self.new_word()
 
     def returned(self, statement: ast.Return) -> str:
         if isinstance(statement.value, ast.Call):

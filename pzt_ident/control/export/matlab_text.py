@@ -30,7 +30,7 @@ class MatlabText(Text):
         self.results, self.where, self.read = results, function.name, reads(function.body)
         self.kinds = dict.fromkeys(function.parameters, "real") | {"fresh": "long"}
         self.infer(function.body)
-        self.inline, self.members, self.tuples = {}, {}, 0
+        self.inline, self.members, self.tuples, self.taken = {}, {}, 0, {*self.kinds}
         returned = f"[{', '.join(outputs)}] = " if outputs else ""
         used = words_in(function.body)
         known = [f"    {word} = {self.value(value)};" for word, value in self.constants.items() if word in used]
