@@ -159,6 +159,19 @@ def freed(case: Case, problem: Problem) -> dict[str, Widened]:
     return {name: Widened(problem.declared_bounds(column)) for name, column in columns.items()}
 
 
+def holding(case: Case, problem: Problem, values: Mapping[str, float]) -> dict[str, Widened]:
+    """Bounds wider by DECADES of the parameters that the job says nothing of, and of which a known value lies beyond
+    those that the catalogue guesses."""
+    specs = dict[str, Widened]()
+    bounds = zip(problem.names, problem.free, problem.lower.tolist(), problem.upper.tolist(), strict=True)
+    for name, column, low, high in bounds:
+        entry, value = problem.model.entries[column], values.get(name, low)
+        said = any(word in case.specs for word in problem.model.spellings(entry))
+        if not low <= value <= high and is_guessed(case, entry) and not said:
+            specs[name] = Widened((low / DECADES, high) if value < low else (low, high * DECADES))
+    return specs
+
+
 def is_fixed_at_a_guess(case: Case, problem: Problem, entry: Entry) -> bool:
     """Whether a parameter of the job's own model has a value of the catalogue, in units of the drive."""
     own = entry.block.name in map(word_of, case.words) and entry.axis in problem.model.measured

@@ -180,9 +180,10 @@ def simpler_look_alikes(
     case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate], shortlist: Sequence[Candidate]
 ) -> list[Candidate]:
     """Where an effect leads to the noise, the look-alikes of fewer parameters that are not on the short list, refitted:
-    where the base made up for what is missing, its side minimum has a score of its own."""
+    where the base made up for what is missing, its side minimum has a score of its own. None where the base rests on
+    bounds, for which a look-alike would make up."""
     best = min((item.fit for item in shortlist if item.fit), key=lambda fit: fit.total, default=before)
-    if not adequate(case, first, best) or best.effects == before.effects:
+    if before.on_bounds or not adequate(case, first, best) or best.effects == before.effects:
         return []
     simpler = []
     for candidate in candidates:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pzt_ident.diagnosis.bounds import continued, freed, stands_in, widened
+from pzt_ident.diagnosis.bounds import continued, freed, holding, stands_in, widened
 from pzt_ident.diagnosis.budget import PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase, climb
@@ -24,7 +24,7 @@ from pzt_ident.diagnosis.exchange import (
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.proof import Suspect, unproven
-from pzt_ident.diagnosis.refit import refit
+from pzt_ident.diagnosis.refit import refit, values_in
 from pzt_ident.diagnosis.second_mode import exchange_main_mode, exchange_second_mode
 from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explained_share
 from pzt_ident.diagnosis.ties import TIE
@@ -124,14 +124,19 @@ def finish(case: Case, first: Fit, path: Staircase) -> Fit | None:
 
 def exchange_for_bounds(case: Case, first: Fit, now: Fit) -> list[Step]:
     """The steps to wider bounds and from the effect that made up for them, where a model near the noise rests on bounds
-    of the job, or has a value that the catalogue guesses, and fits as well beyond these without one of its effects."""
+    of the job, has a value that the catalogue guesses, or stands for one beyond its guess, and fits as well beyond
+    these without one of its effects."""
     added = now.effects[len(first.effects) :]
-    specs = widened(case, now) | freed(case, now.problem) if added and near_noise(case, first, now) else {}
-    if not specs or not case.budget.allows("wider bounds", WHOLE):
+    if not added or not near_noise(case, first, now):
         return []
-    wide = case.with_specs(specs)
+    rested = widened(case, now) | freed(case, now.problem)
     for effect in reversed(added):
         others = effects_without(now, effect)
+        without = case.problem(others, now.steps)
+        specs = rested | holding(case, without, values_in(without, now))
+        if not specs or not case.budget.allows("wider bounds", WHOLE):
+            continue
+        wide = case.with_specs(specs)
         fits = refit(wide, now, others, {}), continued(wide, refit(case, now, others, {}))
         beyond = min(fits, key=lambda fit: fit.total)
         if removed_rms(beyond.total, now.total) < TIE * case.floor and not stands_in(wide, case, beyond):

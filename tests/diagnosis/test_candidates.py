@@ -58,15 +58,15 @@ def test_a_look_alike_in_another_form_is_started_anew_by_the_name_of_its_block(m
     assert rival.fit.identify == rival.refits[item].identify == 1.5
 
 
-@pytest.mark.parametrize("left, refitted", [(1.0, ["load_mass"]), (4.0, [])])
-def test_a_look_alike_of_fewer_parameters_is_tried_at_the_noise_whatever_it_scored(monkeypatch, left, refitted):
+@pytest.mark.parametrize(("left", "bound", "refitted"), [(1.0, 0.5, ["load_mass"]), (4.0, 0.5, []), (1.0, 0.0, [])])
+def test_a_look_alike_of_fewer_parameters_is_tried_at_the_noise_whatever_it_scored(monkeypatch, left, bound, refitted):
     """A side minimum of the base made up for a payload, which scored a tenth; a second mode then led to the noise."""
     sizes = {"resonance": 8, "load_mass": 6, "viscous_damping": 9, "creep": 6}
     case = SimpleNamespace(
         floor=1.0, budget=Budget(), problem=lambda e, steps: SimpleNamespace(dimensions=sizes[e[-1]])
     )
     monkeypatch.setattr(candidates, "refit_from", lambda case, before, effects, guesses, rival: fit(1.0, 1.0, effects))
-    first, offered = fit(20.0, 20.0), [Candidate.of([Score(word, explained=0.1)]) for word in sizes]
+    first, offered = fit(20.0, 20.0, own=[bound]), [Candidate.of([Score(word, explained=0.1)]) for word in sizes]
     first.problem.records = []
     best = fit(left, left, ("resonance",), dimensions=sizes["resonance"])
     offered[0].refits = {"resonance": best}
