@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.criteria import removed_rms
 from pzt_ident.diagnosis.fit import NO_WORSE, Fit, fit_at
 from pzt_ident.diagnosis.modes import mechanics_at_main_mode, mechanics_without_payload
 from pzt_ident.search.descent import FAR
@@ -16,7 +17,7 @@ from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
 
-STEP_TOLERANCE = 0.05  # of what a fit leaves, but at least of the noise: a step is halved where that changes more
+STEP_TOLERANCE = 0.05  # of the noise, or twice as much of the misfit: a step is halved where that changes more
 FINEST = 8  # steps per sample
 AT_NOISE = 1.05  # noise floors: what leaves no more is fitted from no other guess
 SHARES = 0.5 ** np.arange(15)  # of a range, at which the amount of a part is tried
@@ -132,19 +133,16 @@ def residuals_differ(case: Case, one: Array, other: Array) -> bool:
     return bool(np.linalg.norm(one - other) > STEP_TOLERANCE * case.floor)
 
 
-def refine_steps(
-    case: Case, fit: Fit, rival: float = np.inf, fine: bool = False, checked: Sequence[int] | None = None
-) -> Fit:
+def refine_steps(case: Case, fit: Fit, rival: float = np.inf, checked: Sequence[int] | None = None) -> Fit:
     """The fit, continued with finer simulation steps for the records where halving the step changes the response by
-    more than a part of what the fit leaves, or of the noise; `fine`: of the noise even where the fit leaves more.
-    checked: the numbers of the records in question, by default of all. None is refined behind the end of the budget,
-    but for what is `fine`, nor where the fit stays far above a rival whatever finer steps change.
+    more than a part of the misfit, or of the noise. checked: the numbers of the records in question, by default of all.
+    None is refined behind the end of the budget, nor where the fit stays far above a rival whatever finer steps change.
 
     Where the drive is linear between samples, the signals between blocks are taken as linear too.
     """
-    if not fine and not case.budget.lasts():
+    if not case.budget.lasts():
         return fit
-    most = STEP_TOLERANCE * (case.floor if fine else max(case.floor, fit.identify))
+    most = STEP_TOLERANCE * max(case.floor, 2 * removed_rms(fit.identify, case.floor))
     numbers = [n for n in (range(len(fit.steps)) if checked is None else checked) if fit.steps[n] < FINEST]
     errors = step_errors(case, fit, numbers)
     coarse = [n for n, error in zip(numbers, errors, strict=True) if error > most]
@@ -154,7 +152,7 @@ def refine_steps(
     problem = case.problem(fit.effects, steps, fit.measured_only)
     point = case.descend(problem, fit.point, rival)
     finer = fit_at(fit.effects, problem, point, fit.converged, fit.measured_only)
-    return refine_steps(case, finer, rival, fine, coarse)
+    return refine_steps(case, finer, rival, coarse)
 
 
 def step_errors(case: Case, fit: Fit, numbers: Iterable[int] | None = None) -> Array:

@@ -66,7 +66,7 @@ def first_fit(
             break
     point = min((minima[np.argmin(losses)], best_of_each_axis(case, problem, minima)), key=lambda p: problem.loss(p)[0])
     fit = fit_at(effects, problem, case.descend(problem, point), agreed or known is not None)
-    return refine_steps(case, best_exchange(case, fit if fit.converged else settled(case, fit)), fine=True)
+    return refine_steps(case, best_exchange(case, fit if fit.converged else settled(case, fit)))
 
 
 def at_a_glance(case: Case, effects: tuple[str, ...]) -> float:

@@ -158,8 +158,9 @@ def test_a_solver_too_coarse_for_what_is_left_is_blamed_on_no_effect(plain, monk
     problem = fit.problem
     response = simulate(problem.model, problem.records[0], problem.parameters(fit.point))[0, 0]
     half_a_step = np.gradient(response) / 2 / refit.FINEST  # by which Euler's lag is too short
-    assert fit.steps == (refit.FINEST, refit.FINEST)
-    assert refit.step_errors(case, fit)[0] == pytest.approx(np.std(half_a_step), rel=0.1)
+    errors = refit.step_errors(case, fit)
+    assert fit.steps[0] == refit.FINEST or errors[0] < 0.1 * fit.identify
+    assert errors[0] == pytest.approx(np.std(half_a_step), rel=0.1)
 
 
 def test_a_ripple_between_samples_is_followed_by_finer_steps():
@@ -177,23 +178,23 @@ def test_a_ripple_between_samples_is_followed_by_finer_steps():
 
 
 def test_a_step_that_is_short_for_what_a_fit_leaves_is_kept_until_it_leaves_less(monkeypatch):
-    """The second record would change by a 25th of what the fit leaves, several times as much as of the noise."""
+    """The second record would change by a 20th of what the fit leaves, several times as much as of the noise."""
     creeping = stage.case(stage.EFFECTS["creep"])
-    fit, asked = first_fit(creeping, 0), []
+    fit, asked, share = first_fit(creeping, 0), [], 0.05
 
     def errors(case, fit, numbers):
         asked.append(tuple(numbers))
-        return np.array([0.04 * fit.identify if number == 1 else 0.0 for number in asked[-1]])
+        return np.array([share * fit.identify if number == 1 else 0.0 for number in asked[-1]])
 
     monkeypatch.setattr(refit, "step_errors", errors)
-    assert 0.04 * fit.identify > refit.STEP_TOLERANCE * creeping.floor
+    assert share * fit.identify > 2 * refit.STEP_TOLERANCE * creeping.floor
     assert refit.refine_steps(creeping, fit) is fit
-    assert refit.refine_steps(creeping, fit, fine=True).steps == (1, refit.FINEST)
+    share = 0.15
+    assert refit.refine_steps(creeping, fit).steps == (1, refit.FINEST)
     assert asked == [(0, 1), (0, 1), (1,), (1,), ()]  # what has been short enough is not asked about again
     creeping.budget = Budget(0.0)
     monkeypatch.setattr(refit, "step_errors", lambda case, fit, numbers: np.full(len(numbers), fit.identify))
     assert refit.refine_steps(creeping, fit) is fit, "the budget is spent"
-    assert refit.refine_steps(creeping, fit, fine=True).steps == (refit.FINEST, refit.FINEST)
 
 
 def test_no_step_is_refined_of_a_fit_that_stays_far_above_a_rival(monkeypatch):

@@ -10,6 +10,7 @@ from pzt_ident.diagnosis import starts
 from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.criteria import removed_rms
 from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.possible import fits
 from pzt_ident.diagnosis.refit import FINEST, STEP_TOLERANCE, step_errors
@@ -103,7 +104,7 @@ def test_what_is_found_elsewhere_has_fine_steps_or_is_not_taken():
     fit = fit_at((), problem, problem.unit_point(stiff))
     for found in (best_of(drifting, fit, [problem.unit_point(stiff | alias)]), restart(drifting, fit)):
         errors = step_errors(drifting, found)
-        coarse = errors > STEP_TOLERANCE * max(drifting.floor, found.identify)
+        coarse = errors > STEP_TOLERANCE * max(drifting.floor, 2 * removed_rms(found.identify, drifting.floor))
         assert found is fit or all(count == FINEST for count, each in zip(found.steps, coarse, strict=True) if each)
 
 
