@@ -31,6 +31,7 @@ LEAST_TRACE = 1e-9  # of the residual: less is rounding
 LEAST_SCORE = 0.02  # of the misfit: an effect that scores less is not refitted
 KEPT = 4  # scorers
 FINER, MOST_SCALES = 0.93, 40  # from multiple to multiple of a trial's steps
+COARSER, COARSE = (8, 4, 2), 0.01  # times as long steps; of the response, by which they may change it
 AS_GOOD, MOST_GUESSES = 0.9, 4  # of the share explained by the best guess of a disturbance; guesses that are kept
 
 
@@ -68,14 +69,26 @@ def scorer_of(case: Case, fit: Fit) -> Scorer:
     return scorer
 
 
+class Beside:
+    """A model at the point of a fit, in some steps of the simulation, and its residual."""
+
+    def __init__(self, case: Case, fit: Fit, steps: tuple[int, ...]) -> None:
+        self.problem = fit.problem if steps == fit.steps else case.problem(fit.effects, steps, fit.measured_only)
+        self.steps = steps
+        self.followed = self.problem.tangent(fit.point, sampled=True), self.problem.held(fit.point)
+        self.residual = self.problem.along(*self.followed).residuals(fit.point)[0]
+
+
 class Scorer:
-    """The residual of a fit and the derivatives of its parameters, both over the scored samples."""
+    """The residual of a fit and the derivatives of its parameters, both over the scored samples. Traces of effects are
+    those in coarser steps of the simulation where these change the response little."""
 
     def __init__(self, case: Case, fit: Fit) -> None:
         self.case, self.fit = case, fit
-        self.followed = fit.problem.tangent(fit.point, sampled=True), fit.problem.held(fit.point)
-        self.residual = fit.problem.along(*self.followed).residuals(fit.point)[0]
-        self.projection = Projection(fit.problem.jacobian(fit.point), fit.point, self.residual)
+        self.fine = Beside(case, fit, fit.steps)
+        self.residual = self.fine.residual
+        self.coarse = coarsest(case, fit, self.fine)
+        self.projection = Projection(self.coarse.problem.jacobian(fit.point), fit.point, self.residual)
         self.left = float(self.projection.left(self.projection.signal)[0])
         self.misfit = squared_misfit(case, fit)
         self._scores: dict[str, Score] = {}
@@ -105,7 +118,8 @@ class Scorer:
         case, fit, effects = self.case, self.fit, (*self.fit.effects, effect)
         first = case.unmeasured_nulls(effects) and not case.unmeasured_nulls(fit.effects)
         variants = (False, True) if first else (fit.measured_only,)
-        problems = [case.problem(effects, fit.steps, measured_only).along(*self.followed) for measured_only in variants]
+        beside = self.fine if blocks[effect].amounts() else self.coarse
+        problems = [case.problem(effects, beside.steps, each).along(*beside.followed) for each in variants]
         scores = [self._score(effect, problem, near) for problem in problems]
         return max(scores, key=lambda score: score.explained)
 
@@ -201,10 +215,13 @@ class Scorer:
                 yield [trial for trial, kept in zip(batch, whole, strict=True) if kept], sets
 
     def _residuals(self, problem: Problem, physical: Array) -> Array:
-        """(candidates, samples) at points (candidates, free) in the user's units."""
-        return problem.residuals(
-            np.array([problem.unit_point(dict(zip(problem.names, row, strict=True))) for row in physical])
-        )
+        """(candidates, samples) at points (candidates, free) in the user's units, as if the steps were those of the
+        fit."""
+        points = [problem.unit_point(dict(zip(problem.names, row, strict=True))) for row in physical]
+        residuals = problem.residuals(np.array(points))
+        if tuple(record.steps for record in problem.records) != self.fit.steps:
+            residuals += self.residual - self.coarse.residual
+        return residuals
 
     def _score_disturbance(self, effect: str, problem: Problem, near: Sequence[Mapping[str, float]]) -> Score:
         """The score of an effect in amounts of each record, which are solved for and not stepped: at the guesses that
@@ -255,6 +272,26 @@ class Scorer:
             axis_residuals = [residual[row] for residual in residuals]
             guesses.append(guess(times, axis_drives, axis_residuals, problem.lower[i], problem.upper[i]).tolist())
         return guesses
+
+
+def coarsest(case: Case, fit: Fit, fine: Beside) -> Beside:
+    """The model of a fit in the coarsest steps, those of the job at least, that change its response by no more than a
+    part of how that varies."""
+    given = [record.steps for record in case.records]
+    for parts in COARSER:
+        steps = tuple(max(least, count // parts) for least, count in zip(given, fit.steps, strict=True))
+        if steps != fit.steps:
+            beside = Beside(case, fit, steps)
+            if np.linalg.norm(beside.residual - fine.residual) < COARSE * stroke(fit.problem):
+                return beside
+    return fine
+
+
+def stroke(problem: Problem) -> float:
+    """How the measured responses vary, root mean square, in units of the loss."""
+    records = [simulator.record for simulator in problem.simulators["identify"]]
+    scaled = [record.response[list(record.measured), record.settle :].T / problem.sizes for record in records]
+    return float(np.sqrt(sum(np.sum(np.var(each, axis=0)) * len(each) for each in scaled) / problem.scored))
 
 
 def scales_of(amounts: Array) -> Array:
