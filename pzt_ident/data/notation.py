@@ -60,6 +60,11 @@ def count(value: float | None) -> str:
     return MISSING if value is None or math.isnan(value) else f"{round(value):,}".replace(",", "\u202f")
 
 
+def counted(count: int, noun: str) -> str:
+    """A number of things: 1 device, 3 devices."""
+    return f"{count} {noun}{'s' * (count != 1)}"
+
+
 def percent(share: float | None, decimals: int = 0) -> str:
     return MISSING if share is None or math.isnan(share) else f"{100 * share:.{decimals}f}\u00a0%"
 

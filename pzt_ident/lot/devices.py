@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from pzt_ident.data.notation import counted
 from pzt_ident.errors import InputError, printable
 from pzt_ident.job.files import channel_files, record_files
 from pzt_ident.job.schema import Job
@@ -74,7 +75,7 @@ def matched(patterns: Sequence[str]) -> list[Path]:
     matches = [path for path in by_place.values() if not os.path.isfile(path / "fleet.json")]
     folders, files = (sum(map(is_kind, matches)) for is_kind in (os.path.isdir, os.path.isfile))
     if folders and files:
-        problem = f"{folders} folders and {files} files are matched"
+        problem = f"{counted(folders, 'folder')} and {counted(files, 'file')} are matched"
         remedy = "a pattern that ends with / takes the folders alone, one that ends with *.csv the files"
         raise InputError(problem, where=" ".join(map(repr, patterns)), remedy=remedy)
     return matches

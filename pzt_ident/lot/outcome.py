@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from pzt_ident.data.notation import counted
 from pzt_ident.errors import DamagedError, InputError
 from pzt_ident.lot.identify import read_statement
 from pzt_ident.lot.statistics import (
@@ -146,7 +147,7 @@ class Lot:
     def sentences(self) -> list[str]:
         """What the lot came to, in a few lines."""
         waiting = len(self.rows) - len(self.done) - len(self.broken)
-        counts = [f"{len(self.done)} of {len(self.rows)} devices identified"]
+        counts = [f"{len(self.done)} of {counted(len(self.rows), 'device')} identified"]
         counts += [f"{len(self.broken)} broken"] * bool(self.broken) + [f"{waiting} not done"] * bool(waiting)
         lines = [", ".join(counts) + "."]
         if self.verdicts:

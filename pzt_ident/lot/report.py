@@ -178,7 +178,7 @@ def quantity_line(lot: Lot, quantity: Quantity) -> list[str]:
     ends = [number(values.min()), number(values.max())] if values.size else ["–", "–"]
     error = number(quantity.own_error, 2) if quantity.own_error else "–"
     cells = [number(quantity.median), number(quantity.spread, 2), relative, *ends, error]
-    return [quantity.name, unit(quantity.unit) or "1", *cells, f"{values.size} of {len(lot.done)}"]
+    return [quantity.name, unit(quantity.unit) or "1", *cells, f"{values.size} of {quantity.present.sum()}"]
 
 
 def header(lot: Lot) -> list[str]:

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
-from typing import Any
 
-import numpy as np
-
-from pzt_ident.data.notation import listed, number, percent, spelled, unit
+from pzt_ident.data.notation import counted, listed, number, percent, spelled, unit
 from pzt_ident.lot.outcome import Lot
-from pzt_ident.lot.statistics import Difference
+from pzt_ident.lot.statistics import Difference, Quantity, Trend
 from pzt_ident.lot.table import Row
 from pzt_ident.run.collect import MOST_OF_THE_NOISE
 
@@ -18,50 +14,54 @@ MOST_GROUPS = 4  # of which a sentence names each median
 
 
 def lead(lot: Lot) -> str:
-    """The lot in a sentence."""
-    done, total = len(lot.done), len(lot.rows)
+    """The lot in a few sentences."""
+    total, any_device = len(lot.rows), _share("any", len(lot.rows))
+    if not lot.done:
+        state = "is not identified yet" if unfinished(lot) else "could not be identified"
+        return f"The model {state} for {any_device}."
     adequate = [row for row in lot.done if row["verdict"] == "adequate"]
-    more = sum(bool(row["effects"]) for row in adequate)
-    if not done:
-        return f"None of {total} devices {'is done yet' if unfinished(lot) else 'could be identified'}."
-    fit = [f"is adequate for {len(adequate) - more or 'none'} of {total} devices"]
-    fit += [f"with effects added for {more} more"] * bool(more)
-    fit += [f"fits {len(lot.ill_fitted)} worse than usual"] * bool(lot.ill_fitted)
-    text = f"The model {listed(fit)}."
-    if lot.odd:
-        text += f" {len(lot.odd)} more {'is' if len(lot.odd) == 1 else 'are'} out of line."
-    if lot.broken:
-        text += f" {len(lot.broken)} could not be identified."
-    return text
+    given, more = (sum(bool(row["effects"]) == added for row in adequate) for added in (False, True))
+    ill, odd, broken = len(lot.ill_fitted), len(lot.odd), len(lot.broken)
+    fit = f"is adequate for {_share(given, total)}" if given else f"is not adequate for {any_device}"
+    others = counted(odd, "other device" if ill else "device")
+    sentences = [
+        f"The model {fit}.",
+        f"With effects added, it is adequate for {f'{more} more' if given else _share(more, total)}." * bool(more),
+        f"It fits {counted(ill, 'device')} worse than usual." * bool(ill),
+        f"{others} {'is' if odd == 1 else 'are'} out of line." * bool(odd),
+        f"{counted(broken, 'device')} could not be identified." * bool(broken),
+    ]
+    return " ".join(filter(None, sentences))
+
+
+def _share(count: int | str, total: int) -> str:
+    """So many of the devices, at least one, or `any` of them."""
+    return "the only device" if total == 1 else f"{count} of {total} devices"
 
 
 def unfinished(lot: Lot) -> list[str]:
     waiting = len(lot.rows) - len(lot.done) - len(lot.broken)
-    return [f"{waiting} devices are not done: pzt-ident resume goes on with them."] if waiting else []
+    verb, them = ("is", "it") if waiting == 1 else ("are", "them")
+    return [f"{counted(waiting, 'device')} {verb} not done: pzt-ident resume goes on with {them}."] if waiting else []
 
 
 def findings(lot: Lot) -> Iterator[str]:
     """What a reader must know beside that."""
     above = lot.verdicts.get("above the noise", 0)
     if above and not lot.statement["improve"]:
-        yield f"{above} are above the noise: the same command with --improve says why."
+        verb = "is" if above == 1 else "are"
+        yield f"{counted(above, 'device')} {verb} above the noise: the same command with --improve says why."
     coarse = [row["device"] for row in lot.done if (row.get("step_change") or 0.0) > MOST_OF_THE_NOISE]
     if coarse and not lot.statement["improve"]:
-        yield (
-            f"The step of the simulation costs {len(coarse)} of {len(lot.done)} devices more than a fifth of the noise:"
-            " give the records of the job more `steps`."
+        problem = (
+            f"The step of the simulation costs {_share(len(coarse), len(lot.done))} more than a fifth of the noise"
         )
+        yield f"{problem}: give the records of the job more `steps`."
     for effect, names in lot.effects.items():
-        yield f"{effect} is missing in {len(names)} of {len(lot.done)} devices ({percent(len(names) / len(lot.done))})."
+        yield f"{effect} is missing in {_share(len(names), len(lot.done))} ({percent(len(names) / len(lot.done))})."
     for trend in _distinct(lot.trends):
         quantity = next(quantity for quantity in lot.quantities if quantity.name == trend.quantity)
-        sign = "grows" if trend.slope > 0 else "falls"
-        column = re.search(r"\[(.+)\]", trend.column)
-        per = unit(column[1]) if column else "unit"
-        change = (
-            f", by {number(abs(trend.slope / quantity.median) * 100, 2)}\u00a0% per {per}" if quantity.median else ""
-        )
-        yield f"{trend.quantity} {sign} with the {trend.column.partition(' [')[0]}{change}."
+        yield _trend(trend, quantity)
     for difference in lot.group_differences:
         if difference.clear:
             quantity = next(quantity for quantity in lot.quantities if quantity.name == difference.quantity)
@@ -69,12 +69,26 @@ def findings(lot: Lot) -> Iterator[str]:
     for names in lot.same_data:
         yield f"{listed(names)} have the same data: is one of them a copy?"
     undetermined = [
-        quantity.name
+        f"{quantity.name} in {_undetermined(quantity, len(lot.done))}"
         for quantity in lot.quantities
-        if not quantity.one_sided and quantity.usable.sum() < np.isfinite(quantity.values).sum() / 2
+        if not quantity.one_sided and quantity.usable.sum() < quantity.present.sum() / 2
     ]
     if undetermined:
-        yield f"The data of most devices do not determine {listed(undetermined)}."
+        yield f"The data do not determine {listed(undetermined)}."
+
+
+def _undetermined(quantity: Quantity, done: int) -> str:
+    """In how many devices a quantity is not determined, of those that have it."""
+    present, usable = int(quantity.present.sum()), int(quantity.usable.sum())
+    return f"{_share(present - usable, present)}{' whose model has it' if present < done else ''}"
+
+
+def _trend(trend: Trend, quantity: Quantity) -> str:
+    sign = "grows" if trend.slope > 0 else "falls"
+    column, _, of = trend.column.removesuffix("]").partition(" [")
+    per = {"days": "day"}.get(of, unit(of)) or "unit"
+    change = f", by {number(abs(trend.slope / quantity.median) * 100, 2)}\u00a0% per {per}" if quantity.median else ""
+    return f"{trend.quantity} {sign} with {column}{change}."
 
 
 def groups_of(difference: Difference, shown: str) -> str:
@@ -88,9 +102,9 @@ def groups_of(difference: Difference, shown: str) -> str:
     return f"{difference.furthest} has {f'{number(furthest)} {shown}'.rstrip()}, {far} the median of all"
 
 
-def _distinct(trends: Iterable[Any]) -> list[Any]:
+def _distinct(trends: Iterable[Trend]) -> list[Trend]:
     """The clear trends, of each quantity the clearest."""
-    first: dict[str, Any] = {}
+    first: dict[str, Trend] = {}
     for trend in trends:
         if trend.clear:
             first.setdefault(trend.quantity, trend)

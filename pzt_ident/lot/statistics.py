@@ -42,7 +42,12 @@ class Quantity:
 
     @property
     def usable(self) -> NDArray[np.bool_]:
-        return self.known & np.isfinite(self.values)
+        return self.known & self.present
+
+    @property
+    def present(self) -> NDArray[np.bool_]:
+        """Which devices have it."""
+        return np.isfinite(self.values)
 
     @property
     def median(self) -> float:

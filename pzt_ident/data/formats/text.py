@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from pzt_ident.data.formats import _analyser
 from pzt_ident.data.formats._layout import COMMENTS, GAPS, Layout, detect_layout
+from pzt_ident.data.notation import counted
 from pzt_ident.data.readers.table import Column, Table
 from pzt_ident.data.record import Source
 from pzt_ident.errors import InputError
@@ -86,7 +87,7 @@ def parse(lines: Sequence[str], where: str, place: str, first: int = 1, delimite
     split = layout.splitter(rows)
     for i, row in zip(filled, map(split, rows), strict=True):
         if len(row) != layout.width:
-            message = f"{place} {first + i} has {len(row)} fields instead of {layout.width}"
+            message = f"{place} {first + i} has {counted(len(row), 'field')} instead of {layout.width}"
             raise InputError(message, where=where, remedy=f"complete the {place} or delete it")
 
     check_end(rows, layout, lambda row: f"{place} {first + filled[row]}", where)
