@@ -41,8 +41,10 @@ def devices_of(patterns: Sequence[str], job: Job) -> list[Device]:
     tables = list(dict.fromkeys(Path(pattern) for pattern in patterns if is_table(Path(pattern), job)))
     devices = [device for table in tables for device in listed_devices(table, job)]
     paths = matched([pattern for pattern in patterns if Path(pattern) not in tables])
-    named = zip(names_of(paths), paths, strict=True)
-    devices += [device_at(path, name, {}, job) for name, path in named]
+    faults = odd_folder(paths, patterns)
+    for name, path in zip(names_of(paths), paths, strict=True):
+        device = device_at(path, name, {}, job)
+        devices.append(replace(device, fault=faults.get(path, device.fault)))
     devices = _apart([_printable(device) for device in devices])
     if not devices or all(device.fault for device in devices):
         _reject(patterns, devices)
@@ -65,20 +67,30 @@ def _printable(device: Device) -> Device:
 
 def matched(patterns: Sequence[str]) -> list[Path]:
     """The folders or files that the patterns match, each once, less folders of results; of a link and what it leads to
-    the latter, with a warning. Raises InputError where a pattern matches nothing, or folders and files are matched."""
+    the latter, with a warning. Raises InputError where a pattern matches nothing."""
     paths = dict.fromkeys(path for pattern in patterns for path in matches_of(pattern, alone=len(patterns) == 1))
     by_place: dict[Path, Path] = {}
     for path in sorted(paths, key=_links):
         first = by_place.setdefault(real(path) if os.path.exists(path) else path, path)
         if _links(path) > _links(first):
             warnings.warn(f"{printable(str(path))} leads to {printable(str(first))}: it is one device", stacklevel=2)
-    matches = [path for path in by_place.values() if not os.path.isfile(path / "fleet.json")]
-    folders, files = (sum(map(is_kind, matches)) for is_kind in (os.path.isdir, os.path.isfile))
+    return [path for path in by_place.values() if not os.path.isfile(path / "fleet.json")]
+
+
+def odd_folder(paths: Sequence[Path], patterns: Sequence[str]) -> Mapping[Path, str]:
+    """The only folder among files, with its fault; empty where all are of one kind. Raises InputError where it is open
+    which of both are the devices."""
+    folders, files = ([path for path in paths if is_kind(path)] for is_kind in (os.path.isdir, os.path.isfile))
+    if len(folders) == 1 < len(files):
+        return {folders[0]: f"{folders[0]}: is a folder, the other devices are files"}
     if folders and files:
-        problem = f"{counted(folders, 'folder')} and {counted(files, 'file')} are matched"
-        remedy = "a pattern that ends with / takes the folders alone, one that ends with *.csv the files"
+        suffixes = {path.suffix for path in files}
+        alone = len(suffixes) == 1 and not suffixes & {"", *(path.suffix for path in folders)}
+        taking = f"one that ends with *{suffixes.pop()}" if alone else "a list of devices with a column `file`"
+        problem = f"{counted(len(folders), 'folder')} and {counted(len(files), 'file')} are matched"
+        remedy = f"a pattern that ends with / takes the folders alone, {taking} the files"
         raise InputError(problem, where=" ".join(map(repr, patterns)), remedy=remedy)
-    return matches
+    return {}
 
 
 def matches_of(pattern: str, alone: bool = True) -> list[Path]:

@@ -154,6 +154,27 @@ def test_a_file_that_is_almost_there_is_named(here, other):
     assert f"it holds {other}, which must be there as loops.csv" in devices_of(["lot/*/"], job(ONE, here))[1].fault
 
 
+def test_the_only_folder_among_files_is_a_device_with_a_fault(here):
+    touch(here / "lot/odd.csv/x", *(here / f"lot/{letter}.csv" for letter in "abc"))
+    (fault,) = [device.fault for device in devices_of(["lot/*.csv"], job(ONE, here)) if device.fault]
+    assert fault == "lot/odd.csv: is a folder, the other devices are files"
+
+
+@pytest.mark.parametrize(
+    ("entries", "said", "remedy"),
+    [
+        (["a/x", "b/x", "c.csv", "d.csv"], "2 folders and 2 files are", "one that ends with *.csv the files"),
+        (["a.csv/x", "b.csv/x", "c.csv", "d.csv"], "2 folders and 2 files are", "a column `file` the files"),
+        (["a/x", "b.csv"], "1 folder and 1 file are", "a pattern that ends with / takes the folders alone"),
+    ],
+)
+def test_where_folders_and_files_may_both_be_the_devices_nothing_is_guessed(here, entries, said, remedy):
+    touch(*(here / "lot" / entry for entry in entries))
+    with pytest.raises(InputError, match=said) as caught:
+        devices_of(["lot/*"], job(ONE, here))
+    assert remedy in caught.value.remedy
+
+
 @pytest.mark.parametrize("patterns", [["lot/*/"], ["lot/*"], ["lot/latest", "lot/a"], ["lot/latest/", "lot/*"]])
 def test_a_link_to_a_device_is_no_other(here, patterns):
     touch(here / "lot/a/loops.csv")
@@ -236,7 +257,7 @@ def test_a_device_whose_cell_is_empty_has_the_name_of_its_path(here, heading):
     [
         (ONE, ["lto/*/"], "", r"'lto/\*/': matches nothing\n  there is no lto"),
         (ONE, ["lot/x*/"], "", r"matches nothing\n  in lot there is a, b"),
-        (ONE, ["lot/*"], "", "2 folders and 1 files are matched"),
+        (ONE, ["lot/*"], "", "2 folders and 1 file are matched"),
         (ONE, ["lot/"], "", r"holds no loops.csv: it holds a, b, readme.txt\n  did you mean 'lot/\*/'"),
         (TWO, ["lot/a/loops.csv"], "", "the job has records in 2 files, loops.csv, data/slow.csv, the device is one"),
         (TWO.replace("data/slow.csv", "data/loops.csv"), ["lot/*/"], "", "are the same file lot/a/loops.csv"),
