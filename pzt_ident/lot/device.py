@@ -19,6 +19,7 @@ from pzt_ident.errors import InputError, RunError
 from pzt_ident.files import digest_of, read_files, read_sealed, write_bytes, write_json, write_sealed, write_text
 from pzt_ident.job.files import Template, on_files
 from pzt_ident.job.schema import Job
+from pzt_ident.model.registry import blocks
 from pzt_ident.run.collect import collect
 from pzt_ident.run.elsewhere import move
 from pzt_ident.run.events import nobody
@@ -148,7 +149,13 @@ def identified(job: Job, records: list[Record], orders: Orders, folder: Path) ->
 def improved(job: Job, records: list[Record], orders: Orders, given: Given, folder: Path) -> dict[str, Any]:
     improve(job, folder, budget=orders.budget, records=records)
     move(folder, given.home / "improved")
-    return read_sealed(folder / "improvement.json")
+    return read_sealed(folder / "improvement.json") | {"faults": read_sealed(folder / "diagnosis.json")["faults"]}
+
+
+def missing_of(improvement: Mapping[str, Any]) -> list[str]:
+    """What a model misses: each effect that was added, with those that the data cannot tell from it as `A or B`."""
+    classes = {step["added"]: " or ".join(step["class"]) for step in improvement["steps"] if step["class"]}
+    return [classes.get(effect, effect) for effect in improvement["effects"]]
 
 
 def row_of(given: Given, result: dict[str, Any], improvement: dict[str, Any]) -> dict[str, Any]:
@@ -161,6 +168,8 @@ def row_of(given: Given, result: dict[str, Any], improvement: dict[str, Any]) ->
         "reason": improvement.get("reason", ""),
         "verdict": improvement["verdict"] if improvement else verdict_of(best["rmse"], floor),
         "effects": improvement.get("effects", []),
+        "missing": missing_of(improvement) if improvement else [],
+        "faults": {word: blocks[word].remedy for word in improvement.get("faults", [])},
         "suspects": [suspect["effect"] for suspect in improvement.get("suspects", [])],
         "unit": result["unit"],
         "rmse": best["rmse"],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -24,7 +25,7 @@ from pzt_ident.lot.statistics import (
     out_of_line,
     trends,
 )
-from pzt_ident.lot.table import Row, in_unit, read_devices, rows_of, some
+from pzt_ident.lot.table import Row, faults_in, in_unit, missing_in, read_devices, rows_of, some
 
 DETERMINED = "determined"
 
@@ -115,12 +116,25 @@ class Lot:
 
     @property
     def effects(self) -> dict[str, list[str]]:
-        """The devices that miss each effect, the most frequent effect first."""
-        count = Counter(effect for row in self.done for effect in row["effects"])
-        return {
-            effect: [row["device"] for row in self.done if effect in row["effects"]]
-            for effect, _ in count.most_common()
-        }
+        """The devices whose models have each effect added, the most frequent effect first."""
+        return self._devices_by(lambda row: row["effects"])
+
+    @property
+    def missing(self) -> dict[str, list[str]]:
+        """The devices that miss each effect, or `A or B` where their data cannot tell them apart, as `effects`."""
+        return self._devices_by(missing_in)
+
+    @property
+    def faults(self) -> dict[str, list[str]]:
+        """The devices by the fault of their set-up that accounts for their misfit, and its remedy, as `effects`."""
+        return self._devices_by(lambda row: [f"{word}. {remedy}" for word, remedy in faults_in(row).items()])
+
+    def _devices_by(self, words: Callable[[Row], Iterable[str]]) -> dict[str, list[str]]:
+        devices: dict[str, list[str]] = {}
+        for row in self.done:
+            for word in words(row):
+                devices.setdefault(word, []).append(row["device"])
+        return dict(sorted(devices.items(), key=lambda item: -len(item[1])))
 
     @property
     def verdicts(self) -> dict[str, int]:
@@ -141,6 +155,12 @@ class Lot:
             "broken": [{"device": row["device"], "reason": row["reason"]} for row in self.broken],
             "verdicts": self.verdicts,
             "effects": {effect: len(names) for effect, names in self.effects.items()},
+            "missing": self.missing,
+            "faults": [
+                {"device": row["device"], "fault": word, "remedy": remedy}
+                for row in self.done
+                for word, remedy in faults_in(row).items()
+            ],
             "out_of_line": [{"device": finding.device, "reason": finding.sentence} for finding in self.findings],
         }
 
@@ -154,8 +174,10 @@ class Lot:
             lines.append(
                 "Verdicts: " + ", ".join(f"{count} {verdict}" for verdict, count in self.verdicts.items()) + "."
             )
-        for effect, names in self.effects.items():
+        for effect, names in self.missing.items():
             lines.append(f"Missing in {len(names)}: {effect} ({some(names)}).")
+        for fault, names in self.faults.items():
+            lines.append(f"Fault of the set-up in {len(names)} ({some(names)}): {fault}")
         for reason, names in (
             ("The model fits worse than usual", self.ill_fitted),
             ("Parameters out of line", self.odd),

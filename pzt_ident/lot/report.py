@@ -18,9 +18,9 @@ from pzt_ident.lot.devices import Device
 from pzt_ident.lot.figures import plates
 from pzt_ident.lot.identify import in_a_line
 from pzt_ident.lot.outcome import Lot, read_lot
-from pzt_ident.lot.sentences import far, findings, lead, unfinished
+from pzt_ident.lot.sentences import far, findings, in_setup, lead, unfinished
 from pzt_ident.lot.statistics import Quantity
-from pzt_ident.lot.table import FOR_PARQUET, folder_of, tables_in, write_table
+from pzt_ident.lot.table import FOR_PARQUET, faults_in, folder_of, missing_in, tables_in, write_table
 from pzt_ident.report.figures import Plate, write_plate
 from pzt_ident.report.inline import inline
 from pzt_ident.report.page import environment as page_environment
@@ -125,7 +125,7 @@ def page(lot: Lot, figures: Figures, served: Served | None = None, undrawn: Sequ
 
     said = [*map(served.worded, findings(lot))] if served else [*unfinished(lot), *undrawn, *findings(lot)]
     outside, quantities = far(lot), [quantity_line(lot, item) for item in lot.quantities]
-    names = [name for row in lot.done for name in row["effects"]] + [line[0] for line in quantities]
+    names = [*lot.missing, *(fault for row in lot.done for fault in faults_in(row)), *(line[0] for line in quantities)]
     script = files("pzt_ident.lot").joinpath("lot.js").read_text(encoding="utf-8")
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     return (
@@ -144,7 +144,7 @@ def page(lot: Lot, figures: Figures, served: Served | None = None, undrawn: Sequ
             far=outside,
             words=named([*said, *(kind for _, kind, _ in outside), *names], {}),
             atlas=atlas_beside(lot.folder),
-            effects=lot.effects,
+            effects=lot.missing,
             figures=figures,
             quantities=quantities,
             header=header(lot),
@@ -205,7 +205,8 @@ def device_lines(lot: Lot) -> Iterator[dict[str, Any]]:
         name, index = row["device"], place.get(row["device"])
         if index is None or name not in shown:
             continue
-        words = [row["verdict"], *([", ".join(row["effects"])] if lot.statement["improve"] else [])]
+        found = ", ".join([*missing_in(row), *in_setup(row)])
+        words = [row["verdict"], *([found] if lot.statement["improve"] else [])]
         values = [
             (
                 number(quantity.values[index]),

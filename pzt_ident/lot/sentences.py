@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from pzt_ident.data.notation import counted, listed, number, percent, spelled, unit
 from pzt_ident.lot.outcome import Lot
 from pzt_ident.lot.statistics import Difference, Quantity, Trend
-from pzt_ident.lot.table import Row
+from pzt_ident.lot.table import Row, faults_in, missing_in, some
 from pzt_ident.run.collect import MOST_OF_THE_NOISE
 
 MOST_GROUPS = 4  # of which a sentence names each median
@@ -57,8 +57,11 @@ def findings(lot: Lot) -> Iterator[str]:
             f"The step of the simulation costs {_share(len(coarse), len(lot.done))} more than a fifth of the noise"
         )
         yield f"{problem}: give the records of the job more `steps`."
-    for effect, names in lot.effects.items():
+    for effect, names in lot.missing.items():
         yield f"{effect} is missing in {_share(len(names), len(lot.done))} ({percent(len(names) / len(lot.done))})."
+    for fault, names in lot.faults.items():
+        share = _share(len(names), len(lot.done))
+        yield f"A fault of the set-up accounts for the misfit of {share} ({some(names)}): {fault}"
     for trend in _distinct(lot.trends):
         quantity = next(quantity for quantity in lot.quantities if quantity.name == trend.quantity)
         yield _trend(trend, quantity)
@@ -120,16 +123,26 @@ def far(lot: Lot) -> list[tuple[str, str, str]]:
     noisy = {name for name in lot.odd if all(finding.of_fit for finding in lot.findings if finding.device == name)}
     kinds = [(name, "noise" if name in noisy else _odd(rows[name])) for name in lot.odd]
     kinds += [(name, _misfit(rows[name])) for name in lot.ill_fitted]
-    return [(name, kind, "; ".join(why[name])) for name, kind in kinds]
+    return [(name, kind, "; ".join([*why[name], *faults_in(rows[name]).values()])) for name, kind in kinds]
 
 
 def _odd(row: Row) -> str:
     """What is known of a device that the model fits with unusual parameters."""
-    return f"parameters, misses {listed(row['effects'])}" if row["effects"] else "parameters"
+    return ", ".join(["parameters", *_cause(row)])
 
 
 def _misfit(row: Row) -> str:
     """What is known of a device that the model does not fit."""
-    if row["effects"]:
-        return f"misses {listed(row['effects'])}"
-    return f"may miss {listed(row['suspects'])}" if row["suspects"] else "fits worse"
+    suspects = f"may miss {listed(row['suspects'])}" if row["suspects"] else "fits worse"
+    return ", ".join(_cause(row)) or suspects
+
+
+def in_setup(row: Row) -> list[str]:
+    """The faults of a device's set-up, in words."""
+    return [f"{fault} in the set-up" for fault in faults_in(row)]
+
+
+def _cause(row: Row) -> list[str]:
+    """What the diagnosis of a device names."""
+    missing = [f"misses {listed(missing_in(row))}"] if missing_in(row) else []
+    return [*missing, *in_setup(row)]

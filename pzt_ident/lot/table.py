@@ -165,6 +165,9 @@ def line_of(row: Row, units: dict[str, str]) -> dict[str, Value]:
     if row["state"] != "done":
         return line | {"sha256": row.get("sha256") or None, "reason": row["reason"]}
     line |= {"verdict": row["verdict"], "effects": ", ".join(row["effects"]), "suspects": ", ".join(row["suspects"])}
+    faults = faults_in(row)
+    line |= {"missing": ", ".join(missing_in(row)), "faults of the set-up": ", ".join(faults)}
+    line |= {"remedy of the set-up": " ".join(faults.values())}
     for key, heading in RMSE.items():
         for use, value in (row[key] or {}).items():
             line |= _cell(heading.format(use), "", value, row["unit"], units)
@@ -175,6 +178,16 @@ def line_of(row: Row, units: dict[str, str]) -> dict[str, Value]:
         line |= _interval(f"improved {name}", parameter, units)
     folder = folder_of(Path(), row["device"]).as_posix()
     return line | {"cpu [s]": row["cpu_seconds"], "sha256": row["sha256"], "folder": folder, "reason": row["reason"]}
+
+
+def missing_in(row: Row) -> list[str]:
+    """What a device misses, or `A or B` where its data cannot tell them apart."""
+    return row.get("missing") or row["effects"]
+
+
+def faults_in(row: Row) -> dict[str, str]:
+    """The faults of a device's set-up, and how they are mended."""
+    return row.get("faults") or {}
 
 
 def _interval(name: str, parameter: Row, units: dict[str, str]) -> dict[str, Value]:

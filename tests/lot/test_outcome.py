@@ -1,0 +1,61 @@
+"""What the diagnoses of single devices say is said of the lot, wherever it is told."""
+
+import pytest
+
+from lot.test_table import row_of
+from pzt_ident.lot.device import missing_of
+from pzt_ident.lot.outcome import Lot
+from pzt_ident.lot.report import device_lines
+from pzt_ident.lot.sentences import far, findings
+from pzt_ident.lot.table import frame_of
+
+EITHER, MEND = "slew_limit or amplifier_lag", "Tighten the linkage."
+
+
+def step(added, *of):
+    return {"added": added, "class": list(of)}
+
+
+@pytest.mark.parametrize(
+    ("steps", "missing"),
+    [
+        ([step(None)], []),
+        ([step(None), step("creep", "creep")], ["creep"]),
+        ([step(None), step("slew_limit", "slew_limit", "amplifier_lag")], [EITHER]),
+        ([step("creep", "creep", "drift"), step(None), step("slew_limit", "slew_limit", "amplifier_lag")], [EITHER]),
+    ],
+)
+def test_effects_that_data_cannot_tell_apart_are_named_together(steps, missing):
+    effects = [item["added"] for item in steps if item["added"]][-1:]
+    assert missing_of({"steps": steps, "effects": effects}) == missing
+
+
+@pytest.fixture
+def lot(tmp_path):
+    """Twenty devices, of which one may miss either of two effects, and one has a fault of its set-up."""
+    rows = [row_of(f"d{place}") | {"effects": [], "step_change": 0.0, "key": f"{place}"} for place in range(20)]
+    rows[3] |= {"effects": ["slew_limit"], "missing": [EITHER], "rmse": {"identify": 9.0, "validate": None}}
+    rows[5] |= {"verdict": "unexplained", "suspects": ["backlash", "friction"], "faults": {"backlash": MEND}}
+    for place, row in enumerate(rows):
+        row["rmse"] = {"identify": 5.0 if place in (3, 5) else 0.1 + 0.001 * place, "validate": None}
+    rows[3]["verdict"] = "above the noise"
+    return Lot(tmp_path, {"improve": True}, rows)
+
+
+def test_what_a_device_misses_and_what_is_wrong_with_its_set_up_is_told_everywhere(lot):
+    said = "\n".join([*lot.sentences(), *findings(lot)])
+    assert f"Missing in 1: {EITHER} (d3)." in said
+    assert f"{EITHER} is missing in 1 of 20 devices" in said
+    assert f"Fault of the set-up in 1 (d5): backlash. {MEND}" in said
+    assert f"A fault of the set-up accounts for the misfit of 1 of 20 devices (d5): backlash. {MEND}" in said
+    told = {device: (kind, why) for device, kind, why in far(lot)}
+    assert told["d3"][0] == f"misses {EITHER}"
+    assert told["d5"][0] == "backlash in the set-up" and told["d5"][1].endswith(MEND)
+    cells = {line["device"]: line["words"] for line in device_lines(lot)}
+    assert (cells["d3"][1], cells["d5"][1]) == (EITHER, "backlash in the set-up")
+    frame = frame_of(iter(lot.rows)).set_index("device")
+    assert (frame.loc["d3", "effects"], frame.loc["d3", "missing"]) == ("slew_limit", EITHER)
+    assert [*frame.loc["d5", ["faults of the set-up", "remedy of the set-up"]]] == ["backlash", MEND]
+    summary = lot.summary()
+    assert summary["missing"] == {EITHER: ["d3"]}
+    assert summary["faults"] == [{"device": "d5", "fault": "backlash", "remedy": MEND}]
