@@ -21,6 +21,10 @@ def dates_of(values: Sequence[Any]) -> list[datetime | None] | None:
     return dates if any(dates) else None
 
 
+def is_date(text: str) -> bool:
+    return dates_of([text]) is not None
+
+
 def _date(text: str) -> datetime:
     """Raises ValueError where the text is no date."""
     text = DAY_FIRST.sub(lambda match: f"{match[3]}-{match[2]:0>2}-{match[1]:0>2}", text.strip())

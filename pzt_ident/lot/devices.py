@@ -14,8 +14,8 @@ from pzt_ident.data.notation import counted
 from pzt_ident.errors import InputError, printable
 from pzt_ident.job.files import channel_files, record_files
 from pzt_ident.job.schema import Job
+from pzt_ident.lot.cells import Value
 
-Value = float | str | None
 HOW = "give folders ('lot/*/'), files ('lot/*.csv') or a table with a column `file` or `folder`"
 
 

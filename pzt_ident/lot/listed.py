@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import math
 import os
 import re
 import warnings
@@ -12,21 +11,18 @@ from dataclasses import dataclass, replace
 from io import StringIO
 from pathlib import Path
 
-from pzt_ident.data.formats._layout import COMMENTS, GAPS
+from pzt_ident.data.formats._layout import COMMENTS
 from pzt_ident.data.formats.text import decode
 from pzt_ident.errors import InputError, printable
 from pzt_ident.job.files import record_files
 from pzt_ident.job.schema import Job
-from pzt_ident.lot.devices import Device, Value, channels_beside, device_at, fault_of, names_of
+from pzt_ident.lot.cells import Value, odd_cells, values_of
+from pzt_ident.lot.devices import Device, channels_beside, device_at, fault_of, names_of
 
 SUFFIXES = (".csv", ".tsv", ".txt")
 NAMES = ("device", "name")
 PLACES = ("file", "folder", "path", "filename", "directory")
-FEW = 8  # times as many cells are numbers as those that may be a typing error
 BEGINNING = 65536  # bytes that hold the header of a list
-WORDS = {"none"}  # a gap among numbers, and a word among words
-NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?", re.IGNORECASE)
-IDENTIFIER = re.compile(r"[+-]?(0[0-9]+|[0-9]{16,})")
 SEPARATOR = re.compile(r'"?sep=([,;|:\t])"?\s*', re.IGNORECASE)  # as spreadsheets write it above the header
 
 
@@ -167,38 +163,7 @@ def _known(listing: Listing, places: Sequence[int]) -> list[Mapping[str, Value]]
     decimal = ".," if listing.delimiter != "," else "."
     columns = {name: values_of(cells[name], decimal) for name in shown}
     for name in sorted(shown):
-        for place in odd_cells(cells[name], decimal):
-            where = printable(f"{listing.path}:{listing.rows[place][0]}")
-            sentence = (
-                f"{where}: {printable(cells[name][place])!r} under {printable(name)!r} is no number, as the others are"
-            )
-            warnings.warn(f"{sentence}: the column is taken as words", stacklevel=2)
+        if odd := odd_cells(cells[name], decimal):
+            sentence = odd.sentence(name, [f"line {line}" for line, _ in listing.rows])
+            warnings.warn(printable(f"{listing.path}: {sentence}. {odd.remedy}"), stacklevel=2)
     return [{name: columns[name][row] for name in cells if name in shown} for row in range(len(listing.rows))]
-
-
-def values_of(cells: Sequence[str], decimal: str = ".") -> list[Value]:
-    """The cells of a column: numbers where all that are not missing are such, else words, as they are written. decimal:
-    the signs that part decimals. Numbers of 16 digits or with a leading zero are words: they count nothing."""
-    texts = [cell.strip() for cell in cells]
-    numbers = [None if text.lower() in GAPS else _number(text, decimal) for text in texts]
-    if any(number is not None and math.isfinite(number) for number in numbers) and math.nan not in numbers:
-        return list(numbers)
-    return [None if text.lower() in GAPS - WORDS else text for text in texts]
-
-
-def odd_cells(cells: Sequence[str], decimal: str = ".") -> list[int]:
-    """Which cells keep a column from being one of numbers, where these are few: a typing error."""
-    known = {
-        place: _number(cell.strip(), decimal) for place, cell in enumerate(cells) if cell.strip().lower() not in GAPS
-    }
-    odd = [place for place, number in known.items() if math.isnan(number)]
-    return odd if FEW * len(odd) <= len(known) else []
-
-
-def _number(text: str, decimal: str) -> float:
-    """The number that a cell holds; NaN where it holds none."""
-    plain = text.replace("\N{MINUS SIGN}", "-")
-    if "," in decimal:
-        plain = plain.replace(",", ".")
-    number = float(plain) if NUMBER.fullmatch(plain) and not IDENTIFIER.fullmatch(plain) else math.nan
-    return number if math.isfinite(number) else math.nan

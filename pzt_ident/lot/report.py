@@ -14,6 +14,7 @@ from urllib.parse import quote
 from pzt_ident.data.notation import number, percent, unit
 from pzt_ident.errors import InputError
 from pzt_ident.files import write_text
+from pzt_ident.lot.cells import odd_cells
 from pzt_ident.lot.devices import Device
 from pzt_ident.lot.figures import plates
 from pzt_ident.lot.identify import in_a_line
@@ -150,6 +151,7 @@ def page(lot: Lot, figures: Figures, served: Served | None = None, undrawn: Sequ
             header=header(lot),
             tables=tables_in(lot.folder),
             for_parquet=FOR_PARQUET,
+            taken_as_words=list(taken_as_words(lot)),
             lines=list(device_lines(lot)),
             page_of={row["device"]: page_of(lot, row["device"]) for row in lot.rows},
         )
@@ -186,6 +188,16 @@ def header(lot: Lot) -> list[str]:
     columns = dict.fromkeys(name for row in lot.rows for name in row["columns"])
     shown = [f"{quantity.name} [{unit(quantity.unit) or '1'}]" for quantity in lot.quantities]
     return ["device", *columns, "verdict", *(["effects"] if lot.statement["improve"] else []), *shown]
+
+
+def taken_as_words(lot: Lot) -> Iterator[str]:
+    """A sentence for each column of words of which most cells are numbers or dates: why."""
+    devices = [row["device"] for row in lot.rows]
+    for name in dict.fromkeys(name for row in lot.rows for name in row["columns"]):
+        values = [row["columns"].get(name) for row in lot.rows]
+        words = ["" if value is None else str(value) for value in values]
+        if any(isinstance(value, str) for value in values) and (odd := odd_cells(words, ".,") or odd_cells(words)):
+            yield f"{odd.sentence(name, devices)}."
 
 
 def shown_devices(lot: Lot) -> set[str]:

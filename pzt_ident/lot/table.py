@@ -13,8 +13,9 @@ from urllib.parse import quote
 from pzt_ident.data.units import factor, same_kind
 from pzt_ident.errors import DamagedError
 from pzt_ident.files import check_digest, damaged, read_sealed, replaced, write_sealed
+from pzt_ident.lot.cells import Value
 from pzt_ident.lot.dates import dates_of
-from pzt_ident.lot.devices import Device, Value
+from pzt_ident.lot.devices import Device
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -132,7 +133,7 @@ def frame_of(rows: Iterator[Row]) -> pd.DataFrame:
             column += [None] * (count - 1 - len(column))
             column.append(sys.intern(value) if isinstance(value, str) else value)
     keys = dict.fromkeys(key for kind in sorted(kinds, key=len, reverse=True) for key in kind)
-    cells = {key: _of_one_kind(columns[key] + [None] * (count - len(columns[key]))) for key in keys}
+    cells = {key: of_one_kind(columns[key] + [None] * (count - len(columns[key]))) for key in keys}
     return pd.DataFrame({heading: cells[key] for key, heading in _headings(list(keys)).items()})
 
 
@@ -152,11 +153,15 @@ def _headings(keys: Sequence[tuple[str, bool]]) -> dict[tuple[str, bool], str]:
     return headings
 
 
-def _of_one_kind(cells: list[Value]) -> list[Value]:
-    """The cells of a column, numbers as text where others are words: a column of a table has one kind."""
-    if not any(isinstance(cell, str) for cell in cells):
-        return cells
-    return [str(cell).removesuffix(".0") if isinstance(cell, int | float) else cell for cell in cells]
+def of_one_kind(cells: list[Value]) -> Any:
+    """The cells of a column of a table, which has one kind: numbers as text where others are words, whole numbers as
+    such where others are missing."""
+    import pandas as pd
+
+    known = [cell for cell in cells if cell is not None]
+    if any(isinstance(cell, str) for cell in known):
+        return [str(cell).removesuffix(".0") if isinstance(cell, int | float) else cell for cell in cells]
+    return pd.array(cells, "Int64") if known and all(isinstance(cell, int) for cell in known) else cells
 
 
 def line_of(row: Row, units: dict[str, str]) -> dict[str, Value]:

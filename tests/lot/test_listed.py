@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from lot.test_devices import ONE, TWO, here, job, touch
 from pzt_ident.errors import InputError
 from pzt_ident.lot.devices import devices_of
-from pzt_ident.lot.listed import is_table, odd_cells, values_of
+from pzt_ident.lot.listed import is_table
 
 __all__ = ["here"]
 LONG = 200_000  # characters, above the limit of a field of Python's csv
@@ -116,53 +116,23 @@ def test_a_list_that_leaves_open_what_is_meant_is_refused(here, header, said):
     assert caught.value.remedy
 
 
-@pytest.mark.parametrize(
-    ("cells", "values"),
-    [
-        (["23", "23.5", "-1e3", "+.5", "\u22124"], [23.0, 23.5, -1000.0, 0.5, -4.0]),
-        (["23", "NA", "", " n/a ", "none", "-"], [23.0, None, None, None, None, None]),
-        (["A", "NA", "", "none", "-"], ["A", None, None, "none", None]),
-        (["23", "23 C"], ["23", "23 C"]),
-        (["00012", "12345"], ["00012", "12345"]),
-        (["4001234567890123"], ["4001234567890123"]),
-        (["0.30000000000000004", "0", "023.5"], [0.30000000000000004, 0.0, 23.5]),
-        (["1_000", "٣", "inf", "1e999", "nan"], ["1_000", "٣", "inf", "1e999", None]),
-        (["23,5", "24"], ["23,5", "24"]),
-        (["", "NA"], [None, None]),
-    ],
-)
-def test_a_column_holds_numbers_or_words(cells, values):
-    assert values_of(cells) == values
-
-
-@pytest.mark.parametrize("cells", [["23,5", "24", "1.5e3", "-"], ["1,234"]])
-def test_decimals_may_have_a_comma_where_cells_have_none(cells):
-    assert values_of(cells, ".,") == [None if cell == "-" else float(cell.replace(",", ".")) for cell in cells]
-    assert values_of(["1.234,5"], ".,") == ["1.234,5"]
-
-
-@pytest.mark.parametrize(("odd", "told"), [("29O.1", [3]), ("1.000,5", [3]), ("", []), ("n/a", []), ("300", [])])
-def test_a_typing_error_among_numbers_is_told(odd, told):
-    cells = ["290", "291.5", "292", odd, *map(str, range(293, 300))]
-    assert odd_cells(cells) == told
-    assert odd_cells(["A7", "B8", *cells]) == []
-    assert odd_cells(["B7", "B8", "B9"]) == []
-
-
-@given(st.lists(st.floats(allow_nan=False, allow_infinity=False).map(repr), min_size=1))
-def test_numbers_are_kept_to_the_last_digit(cells):
-    assert values_of(cells) == [float(cell) for cell in cells]
-
-
-@given(st.lists(st.integers(0, 10**24).map(str), min_size=1))
-def test_no_digit_of_an_identifier_is_lost(cells):
-    values = values_of(cells)
-    assert [value if isinstance(value, str) else f"{value:.0f}" for value in values] == cells
-
-
 @pytest.mark.parametrize("heading", ["file", "Folder", "path", "filename", "directory"])
 def test_where_a_device_is_has_several_names(here, heading):
     touch(here / "lot/a/loops.csv")
     (here / "lot.csv").write_text(f"{heading};temperature [K];\nlot/a;23,5;\n")
     (device,) = devices_of(["lot.csv"], job(ONE, here))
     assert (device.fault, device.columns) == ("", {"temperature [K]": 23.5})
+
+
+def test_a_column_that_odd_cells_make_words_is_told_with_its_cells_and_a_remedy(here):
+    touch(*(here / f"{letter}.csv" for letter in "abcde"))
+    rows = ["a.csv,23,2026-03-02,12", "b.csv,21 C,3.2.2026,", "c.csv,24,2026-13-45,13", "d.csv,-,,007", "e.csv,25,NA,1"]
+    (here / "lot.csv").write_text("\n".join(["file,T,made,serial", *rows]))
+    with pytest.warns(UserWarning) as warned:
+        devices = devices_of(["lot.csv"], job(ONE, here))
+    assert [str(warning.message).partition(". ")[0] for warning in warned] == [
+        "lot.csv: '21 C' (line 3) under 'T' is no number, as most others are: the column is taken as words",
+        "lot.csv: '2026-13-45' (line 4) under 'made' is no date, as most others are: the column is taken as words",
+    ]
+    assert all("or leave the cells empty" in str(warning.message) for warning in warned)
+    assert devices[3].columns == {"T": None, "made": None, "serial": "007"}

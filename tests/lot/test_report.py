@@ -2,6 +2,7 @@
 
 import re
 import shutil
+from html import unescape
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -116,6 +117,18 @@ def test_of_many_devices_the_table_has_those_that_stand_out_and_the_first_of_the
     far = list(dict.fromkeys(finding.device for finding in lot.findings))
     shown = [line["device"] for line in report.device_lines(lot)]
     assert len(shown) == 4 and {*far[:4]} <= {*shown}
+
+
+def test_columns_that_were_taken_as_words_are_named_with_the_reason(identified, tmp_path):
+    out = shutil.copytree(identified[0], tmp_path / "out")
+    listed = read_sealed(out / "devices.json")
+    for place, device in enumerate(listed["devices"]):
+        device["columns"] |= {"bench": "4 B" if place == 2 else str(place), "serial": place or None}
+    write_sealed(out / "devices.json", listed)
+    text = unescape(write_fleet_report(out, place=Local(1)).read_text(encoding="utf-8"))
+    (said,) = re.findall("<p.*>(.*): the column is taken as words", text)
+    assert said == f"'4 B' ({listed['devices'][2]['device']}) under 'bench' is no number, as most others are"
+    assert "<td>1</td>" in text and "<td>1.000</td>" not in text
 
 
 def test_names_from_a_table_are_no_markup(identified, tmp_path):

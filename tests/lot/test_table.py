@@ -4,7 +4,6 @@ from collections import Counter
 from io import BytesIO
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
@@ -46,7 +45,12 @@ def row_of(device, state="done", columns=None):
 
 
 OWN = list(frame_of(iter([row_of("a")])).columns)
-VALUES = st.none() | st.floats(allow_nan=False, allow_infinity=False) | st.text("23 C", max_size=4)
+VALUES = (
+    st.none()
+    | st.integers(-(2**53), 2**53)
+    | st.floats(allow_nan=False, allow_infinity=False)
+    | st.text("23 C", max_size=4)
+)
 HEADINGS = st.sampled_from([*OWN, *(f"{name} (given)" for name in OWN), "batch", "temperature [K]"])
 ROWS = st.lists(
     st.tuples(st.sampled_from(["done", "broken", "not done"]), st.dictionaries(HEADINGS, VALUES)), max_size=6
@@ -61,8 +65,9 @@ ROWS = st.lists(
 def test_the_table_keeps_what_was_given_and_what_was_found(rows):
     rows = [row_of(f"d{place}", state, columns) for place, (state, columns) in enumerate(rows)]
     frame = frame_of(iter(rows))
+    plain = frame.astype(object).where(frame.notna(), None)
     for index, row in enumerate(rows):
-        line = frame.iloc[index].replace({np.nan: None}).to_dict()
+        line = plain.iloc[index].to_dict()
         found = line_of(row, {})
         assert {name: line[name] for name in found} == found
         cells = [str(value).removesuffix(".0") for name, value in line.items() if name not in found]
@@ -71,6 +76,14 @@ def test_the_table_keeps_what_was_given_and_what_was_found(rows):
     content = BytesIO()
     frame.to_parquet(content, engine="pyarrow")
     assert list(pd.read_parquet(content).columns) == list(frame.columns)
+
+
+def test_whole_numbers_are_written_as_such_where_a_cell_is_empty():
+    frame = frame_of(row_of(f"d{place}", columns={"serial": serial}) for place, serial in enumerate([12, None, 13]))
+    assert pd.read_csv(BytesIO(frame.to_csv().encode()), dtype=str)["serial"].fillna("").tolist() == ["12", "", "13"]
+    parquet = pd.read_parquet(BytesIO(with_dates(frame, {"serial"}).to_parquet(index=False)))
+    assert [None if pd.isna(cell) else cell for cell in parquet["serial"]] == [12, None, 13]
+    assert all(type(cell) is int for cell in parquet["serial"].dropna().tolist())
 
 
 def test_parquet_has_times_where_the_lot_has_dates():
