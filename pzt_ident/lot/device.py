@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -73,7 +74,8 @@ def identify_device(tell: Any, orders: Orders, given: Given) -> dict[str, bytes]
     Raises InputError where its data are wrong, RunError where no search came to anything.
     """
     start, job = time.process_time(), _job(orders, given)
-    with TemporaryDirectory(prefix="pzt-ident-") as scratch:
+    own = {name: given.files[file] for file, name in given.names().items()}
+    with named_as_given(own), TemporaryDirectory(prefix="pzt-ident-") as scratch:
         records, folder = read(job, orders, given, Path(scratch)), Path(scratch) / "device"
         result = identified(job, records, orders, folder)
         improvement = improved(job, records, orders, given, folder / "improved") if orders.improve else {}
@@ -115,18 +117,26 @@ def read(job: Job, orders: Orders, given: Given, scratch: Path) -> list[Record]:
         replace(source, name=source.name or Path(file.file).stem)
         for source, file in zip(here.records, stated.records, strict=True)
     ]
-    try:
+    with named_as_given({str(path): given.files[file] for file, path in paths.items()}):
         records = read_records(sources, here.channels.axes, here.channels.time, Path())
-    except InputError as error:
-        shown = [_shown(text, paths, given.files) for text in (error.message, error.where, error.remedy)]
-        raise InputError(shown[0], where=shown[1], remedy=shown[2]) from None
     return [replace(record, file=source.file) for record, source in zip(records, job.records, strict=True)]
 
 
-def _shown(text: str, paths: Mapping[str, Path], files: Mapping[str, Path]) -> str:
-    for file, path in paths.items():
-        text = text.replace(str(path), str(files[file]))
-    return text
+@contextmanager
+def named_as_given(files: Mapping[str, Path]) -> Iterator[None]:
+    """Errors name files as the user did. files: as the user named them, by how the errors do."""
+
+    def shown(text: str) -> str:
+        for name, path in files.items():
+            text = text.replace(name, str(path))
+        return text
+
+    try:
+        yield
+    except InputError as error:
+        raise InputError(shown(error.message), where=shown(error.where), remedy=shown(error.remedy)) from None
+    except RunError as error:
+        raise RunError(shown(str(error))) from None
 
 
 def identified(job: Job, records: list[Record], orders: Orders, folder: Path) -> dict[str, Any]:

@@ -232,7 +232,7 @@ def _apart(devices: Sequence[Device]) -> list[Device]:
     for device in devices:
         if other := next((other for other in by_name[device.name] if other is not device), None):
             remedy = "give each a name of its own; what they share belongs into a column such as `serial`"
-            fault = f"{device.where}: the device {device.name!r} is in {other.where}, too: {remedy}"
+            fault = f"the device {device.name!r} is in {other.where}, too: {remedy}"
             device = replace(device, name=f"{device.name} ({device.where})", fault=device.fault or fault)
         elif other := next((other for other in by_data[_data(device)] if other is not device), None):
             fault = f"{device.where}: names the same data as {other.where}: leave one of them out"
@@ -274,5 +274,5 @@ def _reject(patterns: Sequence[str], devices: Sequence[Device]) -> None:
     )
     if inside := next(parents, None):
         remedy = f"did you mean {f'{Path(inside)}/*/'!r}? {remedy.capitalize()}"
-    problem = f"no device can be identified. The first: {devices[0].fault}"
+    problem = f"no device can be identified. The first, {devices[0].name}: {devices[0].fault}"
     raise InputError(problem, where=" ".join(map(repr, patterns)), remedy=remedy)

@@ -9,7 +9,7 @@ import shutil
 import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from time import monotonic
 from typing import Any
@@ -164,7 +164,7 @@ class Identification:
     def tell_gone(self) -> None:
         """Name the devices of the fleet that are none any more."""
         try:
-            gone = [name for name in read_devices(self.folder) if name not in self.by_name]
+            gone = [device.name for device in read_devices(self.folder) if device.name not in self.by_name]
         except DamagedError:
             return
         if gone:
@@ -175,7 +175,7 @@ class Identification:
 
     def tasks(self, place: Place) -> Iterator[tuple[str, tuple[Any, ...]]]:
         """The devices that are not done, read one by one as there is room for them."""
-        for device in self.devices:
+        for index, device in enumerate(self.devices):
             home = folder_of(self.folder, device.name)
             try:
                 if device.fault:
@@ -183,7 +183,9 @@ class Identification:
                 contents = {file: read(path) for file, path in device.files.items()}
             except InputError as error:
                 if self.is_done(home):
-                    self.keep_old(f"{device.name}: {in_a_line(str(error))}; what was identified before is kept")
+                    kept = printable(f"{in_a_line(str(error))}; what was identified before is kept")
+                    self.devices[index] = replace(device, fault=kept)
+                    self.keep_old(f"{device.name}: {kept}")
                 else:
                     self.break_(device.name, str(error))
                 continue
@@ -208,7 +210,7 @@ class Identification:
         self.done += 1
         self.kept += 1
         if reason:
-            self.listen({"event": "stale", "said": printable(reason)})
+            self.listen({"event": "stale", "said": reason})
 
     def is_done(self, home: Path, data: str | None = None) -> bool:
         """Whether a device was identified as it is asked, on these data, by their hash, or on any; where its results

@@ -15,13 +15,12 @@ from pzt_ident.data.notation import number, percent, unit
 from pzt_ident.errors import InputError
 from pzt_ident.files import write_text
 from pzt_ident.lot.cells import odd_cells
-from pzt_ident.lot.devices import Device
 from pzt_ident.lot.figures import plates
 from pzt_ident.lot.identify import in_a_line
 from pzt_ident.lot.outcome import Lot, read_lot
 from pzt_ident.lot.sentences import far, findings, in_setup, lead, unfinished
 from pzt_ident.lot.statistics import Quantity
-from pzt_ident.lot.table import FOR_PARQUET, faults_in, folder_of, missing_in, tables_in, write_table
+from pzt_ident.lot.table import FOR_PARQUET, faults_in, folder_of, missing_in, read_devices, tables_in, write_table
 from pzt_ident.report.figures import Plate, write_plate
 from pzt_ident.report.inline import inline
 from pzt_ident.report.page import environment as page_environment
@@ -59,7 +58,7 @@ def write_fleet_report(folder: Path, *, place: Place = HERE, listen: Listen = no
     if not place.shares_disk:
         raise InputError("draws on this machine", where="fleet report", remedy="write --on local:N")
     lot = read_lot(folder)
-    write_table(folder, [Device(row["device"], {}, row["columns"]) for row in lot.rows])
+    write_table(folder, read_devices(folder))
     undrawn = draw_pages(lot, place, listen)
     for plate in plates(lot):
         write_plate(plate, COLUMN, ("svg", "pdf"), folder / "figures")

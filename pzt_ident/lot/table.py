@@ -61,15 +61,15 @@ def tables_in(folder: Path) -> list[str]:
 
 def write_devices(folder: Path, devices: Sequence[Device]) -> None:
     """Write `devices.json`: which devices there are, and what is known of them."""
-    listed = [{"device": device.name, "columns": dict(device.columns)} for device in devices]
+    listed = [{"device": device.name, "columns": dict(device.columns), "fault": device.fault} for device in devices]
     write_sealed(folder / "devices.json", {"devices": listed})
 
 
-def read_devices(folder: Path) -> dict[str, dict[str, Value]]:
-    """What is known of each device, by its name. Raises DamagedError where `devices.json` does not say."""
+def read_devices(folder: Path) -> list[Device]:
+    """The devices, less their files. Raises DamagedError where `devices.json` does not say."""
     devices = read_sealed(folder / "devices.json", "devices")["devices"]
     try:
-        return {device["device"]: dict(device["columns"]) for device in devices}
+        return [Device(device["device"], {}, dict(device["columns"]), device.get("fault", "")) for device in devices]
     except (KeyError, TypeError, ValueError):
         raise damaged(folder / "devices.json", "lists no devices") from None
 
@@ -82,7 +82,7 @@ def some(names: Sequence[str], most: int = 5) -> str:
 def write_table(folder: Path, devices: Sequence[Device]) -> None:
     """Write the devices, and the table as it is by now."""
     write_devices(folder, devices)
-    frame = frame_of(rows_of(folder, {device.name: device.columns for device in devices}))
+    frame = frame_of(rows_of(folder, devices))
     if has_parquet():
         known = {name for device in devices for name in device.columns}
         with replaced(folder / PARQUET) as path:
@@ -101,14 +101,16 @@ def with_dates(frame: pd.DataFrame, known: Collection[str]) -> pd.DataFrame:
     return frame.assign(**dates)  # type: ignore[arg-type]
 
 
-def rows_of(folder: Path, known: dict[str, Any]) -> Iterator[Row]:
-    """The row of each device with its columns; one that was not begun is `not done`."""
-    for name, columns in known.items():
+def rows_of(folder: Path, devices: Sequence[Device]) -> Iterator[Row]:
+    """The row of each device with its columns; one that was not begun is `not done`. The fault of one that was done
+    before is its reason."""
+    for device in devices:
         try:
-            row = read_row(folder_of(folder, name))
+            row = read_row(folder_of(folder, device.name))
         except DamagedError:
-            row = {"device": name, "state": "not done", "reason": ""}
-        yield row | {"columns": columns}
+            row = {"device": device.name, "state": "not done", "reason": ""}
+        reason = device.fault if row["state"] == "done" and device.fault else row["reason"]
+        yield row | {"columns": dict(device.columns), "reason": reason}
 
 
 GIVEN = " (given)"  # behind the heading of a user's column that the table has itself

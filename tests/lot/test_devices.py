@@ -266,7 +266,7 @@ def test_a_device_whose_cell_is_empty_has_the_name_of_its_path(here, heading):
             ONE,
             ["t.csv"],
             "device,file\nd,lot/a/loops.csv\nd,lot/b/loops.csv\n",
-            "t.csv:2: the device 'd' is in t.csv:3, too",
+            r"The first, d \(t.csv:2\): the device 'd' is in t.csv:3, too",
         ),
         (
             ONE,
@@ -276,7 +276,7 @@ def test_a_device_whose_cell_is_empty_has_the_name_of_its_path(here, heading):
         ),
         (ONE, ["t.csv"], "device,file\nd,\n", "t.csv:2: names no file"),
         (ONE, ["t.csv"], "device,file\nd,lot/a/loops.csv,7\n", "t.csv:2: has 3 cells, the header 2"),
-        (ONE, ["t.csv"], "device,file\nd,no.csv\n", "no device can be identified. The first: no.csv: no such"),
+        (ONE, ["t.csv"], "device,file\nd,no.csv\n", "no device can be identified. The first, d: no.csv: no such"),
     ],
 )
 def test_clumsy_use_is_told_with_a_remedy(here, text, patterns, table, sentence):

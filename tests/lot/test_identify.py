@@ -176,6 +176,8 @@ def test_what_was_identified_is_kept_where_the_data_are_gone_and_that_is_said(lo
     assert done_again(out, lambda: resume(out, place=Local(1), listen=events.append)) == set()
     assert differences(before, essence(out / "devices" / done[0])) == []
     said = {event["event"]: event["said"] for event in events if "said" in event}
+    reason = table(out).set_index("device")["reason"][done[0]]
+    assert said["stale"] == f"{done[0]}: {reason}" == f"{done[0]}: {read_lot(out).done[0]['reason']}"
     assert said["stale"].startswith(f"{done[0]}: ") and said["stale"].endswith("what was identified before is kept")
     assert said["kept"] == f"{len(done)} of 16 devices were done before and are as they were"
 
@@ -345,6 +347,22 @@ def test_a_broken_device_of_any_name_is_in_the_table(lot, tmp_path):
     frame = table(out).set_index("device")
     assert dict(frame.state) == {"good": "done", r"\udcff": "broken", r"\x1b[31m": "broken"}
     assert all("lot/" in reason and reason.isprintable() for reason in frame.reason.drop("good"))
+
+
+def test_a_fault_that_the_model_finds_in_the_data_names_the_file_as_given(lot, tmp_path, monkeypatch):
+    source = next(name for name, kind in kinds(lot).items() if kind == "plain")
+    for name in ("good", "still"):
+        shutil.copytree(lot / "lot" / source, tmp_path / "lot" / name)
+    for path in (tmp_path / "lot/still").glob("*.csv"):
+        lines = path.read_text().splitlines()
+        cells = [line.split(",") for line in lines[1:]]
+        path.write_text("\n".join([lines[0], *(",".join([row[0], "1", *row[2:]]) for row in cells)]))
+    monkeypatch.chdir(tmp_path)
+    job = (lot / "job.yaml").read_text()
+    Path("job.yaml").write_text(job.replace("  bouc_wen.gain: {bounds: [0.05, 0.2]}\n", ""))
+    out = fleet(load_job(Path("job.yaml")), ["lot/*/"], Path("out"), place=Local(1))
+    reason = table(out).set_index("device")["reason"]["still"]
+    assert "lot/still/loops.csv: the drive of axis x is constant" in reason and "../" not in reason
 
 
 def test_a_folder_with_something_else_is_not_written_into(lot, tmp_path):
