@@ -144,7 +144,7 @@ def _message(event: Event) -> str:
     """The sentence that is printed for an event; empty for most events."""
     if event["event"] == "finished":
         return "every run is finished: nothing is searched again"
-    if event["event"] in ("stair", "cluster", "damaged", "gone", "other", "stale", "kept", "table", "undrawn"):
+    if event["event"] in ("stair", "cluster", "damaged", "gone", "other", "stale", "kept", "table", "undrawn", "alike"):
         return str(event["said"])
     if event["event"] == "again":
         return f"{event['run']} is done again: {event['reason']}"

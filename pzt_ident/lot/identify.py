@@ -135,6 +135,7 @@ class Identification:
     listen: Listen
     by_name: dict[str, Device] = field(init=False)
     sha256: dict[str, str] = field(default_factory=dict)  # of the data of devices that are at work
+    first: dict[str, str] = field(default_factory=dict)  # device with data of this hash
     done: int = 0
     kept: int = 0
     broken: int = 0
@@ -190,6 +191,7 @@ class Identification:
                     self.break_(device.name, str(error))
                 continue
             self.sha256[device.name] = sha256_of(contents.values())
+            self.tell_alike(device.name)
             key = self.key(self.sha256[device.name])
             if self.is_done(home, self.sha256[device.name]):
                 del self.sha256[device.name]
@@ -204,6 +206,12 @@ class Identification:
                 None if place.shares_disk else contents,
             )
             yield device.name, (given,)
+
+    def tell_alike(self, name: str) -> None:
+        """Warn of a device whose files are those of one before it to the last byte."""
+        first = self.first.setdefault(self.sha256[name], name)
+        if first != name:
+            self.listen({"event": "alike", "said": f"{name} has the same data as {first}: is one of them a copy?"})
 
     def keep_old(self, reason: str = "") -> None:
         """Leave the results of a device as they are. reason: why its data were not looked at."""

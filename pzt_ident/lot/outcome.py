@@ -143,10 +143,11 @@ class Lot:
     @property
     def same_data(self) -> list[list[str]]:
         """Devices whose files are the same to the last byte."""
-        by_key: dict[str, list[str]] = {}
-        for row in self.done:
-            by_key.setdefault(row["key"], []).append(row["device"])
-        return [names for names in by_key.values() if len(names) > 1]
+        by_hash: dict[str, list[str]] = {}
+        for row in self.rows:
+            if row.get("sha256"):
+                by_hash.setdefault(row["sha256"], []).append(row["device"])
+        return [names for names in by_hash.values() if len(names) > 1]
 
     def summary(self) -> dict[str, Any]:
         return {
@@ -161,6 +162,7 @@ class Lot:
                 for row in self.done
                 for word, remedy in faults_in(row).items()
             ],
+            "same_data": self.same_data,
             "out_of_line": [{"device": finding.device, "reason": finding.sentence} for finding in self.findings],
         }
 

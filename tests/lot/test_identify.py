@@ -349,6 +349,20 @@ def test_a_broken_device_of_any_name_is_in_the_table(lot, tmp_path):
     assert all("lot/" in reason and reason.isprintable() for reason in frame.reason.drop("good"))
 
 
+def test_the_same_bytes_under_another_name_are_told(lot, tmp_path):
+    plain = [name for name, kind in kinds(lot).items() if kind == "plain"]
+    for name, source in ("a", plain[0]), ("b", plain[1]), ("copy", plain[0]):
+        shutil.copytree(lot / "lot" / source, tmp_path / "lot" / name)
+    events = []
+    job, out = load_job(lot / "job.yaml"), tmp_path / "out"
+    fleet(job, [f"{tmp_path}/lot/*/"], out, place=Local(1), listen=events.append)
+    said = [event["said"] for event in events if event["event"] == "alike"]
+    assert said == ["copy has the same data as a: is one of them a copy?"]
+    found = read_lot(out)
+    assert found.summary()["same_data"] == [["a", "copy"]]
+    assert "a and copy have the same data: is one of them a copy?" in page(found, {})
+
+
 def test_a_fault_that_the_model_finds_in_the_data_names_the_file_as_given(lot, tmp_path, monkeypatch):
     source = next(name for name, kind in kinds(lot).items() if kind == "plain")
     for name in ("good", "still"):

@@ -33,7 +33,7 @@ def test_effects_that_data_cannot_tell_apart_are_named_together(steps, missing):
 @pytest.fixture
 def lot(tmp_path):
     """Twenty devices, of which one may miss either of two effects, and one has a fault of its set-up."""
-    rows = [row_of(f"d{place}") | {"effects": [], "step_change": 0.0, "key": f"{place}"} for place in range(20)]
+    rows = [row_of(f"d{place}") | {"effects": [], "step_change": 0.0, "sha256": f"{place}"} for place in range(20)]
     rows[3] |= {"effects": ["slew_limit"], "missing": [EITHER], "rmse": {"identify": 9.0, "validate": None}}
     rows[5] |= {"verdict": "unexplained", "suspects": ["backlash", "friction"], "faults": {"backlash": MEND}}
     for place, row in enumerate(rows):
