@@ -15,6 +15,7 @@ from pzt_ident.errors import InputError
 
 LOCK = ".lock"
 HELD = (errno.EAGAIN, errno.EACCES, errno.EDEADLK)
+DENIED = (errno.EACCES, errno.EPERM, errno.EROFS)
 FAR = 2**30  # beyond the text of the file, which others read
 
 
@@ -22,9 +23,9 @@ FAR = 2**30  # beyond the text of the file, which others read
 def alone_in(folder: Path) -> Iterator[None]:
     """No other process that asks for it works in the folder meanwhile. The system frees it where this one is killed.
 
-    Raises InputError where another one does, and names it.
+    Raises InputError where another one does, and names it, or where the folder cannot be written into.
     """
-    with (folder / LOCK).open("a+", encoding="utf-8") as file:
+    with lock_of(folder) as file:
         if not taken(file):
             file.seek(0)
             raise occupied(folder, file.read().strip())
@@ -32,6 +33,17 @@ def alone_in(folder: Path) -> Iterator[None]:
         file.write(f"process {os.getpid()} on {platform.node()}\n")
         file.flush()
         yield
+
+
+def lock_of(folder: Path) -> IO[str]:
+    """The file that is locked. Raises InputError where the folder may not be written into."""
+    try:
+        return (folder / LOCK).open("a+", encoding="utf-8")
+    except OSError as error:
+        if error.errno not in DENIED:
+            raise
+        problem = f"cannot be written into: {(error.strerror or 'denied').lower()}"
+        raise InputError(problem, where=str(folder), remedy="give another folder with --out") from None
 
 
 def occupied(folder: Path, holder: str = "") -> InputError:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import platform
 import sys
@@ -42,12 +43,16 @@ def make_empty(folder: Path, text: str) -> None:
     with this text of a job."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
+        if not os.access(folder, os.W_OK):
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
         full = any(not _is_left(path, text) for path in folder.iterdir())
     except OSError as error:
         remedy = "give another folder with --out"
         raise InputError(error.strerror or str(error), where=str(folder), remedy=remedy) from None
     if full:
-        raise InputError("this folder is not empty", where=str(folder), remedy="give another --out, or resume it")
+        resumable = any((folder / name).is_file() for name in ("environment.json", "fleet.json"))
+        remedy = "give another folder with --out" + ", or resume it" * resumable
+        raise InputError("this folder is not empty", where=str(folder), remedy=remedy)
 
 
 def _is_left(path: Path, text: str) -> bool:

@@ -1,11 +1,15 @@
 """Two processes do not work in one folder."""
 
+import errno
+import os
+from pathlib import Path
+
 import pytest
 
 import measured
 from pzt_ident.errors import InputError
 from pzt_ident.job.schema import load_job
-from pzt_ident.run.alone import taken
+from pzt_ident.run.alone import LOCK, alone_in, taken
 from pzt_ident.run.elsewhere import begin_again
 from pzt_ident.run.events import event_log, nobody
 from pzt_ident.run.identify import resume, run
@@ -55,3 +59,14 @@ def test_a_log_is_free_when_its_run_is_over(tmp_path):
         with event_log(tmp_path, nobody) as tell:
             tell({"event": "done"})
     assert len((tmp_path / "events.jsonl").read_text().splitlines()) == 2
+
+
+@pytest.mark.parametrize("denied", [errno.EACCES, errno.EPERM, errno.EROFS])
+def test_a_folder_that_may_not_be_written_into_is_told_with_a_remedy(tmp_path, monkeypatch, denied):
+    def refuse(*arguments, **options):
+        raise OSError(denied, os.strerror(denied), str(tmp_path / LOCK))
+
+    monkeypatch.setattr(Path, "open", refuse)
+    with pytest.raises(InputError, match=f"{tmp_path}: cannot be written into") as caught, alone_in(tmp_path):
+        pass
+    assert "--out" in caught.value.remedy and LOCK not in str(caught.value)

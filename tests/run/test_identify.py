@@ -220,8 +220,23 @@ def test_bad_data_leave_nothing_behind(folder, tmp_path):
 
 
 def test_a_full_folder_is_not_written_into(folder, finished):
-    with pytest.raises(InputError, match="not empty"):
+    with pytest.raises(InputError, match="not empty") as caught:
         run(load_job(folder / "job.yaml"), finished[0])
+    assert "resume" in caught.value.remedy
+
+
+def test_a_folder_that_may_not_be_written_into_is_told_with_a_remedy(folder, tmp_path, monkeypatch):
+    monkeypatch.setattr("os.access", lambda path, mode: Path(path) != tmp_path)
+    with pytest.raises(InputError, match=f"{tmp_path}: Permission denied") as caught:
+        run(load_job(folder / "job.yaml"), tmp_path)
+    assert "--out" in caught.value.remedy
+
+
+def test_what_another_program_left_is_not_resumed(folder, tmp_path):
+    (tmp_path / "job.yaml").write_text("of another program")
+    with pytest.raises(InputError, match="not empty") as caught:
+        run(load_job(folder / "job.yaml"), tmp_path)
+    assert "resume" not in caught.value.remedy
 
 
 def test_resume_needs_a_run(tmp_path):
