@@ -79,7 +79,15 @@ def _one_line(error: Exception) -> str:
 
 def output_options(command: Command) -> Command:
     """--json and --quiet."""
-    command = click.option("--quiet", is_flag=True, help="Say nothing but errors.")(command)
+
+    def without_warnings(ctx: click.Context, parameter: click.Parameter, quiet: bool) -> bool:
+        if quiet:
+            ctx.with_resource(warnings.catch_warnings())
+            warnings.simplefilter("ignore")
+        return quiet
+
+    text = "Say nothing but errors."
+    command = click.option("--quiet", is_flag=True, callback=without_warnings, is_eager=True, help=text)(command)
     return click.option("--json", "as_json", is_flag=True, help="Write the answer to stdout as JSON.")(command)
 
 
