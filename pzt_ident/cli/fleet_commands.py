@@ -17,7 +17,14 @@ class Fleet(click.Group):
     """`fleet JOB PATTERN...` beside `fleet report DIR`: what is no command of it is a job."""
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> Any:
-        return super().resolve_command(ctx, args if args[0] in self.commands else ["JOB", *args])
+        from pzt_ident.errors import InputError, nearest
+
+        word = args[0]
+        meant = nearest(word, [name for name, command in self.commands.items() if not command.hidden])
+        is_word = word not in self.commands and not Path(word).suffix and not Path(word).exists()
+        if is_word and meant.startswith("did you mean"):
+            raise InputError("no such job and no such command", where=repr(word), remedy=meant)
+        return super().resolve_command(ctx, args if word in self.commands else ["JOB", *args])
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Both, the options of the first below it."""
@@ -74,12 +81,19 @@ def identify(
     from pzt_ident.job.schema import load_job
     from pzt_ident.lot.identify import fleet
 
+    if swapped := next((pattern for pattern in patterns if is_job(Path(pattern)) and not is_job(job)), None):
+        remedy = f"the job comes first: `pzt-ident fleet {swapped} PATTERN...`"
+        raise InputError("is no job file", where=str(job), remedy=remedy)
     if budget is not None and not improve:
         raise InputError("is the time of each diagnosis", where="--budget", remedy="add --improve, or leave it out")
     with listening(silent=as_json or quiet) as listen:
         loaded = load_job(job, plugins)
         folder = fleet(loaded, patterns, out, improve=improve, budget=budget, place=place, listen=listen)
     show_fleet(folder, as_json, quiet)
+
+
+def is_job(path: Path) -> bool:
+    return path.suffix.lower() in (".yaml", ".yml") and path.is_file()
 
 
 def resume_fleet(folder: Path, place: Place, plugins: bool, as_json: bool, quiet: bool) -> None:
@@ -100,10 +114,9 @@ def show_fleet(folder: Path, as_json: bool, quiet: bool) -> None:
 
     lot = read_lot(folder)
     facts = {"folder": str(folder), "table": str(folder / "devices.csv"), **lot.summary()}
-    text = "\n".join(
-        [*lot.sentences(), f"table: {folder / 'devices.csv'}", f"next: pzt-ident fleet report {quote(str(folder))}"]
-    )
-    answer(facts, lambda: click.echo(text), as_json, quiet)
+    lines = [*lot.sentences(), f"table: {folder / 'devices.csv'}"]
+    lines += [f"next: pzt-ident fleet report {quote(str(folder))}"] * bool(lot.done)
+    answer(facts, lambda: click.echo("\n".join(lines)), as_json, quiet)
     if not lot.done:
         raise RunError("no device could be identified")
 

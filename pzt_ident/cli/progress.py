@@ -18,6 +18,8 @@ from pzt_ident.errors import LostError
 from pzt_ident.run.interrupts import interrupts_heard
 
 SECONDS_BETWEEN_LINES = 5.0
+SENTENCES = {"stair", "cluster", "damaged", "gone", "other", "stale", "kept", "table", "undrawn", "alike", "untold"}
+"""Events that are printed as what they say."""
 
 Event = dict[str, Any]
 Row = Sequence[object]
@@ -144,7 +146,7 @@ def _message(event: Event) -> str:
     """The sentence that is printed for an event; empty for most events."""
     if event["event"] == "finished":
         return "every run is finished: nothing is searched again"
-    if event["event"] in ("stair", "cluster", "damaged", "gone", "other", "stale", "kept", "table", "undrawn", "alike"):
+    if event["event"] in SENTENCES:
         return str(event["said"])
     if event["event"] == "again":
         return f"{event['run']} is done again: {event['reason']}"

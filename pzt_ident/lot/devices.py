@@ -266,6 +266,9 @@ def _data(device: Device) -> tuple[Any, ...]:
 
 
 def _reject(patterns: Sequence[str], devices: Sequence[Device]) -> None:
+    if len(patterns) == 1 and os.path.isfile(patterns[0]) and not os.path.getsize(patterns[0]):
+        remedy = "write a header with a column `file` or `folder` into a list, and a row for each device"
+        raise InputError("the file is empty", where=patterns[0], remedy=remedy)
     if not devices:
         raise InputError("no device", where=" ".join(map(repr, patterns)), remedy=HOW)
     remedy = "in the folder of a device, files have the names that they have in the job"

@@ -120,8 +120,10 @@ def read_statement(folder: Path) -> dict[str, Any]:
         stated = read_sealed(folder / "fleet.json")
         return stated | {"patterns": list(stated["patterns"]), "improve": bool(stated["improve"])}
     except (DamagedError, KeyError, TypeError):
-        problem = "its fleet.json is damaged" if is_fleet(folder) else "holds no fleet"
-        raise InputError(problem, where=str(folder), remedy=NOT_A_FLEET) from None
+        if not is_fleet(folder):
+            raise InputError("holds no fleet", where=str(folder), remedy=NOT_A_FLEET) from None
+        remedy = f"give the command that made it again, with --out {folder}: what was identified stays"
+        raise InputError("its fleet.json is damaged", where=str(folder), remedy=remedy) from None
 
 
 @dataclass
@@ -136,6 +138,8 @@ class Identification:
     by_name: dict[str, Device] = field(init=False)
     sha256: dict[str, str] = field(default_factory=dict)  # of the data of devices that are at work
     first: dict[str, str] = field(default_factory=dict)  # device with data of this hash
+    reasons: dict[str, list[str]] = field(default_factory=dict)  # the devices that are broken for each
+    untold: list[str] = field(default_factory=list)  # devices that are broken for a reason that was told of another
     done: int = 0
     kept: int = 0
     broken: int = 0
@@ -155,6 +159,7 @@ class Identification:
             raise
         shutil.rmtree(self.folder / "devices" / ".new", ignore_errors=True)
         write_table(self.folder, self.devices)
+        self.tell_untold()
         if self.kept:
             sentence = f"{self.kept} of {len(self.devices)} devices were done before and are as they were"
             self.listen({"event": "kept", "said": sentence})
@@ -257,12 +262,39 @@ class Identification:
         """Write down why a device could not be identified."""
         reason = printable(in_a_line(reason))
         self.broken += 1
+        self.reasons.setdefault(self.without_paths(name, reason), []).append(name)
         home = folder_of(self.folder, name)
         shutil.rmtree(home, ignore_errors=True)
         row = {"device": name, "key": "", "sha256": self.sha256.pop(name, ""), "state": "broken", "reason": reason}
         write_sealed(home / "device.json", row)
         self.refresh_table()
-        self.tell({"device": name, "failed": reason})
+        if self.all_fail_alike:
+            self.untold.append(name)
+            self.tell({"device": name})
+        else:
+            self.tell({"device": name, "failed": reason})
+
+    def without_paths(self, name: str, reason: str) -> str:
+        """A reason as it would be of any other device."""
+        device = self.by_name[name]
+        for path in sorted({device.where, *map(str, device.files.values())} - {""}, key=len, reverse=True):
+            reason = reason.replace(printable(path), "")
+        return reason
+
+    @property
+    def all_fail_alike(self) -> bool:
+        """Whether several devices are broken and all for one reason, which may be the job's."""
+        return not self.done and len(self.reasons) == 1 and self.broken > 1
+
+    def tell_untold(self) -> None:
+        """Name the devices that are broken as the first one is."""
+        if not self.untold:
+            return
+        first = next(iter(self.reasons.values()))[0]
+        verb = "is" if len(self.untold) == 1 else "are"
+        where = "" if self.done else ": is it the job that is at fault?"
+        sentence = f"{some(self.untold)} {verb} broken for the same reason as {first}{where}"
+        self.listen({"event": "untold", "said": sentence})
 
     def refresh_table(self) -> None:
         """Write the table as it is by now, if it is due: a kill that nothing can be done after leaves it so."""

@@ -61,15 +61,23 @@ def test_report_of_a_fleet(out):
         (["fleet", "{lot}/job.yaml", "nothing/*/", "--out", "{lot}/x"], "matches nothing"),
         (["fleet", "{lot}/no.yaml", "{lot}/lot/*/"], "no such file"),
         (["fleet", "report", "{lot}"], "holds no fleet"),
+        (["fleet", "reprot", "{lot}"], "did you mean 'report'?"),
+        (
+            ["fleet", "{lot}/lot/*/", "{lot}/job.yaml"],
+            "the job comes first: `pzt-ident fleet {lot}/job.yaml PATTERN...`",
+        ),
+        (["fleet", "{lot}/lot", "{lot}/truth.json", "{lot}/job.yaml"], "the job comes first"),
+        (["fleet", "{lot}/job.yaml", "{lot}/empty.csv"], "{lot}/empty.csv: the file is empty"),
         (["fleet", "{lot}/job.yaml", "{lot}/lot/*/", "--budget", "9"], "--budget: is the time of each diagnosis"),
         (["fleet", "{lot}/job.yaml", "{lot}/lot/*/", "--on", "cloud"], "is no place to run at"),
         (["run", "{lot}/job.yaml", "--on", "local:1", "--workers", "1"], "write --on local:1 alone"),
     ],
 )
 def test_clumsy_use_ends_with_a_sentence(lot, words, sentence):
+    (lot / "empty.csv").touch()
     ended = call(*(word.format(lot=lot) for word in words))
     assert ended.exit_code == 2
-    assert sentence in ended.stderr
+    assert sentence.format(lot=lot) in ended.stderr
     assert "Traceback" not in ended.output
 
 
@@ -80,8 +88,38 @@ def test_where_every_device_is_broken_the_command_fails(lot, tmp_path):
         (home / name).write_text("")
     ended = call("fleet", lot / "job.yaml", f"{tmp_path}/lot/*/", "--out", tmp_path / "out")
     assert ended.exit_code == 1
-    assert "no device could be identified" in ended.stderr
+    assert "no device could be identified" in ended.stderr and "next:" not in ended.output
     assert (tmp_path / "out" / "devices.csv").exists()
+
+
+def test_a_fault_that_all_devices_have_is_told_once(lot, tmp_path):
+    job = tmp_path / "job.yaml"
+    job.write_text((lot / "job.yaml").read_text().replace("x [um]", "x [furlong]"))
+    for name in "abcd":
+        shutil.copytree(next((lot / "lot").glob("d*1")), tmp_path / "lot" / name)
+    ended = call("fleet", job, f"{tmp_path}/lot/*/", "--out", tmp_path / "out", "--on", "local:1")
+    assert ended.exit_code == 1
+    assert ended.stderr.count("has no column 'x [furlong]'") == 1
+    assert "b, c, d are broken for the same reason as a: is it the job that is at fault?" in ended.stderr
+
+
+@pytest.mark.parametrize("words", [["fleet", "report"], ["resume"]])
+def test_a_damaged_fleet_is_made_again_by_its_command(lot, out, tmp_path, words):
+    copy = shutil.copytree(out, tmp_path / "out")
+    (copy / "fleet.json").write_text("{")
+    ended = call(*words, copy)
+    assert (ended.exit_code, f"give the command that made it again, with --out {copy}" in ended.stderr) == (2, True)
+    ended = call("fleet", lot / "job.yaml", f"{lot}/lot/*/", "--out", copy, "--on", "local:1")
+    assert ended.exit_code == 0 and "2 of 3 devices were done before and are as they were" in ended.stderr
+
+
+def test_quiet_says_nothing_but_errors(lot, tmp_path, recwarn):
+    shutil.copytree(next((lot / "lot").glob("d*1")), tmp_path / "lot/a")
+    (tmp_path / "lot/link").symlink_to("a")
+    words = ["fleet", lot / "job.yaml", f"{tmp_path}/lot/*/", "--out", tmp_path / "out", "--on", "local:1"]
+    ended = call(*words, "--quiet")
+    assert (ended.exit_code, ended.output, len(recwarn)) == (0, "", 0)
+    assert call(*words).output and "it is one device" in str(recwarn.pop().message)
 
 
 def test_help_names_both_uses():
