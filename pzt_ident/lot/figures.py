@@ -46,8 +46,9 @@ def plates(lot: Lot) -> Iterator[Plate]:
         yield Plate(
             "columns",
             "columns",
-            "What clearly depends on a column of the table: the lines are medians of slopes (Theil-Sen), the strokes "
-            "medians of groups. Devices out of line are marked.",
+            "What depends on a column of the table, strongly or weakly, where chance gives any such trend or "
+            "difference in one lot of twenty: the lines are medians of slopes (Theil-Sen), the strokes medians of "
+            "groups. Devices out of line are marked.",
             partial(_height, count=len(pairs)),
             partial(_draw_columns, lot=lot, pairs=pairs),
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from pzt_ident.data.notation import counted, listed, number, percent, spelled, unit
 from pzt_ident.lot.outcome import Lot
@@ -62,9 +62,11 @@ def findings(lot: Lot) -> Iterator[str]:
     for fault, names in lot.faults.items():
         share = _share(len(names), len(lot.done))
         yield f"A fault of the set-up accounts for the misfit of {share} ({some(names)}): {fault}"
-    for trend in _distinct(lot.trends):
-        quantity = next(quantity for quantity in lot.quantities if quantity.name == trend.quantity)
-        yield _trend(trend, quantity)
+    for quantity in lot.quantities:
+        if known := [
+            _trend(trend, quantity) for trend in lot.trends if trend.clear and trend.quantity == quantity.name
+        ]:
+            yield f"{quantity.name} {listed(known)}."
     for difference in lot.group_differences:
         if difference.clear:
             quantity = next(quantity for quantity in lot.quantities if quantity.name == difference.quantity)
@@ -90,8 +92,8 @@ def _trend(trend: Trend, quantity: Quantity) -> str:
     sign = "grows" if trend.slope > 0 else "falls"
     column, _, of = trend.column.removesuffix("]").partition(" [")
     per = {"days": "day"}.get(of, unit(of)) or "unit"
-    change = f", by {number(abs(trend.slope / quantity.median) * 100, 2)}\u00a0% per {per}" if quantity.median else ""
-    return f"{trend.quantity} {sign} with {column}{change}."
+    change = f" by {number(abs(trend.slope / quantity.median) * 100, 2)}\u00a0% per {per}" if quantity.median else ""
+    return f"{sign} with {column}{change} (rank correlation {number(trend.correlation, 2)})"
 
 
 def groups_of(difference: Difference, shown: str) -> str:
@@ -103,15 +105,6 @@ def groups_of(difference: Difference, shown: str) -> str:
     where = "above" if furthest > usual else "below"
     far = f"{percent(abs(furthest / usual - 1))} {where}" if usual else where
     return f"{difference.furthest} has {f'{number(furthest)} {shown}'.rstrip()}, {far} the median of all"
-
-
-def _distinct(trends: Iterable[Trend]) -> list[Trend]:
-    """The clear trends, of each quantity the clearest."""
-    first: dict[str, Trend] = {}
-    for trend in trends:
-        if trend.clear:
-            first.setdefault(trend.quantity, trend)
-    return list(first.values())
 
 
 def far(lot: Lot) -> list[tuple[str, str, str]]:

@@ -24,7 +24,7 @@ CHANCE = 0.05  # that anything is found in a lot where nothing is: devices out o
 WORTH = 0.37  # of a normal deviate is one in a median absolute deviation, as it is in a standard deviation
 FEWEST = 8  # devices that tell what is usual
 WORSE = 1.5  # times the usual error: less is of no consequence
-CLEAR = 0.5  # correlation of ranks from which a trend is followed, or spreads from which groups differ
+STRONG = 0.5  # correlation of ranks from which devices are judged beside a trend
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,8 +82,13 @@ class Trend:
 
     @property
     def clear(self) -> bool:
-        """Whether chance would hardly give it, and it matters."""
-        return self.chance < CHANCE and abs(self.correlation) > CLEAR
+        """Whether chance would hardly give it, be it weak."""
+        return self.chance < CHANCE
+
+    @property
+    def strong(self) -> bool:
+        """Whether devices are judged beside it."""
+        return self.clear and abs(self.correlation) > STRONG
 
 
 @dataclass(frozen=True)
@@ -101,8 +106,8 @@ class Difference:
 
     @property
     def clear(self) -> bool:
-        """Whether chance would hardly give it, and it matters beside the spread of single devices."""
-        return self.chance < CHANCE and self.distance > CLEAR
+        """Whether chance would hardly give it, be it small."""
+        return self.chance < CHANCE
 
 
 @dataclass(frozen=True)
@@ -211,8 +216,8 @@ def out_of_line(
     known: Sequence[Trend],
     columns: Mapping[str, Sequence[Any]] | None = None,
 ) -> list[Finding]:
-    """Devices further from the median than chance takes one of so many, the furthest first. Where a quantity clearly
-    depends on a column, the median is that of devices with the same value in it."""
+    """Devices further from the median than chance takes one of so many, the furthest first. Where a quantity
+    depends strongly on a column, the median is that of devices with the same value in it."""
     findings, judged = [], [quantity for quantity in quantities if quantity.usable.sum() >= FEWEST]
     for quantity in judged:
         usual, size, beside = _usual(quantity, known, numeric(columns or {}))
@@ -240,8 +245,8 @@ def _usual(quantity: Quantity, known: Sequence[Trend], columns: Mapping[str, Arr
     """What is usual for each device, its spread, and the column that it depends on: of a device of which the column
     says nothing it is that of all."""
     usual, beside = np.full(quantity.values.size, quantity.median), np.zeros(quantity.values.size, bool)
-    clear = (trend for trend in known if trend.quantity == quantity.name and trend.clear and trend.column in columns)
-    if trend := next(clear, None):
+    strong = (trend for trend in known if trend.quantity == quantity.name and trend.strong and trend.column in columns)
+    if trend := next(strong, None):
         line = trend.at(columns[trend.column])
         beside = np.isfinite(line) & ((line > 0) | (not quantity.one_sided))
         usual[beside] = line[beside]

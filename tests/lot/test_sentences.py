@@ -88,9 +88,9 @@ def test_what_is_not_determined_counts_the_devices_that_have_it():
 @pytest.mark.parametrize(
     ("column", "said"),
     [
-        ("temperature [K]", "gain grows with temperature, by 2.0\u00a0% per K."),
-        ("c0", "gain grows with c0, by 2.0\u00a0% per unit."),
-        ("date [days]", "gain grows with date, by 2.0\u00a0% per day."),
+        ("temperature [K]", "gain grows with temperature by 2.0\u00a0% per K (rank correlation 0.90)."),
+        ("c0", "gain grows with c0 by 2.0\u00a0% per unit (rank correlation 0.90)."),
+        ("date [days]", "gain grows with date by 2.0\u00a0% per day (rank correlation 0.90)."),
     ],
 )
 def test_a_trend_is_said_by_the_heading_of_its_column(column, said):
@@ -98,3 +98,14 @@ def test_a_trend_is_said_by_the_heading_of_its_column(column, said):
     assert [*findings(made_lot(given=5, quantities=[gain], trends=[Trend("gain", column, 0.01, 0.5, 0.9, 0.0)]))] == [
         said
     ]
+
+
+def test_each_clear_trend_is_said_however_weak_and_no_other():
+    gain = quantity("gain", [0.5] * 5, [1] * 5)
+    known = [Trend("gain", "c0", 0.01, 0.5, 0.9, 0.0), Trend("gain", "c1", -0.005, 0.5, -0.2, 0.04)]
+    known += [Trend("gain", "c2", 0.01, 0.5, 0.9, 0.06)]
+    (said,) = findings(made_lot(given=5, quantities=[gain], trends=known))
+    assert said == (
+        "gain grows with c0 by 2.0\u00a0% per unit (rank correlation 0.90) and falls with c1 by 1.0\u00a0% per unit "
+        "(rank correlation \u22120.20)."
+    )

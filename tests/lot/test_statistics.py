@@ -126,6 +126,17 @@ def test_a_trend_is_found_with_its_slope_and_devices_are_judged_beside_it():
     assert "usual at its temperature 0.96" in finding.sentence
 
 
+def test_a_trend_and_a_difference_that_are_certain_are_found_however_weak():
+    rng = np.random.default_rng(3)
+    x, batch = rng.standard_normal(N), rng.choice(["A", "B"], N)
+    gain = quantity(1 + 0.01 * (0.35 * x + 0.6 * (batch == "B") + rng.standard_normal(N)))
+    columns = {"x": x.tolist(), "batch": batch.tolist()}
+    (trend,), (difference,) = trends([gain], columns), differences([gain], columns, N)
+    assert trend.clear and 0.2 < trend.correlation < 0.45 and not trend.strong
+    assert difference.clear and difference.distance < 0.5
+    assert out_of_line(NAMES, [gain], [trend], columns) == out_of_line(NAMES, [gain], [], {})
+
+
 def test_chance_is_no_trend_and_no_difference():
     """Of 200 columns by chance."""
     gain, rng = quantity(NORMAL), np.random.default_rng(2)
