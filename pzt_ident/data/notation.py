@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 MISSING = "–"
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -21,6 +21,22 @@ def number(value: float | None, digits: int = 4) -> str:
     if -4 <= power < 5:
         return _fixed(value, digits - 1 - power)
     return f"{_fixed(value / 10.0**power, digits - 1)} × {power_of_ten(power)}"
+
+
+def alike(values: Sequence[float], digits: int = 4) -> list[str]:
+    """Numbers that are compared, all with the power of ten of the largest or all without: 0.9593 × 10⁵, 1.505 × 10⁵.
+    Those of very different size as `number` writes each."""
+    powers = {value: _power(value, digits) for value in values if value and math.isfinite(value)}
+    highest, lowest = max(powers.values(), default=0), min(powers.values(), default=0)
+    if highest - lowest > 3:
+        return [number(value, digits) for value in values]
+    power = 0 if -4 <= highest < 5 else highest
+    times = f" × {power_of_ten(power)}" if power else ""
+
+    def written(value: float) -> str:
+        return f"{_fixed(value / 10.0**power, digits - 1 - powers[value] + power)}{times}"
+
+    return [written(value) if value in powers else number(value, digits) for value in values]
 
 
 def short(value: float | None, digits: int = 4) -> str:

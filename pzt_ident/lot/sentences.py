@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pzt_ident.data.notation import counted, listed, number, percent, spelled, unit
+from pzt_ident.data.notation import alike, counted, listed, number, percent, spelled, unit
 from pzt_ident.lot.outcome import Lot
 from pzt_ident.lot.statistics import Difference, Quantity, Trend
 from pzt_ident.lot.table import Row, faults_in, missing_in, some
@@ -98,7 +98,8 @@ def _trend(trend: Trend, quantity: Quantity) -> str:
 
 def groups_of(difference: Difference, shown: str) -> str:
     """The medians of the groups; of many groups that which stands out."""
-    medians = [f"{word} {number(value)}" for word, value in difference.medians.items()]
+    numbers = alike([*difference.medians.values()])
+    medians = [f"{word} {text}" for word, text in zip(difference.medians, numbers, strict=True)]
     if len(medians) <= MOST_GROUPS:
         return f"{', '.join(medians)} {shown}".rstrip()
     furthest, usual = difference.medians[difference.furthest], difference.usual

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pzt_ident.data.notation import number
+from pzt_ident.data.notation import alike, number, unit
 from pzt_ident.data.notation import quantity as in_words
 from pzt_ident.lot.dates import dates_of
 
@@ -262,7 +262,5 @@ def sentence_of(quantity: Quantity, value: float, usual: float, distance: float,
         return f"{quantity.name} {in_words(value, quantity.unit)}, {number(value / usual, 2)} times the usual"
     where = "above" if distance > 0 else "below"
     at = f" at its {beside.partition(' [')[0]}" if beside else ""
-    return (
-        f"{quantity.name} {in_words(value, quantity.unit)}, usual{at} {in_words(usual, quantity.unit)}: "
-        f"{number(abs(distance), 2)} spreads {where}"
-    )
+    shown, expected = (f"{text}\u00a0{unit(quantity.unit)}".rstrip() for text in alike([value, usual]))
+    return f"{quantity.name} {shown}, usual{at} {expected}: {number(abs(distance), 2)} spreads {where}"

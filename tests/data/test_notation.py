@@ -100,6 +100,34 @@ def test_quantity_does_not_break():
     assert numbers.quantity(2.0, "1", 2) == "2.0"
 
 
+@pytest.mark.parametrize(
+    ("values", "texts"),
+    [
+        ([95930.0, 150500.0], ["0.9593 × 10⁵", "1.505 × 10⁵"]),
+        ([9.923e-5, 0.09991], ["0.00009923", "0.09991"]),
+        ([206.0, 25.29], ["206.0", "25.29"]),
+        ([4.971e-6, 0.0304], ["4.971 × 10⁻⁶", "0.03040"]),
+        ([2e5, 0.0, math.nan], ["2.000 × 10⁵", "0", "–"]),
+        ([], []),
+    ],
+)
+def test_numbers_that_are_compared_are_written_alike(values, texts):
+    assert numbers.alike(values) == texts
+
+
+@given(st.floats(1e-12, 1e12), st.floats(1e-3, 1e3), st.sampled_from([-1, 1]))
+def test_numbers_of_one_size_have_one_power_of_ten_and_four_digits(value, ratio, sign):
+    texts = numbers.alike([value, sign * value * ratio])
+    assert [read(text) for text in texts] == pytest.approx([value, sign * value * ratio], rel=0.51e-3)
+    powers = {text.partition(" × ")[2] for text in texts}
+    assert len(powers) == 1 or not 1.1e-3 < ratio < 0.9e3
+
+
+@pytest.mark.parametrize(("count", "text"), [(0, "0 devices"), (1, "1 device"), (2, "2 devices")])
+def test_things_are_counted(count, text):
+    assert numbers.counted(count, "device") == text
+
+
 def test_counts_and_shares():
     assert numbers.count(17500) == "17\u202f500"
     assert numbers.count(None) == numbers.percent(None) == "–"
