@@ -24,7 +24,7 @@ from pzt_ident.report.sentences import findings, headline, next_step, verdict
 from pzt_ident.report.spectra import printed_spectra
 from pzt_ident.report.tables import Table, make_tables, write_tables
 from pzt_ident.report.traces import packed
-from pzt_ident.report.words import COLUMNS, atlas_beside, linked, named, place_of, without_links
+from pzt_ident.report.words import COLUMNS, atlas_beside, coded, linked, named, place_of, without_links
 from pzt_ident.run.events import step_name
 from pzt_ident.run.results import Results, read_folder
 
@@ -170,7 +170,7 @@ def environment() -> Environment:
         lstrip_blocks=True,
     )
     env.globals.update(zip=zip, anchor=anchor, linked_columns=COLUMNS)
-    env.filters.update(linked=linked, without_links=without_links, listed=listed)
+    env.filters.update(linked=linked, coded=coded, without_links=without_links, listed=listed)
     env.filters.update(quantity=numbers.quantity, count=numbers.count, number=numbers.number)
     env.filters.update(percent=numbers.percent, spelled=numbers.spelled)
     return env

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 COLUMNS = ("effect", "indistinguishable from", "parameter", "step", "supported by the data", "effects added")
 """Headings of the columns of tables whose words are linked."""
+CODE = re.compile("`([^`]+)`")
 NAME = re.compile(r"[A-Za-z]\w*(?:\.\w+)*")  # a word, or one with its form, its parameter or its axis
 
 
@@ -43,7 +44,16 @@ def linked(text: str, words: Collection[Word]) -> Markup:
         return f'<a href="#{anchor(word)}">{match[0]}</a>' if word else match[0]
 
     parts = re.split(f"({NAME.pattern})", text)
-    return Markup("".join(NAME.sub(link, part) if place % 2 else escape(part) for place, part in enumerate(parts)))
+    return coded(
+        Markup("".join(NAME.sub(link, part) if place % 2 else escape(part) for place, part in enumerate(parts)))
+    )
+
+
+def coded(text: str) -> Markup:
+    """A text, or one with markup, in which what stands between backticks is code."""
+    from markupsafe import Markup, escape
+
+    return Markup(CODE.sub(r"<code>\1</code>", str(escape(text))))
 
 
 def place_of(text: str, words: Collection[Word]) -> str:

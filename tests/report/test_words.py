@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from pzt_ident.report.page import write_report
-from pzt_ident.report.words import linked, named, place_of, without_links
+from pzt_ident.report.words import coded, linked, named, place_of, without_links
 from run_folders import make_run
 
 
@@ -35,6 +35,13 @@ def test_blocks_and_effects_are_named_in_sentences_and_tables():
 def test_a_word_is_a_link_and_all_else_is_text(text, html):
     words = named(["creep and lumped"], {})
     assert linked(text, words) == html
+
+
+def test_what_stands_between_backticks_is_code():
+    assert linked("give `<rows>`, or `a` and `creep`", named(["creep"], {})) == (
+        'give <code>&lt;rows&gt;</code>, or <code>a</code> and <code><a href="#word-creep">creep</a></code>'
+    )
+    assert coded("leave it out with `rows`; <b>") == "leave it out with <code>rows</code>; &lt;b&gt;"
 
 
 def test_links_to_other_sections_of_the_atlas_are_left_out():
