@@ -120,6 +120,14 @@ def _edges(quantity: Quantity) -> np.ndarray:
     return np.histogram_bin_edges(values, count)
 
 
+def _ticks(values: np.ndarray) -> int:
+    """How many ticks an axis below these values has room for: the closer the values, the longer their labels."""
+    size, span = np.max(np.abs(values)), np.ptp(values)
+    digits = math.log10(size / span) if span > 0 else 0.0
+    room = 5 if digits < 1 else 3 if digits < 4 else 1
+    return max(room - (1e4 <= size < 1e5), 1)
+
+
 def _draw_spreads(figure: Figure, lot: Lot, shown: Sequence[Quantity]) -> None:
     parts = bars(lot, shown)
     for place, (axes, quantity) in enumerate(zip(_grid(figure, len(shown)), shown, strict=True)):
@@ -136,7 +144,7 @@ def _draw_spreads(figure: Figure, lot: Lot, shown: Sequence[Quantity]) -> None:
             if (name := f"bar-{place}-{bar}") in parts:
                 axes.axvspan(left, right, facecolor="none", edgecolor="none", zorder=5).set_gid(name)
         axes.set_ylabel("devices")
-        axes.locator_params(axis="x", nbins=5)
+        axes.locator_params(axis="x", nbins=_ticks(values))
         axes.locator_params(axis="y", nbins=5, integer=True)
         if _is_wide(quantity):
             axes.set_xscale("log")
@@ -176,7 +184,7 @@ def _draw_trend(axes: Axes, lot: Lot, quantity: Quantity, trend: Trend) -> None:
     ends = np.array([x[known].min(), x[known].max()])
     axes.plot(ends, trend.at(ends), color=QUIET, linewidth=0.8)
     axes.margins(x=0.05)
-    axes.locator_params(axis="x", nbins=5)
+    axes.locator_params(axis="x", nbins=_ticks(x[known]))
 
 
 def _draw_groups(axes: Axes, lot: Lot, quantity: Quantity, members: Mapping[str, Any]) -> None:

@@ -201,7 +201,9 @@ def label(axis: Axis, name: str, raw_unit: str, values: Sequence[float] | NDArra
     largest = float(np.nanmax(np.abs(values), initial=0.0))
     power = 3 * math.floor(math.log10(largest) / 3) if 0 < largest < 1e-3 or 1e5 <= largest < math.inf else 0
     if power:
-        axis.set_major_formatter(FuncFormatter(lambda value, _: short(value / 10.0**power, 6)))
+        closest = float(np.nanmax(values) - np.nanmin(values)) / largest
+        digits = 6 if closest > 1e-3 else 8 - math.floor(math.log10(closest or 1.0))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: short(value / 10.0**power, digits)))
     parts = [power_of_ten(power)] * bool(power) + [unit(raw_unit)] * bool(unit(raw_unit)) or [raw_unit]
     axis.set_label_text(f"{name} [{' '.join(parts)}]".removesuffix(" []"))
 
