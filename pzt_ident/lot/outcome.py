@@ -49,8 +49,11 @@ class Lot:
     @cached_property
     def quantities(self) -> list[Quantity]:
         """What is compared between devices: the parameters, and what the model leaves; of the improved model where
-        there is one."""
-        names = list(dict.fromkeys(name for row in self.done for name in parameters_of(row)))
+        there is one. First those of the model as given, then those of effects, of the most devices first."""
+        given = dict.fromkeys(name for row in self.done for name in row["parameters"])
+        count = Counter(name for row in self.done for name in parameters_of(row))
+        added = [name for name, _ in count.most_common() if name not in given]
+        names = [*(name for name in given if name in count), *added]
         return [*(self._parameter(name) for name in names), *self._errors()]
 
     def _parameter(self, name: str) -> Quantity:

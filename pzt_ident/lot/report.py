@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import quote
 
-from pzt_ident.data.notation import number, percent, unit
+from pzt_ident.data.notation import alike, number, percent, unit
 from pzt_ident.errors import InputError
 from pzt_ident.files import write_text
 from pzt_ident.lot.cells import odd_cells
@@ -176,17 +176,23 @@ def quantity_line(lot: Lot, quantity: Quantity) -> list[str]:
     """Name, unit, median, spread, its share of the median, extremes, error of a single device, and of how many."""
     values = quantity.values[quantity.usable]
     relative = percent(quantity.spread / abs(quantity.median), 1) if quantity.usable.any() and quantity.median else "–"
-    ends = [number(values.min()), number(values.max())] if values.size else ["–", "–"]
+    median, *ends = alike([quantity.median, values.min(), values.max()]) if values.size else ["–", "–", "–"]
     error = number(quantity.own_error, 2) if quantity.own_error else "–"
-    cells = [number(quantity.median), number(quantity.spread, 2), relative, *ends, error]
+    cells = [median, number(quantity.spread, 2), relative, *ends, error]
     return [quantity.name, unit(quantity.unit) or "1", *cells, f"{values.size} of {quantity.present.sum()}"]
 
 
-def header(lot: Lot) -> list[str]:
-    """The headings of the table of devices."""
-    columns = dict.fromkeys(name for row in lot.rows for name in row["columns"])
-    shown = [f"{quantity.name} [{unit(quantity.unit) or '1'}]" for quantity in lot.quantities]
-    return ["device", *columns, "verdict", *(["effects"] if lot.statement["improve"] else []), *shown]
+def header(lot: Lot) -> list[tuple[str, bool]]:
+    """The headings of the table of devices, and which are above words."""
+    words = ["verdict", *(["effects"] if lot.statement["improve"] else [])]
+    shown = [(f"{quantity.name} [{unit(quantity.unit) or '1'}]", False) for quantity in lot.quantities]
+    return [("device", True), *given_columns(lot).items(), *((word, True) for word in words), *shown]
+
+
+def given_columns(lot: Lot) -> dict[str, bool]:
+    """The columns that are known of the devices, and which are of words."""
+    columns = dict.fromkeys((name for row in lot.rows for name in row["columns"]), False)
+    return {name: any(isinstance(row["columns"].get(name), str) for row in lot.rows) for name in columns}
 
 
 def taken_as_words(lot: Lot) -> Iterator[str]:
@@ -208,7 +214,7 @@ def shown_devices(lot: Lot) -> set[str]:
 
 def device_lines(lot: Lot) -> Iterator[dict[str, Any]]:
     """A line a device: its cells, and which of them are out of line."""
-    columns = dict.fromkeys(name for row in lot.rows for name in row["columns"])
+    columns = given_columns(lot)
     outside = {(finding.device, finding.quantity) for finding in lot.findings}
     shown = shown_devices(lot)
     place = {row["device"]: index for index, row in enumerate(lot.done)}
@@ -227,7 +233,7 @@ def device_lines(lot: Lot) -> Iterator[dict[str, Any]]:
             )
             for quantity in lot.quantities
         ]
-        known = [_cell(row["columns"].get(column)) for column in columns]
+        known = [(_cell(row["columns"].get(column)), is_word) for column, is_word in columns.items()]
         improved = page_of(lot, name, "improved")
         yield {"device": name, "known": known, "words": words, "values": values, "improved": improved}
 

@@ -128,3 +128,16 @@ def test_a_device_opens_like_a_run_and_leads_back(lot):
     expect(lot.locator(".parameter input[type=range]").first).to_be_enabled()
     lot.click("#lot")
     expect(lot.locator("#table-devices tbody tr")).to_have_count(DEVICES - 1)
+
+
+def test_a_long_cell_leaves_room_for_the_reason_beside_it(lot):
+    lot.set_viewport_size({"width": 1280, "height": 800})
+    width = lot.evaluate("""() => {
+      const cell = (kind, text) => `<td class="${kind}">${text}</td>`, long = "misses creep and ".repeat(5);
+      const row = cell("word", "d00000") + cell("word what", long) + cell("word note", long);
+      document.querySelector("#told").insertAdjacentHTML("afterbegin", `<table id="long"><tr>${row}</tr></table>`);
+      const { offsetWidth } = document.querySelector("#long .note");
+      document.querySelector("#long").remove();
+      return offsetWidth;
+    }""")
+    assert width >= 220

@@ -5,7 +5,7 @@ import pytest
 from lot.test_table import row_of
 from pzt_ident.lot.device import missing_of
 from pzt_ident.lot.outcome import Lot
-from pzt_ident.lot.report import device_lines
+from pzt_ident.lot.report import device_lines, header
 from pzt_ident.lot.sentences import far, findings
 from pzt_ident.lot.table import frame_of
 
@@ -59,3 +59,17 @@ def test_what_a_device_misses_and_what_is_wrong_with_its_set_up_is_told_everywhe
     summary = lot.summary()
     assert summary["missing"] == {EITHER: ["d3"]}
     assert summary["faults"] == [{"device": "d5", "fault": "backlash", "remedy": MEND}]
+
+
+def test_parameters_of_the_model_come_first_then_those_of_effects_by_how_many_have_them(lot):
+    for place, names in ((0, ["slew_limit.tau"]), (1, ["creep.tau"]), (2, ["creep.tau"])):
+        interval = {"value": 0.1, "unit": "um/V", "low": 0.0, "high": 0.2}
+        lot.rows[place]["improved"] = dict.fromkeys([*names, "gain"], interval)
+    assert [quantity.name for quantity in lot.quantities][:3] == ["gain", "creep.tau", "slew_limit.tau"]
+
+
+def test_columns_of_words_are_above_words(lot):
+    for place, row in enumerate(lot.rows):
+        row["columns"] = {"batch": "AB"[place % 2], "T": float(place)}
+    assert header(lot)[:4] == [("device", True), ("batch", True), ("T", False), ("verdict", True)]
+    assert next(device_lines(lot))["known"] == [("A", True), ("0", False)]
