@@ -45,12 +45,7 @@ def printed_reason(text: str, results: Results) -> str:
     if results.share_of_noise < NOISELESS and len(results.floors) == 1:
         (floor,) = results.floors.values()
         text = FLOORS.sub(lambda match: _in_unit(match, floor or 0.0, results.unit), text)
-    return _prose(text)
-
-
-def _prose(text: str) -> str:
-    """A sentence with printed units and without the backticks of terminal messages."""
-    return spelled(text).replace("`", "")
+    return spelled(text)
 
 
 def _in_unit(match: re.Match[str], floor: float, unit: str) -> str:
@@ -81,7 +76,7 @@ def findings(results: Results) -> list[str]:
     diagnosed = [*_advice(results)] if results.diagnosis else []
     diagnosed += weighed(results.units)
     run = [*_parameters(results), *_notes(results), *_failures(results)] if results.result else []
-    return [_prose(sentence) for sentence in lost + diagnosed + run]
+    return [spelled(sentence) for sentence in lost + diagnosed + run]
 
 
 def next_step(results: Results) -> str:

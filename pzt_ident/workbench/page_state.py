@@ -134,7 +134,7 @@ def diagnosis_of(session: Session, step: Path) -> dict[str, Any] | None:
         candidate["about"] = href(candidate.get("item", candidate["effect"]), ATLAS)
     tied = (sentence for sentence in tied_sentences(session) if sentence not in diagnosis["reason"])
     reason = printed_reason(diagnosis["reason"] + "".join(tied), read_results(step / "run"))
-    return printed(diagnosis) | {"reason": in_page_words(reason)}
+    return printed(diagnosis) | {"reason": in_page_words(reason.replace("`", ""))}
 
 
 def tied_sentences(session: Session) -> list[str]:

@@ -291,3 +291,10 @@ def test_a_model_that_no_record_kept_back_can_judge_is_not_put_to_work(plain, us
     kept = use == "validate"
     assert next_step(results).startswith("Measure a record to identify" if kept else "Put the model to work")
     assert ("none of those kept back can judge it" if kept else "no validation record") in remaining_error(results)
+
+
+def test_what_a_sentence_marks_as_code_stays_marked(plain):
+    results = read_results(plain)
+    reason = "give the records more `steps`: 3\u00a0um are left"
+    for known in ({"diagnosis": {"reason": reason}}, {"improvement": {"reason": reason, "effects": [], "steps": [{}]}}):
+        assert verdict(replace(results, **known)) == reason.replace("um", "µm")
