@@ -41,6 +41,21 @@ def test_a_look_alike_far_behind_is_tried_from_where_the_best_led(monkeypatch, o
     assert best.fit.identify == 1.0 and stranger.fit.identify == own
 
 
+@pytest.mark.parametrize(("led", "form"), [(1.0, "amplifier_lag"), (3.0, "amplifier_lag.two_poles")])
+def test_a_look_alike_is_in_its_first_form_where_that_is_as_good_from_where_the_best_led(monkeypatch, led, form):
+    """One pole rested in a side minimum of its time constant, two did not."""
+    monkeypatch.setattr(forms, "refit", lambda case, other, effects, guess, rival: fit(led, led, effects))
+    best = Candidate.of([Score("slew_limit", guesses=[{"slowness": 1.0}])])
+    best.refits = {"slew_limit": fit(1.0, 1.0, ["slew_limit"])}
+    best.take("slew_limit")
+    items = ["amplifier_lag", "amplifier_lag.two_poles"]
+    rival = Candidate.of([Score(item, guesses=[{"tau": 1.0}]) for item in items])
+    rival.refits = {item: fit(left, left, [item]) for item, left in zip(items, (11.6, 1.05), strict=True)}
+    rival.take(items[1])
+    candidates.restart_look_alikes(CASE, fit(14.0, 14.0), fit(14.0, 14.0), [best, rival])
+    assert rival.score.effect == form and rival.fit is rival.refits[form]
+
+
 def test_a_look_alike_in_another_form_is_started_anew_by_the_name_of_its_block(monkeypatch):
     def started(case, fit, block, starts):
         assert block == "sensor_lag"
@@ -50,10 +65,10 @@ def test_a_look_alike_in_another_form_is_started_anew_by_the_name_of_its_block(m
     monkeypatch.setattr(candidates, "from_where", lambda case, other, fit, guess: fit)
     best = Candidate.of([Score("amplifier_lag", guesses=[{"tau": 1.0}])])
     best.refits, item = {"amplifier_lag": fit(1.5, 1.5)}, "sensor_lag.second_order"
-    rival = Candidate(Score(item, guesses=[{"one": 1.0, "two": 2.0}]), forms=[Score(item)])
+    rival = Candidate.of([Score(item, guesses=[{"one": 1.0, "two": 2.0}])])
     rival.refits = {item: fit(1.52, 9.0)}
-    best.take("amplifier_lag")
-    rival.fit = rival.refits[item]
+    for candidate, word in ((best, "amplifier_lag"), (rival, item)):
+        candidate.take(word)
     candidates.restart_look_alikes(CASE, fit(9.0, 9.0), fit(9.0, 9.0), [best, rival])
     assert rival.fit.identify == rival.refits[item].identify == 1.5
 

@@ -310,7 +310,10 @@ def test_a_look_alike_of_the_best_is_fitted_again_from_elsewhere():
         null = resting.unit_point(first.values | {name: 0.0 for name in resting.names if name.startswith(word)})
         aside = fit_at((word,), resting, null)
         fits[word] = replace(aside, identify=fits["distributed_memory"].identify)
-    items = [Candidate(Score(word, guesses=[dict.fromkeys(("one", "two"), 0.0)]), fit) for word, fit in fits.items()]
+    items = [Candidate.of([Score(word, guesses=[dict.fromkeys(("one", "two"), 0.0)])]) for word in fits]
+    for item, (word, fit) in zip(items, fits.items(), strict=True):
+        item.refits = {word: fit}
+        item.take(word)
     restart_look_alikes(case, first, first, items)
     after = {item.score.effect: item.fit for item in items}
     assert after["friction"].identify == pytest.approx(stage.NOISE, rel=0.1)
