@@ -203,17 +203,22 @@ def take_back(case: Case, first: Fit, staircase: Staircase) -> Fit | None:
 
 
 def unproven_of(case: Case, first: Fit, fit: Fit, steps: Sequence[Step]) -> list[Suspect]:
-    """The effects of a fit that are to be taken out again. steps: all of the staircase."""
+    """The effects of a fit that are to be taken out again. steps: all of the staircase, of which those ahead of the
+    last change of blocks or bounds have fits of another case."""
     rivals = {step.added: step.tied for step in steps if step.added}
-    return unproven(case, first, fit, rivals, [first, *(step.fit for step in steps)])
+    return unproven(case, first, fit, rivals, [first, *(step.fit for step in steps[last_change(steps) :])])
+
+
+def last_change(steps: Sequence[Step]) -> int:
+    """The number of the step to the blocks and bounds of the last one."""
+    return max(number for number, step in enumerate(steps) if number == 0 or step.case)
 
 
 def proven_before(case: Case, first: Fit, end: Fit, steps: Sequence[Step]) -> tuple[Fit, Fit | None] | None:
     """What is proven of the fits of the case short of the last one: the lowest that leaves clearly less than the model
     at the end, and the fit with the unproven ones, None where there are none; None where there is no lower one."""
-    since = max(number for number, step in enumerate(steps) if number == 0 or step.case)
     best, doubted = end, None
-    for number in sorted(range(since + 1, len(steps) - 1), key=lambda number: steps[number].fit.total):
+    for number in sorted(range(last_change(steps) + 1, len(steps) - 1), key=lambda number: steps[number].fit.total):
         fit = steps[number].fit
         if removed_rms(best.total, fit.total) <= TIE * case.floor:
             break

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import stage
+from made_fits import CASE, fit
 from pzt_ident.diagnosis import paths
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.climb import Staircase
@@ -191,3 +192,12 @@ def test_an_effect_of_the_last_model_is_no_suspect_in_another_form(monkeypatch):
     found = Staircase([Step(fits[0]), Step(fits[1], "a"), Step(fits[2], "a.b", "a")], None)
     take_back(SimpleNamespace(floor=1.0, budget=Budget()), fits[0], found)
     assert (found.end, found.suspects) == (fits[1], [])
+
+
+def test_no_effect_is_held_against_a_fit_of_other_blocks(monkeypatch):
+    """The model as given, whose mechanics were left out, has no effect either, and is no model without this one."""
+    fits = [fit(9.0), fit(9.2), fit(5.0, effects=("creep",)), fit(4.0, effects=("creep", "drift"))]
+    steps = [Step(fits[0]), Step(fits[1], case=CASE), *(Step(each, each.effects[-1]) for each in fits[2:])]
+    monkeypatch.setattr(paths, "unproven", lambda case, first, now, rivals, known: known)
+    assert paths.unproven_of(CASE, fits[1], fits[-1], steps) == [fits[1], *fits[1:]]
+    assert paths.unproven_of(CASE, fits[0], fits[0], steps[:1]) == [fits[0], fits[0]]
