@@ -159,7 +159,7 @@ def freed(case: Case, problem: Problem) -> dict[str, Widened]:
     return {name: Widened(problem.declared_bounds(column)) for name, column in columns.items()}
 
 
-def holding(case: Case, problem: Problem, values: Mapping[str, float]) -> dict[str, Widened]:
+def beyond_guesses(case: Case, problem: Problem, values: Mapping[str, float]) -> dict[str, Widened]:
     """Bounds wider by DECADES of the parameters that the job says nothing of, and of which a known value lies beyond
     those that the catalogue guesses."""
     specs = dict[str, Widened]()

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pzt_ident.diagnosis.bounds import continued, freed, holding, stands_in, widened
+from pzt_ident.diagnosis.bounds import beyond_guesses, continued, freed, stands_in, widened
 from pzt_ident.diagnosis.budget import PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase, climb
@@ -133,7 +133,7 @@ def exchange_for_bounds(case: Case, first: Fit, now: Fit) -> list[Step]:
     for effect in reversed(added):
         others = effects_without(now, effect)
         without = case.problem(others, now.steps)
-        specs = rested | holding(case, without, values_in(without, now))
+        specs = rested | beyond_guesses(case, without, values_in(without, now))
         if not specs or not case.budget.allows("wider bounds", WHOLE):
             continue
         wide = case.with_specs(specs)

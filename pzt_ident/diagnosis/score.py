@@ -69,7 +69,7 @@ def scorer_of(case: Case, fit: Fit) -> Scorer:
     return scorer
 
 
-class Beside:
+class Baseline:
     """A model at the point of a fit, in some steps of the simulation, and its residual."""
 
     def __init__(self, case: Case, fit: Fit, steps: tuple[int, ...]) -> None:
@@ -85,7 +85,7 @@ class Scorer:
 
     def __init__(self, case: Case, fit: Fit) -> None:
         self.case, self.fit = case, fit
-        self.fine = Beside(case, fit, fit.steps)
+        self.fine = Baseline(case, fit, fit.steps)
         self.residual = self.fine.residual
         self.coarse = coarsest(case, fit, self.fine)
         self.projection = Projection(self.coarse.problem.jacobian(fit.point), fit.point, self.residual)
@@ -118,8 +118,8 @@ class Scorer:
         case, fit, effects = self.case, self.fit, (*self.fit.effects, effect)
         first = case.unmeasured_nulls(effects) and not case.unmeasured_nulls(fit.effects)
         variants = (False, True) if first else (fit.measured_only,)
-        beside = self.fine if blocks[effect].amounts() else self.coarse
-        problems = [case.problem(effects, beside.steps, each).along(*beside.followed) for each in variants]
+        baseline = self.fine if blocks[effect].amounts() else self.coarse
+        problems = [case.problem(effects, baseline.steps, each).along(*baseline.followed) for each in variants]
         scores = [self._score(effect, problem, near) for problem in problems]
         return max(scores, key=lambda score: score.explained)
 
@@ -274,16 +274,16 @@ class Scorer:
         return guesses
 
 
-def coarsest(case: Case, fit: Fit, fine: Beside) -> Beside:
+def coarsest(case: Case, fit: Fit, fine: Baseline) -> Baseline:
     """The model of a fit in the coarsest steps, those of the job at least, that change its response by no more than a
     part of how that varies."""
     given = [record.steps for record in case.records]
     for parts in COARSER:
         steps = tuple(max(least, count // parts) for least, count in zip(given, fit.steps, strict=True))
         if steps != fit.steps:
-            beside = Beside(case, fit, steps)
-            if np.linalg.norm(beside.residual - fine.residual) < COARSE * stroke(fit.problem):
-                return beside
+            baseline = Baseline(case, fit, steps)
+            if np.linalg.norm(baseline.residual - fine.residual) < COARSE * stroke(fit.problem):
+                return baseline
     return fine
 
 
