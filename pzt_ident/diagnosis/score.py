@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.diagnosis import misfit
+from pzt_ident.diagnosis.baseline import Baseline, coarsest
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.cost import MOST_SIMULATIONS, has_many_trials, is_costly, simulations
 from pzt_ident.diagnosis.fit import Fit
@@ -31,7 +32,6 @@ LEAST_TRACE = 1e-9  # of the residual: less is rounding
 LEAST_SCORE = 0.02  # of the misfit: an effect that scores less is not refitted
 KEPT = 4  # scorers
 FINER, MOST_SCALES = 0.93, 40  # from multiple to multiple of a trial's steps
-COARSER, COARSE = (8, 4, 2), 0.01  # times as long steps; of the response, by which they may change it
 AS_GOOD, MOST_GUESSES = 0.9, 4  # of the share explained by the best guess of a disturbance; guesses that are kept
 
 
@@ -67,16 +67,6 @@ def scorer_of(case: Case, fit: Fit) -> Scorer:
     scorer = next((item for item in case.scorers if item.fit is fit), None) or Scorer(case, fit)
     case.scorers = [scorer, *(item for item in case.scorers if item is not scorer)][:KEPT]
     return scorer
-
-
-class Baseline:
-    """A model at the point of a fit, in some steps of the simulation, and its residual."""
-
-    def __init__(self, case: Case, fit: Fit, steps: tuple[int, ...]) -> None:
-        self.problem = fit.problem if steps == fit.steps else case.problem(fit.effects, steps, fit.measured_only)
-        self.steps = steps
-        self.followed = self.problem.tangent(fit.point, sampled=True), self.problem.held(fit.point)
-        self.residual = self.problem.along(*self.followed).residuals(fit.point)[0]
 
 
 class Scorer:
@@ -272,26 +262,6 @@ class Scorer:
             axis_residuals = [residual[row] for residual in residuals]
             guesses.append(guess(times, axis_drives, axis_residuals, problem.lower[i], problem.upper[i]).tolist())
         return guesses
-
-
-def coarsest(case: Case, fit: Fit, fine: Baseline) -> Baseline:
-    """The model of a fit in the coarsest steps, those of the job at least, that change its response by no more than a
-    part of how that varies."""
-    given = [record.steps for record in case.records]
-    for parts in COARSER:
-        steps = tuple(max(least, count // parts) for least, count in zip(given, fit.steps, strict=True))
-        if steps != fit.steps:
-            baseline = Baseline(case, fit, steps)
-            if np.linalg.norm(baseline.residual - fine.residual) < COARSE * stroke(fit.problem):
-                return baseline
-    return fine
-
-
-def stroke(problem: Problem) -> float:
-    """How the measured responses vary, root mean square, in units of the loss."""
-    records = [simulator.record for simulator in problem.simulators["identify"]]
-    scaled = [record.response[list(record.measured), record.settle :].T / problem.sizes for record in records]
-    return float(np.sqrt(sum(np.sum(np.var(each, axis=0)) * len(each) for each in scaled) / problem.scored))
 
 
 def scales_of(amounts: Array) -> Array:

@@ -11,7 +11,6 @@ from pzt_ident.diagnosis import cost
 from pzt_ident.diagnosis import score as score_module
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.cost import MOST_SIMULATIONS, simulations
-from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.possible import applicable, fits, fitting_forms
 from pzt_ident.diagnosis.refit import refit, refit_from
 from pzt_ident.diagnosis.score import (
@@ -403,22 +402,3 @@ def test_a_form_that_takes_too_many_simulations_is_not_scored_beside_the_first(a
     most = max(simulations(case, item) for item in blocks.forms("cross_coupling"))
     assert (most < MOST_SIMULATIONS) == (axes == 2)
     assert all(simulations(case, word) < MOST_SIMULATIONS for word in ("resonance", "encoder_cyclic_error"))
-
-
-@pytest.mark.parametrize("effect", ["creep", "quadratic_gain", "sensor_lag", "amplifier_lag"])
-def test_traces_in_coarser_steps_score_as_in_those_of_the_fit(effect, monkeypatch):
-    """Mechanics that ring within a few samples; the residual itself is that of the fine steps."""
-    drives = [50 - 40 * np.cos(2 * np.pi * (1 + 30 * t) * t) for t in 5e-4 * np.arange(3000) * np.array([[1], [0.7]])]
-    moving = KNOWN | {"lumped.stiffness": 1e6, "lumped.damping": 40.0}
-    case = stage.case(moving | stage.EFFECTS[effect], moving, model=("bouc_wen", "lumped"), drives=drives, dt=5e-4)
-    problem = case.problem((), (8,) * len(case.records))
-    point = first_fit(case, 0).point
-    fit = fit_at((), problem, point)
-    coarse = Scorer(case, fit)
-    monkeypatch.setattr(score_module, "COARSE", 0.0)
-    fine = Scorer(case, fit)
-    assert max(coarse.coarse.steps) < 8 == min(fine.coarse.steps)
-    np.testing.assert_array_equal(coarse.residual, fine.residual)
-    assert coarse.left == pytest.approx(fine.left, rel=0.02)
-    assert coarse.score(effect).explained == pytest.approx(fine.score(effect).explained, abs=0.02)
-    assert fine.score(effect).explained > 0.5
