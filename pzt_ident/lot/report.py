@@ -16,7 +16,7 @@ from pzt_ident.errors import InputError
 from pzt_ident.files import write_text
 from pzt_ident.lot.cells import odd_cells
 from pzt_ident.lot.figures import plates
-from pzt_ident.lot.identify import in_a_line
+from pzt_ident.lot.identification import in_a_line
 from pzt_ident.lot.outcome import Lot, read_lot
 from pzt_ident.lot.sentences import far, findings, in_setup, lead, unfinished
 from pzt_ident.lot.statistics import Quantity

@@ -21,7 +21,7 @@ from lot.conftest import DEVICES
 from pzt_ident.errors import InputError, LostError
 from pzt_ident.files import read_sealed, write_sealed
 from pzt_ident.job.schema import load_job
-from pzt_ident.lot import identify
+from pzt_ident.lot import identification
 from pzt_ident.lot.identify import fleet, resume
 from pzt_ident.lot.outcome import read_lot
 from pzt_ident.lot.report import page
@@ -235,8 +235,8 @@ def test_the_table_keeps_up_with_the_devices_in_case_of_a_kill_that_nothing_can_
     lot, tmp_path, monkeypatch, again, fresh
 ):
     """again: seconds after which it is due."""
-    monkeypatch.setattr(identify, "AGAIN", again)
-    monkeypatch.setattr(identify, "SHARE", np.inf)
+    monkeypatch.setattr(identification, "AGAIN", again)
+    monkeypatch.setattr(identification, "SHARE", np.inf)
     out, found = tmp_path / "out", []
 
     def listen(event):
