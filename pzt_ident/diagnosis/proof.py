@@ -114,8 +114,8 @@ def unproven(
     at the noise, and EACH of either kind of them, and each of the others half of the rest, and each the share ALONE
     beside the others; of several that leave more than that each must remove more in proportion, and none is proven
     where that is more than BESIDE. None may have rivals that fit as well and are not its look-alikes: what any effect
-    takes up is not that of one. And none may have a shape, or all its amounts, on a bound, as a cyclic error that the
-    stroke does not hold twice: it stands for what it is like there, unless the model is adequate with it. Even then
+    takes up is not that of one. And none may have a shape, or all its amounts, on a bound, as a cyclic error of
+    one period in a stroke: it stands for what it is like there, unless the model is adequate with it. Even then
     none may be in a limit that is declared to be something else, or a low harmonic of the drive, or of another size in
     each record where it is the device's. Beside an effect that leaves its trace where its form is another one each must
     remove SINGLE, as if it were alone: a gain by the swing beside a memory. A line of the spectrum that takes up all of

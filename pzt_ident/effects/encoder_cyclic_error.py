@@ -21,7 +21,10 @@ class EncoderCyclicError(Block):
     sine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, odd about x = 0, a.", null=0)
     cosine = Parameter("response", (-0.05, 0.05), "Error of the first harmonic, even about x = 0, b.", null=0)
     pitch = Parameter(
-        "response", (0.01, 0.5), "Period of the grating's signal, p, which the stroke holds twice.", scale="log"
+        "response",
+        (0.01, 0.8),
+        "Period of the grating's signal, p, of which the stroke holds five quarters.",
+        scale="log",
     )
     look_alikes = ("quadratic_gain", "cubic_stiffness", "saturation")
     separate_by = "Shift the encoder head by half a pitch and repeat: this error changes its sign, all others stay."

@@ -9,6 +9,7 @@ import pytest
 import stage
 from pzt_ident.diagnosis import candidates, climb, exchange, staircase
 from pzt_ident.diagnosis.budget import EXPLORING, Budget
+from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import add_pair, add_restarted
 from pzt_ident.diagnosis.exchange import exchange_any, remove_unneeded
 from pzt_ident.diagnosis.fit import Fit, fit_at
@@ -503,3 +504,17 @@ def test_a_rival_that_explains_as_much_by_its_score_is_started_elsewhere(monkeyp
     case, now = SimpleNamespace(floor=1.0, budget=Budget()), fitted(("sensor_lag",), 1.0)
     [fit] = exchange.fits_in_place(case, now, "sensor_lag", ["creep"], as_rivals)
     assert (fit.effects, fit.total) == (("creep",), total)
+
+
+@pytest.mark.parametrize("share", [0.3, 0.65, 0.75])
+def test_a_grating_of_which_the_stroke_holds_few_periods_is_named(share):
+    """No curve of the reading that the catalogue has, and no memory, stands in for it."""
+    stroke = np.ptp(stage.case({}).records[0].response)
+    hidden = {"sine": 1e-7, "cosine": 6e-8, "pitch": share * stroke}
+    named = {f"encoder_cyclic_error.{word}": value for word, value in hidden.items()}
+    simulated = stage.case(named, model=("bouc_wen", "encoder_cyclic_error"))
+    case = Case(("bouc_wen",), (), simulated.records, {})
+    others = ("quadratic_gain", "cubic_stiffness", "saturation", "distributed_memory", "drift")
+    found = improve(stage.considering(case, "encoder_cyclic_error", *others), first_fit(case, 0))
+    assert found.last.verdict == "adequate" and found.end.effects == ("encoder_cyclic_error",)
+    assert found.end.values["encoder_cyclic_error.pitch"] == pytest.approx(1e6 * share * stroke, rel=0.02)
