@@ -37,5 +37,6 @@ def coarsest(case: Case, fit: Fit, fine: Baseline) -> Baseline:
 def stroke(problem: Problem) -> float:
     """How the measured responses vary, root mean square, in units of the loss."""
     records = [simulator.record for simulator in problem.simulators["identify"]]
-    scaled = [record.response[list(record.measured), record.settle :].T / problem.sizes for record in records]
-    return float(np.sqrt(sum(np.sum(np.var(each, axis=0)) * len(each) for each in scaled) / problem.scored))
+    responses = [record.response[list(record.measured), record.settle :].T / problem.sizes for record in records]
+    squares = sum(np.sum(np.var(response, axis=0)) * len(response) for response in responses)
+    return float(np.sqrt(squares / problem.scored))

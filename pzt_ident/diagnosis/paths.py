@@ -129,11 +129,11 @@ def exchange_for_bounds(case: Case, first: Fit, now: Fit) -> list[Step]:
     added = now.effects[len(first.effects) :]
     if not added or not near_noise(case, first, now):
         return []
-    rested = widened(case, now) | freed(case, now.problem)
+    resting = widened(case, now) | freed(case, now.problem)
     for effect in reversed(added):
         others = effects_without(now, effect)
         without = case.problem(others, now.steps)
-        specs = rested | beyond_guesses(case, without, values_in(without, now))
+        specs = resting | beyond_guesses(case, without, values_in(without, now))
         if not specs or not case.budget.allows("wider bounds", WHOLE):
             continue
         wide = case.with_specs(specs)

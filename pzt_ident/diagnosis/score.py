@@ -109,7 +109,8 @@ class Scorer:
         first = case.unmeasured_nulls(effects) and not case.unmeasured_nulls(fit.effects)
         variants = (False, True) if first else (fit.measured_only,)
         baseline = self.fine if blocks[effect].amounts() else self.coarse
-        problems = [case.problem(effects, baseline.steps, each).along(*baseline.followed) for each in variants]
+        models = (case.problem(effects, baseline.steps, measured_only) for measured_only in variants)
+        problems = [model.along(*baseline.followed) for model in models]
         scores = [self._score(effect, problem, near) for problem in problems]
         return max(scores, key=lambda score: score.explained)
 
