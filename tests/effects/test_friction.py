@@ -238,3 +238,20 @@ def test_friction_and_a_bent_spring_are_in_one_equation():
     np.testing.assert_allclose(driving(x, 0.3, 0.2) + cubic * x**3, force, rtol=0, atol=2e-4)
     alone = response(["lumped"], STAGE | {"lumped.cubic": cubic}, force, dt=1e-3)
     np.testing.assert_allclose(moved(force, 1e-3, cubic=cubic, friction=0.0), alone, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        {"friction": 0.3, "reach": 0.2, "stiction": 0.2, "stribeck": 1.0},
+        {"dry": 0.3, "speed": 2.0},
+        {"dry": 0.3, "speed": 0.01},
+        {"slip": SLIP, "give": 0.4, "spacing": 0.5},
+    ],
+)
+def test_friction_alone_is_friction_beside_a_spring_that_does_not_bend(law):
+    force, named = path(0, 8, 3, 5, -2, 4, points=200), {f"lumped.{word}": value for word, value in law.items()}
+    alone, beside = (response(["lumped"], STAGE | named | bent, force, dt=2e-4) for bent in ({}, {"lumped.cubic": 0.0}))
+    np.testing.assert_allclose(alone, beside, rtol=0, atol=1e-12)
+    straight = response(["lumped"], STAGE, force, dt=2e-4)
+    assert np.abs(alone - straight).max() > 0.1
