@@ -1,14 +1,15 @@
-"""The noise of responses while they move: what smooth curves and the drives leave of short windows."""
+"""The noise of responses while they move: what smooth curves, the drives and hums leave of short windows."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.evidence import quiet, quiet_deviation
-from pzt_ident.data.projections import MOST_MEMORY, expected_products, memory_of
+from pzt_ident.data.projections import LINE_RATIO, MOST_MEMORY, expected_products, memory_of
 
 Array = NDArray[np.float64]
 
@@ -21,6 +22,7 @@ ROUGHER = 2.0  # times its signals a remainder may be, since not all noise has a
 LEAST = 8  # quiet stretches or windows: fewer are chance
 DEPENDENT = 1e-6  # of the largest singular value: columns of less are one
 TYPICAL = 8  # windows whose bases stand for all
+MOST_LINES, NEAR, OWN = 3, 25, 3  # lines over time, the frequencies that stand around each, and those that are its own
 
 
 class Signal(NamedTuple):
@@ -46,16 +48,29 @@ class Remainder(NamedTuple):
         return self.deviation * float(np.sqrt(np.polyval([-0.1, 0.6, -1.5, 1.0], self.memory)))
 
 
+class Line(NamedTuple):
+    """A line of a spectrum: its power over that of the frequencies around it, its frequency and its width, Hz."""
+
+    ratio: float
+    frequency: float
+    width: float
+
+
 def window_noise(signals: list[Signal], least: float) -> float:
     """Standard deviation of the noise in all signals, which is at least that of their quantiser.
 
-    Long windows leave signal and short ones take noise: of all lengths, with the drives and without, that one counts
-    whose remainder over the square of the share in it is least. A remainder that is as alike from sample to sample as a
-    signal, or rougher than its signals are, is none. Where all are so, the noise is taken for white.
+    Long windows leave signal and short ones take noise: of all lengths, with the drives, with the lines of which they
+    hold a period, and with neither, that one counts whose remainder over the square of the share in it is least. A
+    remainder that is as alike from sample to sample as a signal, or rougher than its signals are, is none. Where all
+    are so, the noise is taken for white.
     """
     white = max(roughness(signals), least)
-    remainders = [remainder(signals, length, False) for length in LENGTHS]
-    remainders += [remainder(signals, length, True) for length in LENGTHS if length <= WITH_DRIVES]
+    remainders = [remainder(signals, length) for length in LENGTHS]
+    drives = [courses_of(signal.drives) for signal in signals]
+    remainders += [remainder(signals, length, drives) for length in LENGTHS if length <= WITH_DRIVES]
+    lines = lines_of(signals)
+    period = 1 / (min(lines) * min(signal.dt for signal in signals)) if lines else np.inf
+    remainders += [remainder(signals, length, waves_of(signals, lines)) for length in LENGTHS if length > period]
     noise = [part for part in remainders if part and part.memory < MOST_MEMORY and part.roughness <= ROUGHER * white]
     if not noise:
         return white
@@ -63,13 +78,14 @@ def window_noise(signals: list[Signal], least: float) -> float:
     return max(chosen.deviation, least)
 
 
-def remainder(signals: list[Signal], length: int, with_drives: bool) -> Remainder | None:
-    """What polynomials, and the drives, leave in the quiet windows of a length; None where these are too few."""
+def remainder(signals: list[Signal], length: int, courses: Sequence[Array] = ()) -> Remainder | None:
+    """What polynomials, and courses of each signal, (rows, samples), leave in the quiet windows of a length; None where
+    these are too few."""
     responses, seconds = windows(signals, length, [signal.response[None] for signal in signals])
     basis = np.asarray(np.polynomial.legendre.legvander(np.linspace(-1, 1, length), DEGREE), dtype=np.float64)[None]
-    if with_drives:
-        courses, _ = windows(signals, length, [courses_of(signal.drives) for signal in signals])
-        basis = np.concatenate([np.broadcast_to(basis, (len(courses), *basis.shape[1:])), courses], axis=2)
+    if courses:
+        columns, _ = windows(signals, length, courses)
+        basis = np.concatenate([np.broadcast_to(basis, (len(columns), *basis.shape[1:])), columns], axis=2)
     if not len(responses) or basis.shape[2] >= length:
         return None
     basis = directions_of(basis)
@@ -84,7 +100,7 @@ def remainder(signals: list[Signal], length: int, with_drives: bool) -> Remainde
     if power == 0:
         return Remainder(0.0, 0.0, 1.0)
     alike = np.average((noise[kept, 1:] * noise[kept, :-1]).sum(axis=1), weights=seconds[kept])
-    typical = basis[kept[:: -(-kept.size // TYPICAL)]] if with_drives else basis
+    typical = basis[kept[:: -(-kept.size // TYPICAL)]] if courses else basis
     memory = memory_of(alike / power, typical)
     left = expected_products(typical, memory)[0] / len(typical)
     return Remainder(float(np.sqrt(power / left)), memory, left / length)
@@ -98,7 +114,7 @@ def directions_of(columns: Array) -> Array:
     return np.where((sizes > DEPENDENT * sizes[:, :1])[:, None, :], directions, 0.0)
 
 
-def windows(signals: list[Signal], length: int, rows: list[Array]) -> tuple[Array, Array]:
+def windows(signals: list[Signal], length: int, rows: Sequence[Array]) -> tuple[Array, Array]:
     """Windows of the rows of each signal, (windows, length, rows), side by side in stretches that are evenly spread
     where they are too many, and the time from sample to sample in each."""
     together = max(1, STRETCH // length)
@@ -118,6 +134,52 @@ def courses_of(drives: Array) -> Array:
     scaled = drives / np.where(span, span, 1.0)
     before = np.hstack([scaled[:, :1], scaled[:, :-1]])
     return np.concatenate([scaled, np.abs(scaled - before).cumsum(axis=1), before])
+
+
+def lines_of(signals: list[Signal]) -> list[float]:
+    """Frequencies, Hz, of the lines that stand out most, such as a hum and its harmonics, in the third differences of
+    the signals, which what is smooth is hardly in, and are in no drive of theirs."""
+    stand_out = [
+        line
+        for signal in signals
+        for line in lines_in(signal.response, signal.dt)
+        if not any(is_beside(line, other) for drive in signal.drives for other in lines_in(drive, signal.dt))
+    ]
+    lines: list[Line] = []
+    for line in sorted(stand_out, reverse=True):
+        if len(lines) < MOST_LINES and not any(is_beside(line, other) for other in lines):
+            lines.append(line)
+    return [line.frequency for line in lines]
+
+
+def is_beside(line: Line, other: Line) -> bool:
+    return abs(line.frequency - other.frequency) <= OWN * max(line.width, other.width)
+
+
+def lines_in(signal: Array, dt: float) -> list[Line]:
+    """The lines in the third differences of a signal, whose power is LINE_RATIO times the mean of the frequencies
+    around them, in the order of their frequencies."""
+    differences = np.diff(signal, 3)
+    if differences.size <= 6 * NEAR:
+        return []
+    power = np.abs(np.fft.rfft(differences * np.hanning(differences.size))) ** 2
+    sides = np.ones(2 * NEAR + 1)
+    sides[NEAR - OWN : NEAR + OWN + 1] = 0
+    around = np.maximum(np.convolve(power, sides / sides.sum(), "valid"), np.finfo(float).tiny)
+    ratios, width = power[NEAR:-NEAR] / around, 1 / (differences.size * dt)
+    highest = np.max(np.lib.stride_tricks.sliding_window_view(np.pad(ratios, OWN), 2 * OWN + 1), axis=1)
+    peaks = np.flatnonzero((ratios == highest) & (ratios > LINE_RATIO))
+    before, at, after = (np.log(np.maximum(power[peaks + NEAR + side], np.finfo(float).tiny)) for side in (-1, 0, 1))
+    tops = peaks + NEAR + (after - before) / (4 * at - 2 * before - 2 * after)  # of the parabola through three
+    return [Line(float(ratios[peak]), float(top) * width, width) for peak, top in zip(peaks, tops, strict=True)]
+
+
+def waves_of(signals: list[Signal], frequencies: Sequence[float]) -> list[Array]:
+    """Cosines and sines of frequencies, Hz, over the time of each signal: (2 frequencies, samples)."""
+    turns = [
+        2 * np.pi * np.multiply.outer(frequencies, signal.dt * np.arange(signal.response.size)) for signal in signals
+    ]
+    return [np.concatenate([np.cos(part), np.sin(part)]) for part in turns]
 
 
 def roughness(signals: list[Signal]) -> float:

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.signal import butter, lfilter
 
 from noises import coloured, white
-from pzt_ident.data.windows import Remainder, Signal, remainder, roughness, window_noise
+from pzt_ident.data.windows import Remainder, Signal, courses_of, lines_of, remainder, roughness, window_noise
 
 TRIANGLE = 100 * np.abs((np.arange(6000) / 500 + 1) % 2 - 1)  # 1 V in 5 samples
 SINE = 50 - 50 * np.cos(np.arange(6000) / 170)
@@ -42,7 +42,8 @@ def test_a_unit_of_the_drive_changes_no_digit(seed, unit):
     """While a drive rises, its path is the drive: what is left of one without the other is rounding."""
     response = 20 * lagging(TRIANGLE) + white(6000, seed=seed)
     for length in (16, 32, 64):
-        left, told = (remainder([Signal(u * TRIANGLE[None], response, 1e-3)], length, True) for u in (1, unit))
+        signals = [Signal(u * TRIANGLE[None], response, 1e-3) for u in (1, unit)]
+        left, told = (remainder([signal], length, [courses_of(signal.drives)]) for signal in signals)
         assert told == pytest.approx(left, rel=1e-9)
 
 
@@ -89,6 +90,32 @@ def test_records_that_move_too_fast_leave_it_to_those_that_do_not():
     assert window_noise([fast, slow, fast], 0.0) == pytest.approx(1, rel=0.1)
 
 
+@given(
+    frequency=st.floats(15, 240), height=st.floats(2, 200), harmonic=st.sampled_from([0, 1]), seed=st.integers(0, 1000)
+)
+@settings(deadline=None, max_examples=30)
+def test_a_hum_in_all_records_is_no_noise(frequency, height, harmonic, seed):
+    t = np.arange(6000) / 1000
+    hum = height * (np.sin(2 * np.pi * frequency * t + seed) + harmonic / 3 * np.sin(4 * np.pi * frequency * t))
+    drives = TRIANGLE, SINE[:3000]
+    signals = [
+        Signal(drive[None], 20 * lagging(drive) + (hum + white(6000, seed=seed))[: drive.size], 1e-3)
+        for drive in drives
+    ]
+    assert window_noise(signals, 0.0) == pytest.approx(1, rel=0.2)
+
+
+def test_the_lines_are_those_that_stand_out_of_all_records():
+    """50 Hz in the first record, 150 Hz, to which third differences are most sensitive, in the second."""
+    t = np.arange(6000) / 1000
+    signals = [
+        Signal(SINE[None], 20 * lagging(SINE) + 9 * np.sin(2 * np.pi * hertz * t) + white(6000), 1e-3)
+        for hertz in (50, 150)
+    ]
+    assert lines_of(signals) == pytest.approx([150, 50], abs=0.2)
+    assert not lines_of([Signal(SINE[None], 20 * lagging(SINE) + white(6000), 1e-3)])
+
+
 @pytest.mark.parametrize("samples", [30, 45, 63])
 def test_records_shorter_than_a_stretch_have_the_white_noise_of_their_third_differences(samples):
     parts = [Signal(np.arange(samples)[None], np.arange(samples) + white(samples, seed=n), 1.0) for n in range(200)]
@@ -101,8 +128,8 @@ def test_what_is_left_is_the_share_of_the_noise_that_a_basis_leaves(drives):
     """Of 32 samples, 5 go into a quartic and 3 into each drive."""
     signal = Signal(white(6400).reshape(1, -1).repeat(drives, 0), white(6400, seed=1), 1.0)
     moving = signal._replace(drives=white(6400 * drives, seed=2).reshape(drives, -1))
-    assert remainder([signal], 32, False).share == pytest.approx(27 / 32, rel=0.05)
-    assert remainder([moving], 32, True).share == pytest.approx((27 - 3 * drives) / 32, rel=0.1)
+    assert remainder([signal], 32).share == pytest.approx(27 / 32, rel=0.05)
+    assert remainder([moving], 32, [courses_of(moving.drives)]).share == pytest.approx((27 - 3 * drives) / 32, rel=0.1)
 
 
 @given(memory=st.floats(0, 0.95))
