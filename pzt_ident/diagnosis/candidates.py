@@ -77,11 +77,11 @@ def worth_other_forms(candidates: Mapping[str, Candidate]) -> list[str]:
     return [word for word in words if word == words[0] or are_look_alikes(words[0], word)]
 
 
-def promises_most(case: Case, first: Fit, fit: Fit) -> bool:
-    """Whether an effect, in its first form, explains most of what a fit leaves by its score, and is no look-alike of
-    one that was added: it may belong in the place of that."""
+def promises_most(case: Case, first: Fit, fit: Fit, least: float = PROMISING) -> bool:
+    """Whether an effect, in its first form, explains most of what a fit leaves by its score, at least such a share, and
+    is no look-alike of one that was added: it may belong in the place of that."""
     candidates = score_all(case, first, fit, scorer_of(case, fit), in_every_form=False)
-    scores = [item.score for item in candidates if item.score.explained_in_bounds >= PROMISING]
+    scores = [item.score for item in candidates if item.score.explained_in_bounds >= least]
     best = max(scores, key=lambda score: score.explained_in_bounds, default=None)
     added = fit.effects[len(first.effects) :]
     return best is not None and not any(are_look_alikes(effect, best.effect) for effect in added)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pzt_ident.data.notation import listed
+from pzt_ident.diagnosis.candidates import promises_most
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, LEAST_SHARE, adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit, fit_at
@@ -35,7 +36,8 @@ PROMISING = 0.1  # of the misfit: what is removed at once, with all parameters a
 def with_history(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fit] | None:
     """The case whose model follows what was before the records, and the fit as given in it, where that removes most of
     the misfit or more than any effect, alone or beside one of the best of these; None elsewhere, and where an effect
-    alone leads to the noise as well. diagnosis: of the fit."""
+    alone leads to the noise as well, or another one beside it promises nearly all that it leaves. diagnosis: of the
+    fit."""
     if has_history(first) or not has_operator(case):
         return None
     effects = sorted((item.fit for item in diagnosis.passing if item.fit), key=lambda fit: fit.total)
@@ -48,6 +50,10 @@ def with_history(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fi
     share = share_explained(first.total, best[1].total, case.floor) if best else 0.0
     least = DECISIVE if best and any(removed_rms(fit.total, best[1].total) < 0 for fit in effects) else LEAST_SHARE
     if best and share >= least:
+        if not adequate(case, first, best[1]) and any(
+            promises_most(case, first, fit, NEARLY_ALL) for fit in effects[:1]
+        ):
+            return None
         given_up = best[1].identify > rival
         return (best[0], refit(best[0], best[1], first.effects, {})) if given_up else best
     behind = (history_behind(case, first, fit) for fit in effects[:TRIED])

@@ -113,6 +113,17 @@ def test_what_was_before_has_the_best_effect_as_a_rival(asked):
     assert has_history(fit) and fit.identify < effect.identify
 
 
+def test_what_was_before_is_not_followed_where_an_effect_beside_the_best_promises_nearly_all(monkeypatch):
+    case = begun_in_motion()
+    first = first_fit(case, 0)
+    effect = replace(first, identify=0.5 * first.identify, validate=0.5 * first.validate)
+    diagnosis = Diagnosis("missing", "", first, [], [], [Candidate(None, effect)])
+    monkeypatch.setattr(history, "promises_most", lambda case, first, fit, least: fit is effect)
+    assert with_history(case, first, diagnosis)
+    monkeypatch.setattr(history, "adequate", lambda *fits: False)
+    assert with_history(case, first, diagnosis) is None
+
+
 def test_behind_effects_what_was_before_has_what_would_be_enough_as_a_rival(asked):
     case = begun_in_motion()
     first = first_fit(case, 0)
