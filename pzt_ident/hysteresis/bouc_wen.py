@@ -34,7 +34,7 @@ class BoucWen(Operator):
         "1/drive", (-2, 2), "Part of the drive term that grows with the voltage.", 0, effect="asymmetry.voltage"
     )
     lean = Parameter("1", (-0.9, 0.9), "Part of the drive term in one direction.", 0, effect="asymmetry.constant")
-    rate = Parameter("1", (-0.3, 0.3), "Growth of alpha per decade of drive rate.", 0, effect="rate_dependence")
+    rate = Parameter("1", (-0.6, 0.6), "Growth of alpha per decade of drive rate.", 0, effect="rate_dependence")
     onset = Parameter(
         "V/s", (SLOW, FASTEST), "Drive rate at which alpha begins to grow.", SLOW, "log", effect="rate_dependence.onset"
     )

@@ -25,7 +25,7 @@ class PrandtlIshlinskii(Bank):
     gain = Parameter("response/drive", (0, 3), "Weight of the drive itself, w0.")
     weight = Parameter("response/drive", (-0.5, 1.5), "Weight of the i-th play, w_i.", count=PLAYS)
     reach = Parameter("drive", (0.05, 1), "Half-width of the widest play.", value=0.5)
-    rate = Parameter("1", (-0.3, 0.3), "Growth of half-widths per decade of drive rate.", 0, effect="rate_dependence")
+    rate = Parameter("1", (-0.6, 0.6), "Growth of half-widths per decade of drive rate.", 0, effect="rate_dependence")
     onset = Parameter(
         "V/s", (SLOW, FASTEST), "Drive rate at which they begin to grow.", SLOW, "log", effect="rate_dependence.onset"
     )
