@@ -45,9 +45,9 @@ def tolerance(case: Case, first: Fit) -> float:
 def beyond_form(case: Case, first: Fit, without: Fit, now: Fit) -> bool:
     """Whether an effect beside others takes up more than the form of these may leave, on the identification and on the
     validation records. The latter need not show it where they are at the noise with it and without, or would be if the
-    noise floor were half as much again. The former need not show as much where the model with it is at the noise of
-    both: what predicts records that nothing was fitted to is not bent to them. And what leaves next to nothing of a
-    rest of either kind is no part of a form."""
+    noise floor were half as much again, and show it by most of their rest as well. The former need not show as much
+    where the model with it is at the noise of both: what predicts records that nothing was fitted to is not bent to
+    them. And what leaves next to nothing of a rest of either kind is no part of a form."""
     removed = removed_rms(without.identify, now.identify)
     if takes_all(case, without, now):
         return True
@@ -56,7 +56,10 @@ def beyond_form(case: Case, first: Fit, without: Fit, now: Fit) -> bool:
     if first.validate is None or near or not_in_validation(case, first, without, now):
         return shown
     predicted = removed > CLEAR * case.floor and adequate(case, first, now)
-    return (shown or predicted) and removed_rms(without.validate, now.validate) > form_of_others(case, first.validate)
+    unseen = removed_rms(without.validate, now.validate)
+    share = misfit.share_explained(without.validate or 0.0, now.validate or 0.0, case.floor)
+    most = unseen > CLEAR * case.floor and share >= DECISIVE
+    return (shown and most) or ((shown or predicted) and unseen > form_of_others(case, first.validate))
 
 
 def takes_all(case: Case, without: Fit, now: Fit) -> bool:

@@ -8,6 +8,7 @@ import pytest
 from made_fits import CASE, FAR, above, fit, without
 from pzt_ident.diagnosis.criteria import (
     adequate,
+    beyond_form,
     clears_an_axis,
     is_enough,
     not_in_validation,
@@ -138,3 +139,18 @@ def test_what_makes_the_records_kept_back_worse_is_not_merely_unseen_there(after
     first, before, now = fit(5.0, 5.0), fit(5.0, 1.0), fit(1.0, after)
     assert not_in_validation(CASE, first, before, now) == unseen
     assert removes_enough(CASE, first, before, now) == unseen
+
+
+@pytest.mark.parametrize(
+    ("unseen", "proven"),
+    [
+        ((1.9, 1.4), True),  # most of the rest, though less than the 1.5 floors of a form
+        ((1.9, 1.6), False),
+        ((4.0, 3.6), True),  # more than a form may leave, though less than most
+        ((4.0, 3.8), False),
+    ],
+)
+def test_beside_others_what_was_never_fitted_shows_an_effect_by_most_of_its_rest(unseen, proven):
+    """The identification records: 2.2 and 1 above the noise, root mean square, of which a form may leave 1.5."""
+    without, now = (above(*rest) for rest in zip((2.2, 1.0), unseen, strict=True))
+    assert beyond_form(CASE, above(26.0, 23.0), without, now) == proven

@@ -295,7 +295,8 @@ def test_what_a_model_at_the_noise_has_is_needed_if_the_form_of_the_others_would
 def test_the_form_of_the_others_is_held_against_each_kind_of_record(taken_out):
     seen = of(ab=1.0, a=1.9, b=6.0, none=30.0)
     assert taken_out(seen, of(ab=1.0, a=1.9, b=6.0, none=30.0)) == []
-    assert taken_out(seen, of(ab=1.5, a=1.9, b=6.0, none=30.0)) == ["b"]
+    assert taken_out(seen, of(ab=1.6, a=1.9, b=6.0, none=30.0)) == ["b"]
+    assert taken_out(seen, of(ab=1.5, a=1.9, b=6.0, none=30.0)) == []  # most of what is left of them
     assert taken_out(seen, of(ab=1.0, a=1.0, b=6.0, none=30.0)) == []  # nor can it be seen there
     assert taken_out(of(ab=1.2, a=6.0, b=6.0, none=30.0), of(ab=1.4, a=1.4, b=6.0, none=30.0)) == []
     assert taken_out(of(ab=1.2, a=6.0, b=6.0, none=30.0), of(ab=1.6, a=1.6, b=6.0, none=30.0)) == ["b"]
