@@ -53,7 +53,7 @@ def test_any_chain_in_c_responds_as_here(words, seed, unmeasured, tmp_path):
 @needs_compiler
 @pytest.mark.parametrize("precision", ["double", "float"])
 def test_inverse_in_c_is_the_one_here(precision, tmp_path):
-    models = [identified(words, name=f"m{i} {words.split()[0]}", dt=1e-3) for i, words in enumerate(INVERTED)]
+    models = [identified(words, 2, 1e-3, f"m{i} {words.split()[0]}") for i, words in enumerate(INVERTED)]
     ran = subprocess.run([compiled(models, tmp_path, precision)], capture_output=True, text=True, timeout=120)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     assert ran.stdout.count("of the inverse") == len(INVERTED)
