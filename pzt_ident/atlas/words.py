@@ -19,7 +19,7 @@ from pzt_ident.atlas.search_pictures import search_pictures
 from pzt_ident.atlas.shown import shown
 from pzt_ident.data.notation import ranges, short, unit
 from pzt_ident.model.block import Place, Term
-from pzt_ident.model.description import description_of, headline
+from pzt_ident.model.description import description_of, headline, same_equation
 from pzt_ident.model.registry import blocks, optimizers, word_of
 
 FROM_PLACE = {
@@ -99,7 +99,8 @@ class Word:
         return [self._form(item) for item in items] if len(items) > 1 else []
 
     def _form(self, item: str) -> Form:
-        lead, equation, more = texts_of(inspect.getdoc(blocks[item]) or "", self.symbols)
+        paragraphs = [inspect.getdoc(blocks[item]) or "", *same_equation(item)]
+        lead, equation, more = texts_of("\n\n".join(paragraphs), self.symbols)
         return Form(item, lead, equation, more, ", ".join(nulls(item)), small_pictures(item), values(item))
 
     @property

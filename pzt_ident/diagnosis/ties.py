@@ -61,9 +61,10 @@ def rests_on_own_bounds(before: Fit, fit: Fit) -> bool:
 
 
 def nearness_of(effect: str) -> int:
-    """How near to the reading an effect acts in its first form, which says what it is; one in the equation of an
-    operator or of mechanics is between what acts on the drive and what acts on the displacement."""
-    return getattr(blocks[word_of(effect)], "place", Place.OPERATOR)
+    """How near to the reading an effect acts in its first form, which says what it is, or that of which it is the
+    equation; one in the equation of an operator or of mechanics is between what acts on the drive and what acts on the
+    displacement."""
+    return getattr(blocks[word_of(blocks[effect].equation_of or effect)], "place", Place.OPERATOR)
 
 
 def generalises(rival: Fit, fit: Fit) -> bool:

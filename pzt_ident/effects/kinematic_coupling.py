@@ -36,11 +36,11 @@ class OfVoltage(KinematicCoupling):
     """The other axis follows its voltage without hysteresis, as under charge control or in closed loop, and is as fast
     as this one: y1 <- M1 (f1 + d1 ratio u2) with the mechanics M1 of axis 1.
 
-    Yong, Moheimani, Kenton & Leang (2012), Rev. Sci. Instrum. 83, 121101. It is the equation of a coupling by voltage
-    (`cross_coupling.voltage`).
+    Yong, Moheimani, Kenton & Leang (2012), Rev. Sci. Instrum. 83, 121101.
     """
 
     place = Place.READOUT
+    equation_of = "cross_coupling.voltage"
     ratio = Parameter("1", (-5, 5), "Share of the other axis, moving by its voltage, in this axis' reading.", null=0)
 
 

@@ -65,7 +65,8 @@ class Block:
 
     An effect, a block that may be missing from a model, also declares which effects leave the same trace
     (look_alikes), the experiment that tells them apart (separate_by), and the remedy on the rig; a form of it which
-    look-alikes it is at the null of its own size (contains).
+    look-alikes it is at the null of its own size (contains), and of which form of another effect it is the equation
+    (equation_of), which is named where both fit.
     """
 
     kind: ClassVar[str] = "block"  # key of its functions in contract.kinds.KINDS
@@ -76,6 +77,7 @@ class Block:
     lead: ClassVar[int] = 0  # samples ahead of a record in which it acts on the memory, all else being at rest
     look_alikes: ClassVar[tuple[str, ...]] = ()
     contains: ClassVar[tuple[str, ...]] = ()
+    equation_of: ClassVar[str] = ""
     leaves: ClassVar[tuple[str, ...]] = ()  # effects whose trace is left where its own form is another one
     separate_by: ClassVar[str] = ""
     remedy: ClassVar[str] = ""

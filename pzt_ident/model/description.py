@@ -44,6 +44,17 @@ def headline(item: type) -> str:
     return " ".join(line.strip() for line in paragraph[:end])
 
 
+def form_headline(effect: str) -> str:
+    """The headline of an effect in one of its forms, and that of which it is the equation."""
+    return " ".join([headline(blocks[effect]), *same_equation(effect)])
+
+
+def same_equation(effect: str) -> list[str]:
+    """The sentence that says of which form of another effect this one is the equation; none where it is of none."""
+    other = blocks[effect].equation_of
+    return [f"It is the equation of `{other}`, which is named where both fit."] if other else []
+
+
 def summary(item: type) -> str:
     """What a block or optimizer is, in a few words: the first paragraph of its file, else its own headline."""
     file = inspect.getdoc(sys.modules[item.__module__]) or ""
@@ -79,7 +90,7 @@ def _block(name: str) -> Facts:
     facts: Facts = {"name": name, "kind": kind, "doc": inspect.getdoc(block)}
     if kind == "effects":
         facts |= {key: getattr(block, key) for key in ("look_alikes", "separate_by", "remedy")}
-        facts["forms"] = [{"item": item, "doc": headline(blocks[item])} for item in blocks.forms(name)]
+        facts["forms"] = [{"item": item, "doc": form_headline(item)} for item in blocks.forms(name)]
     if issubclass(block, Term):
         return facts | {"parameters": _parameters_of_effect(word_of(name))}
     forms = [block, *(block.make(**{word: value}) for word, value in _forms(block))]

@@ -72,7 +72,9 @@ def check_loaded(block: Any, known: Any) -> None:
     try_functions(block)
     check_identity(block)
     references = [(where, word) for where in ("look_alikes", "leaves") for word in getattr(block, where)]
-    references += [("contains", word) for form in (block, *block.forms.values()) for word in form.contains]
+    forms = (block, *block.forms.values())
+    references += [("contains", word) for form in forms for word in form.contains]
+    references += [("equation_of", form.equation_of) for form in forms if form.equation_of]
     references += [(word, item.effect) for word, item in parameters(block).items() if item.effect]
     for where, word in references:
         word = word.partition(".")[0]

@@ -27,7 +27,7 @@ TEXT, COUNT = "a text", "a whole number from 1 on"
 TUPLE = 'a tuple of words, such as `("creep",)`'
 ATTRIBUTES = {
     TUPLE: ("look_alikes", "contains", "leaves", "compared_with_drive", "refines", "alike", "solved", "weights"),
-    TEXT: ("separate_by", "remedy", "violation"),
+    TEXT: ("separate_by", "remedy", "violation", "equation_of"),
     COUNT: ("oversample",),
     "a tuple of numbers": ("sizes",),
     "a table by parameter": ("trials",),
