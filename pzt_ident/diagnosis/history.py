@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,14 +50,17 @@ def with_history(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fi
     share = share_explained(first.total, best[1].total, case.floor) if best else 0.0
     least = DECISIVE if best and any(removed_rms(fit.total, best[1].total) < 0 for fit in effects) else LEAST_SHARE
     if best and share >= least:
-        if not adequate(case, first, best[1]) and any(
-            promises_most(case, first, fit, NEARLY_ALL) for fit in effects[:1]
-        ):
+        if not adequate(case, first, best[1]) and lead_on(case, first, effects):
             return None
         given_up = best[1].identify > rival
         return (best[0], refit(best[0], best[1], first.effects, {})) if given_up else best
     behind = (history_behind(case, first, fit) for fit in effects[:TRIED])
     return next((found for found in behind if found), None)
+
+
+def lead_on(case: Case, first: Fit, effects: Sequence[Fit]) -> bool:
+    """Whether an effect promises nearly all that the best of some fits with another one leaves."""
+    return bool(effects) and promises_most(case, first, effects[0], NEARLY_ALL)
 
 
 def history_behind(case: Case, first: Fit, end: Fit) -> tuple[Case, Fit] | None:
