@@ -78,7 +78,7 @@ def _rows(schema: dict[str, Any], about: Mapping[str, str]) -> list[Key]:
 
 def _default(item: dict[str, Any]) -> str:
     value = item.get("default")
-    return "" if value in (None, [], {}) or isinstance(value, dict) else json.dumps(value)
+    return "" if value in (None, "", [], {}) or isinstance(value, dict) else json.dumps(value)
 
 
 def _value(item: dict[str, Any]) -> str:

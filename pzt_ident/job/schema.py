@@ -44,10 +44,10 @@ class Job(BaseModel):
     name: Annotated[
         str,
         Field(pattern=r"^\w([\w .+-]*\w)?$", description="Results go to `results/NAME`; the file's name if not given."),
-    ]
+    ] = ""
     records: Annotated[tuple[Source, ...], Field(description="The measurements.")]
     channels: Annotated[Channels, Field(description="Which columns are time, drives and responses.")]
-    model: Annotated[tuple[Item, ...], Field(description="Blocks: a hysteresis operator and mechanics.")]
+    model: Annotated[tuple[Item, ...], Field(description="Blocks: a hysteresis operator, alone or with mechanics.")]
     effects: Annotated[
         tuple[str, ...], Field(description="Effects beside the model, such as `creep` or `creep.voltage`.")
     ] = ()
