@@ -56,10 +56,9 @@ def show_floors(facts: dict[str, Any]) -> None:
 
 
 def show_notes(records: Iterable[dict[str, Any]]) -> None:
-    """The notes of each record."""
-    for record in records:
-        for note in record["notes"]:
-            click.echo(f"{record['name']}: {note}")
+    """The notes of each record, and an empty line behind them."""
+    notes = [f"{record['name']}: {note}" for record in records for note in record["notes"]]
+    click.echo("".join(f"{note}\n" for note in notes), nl=bool(notes))
 
 
 _LEAGUE = {

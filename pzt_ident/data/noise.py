@@ -23,6 +23,7 @@ COARSE = 2.2  # times the noise at rest: a step of the readings of which a rest 
 LIKE = 1.5  # times that noise: what windows may say instead, in which the response goes through many steps
 SAME_CLOCK = 0.1  # sample times: records that are farther apart at their ends were not sampled alike
 HALF = 0.51  # of a decimal, by which a rounded value is beside it
+WEAK = "short windows (weak)"  # the source of a floor that is taken while the stage moves
 CHANGED = 3.0  # times the noise at rest: what repeated records differ by more is a stage that changed
 
 
@@ -96,7 +97,7 @@ def floor_of_two_periods(signals: list[Signal], step: float) -> Floor:
 
 
 def floor_in_windows(signals: list[Signal], step: float) -> Floor:
-    return floor_of(window_noise(signals, with_quantiser(0.0, step)), "short windows (weak)", step)
+    return floor_of(window_noise(signals, with_quantiser(0.0, step)), WEAK, step)
 
 
 def floor_of(value: float, source: str, step: float) -> Floor:

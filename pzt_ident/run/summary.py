@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from pzt_ident.data.noise import noise_floor
+from pzt_ident.data.noise import WEAK, noise_floor
 from pzt_ident.data.record import Record
 from pzt_ident.data.units import factor
 from pzt_ident.job.schema import Job
@@ -32,7 +32,7 @@ def summary_of(job: Job) -> Facts:
         "records": [_record(record) for record in records],
         "axes": [_axis(records, axis) for axis in range(len(records[0].axes))],
         "parameters": _parameters(problem),
-        "notes": [*far_off(problem), *_products(problem)],
+        "notes": [*far_off(problem), *_products(problem), *_weak_floors(records), *_unmeasured(records[0])],
         "runs": [task.run for task in tasks],
         "evaluations": sum(task.stop["evaluations"] for task in tasks),
     }
@@ -84,3 +84,19 @@ def _products(problem: Problem) -> Iterator[str]:
     modes = next((block.name for block in problem.model.blocks if issubclass(block, Modes)), None)
     for _, entry in free_gains(problem) if modes else ():
         yield f"{entry.name} and the shapes of {modes} are known only as products: give {entry.name} a `value`"
+
+
+def _weak_floors(records: list[Record]) -> Iterator[str]:
+    """A sentence on each noise floor that is taken while the stage moves."""
+    for axis in records[0].measured:
+        if noise_floor(records, axis).source == WEAK:
+            yield (
+                f"{records[0].axes[axis]}: the noise floor is taken while the stage moves, where slow noise passes for "
+                "signal and fast signal for noise: record a rest of a second or one drive twice to know it"
+            )
+
+
+def _unmeasured(record: Record) -> Iterator[str]:
+    """A sentence on each axis without a response."""
+    for axis in sorted({*range(len(record.axes))} - {*record.measured}):
+        yield f"{record.axes[axis]} has no response: its drive matters where a coupling takes it to another axis"

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import stage
@@ -43,3 +44,10 @@ def test_a_mass_in_another_unit_is_asked_about(tmp_path, setting, told):
 def test_a_gain_that_is_free_beside_the_shapes_of_modes_is_told(tmp_path, setting, told):
     notes = notes_of(tmp_path, "[bouc_wen, modal]", f"{{bouc_wen.gain: {{{setting}}}}}")
     assert ["known only as products" in note for note in notes] == [True] * told
+
+
+def test_a_noise_floor_that_is_taken_while_the_stage_moves_is_told(tmp_path):
+    chirp = 60 - 60 * np.cos(np.arange(4000) ** 1.2 / 3000)
+    records = stage.records({}, drives=[chirp, 0.8 * chirp])
+    (note,) = summary_of(load_job(stage.write(tmp_path, records, stage.JOB)))["notes"]
+    assert note.startswith("x: the noise floor is taken while the stage moves")
