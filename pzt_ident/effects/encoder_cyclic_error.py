@@ -23,7 +23,7 @@ class EncoderCyclicError(Block):
     pitch = Parameter(
         "response",
         (0.01, 0.8),
-        "Period of the grating's signal, p, of which the stroke holds five quarters.",
+        "Period of the grating's signal: the stroke is at least one and a quarter of it, p.",
         scale="log",
     )
     look_alikes = ("quadratic_gain", "cubic_stiffness", "saturation")

@@ -10,8 +10,8 @@ class ThermalRelaxation(Term):
     """Thermally activated switching lets the hysteretic part relax: dh/dt <- dh/dt - h / tau, or with log time.
 
     Smith, Seelecke, Ounaies & Smith (2003), J. Intell. Mater. Syst. Struct. 14, 719, in its simplest form:
-    exponential for Bouc-Wen, logarithmic in time for plays. Unlike creep it grows not with the step but with h, and a
-    small step back stops it.
+    exponential for Bouc-Wen, logarithmic in time for the coercive fields of the homogenized energy model. Unlike creep
+    it grows not with the step but with h, and a small step back stops it.
     """
 
     form = Form("linear", ("linear", "activated"), "How the rate goes with the hysteretic part.")

@@ -23,7 +23,7 @@ def words(kind: str) -> dict[str, str]:
     """The words of a kind (`blocks`, `effects` or `optimizers`) with the headlines of their docstrings."""
     if kind == "optimizers":
         return {item.name: headline(item) for item in optimizers}
-    headlines = {item.name: headline(item) for item in blocks if blocks.is_effect(item.name) == (kind == "effects")}
+    headlines = {item.name: _listed(item) for item in blocks if blocks.is_effect(item.name) == (kind == "effects")}
     return (_terms() if kind == "effects" else {}) | headlines
 
 
@@ -42,6 +42,11 @@ def headline(item: type) -> str:
     paragraph = (inspect.getdoc(item) or "").partition("\n\n")[0].splitlines()
     end = next((place for place, line in enumerate(paragraph, start=1) if line.endswith(".")), len(paragraph))
     return " ".join(line.strip() for line in paragraph[:end])
+
+
+def _listed(block: type[Any]) -> str:
+    """The headline of a block, and that it is a fault of the set-up."""
+    return f"{headline(block)} A fault of the set-up: told, never added." if block.in_setup else headline(block)
 
 
 def form_headline(effect: str) -> str:
@@ -121,7 +126,7 @@ def _choice(block: type[Any], word: str, value: str) -> str:
 
 def _parameters(block: type[Any]) -> list[Facts]:
     """The parameters of a block in all its forms, or in the form that was chosen."""
-    keys = ("unit", "bounds", "null", "value", "scale", "effect", "per_record", "doc")
+    keys = ("unit", "bounds", "null", "value", "scale", "effect", "per_record", "adds_to", "doc")
     variants = _variants(block)
     rows: list[Facts] = []
     for name, item in {name: item for found in reversed(variants.values()) for name, item in found.items()}.items():

@@ -318,6 +318,7 @@ class TestWords:
             "scale": "linear",
             "effect": None,
             "per_record": False,
+            "adds_to": None,
             "doc": "",
         }
 
