@@ -23,6 +23,7 @@ LEAST = 8  # quiet stretches or windows: fewer are chance
 DEPENDENT = 1e-6  # of the largest singular value: columns of less are one
 TYPICAL = 8  # windows whose bases stand for all
 MOST_LINES, NEAR, OWN = 3, 25, 3  # lines over time, the frequencies that stand around each, and those that are its own
+LONGEST = 2**17  # samples of a record in which lines are looked for
 
 
 class Signal(NamedTuple):
@@ -139,13 +140,11 @@ def courses_of(drives: Array) -> Array:
 def lines_of(signals: list[Signal]) -> list[float]:
     """Frequencies, Hz, of the lines that stand out most, such as a hum and its harmonics, in the third differences of
     the signals, which what is smooth is hardly in, and are in no drive of theirs."""
-    stand_out = [
-        line
-        for signal in signals
-        for line in lines_in(signal.response, signal.dt)
-        if not any(is_beside(line, other) for drive in signal.drives for other in lines_in(drive, signal.dt))
-    ]
-    lines: list[Line] = []
+    stand_out, lines = list[Line](), list[Line]()
+    for signal in signals:
+        of_drives = [line for drive in signal.drives for line in lines_in(drive, signal.dt)]
+        own = lines_in(signal.response, signal.dt)
+        stand_out += [line for line in own if not any(is_beside(line, other) for other in of_drives)]
     for line in sorted(stand_out, reverse=True):
         if len(lines) < MOST_LINES and not any(is_beside(line, other) for other in lines):
             lines.append(line)
@@ -157,9 +156,9 @@ def is_beside(line: Line, other: Line) -> bool:
 
 
 def lines_in(signal: Array, dt: float) -> list[Line]:
-    """The lines in the third differences of a signal, whose power is LINE_RATIO times the mean of the frequencies
-    around them, in the order of their frequencies."""
-    differences = np.diff(signal, 3)
+    """The lines in the third differences of a signal, as far as they are looked at, whose power is LINE_RATIO times the
+    mean of the frequencies around them, in the order of their frequencies."""
+    differences = np.diff(signal[:LONGEST], 3)
     if differences.size <= 6 * NEAR:
         return []
     power = np.abs(np.fft.rfft(differences * np.hanning(differences.size))) ** 2

@@ -25,14 +25,15 @@ def summary_of(job: Job) -> Facts:
     statement = Statement(job)
     records, problem = statement.records, statement.problem
     tasks = tasks_of(statement, job.folder)
+    axes = [_axis(records, axis) for axis in range(len(records[0].axes))]
     return {
         "name": job.name,
         "hash": job.hash,
         "model": [block.name for block in problem.model.blocks],
         "records": [_record(record) for record in records],
-        "axes": [_axis(records, axis) for axis in range(len(records[0].axes))],
+        "axes": axes,
         "parameters": _parameters(problem),
-        "notes": [*far_off(problem), *_products(problem), *_weak_floors(records), *_unmeasured(records[0])],
+        "notes": [*far_off(problem), *_products(problem), *_weak_floors(axes), *_unmeasured(axes)],
         "runs": [task.run for task in tasks],
         "evaluations": sum(task.stop["evaluations"] for task in tasks),
     }
@@ -86,17 +87,18 @@ def _products(problem: Problem) -> Iterator[str]:
         yield f"{entry.name} and the shapes of {modes} are known only as products: give {entry.name} a `value`"
 
 
-def _weak_floors(records: list[Record]) -> Iterator[str]:
+def _weak_floors(axes: list[Facts]) -> Iterator[str]:
     """A sentence on each noise floor that is taken while the stage moves."""
-    for axis in records[0].measured:
-        if noise_floor(records, axis).source == WEAK:
+    for axis in axes:
+        if axis.get("noise_floor_source") == WEAK:
             yield (
-                f"{records[0].axes[axis]}: the noise floor is taken while the stage moves, where slow noise passes for "
-                "signal and fast signal for noise: record a rest of a second or one drive twice to know it"
+                f"{axis['name']}: the noise floor is taken while the stage moves, where slow noise passes for signal, "
+                "fast signal for noise: record a rest of a second or one drive twice to know it"
             )
 
 
-def _unmeasured(record: Record) -> Iterator[str]:
+def _unmeasured(axes: list[Facts]) -> Iterator[str]:
     """A sentence on each axis without a response."""
-    for axis in sorted({*range(len(record.axes))} - {*record.measured}):
-        yield f"{record.axes[axis]} has no response: its drive matters where a coupling takes it to another axis"
+    for axis in axes:
+        if axis["response_unit"] is None:
+            yield f"{axis['name']} has no response: its drive matters where a coupling takes it to another axis"
