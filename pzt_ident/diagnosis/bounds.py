@@ -12,7 +12,7 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, removed_rms, removes_enough
 from pzt_ident.diagnosis.fit import NO_WORSE, Fit, fit_at
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.refit import refine_steps
+from pzt_ident.diagnosis.refit import SCANNED, refine_steps
 from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.undetermined import undetermined_mechanics
 from pzt_ident.model.chain import Entry
@@ -25,7 +25,6 @@ Array = NDArray[np.float64]
 SLIP = 0.08  # of a bound, by which a data sheet may be beside the truth
 FAR_SLIP = 0.3  # by which it may be where nothing else is missing
 DECADES = 100.0  # times a bound on a logarithmic scale that the job does not give: a guess of where a search begins
-SCANNED = 0.82 ** np.arange(1, 15)  # of the range of a parameter that is freed
 FOLLOWING = 3  # steps
 BESIDE = 0.02  # of the range of such a guess: that close to its bound a fit is as good as on it
 

@@ -20,21 +20,23 @@ Array = NDArray[np.float64]
 STEP_TOLERANCE = 0.05  # of the noise, or twice as much of the misfit: a step is halved where that changes more
 FINEST = 8  # steps per sample
 AT_NOISE = 1.05  # noise floors: what leaves no more is fitted from no other guess
+SCANNED = 0.82 ** np.arange(1, 15)  # of a guess, or of the range of a parameter, where it is tried
 SHARES = 0.5 ** np.arange(15)  # of a range, at which the amount of a part is tried
 
 
 def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, float], rival: float = np.inf) -> Fit:
     """The model with other effects, started from the parameters of the fit `before` and from a guess (user's units) of
     the new ones. The new effects act on all axes or on the measured ones only, whichever fits better. A guess that
-    leads to a model which fits worse than the one it is added to is astray: the new effects then begin at their null.
-    rival: an RMSE that a refit which stays far above it is given up for."""
+    leads to a model which fits worse than the one it is added to is astray: the new effects then begin where the model
+    fits best on the way from the guess to their nulls. rival: an RMSE that a refit which stays far above it is given up
+    for."""
     problem = case.problem(effects, before.steps)
     point = start_of(problem, before, guess)
     key = (effects, before.steps, point.tobytes(), rival)
     if key not in case.refits:
         fit = _best_of_axes(case, before, effects, problem, point, rival)
         if leads_astray(before, fit):
-            point = start_of(problem, before, guess | nulls_of_new(problem, before))
+            point = start_on_the_way(problem, before, guess)
             fit = min(fit, _best_of_axes(case, before, effects, problem, point, rival), key=lambda each: each.identify)
         case.refits[key] = fit
     fit = case.refits[key]
@@ -46,6 +48,17 @@ def leads_astray(before: Fit, fit: Fit) -> bool:
     """Whether a fit with all that another one has, and more, is worse."""
     holds = {*before.problem.names} <= {*fit.problem.names} and {*before.effects} <= {*fit.effects}
     return holds and not fit.identify <= (1 + NO_WORSE) * before.identify
+
+
+def start_on_the_way(problem: Problem, before: Fit, guess: dict[str, float]) -> Array:
+    """The point with the new amounts at that share of a guess, from all to nothing, which leaves least: how large an
+    effect is that moves a resonance does not follow from its slope at the null."""
+    nulls = nulls_of_new(problem, before)
+    ways = [
+        {name: null + share * (guess.get(name, null) - null) for name, null in nulls.items()} for share in (*SCANNED, 0)
+    ]
+    points = np.array([start_of(problem, before, guess | way) for way in ways])
+    return np.asarray(points[int(np.argmin(problem.loss(points)))])
 
 
 def nulls_of_new(problem: Problem, before: Fit) -> dict[str, float]:
