@@ -98,13 +98,17 @@ def likeliest(case: Case, first: Fit) -> Fit | None:
 
 
 def simpler_first(candidates: list[Candidate]) -> list[Candidate]:
-    """The candidates in the order in which they are refitted: ahead of one with many amounts that explains most by its
-    score the best of the others, if that explains nearly as much. Many amounts follow anything a little better, and
-    take long."""
-    other = next((item for item in candidates if not has_many_amounts(blocks[item.score.effect])), None)
+    """The candidates in the order in which they are refitted: ahead of one with many amounts, or some of each record,
+    that explains most by its score the best of the others, if that explains nearly as much. Many amounts follow
+    anything a little better, and take long."""
+    other = next((item for item in candidates if not _follows_anything(item.score.effect)), None)
     if other is None or other.score.explained < AS_LIKELY * candidates[0].score.explained:
         return candidates
     return [other, *(item for item in candidates if item is not other)]
+
+
+def _follows_anything(effect: str) -> bool:
+    return has_many_amounts(blocks[effect]) or bool(blocks[effect].amounts())
 
 
 def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
