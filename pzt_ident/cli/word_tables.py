@@ -63,5 +63,5 @@ def _meaning(row: Facts) -> str:
     effect = "" if row["effect"] is None else f" With `{row['effect']}` only."
     per_record = " Each record has its own." if row["per_record"] else ""
     form = f" With `{row['form']}` only." if row["form"] else ""
-    apart = f" Seen only where the job knows `{row['adds_to']}` closely, to which it adds." if row["adds_to"] else ""
+    apart = f" Seen only where the job gives `{row['adds_to']}` a value or close bounds." if row["adds_to"] else ""
     return row["doc"] + fixed + effect + per_record + form + apart

@@ -71,7 +71,8 @@ def window_noise(signals: list[Signal], least: float) -> float:
     remainders += [remainder(signals, length, drives) for length in LENGTHS if length <= WITH_DRIVES]
     lines = lines_of(signals)
     period = 1 / (min(lines) * min(signal.dt for signal in signals)) if lines else np.inf
-    remainders += [remainder(signals, length, waves_of(signals, lines)) for length in LENGTHS if length > period]
+    waves = waves_of(signals, lines) if lines else []
+    remainders += [remainder(signals, length, waves) for length in LENGTHS if length > period]
     noise = [part for part in remainders if part and part.memory < MOST_MEMORY and part.roughness <= ROUGHER * white]
     if not noise:
         return white
@@ -169,7 +170,8 @@ def lines_in(signal: Array, dt: float) -> list[Line]:
     highest = np.max(np.lib.stride_tricks.sliding_window_view(np.pad(ratios, OWN), 2 * OWN + 1), axis=1)
     peaks = np.flatnonzero((ratios == highest) & (ratios > LINE_RATIO))
     before, at, after = (np.log(np.maximum(power[peaks + NEAR + side], np.finfo(float).tiny)) for side in (-1, 0, 1))
-    tops = peaks + NEAR + (after - before) / (4 * at - 2 * before - 2 * after)  # of the parabola through three
+    bends = np.maximum(4 * at - 2 * before - 2 * after, np.finfo(float).tiny)
+    tops = peaks + NEAR + np.clip((after - before) / bends, -1, 1)  # of the parabolas through three
     return [Line(float(ratios[peak]), float(top) * width, width) for peak, top in zip(peaks, tops, strict=True)]
 
 

@@ -108,6 +108,7 @@ def simpler_first(candidates: list[Candidate]) -> list[Candidate]:
 
 
 def _follows_anything(effect: str) -> bool:
+    """Whether an effect has amounts enough to take up much of whatever is left."""
     return has_many_amounts(blocks[effect]) or bool(blocks[effect].amounts())
 
 
