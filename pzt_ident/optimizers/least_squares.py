@@ -60,7 +60,7 @@ def descend(x: Array, answer: Array) -> Generator[Array, Array, None]:
     where it leads, unless one was just refused."""
     by_residuals, hessian = bool(np.ndim(answer)), None
     before: tuple[Array, Array] | None = None
-    damping, growth = 1e-3, GROWTH
+    damping, growth, movable, first = 1e-3, GROWTH, np.ones(x.size, dtype=bool), size(answer)
     steps, around = np.empty(0), None
     while True:
         if around is None:
@@ -73,12 +73,13 @@ def descend(x: Array, answer: Array) -> Generator[Array, Array, None]:
             answer = around[0]  # residuals of one batch are rotated together
             jacobian = ((around[1:] - answer) / steps[:, None]).T
             gradient, hessian = jacobian.T @ answer, jacobian.T @ jacobian
+            movable = 0.5 * STEP**2 * np.diag(hessian) <= first  # without what runs away
         else:
             gradient = (around - answer) / steps
             hessian = secant(hessian, before, x, gradient)
         before = x, gradient
         while True:
-            step = bounded_steps(x, gradient, hessian, damping)[0]
+            step = bounded_steps(x, gradient, hessian, damping, movable)[0]
             if np.abs(step).max() < SMALLEST or damping > 1e12:
                 return
             candidates = np.clip(x + np.outer([1.0, 0.25], step), 0, 1)
@@ -117,10 +118,10 @@ def bounded_steps(x: Array, gradient: Array, hessian: Array, dampings: ArrayLike
     """The step of each damping over the coordinates that are free to move, cut at the bounds: (dampings, free).
     movable: which may."""
     dampings = np.atleast_1d(dampings)
-    inward = ~(((x <= 0) & (gradient > 0)) | ((x >= 1) & (gradient < 0)))
-    scale = np.maximum(np.diag(hessian), 1e-12 * max(np.diag(hessian).max(), 1e-300))
+    inward = movable & ~(((x <= 0) & (gradient > 0)) | ((x >= 1) & (gradient < 0)))
+    scale = np.maximum(np.diag(hessian), 1e-12 * np.diag(hessian).max(where=inward, initial=1e-300))
     steps = np.zeros((len(dampings), x.size))
-    waiting = {tuple(movable & inward): np.arange(len(dampings))}
+    waiting = {tuple(inward): np.arange(len(dampings))}
     while waiting:
         word, chosen = waiting.popitem()
         free = np.array(word)

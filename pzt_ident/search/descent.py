@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pzt_ident.engine.simulator import Simulator
 from pzt_ident.optimizers.least_squares import bounded_steps
 from pzt_ident.search.problem import Problem, Squares, exact_squares
+from pzt_ident.search.stencil import NARROW
 
 Array = NDArray[np.float64]
 
@@ -61,6 +62,12 @@ def polish(problem: Problem, point: Array, evaluations: int = 2000) -> tuple[Arr
     return settled(narrowed, best), number * a_step + 1
 
 
+def steep(problem: Problem, jacobian: Array) -> NDArray[np.bool_]:
+    """Parameters along which the narrowest difference changes more than the whole response, (free,): a hysteresis that
+    runs away has no slope that a step can follow, such as where its share is zero and its decay is a growth."""
+    return np.asarray(np.linalg.norm(jacobian, axis=0) * NARROW > problem.swing)
+
+
 def settling(problem: Problem, point: Array, most: int) -> tuple[Array, int]:
     """Where so many steps end, or fewer where the loss falls no more, and how many they are."""
     number = 0
@@ -77,7 +84,8 @@ def settled(problem: Problem, point: Array) -> Array:
     loss, length = problem.best(point[None], point)[1], NEXT
     while 0 < loss < np.inf:
         jacobian, residual = (part / loss for part in problem.equations(point))
-        move = bounded_steps(point, jacobian.T @ residual, jacobian.T @ jacobian, DAMPINGS[0])[0]
+        movable = ~steep(problem, jacobian * loss)
+        move = bounded_steps(point, jacobian.T @ residual, jacobian.T @ jacobian, DAMPINGS[0], movable)[0]
         moved, least = problem.best(np.clip(point + move, 0, 1)[None], point)
         if not np.abs(moved - point).max() < length / 2 or least > (1 + ROUNDING) * loss:
             break
@@ -96,7 +104,7 @@ def steps(
     """Steps of Levenberg and Marquardt: points of lower and lower loss in the unit cube, their losses, and by which
     share each fell, until none is lower or the residuals, if they were linear, would promise none that falls by the
     least. squares: by which losses are told from each other."""
-    movable, loss = np.arange(point.size) != held, np.nan
+    loss = np.nan
     while going():
         problem = problem.begun_at(point)
         jacobian, residual = problem.equations(point, central=False)
@@ -105,6 +113,7 @@ def steps(
             break
         jacobian, residual = jacobian / loss, residual / loss
         gradient, curvature = jacobian.T @ residual, jacobian.T @ jacobian
+        movable = (np.arange(point.size) != held) & ~steep(problem, jacobian * loss)
         moves = np.clip(bounded_steps(point, gradient, curvature, DAMPINGS, movable), -FARTHEST, FARTHEST)
         if 1 - np.linalg.norm(residual[:, None] + jacobian @ moves.T, axis=0).min() < least:
             break

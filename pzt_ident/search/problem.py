@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -74,6 +75,14 @@ class Problem(Cube):
     def scored(self) -> int:
         """Number of scored samples of the identification records, over all measured axes."""
         return sum(simulator.scored for simulator in self.simulators["identify"]) * len(self.model.measured)
+
+    @cached_property
+    def swing(self) -> float:
+        """The loss of a response that does not move."""
+        measured, simulators = list(self.model.measured), self.simulators["identify"]
+        squares = [s.scored * np.var(s.record.response[measured, s.record.settle :], axis=1) for s in simulators]
+        rmse = np.sqrt(np.sum(squares, axis=0) / sum(s.scored for s in simulators))
+        return float(self.loss_of(rmse[None])[0])
 
     def parameters(self, points: Array) -> Array:
         """All parameters of the model in SI units: (candidates, parameters)."""

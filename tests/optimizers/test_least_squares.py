@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
 
-from pzt_ident.optimizers.least_squares import LeastSquares, bounded_steps, secant
+from pzt_ident.optimizers.least_squares import LeastSquares, bounded_steps, descend, secant, size
 from pzt_ident.search.loop import Stop, optimize
 
 seeds = st.integers(0, 2**32 - 1)
@@ -65,6 +65,29 @@ def test_a_linear_problem_is_solved_at_once_even_on_its_bounds(seed):
     found = optimize(optimizer, 3, lambda x: np.linalg.norm(residuals(x), axis=1), 1, Stop(120), residuals=residuals)
     best = lsq_linear(matrix, target, bounds=(0, 1), tol=1e-14).x
     assert found.loss == pytest.approx(float(np.linalg.norm(matrix @ best - target)), rel=1e-9)
+
+
+@given(seed=seeds, slope=st.floats(1e12, 1e30))
+@settings(max_examples=20, deadline=None)
+def test_what_runs_away_hides_no_other_parameter(seed, slope):
+    """A linear problem beside a parameter at its bound that any step takes far away."""
+    rng = np.random.default_rng(seed)
+    matrix, target = rng.normal(size=(12, 3)), rng.normal(size=12)
+    residuals = lambda points: points[:, 1:] @ matrix.T - target + slope * points[:, :1]  # noqa: E731
+    start = np.append(0.0, rng.random(3))
+    end = start
+    steps = descend(start, residuals(start[None])[0])
+    points = next(steps)
+    for _ in range(60):
+        answers = residuals(points)
+        sizes = [size(answer) for answer in answers]
+        end = min([end, points[int(np.argmin(sizes))]], key=lambda point: size(residuals(point[None])[0]))
+        try:
+            points = steps.send(answers)
+        except StopIteration:
+            break
+    best = lsq_linear(matrix, target, bounds=(0, 1), tol=1e-14).x
+    assert np.linalg.norm(residuals(end[None])[0]) == pytest.approx(np.linalg.norm(matrix @ best - target), rel=1e-6)
 
 
 @given(seed=seeds)

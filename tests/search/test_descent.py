@@ -25,6 +25,7 @@ class Linear:
 
     def __init__(self, matrix, target):
         self.matrix, self.target, self.dimensions = matrix, target, matrix.shape[1]
+        self.swing = np.linalg.norm(target)
 
     def residual(self, point):
         return self.matrix @ point - self.target
@@ -112,6 +113,24 @@ def test_it_ends_where_scipy_ends(problem):
     np.testing.assert_allclose(point, theirs.x, atol=1e-6)
     assert problem.loss(point)[0] <= (1 + 1e-9) * problem.loss(theirs.x)[0]
     assert 0 < spent < 2000
+
+
+@pytest.mark.parametrize("share", [0, 1e-33, 1e-26, 1e-18])
+@pytest.mark.parametrize("descended", [descend, lambda problem, start: polish(problem, start)[0]])
+def test_beside_a_hysteresis_that_runs_away_all_else_is_found(share, descended):
+    """Without a share in the response, and with a decay of -0.8 / V over 130 V, which grows e^100 fold: the slope along
+    the share is a thousand times the response in the 10^26th part of its range."""
+    measured = record(WAVE, response=[TRUTH["bouc_wen.gain"] * WAVE])
+    problem = Problem(Chain([blocks["bouc_wen"]], "x", [0]), [measured])
+    names = {"bouc_wen.gain": 0.1e-6, "bouc_wen.alpha": share, "bouc_wen.beta": 0.0, "bouc_wen.gamma": 0.8}
+    start = problem.unit_point(names)
+    assert problem.loss(start)[0] > 0.1 * problem.swing
+    assert problem.loss(descended(problem, start))[0] < 1e-6 * problem.swing
+
+
+def test_the_swing_is_the_loss_of_a_response_that_does_not_move(problem):
+    flat = problem.unit_point({name: 1e-30 if name == "bouc_wen.gain" else value for name, value in TRUTH.items()})
+    assert problem.swing == pytest.approx(problem.loss(flat)[0], rel=1e-12)
 
 
 def test_its_equations_are_those_of_all_samples(problem):

@@ -11,7 +11,7 @@ class Toy:
     """Residuals that are a function of the unit cube."""
 
     def __init__(self, residual, dimensions):
-        self.residual, self.dimensions = residual, dimensions
+        self.residual, self.dimensions, self.swing = residual, dimensions, 1.0
 
     def residuals(self, points):
         return np.array([self.residual(point) for point in np.atleast_2d(points)])
