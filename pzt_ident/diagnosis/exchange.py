@@ -13,7 +13,7 @@ from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.limit import is_limited, own_bounds
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.possible import applicable, fitting_forms
-from pzt_ident.diagnosis.refit import refit, refit_beside
+from pzt_ident.diagnosis.refit import AT_NOISE, refit, refit_beside
 from pzt_ident.diagnosis.score import scorer_of
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explained_share
@@ -163,8 +163,8 @@ def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str], as_ri
 
 def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener) -> None:
     """Set the rivals of the effects in the last model by refits beside all the other effects, with a step to a tied one
-    that has fewer parameters, or to the first name of a model that has two. Those of a single effect are known where
-    it is the last that was added."""
+    that has fewer parameters, or to the first name of a model that has two, but from the noise to none that leaves
+    more. Those of a single effect are known where it is the last that was added."""
     now, last = steps[-1].fit, steps[-1]
     added = now.effects[len(first.effects) :]
     known = added == (last.added,) and last.removed is None
@@ -173,7 +173,9 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
         fits = rivals_in_place(case, now, effect, step.tied, in_every_form=len(added) > 1)
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
         rivals = {effect: now} | {fit.effects[-1]: fit for fit in tied}
-        taken = min(rivals, key=partial(simplicity, case, now, rivals))
+        level = AT_NOISE * case.floor
+        alike = [item for item, fit in rivals.items() if now.total >= level or fit.total < level]
+        taken = min(alike, key=partial(simplicity, case, now, rivals))
         forms = fits_in_place(case, now, effect, other_forms(case, now, effect) if len(tied) < len(fits) else [])
         rivals |= {fit.effects[-1]: fit for fit in fits if is_twin(case, effect, forms, fit)}
         if taken != effect:

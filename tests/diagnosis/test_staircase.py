@@ -357,6 +357,25 @@ def test_beside_other_effects_too_the_simpler_of_tied_look_alikes_is_taken(monke
     assert told == steps[2:]
 
 
+@pytest.mark.parametrize(("own", "other", "taken"), [(1.0, 1.07, 0), (1.0, 1.04, 1), (1.06, 1.1, 1)])
+def test_a_simpler_one_that_leaves_the_noise_is_tied_and_not_taken(monkeypatch, own, other, taken):
+    words = "sensor_lag.second_order", "delay"
+    now, simpler = (
+        SimpleNamespace(effects=("creep", word), total=total, identify=total, freedom=freedom)
+        for word, total, freedom in zip(words, (own, other), (2, 1), strict=True)
+    )
+    fits = {"sensor_lag.second_order": [simpler]}
+    monkeypatch.setattr(exchange, "look_alikes", lambda case, now, effect, *_: [effect])
+    monkeypatch.setattr(exchange, "other_forms", lambda *arguments: [])
+    monkeypatch.setattr(
+        exchange, "fits_in_place", lambda case, now, effect, items, **_: fits.get(*items, []) if items else []
+    )
+    steps = [Step(now, "creep"), Step(now, words[0])]
+    exchange.find_rivals(SimpleNamespace(floor=1.0, budget=Budget()), SimpleNamespace(effects=()), steps, repr)
+    assert steps[-1].fit.effects == ("creep", words[taken])
+    assert {*steps[-1].tied} == {*words}
+
+
 def test_the_rivals_of_an_effect_that_is_alone_again_are_asked_for_anew(monkeypatch):
     def fitted(*effects, total=1.1):
         return SimpleNamespace(effects=effects, total=total, identify=total, freedom=3)
