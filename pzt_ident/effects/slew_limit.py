@@ -1,11 +1,15 @@
 """Amplifier whose current limits how fast the voltage of a capacitive load can change."""
 
-from math import inf
+from math import exp, inf, sqrt
 
-from pzt_ident.model.block import Block, Place
+from pzt_ident.model.block import Block, Place, expm1, log1p
 from pzt_ident.model.first_order_hold import decay
 from pzt_ident.model.parameter import Form, Parameter
 from pzt_ident.model.registry import blocks
+
+SHORTEST = 1e-6  # of a sample: a time constant that follows at once
+LINEAR = 1e-8  # of the pair's range: up to here its tanh is its argument
+FAR = 300.0  # times that range, where sinh is half of exp in all digits
 
 
 @blocks.register
@@ -18,7 +22,9 @@ class SlewLimit(Block):
 
     place = Place.SLEW
     form = Form(
-        "clip", ("clip", "lag", "two_sided"), "How the voltage approaches the command, and whether up and down alike."
+        "clip",
+        ("clip", "lag", "soft", "two_sided"),
+        "How the voltage approaches the command, and whether up and down alike.",
     )
     sizes = tuple(1.25**-k for k in range(42))
     slowness = Parameter("s/drive", (0, 0.3), "Capacitance over the greatest current.", null=0)
@@ -63,6 +69,38 @@ class SaturatingLag(SlewLimit):
         return y, u, y
 
 
+class SoftLimit(SaturatingLag):
+    """An amplifier whose differential input pair saturates: dU_a/dt = tanh(slowness (U - U_a) / tau) / slowness.
+
+    Solomon (1974), IEEE J. Solid-State Circuits 9, 314. Behind a held command sinh(slowness (U - U_a) / tau) fades by
+    exp(-dt / tau); the change of the command comes in part ahead of that and in part behind it, so that a step is exact
+    where the pair is linear, and second order in dt elsewhere.
+    """
+
+    def prepare(slowness, tau, dt):
+        keep, share = decay(tau, dt)
+        shortened = max(tau, SHORTEST * dt)
+        return slowness / shortened, dt / shortened, (1 - share) / (1 - keep)
+
+    def start(u, steep, fading, ahead):
+        return u, u
+
+    def step(y, before, u, steep, fading, ahead):
+        behind = before - y + ahead * (u - before)
+        left = (
+            faded(steep * abs(behind), fading) / steep if steep * abs(behind) > LINEAR else abs(behind) * exp(-fading)
+        )
+        y = u - (left if behind > 0 else -left) - (1 - ahead) * (u - before)
+        return y, u, y
+
+
+def faded(x, fading):
+    """asinh(sinh(x) exp(-fading)) for x > 0, also where sinh(x) overflows."""
+    grown = expm1(min(x, FAR))
+    sine = 0.5 * (grown + grown / (grown + 1)) * exp(-fading) if x < FAR else 0.5 * exp(min(x - fading, FAR))
+    return x - fading if x - fading > FAR else log1p(sine + sine * sine / (1 + sqrt(1 + sine * sine)))
+
+
 class TwoSided(SlewLimit):
     """An amplifier that sources another current than it sinks: -1 / (ratio slowness) <= dU_a/dt <= 1 / slowness.
 
@@ -88,4 +126,4 @@ class TwoSided(SlewLimit):
         return y, u, y
 
 
-SlewLimit.forms = {"lag": SaturatingLag, "two_sided": TwoSided}
+SlewLimit.forms = {"lag": SaturatingLag, "soft": SoftLimit, "two_sided": TwoSided}

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.signal import lsim, lti
 
 from pzt_ident.engine.simulator import simulate
@@ -126,6 +127,41 @@ def test_a_saturating_lag_is_the_lag_below_the_limit_and_the_limit_above_it():
     found = response(["slew_limit.lag"], held, step)
     assert np.diff(found).max() == pytest.approx(500 * 1e-3)
     assert found[100] == pytest.approx(50, abs=0.5 + 500 * 2e-3) and found[-1] == pytest.approx(50, abs=1e-9)
+
+
+def test_a_soft_limit_is_the_lag_of_small_signals_and_the_limit_of_a_short_one():
+    lag = alone("amplifier_lag", tau=2e-3)
+    for slowness in (0.0, 1e-14, 1e-9):
+        np.testing.assert_allclose(alone("slew_limit.soft", slowness=slowness, tau=2e-3), lag, atol=1e-9)
+    for tau in (0.0, 1e-9):
+        np.testing.assert_allclose(
+            alone("slew_limit.soft", slowness=1 / 2000, tau=tau), alone("slew_limit", slowness=1 / 2000), atol=0.02
+        )
+
+
+@pytest.mark.parametrize("slowness", [1 / 5000, 1 / 500, 1 / 5])
+def test_behind_a_step_a_soft_limit_has_its_closed_form(slowness):
+    """sinh(slowness (U - U_a) / tau) = sinh(slowness (U - U_0) / tau) exp(-t / tau)."""
+    held = {"slew_limit.slowness": slowness, "slew_limit.tau": 2e-3}
+    left = 50 - response(["slew_limit.soft"], held, np.append(0.0, np.full(300, 50.0)))[1:]
+    scaled, fading = slowness * left / 2e-3, np.arange(300) / 2
+    expected = (
+        np.arcsinh(np.sinh(np.minimum(scaled[0], 700)) * np.exp(-fading)) if scaled[0] < 700 else scaled[0] - fading
+    )
+    np.testing.assert_allclose(scaled, expected, rtol=1e-9, atol=1e-12)
+
+
+def test_a_soft_limit_follows_its_equation_with_the_square_of_the_step():
+    def slope(t, y):
+        return np.tanh((np.interp(t, T, DRIVE) - y) / (1500 * 2e-3)) * 1500
+
+    exact = solve_ivp(slope, (0, T[-1]), DRIVE[:1], t_eval=T, rtol=1e-10, atol=1e-10, max_step=2e-4).y[0]
+    errors = []
+    for finer in (4, 8):
+        fine = np.interp(np.arange((T.size - 1) * finer + 1) / finer, np.arange(T.size), DRIVE)
+        held = {"slew_limit.slowness": 1 / 1500, "slew_limit.tau": 2e-3}
+        errors.append(np.abs(response(["slew_limit.soft"], held, fine, dt=1e-3 / finer)[::finer] - exact).max())
+    assert errors[0] / errors[1] == pytest.approx(4, rel=0.2) and errors[1] < 1e-2
 
 
 @pytest.mark.parametrize("speed", [1e-3, 50.0])
