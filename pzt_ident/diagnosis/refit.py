@@ -11,6 +11,7 @@ from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import removed_rms
 from pzt_ident.diagnosis.fit import NO_WORSE, Fit, fit_at
 from pzt_ident.diagnosis.modes import mechanics_at_main_mode, mechanics_without_payload
+from pzt_ident.model.registry import blocks
 from pzt_ident.search.descent import FAR
 from pzt_ident.search.halving import change_by_halving
 from pzt_ident.search.problem import Problem
@@ -28,10 +29,11 @@ def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, fl
     """The model with other effects, started from the parameters of the fit `before` and from a guess (user's units) of
     the new ones. The new effects act on all axes or on the measured ones only, whichever fits better. A guess that
     leads to a model which fits worse than the one it is added to is astray: the new effects then begin where the model
-    fits best on the way from the guess to their nulls. rival: an RMSE that a refit which stays far above it is given up
+    fits best on the way from the guess to their nulls. One that leaves an amount at its null beside another begins at
+    the size of it that fits best. rival: an RMSE that a refit which stays far above it is given up
     for."""
     problem = case.problem(effects, before.steps)
-    point = start_of(problem, before, guess)
+    point = start_beside_nulls(problem, before, effects, guess)
     key = (effects, before.steps, point.tobytes(), rival)
     if key not in case.refits:
         fit = _best_of_axes(case, before, effects, problem, point, rival)
@@ -59,6 +61,28 @@ def start_on_the_way(problem: Problem, before: Fit, guess: dict[str, float]) -> 
     ]
     points = np.array([start_of(problem, before, guess | way) for way in ways])
     return np.asarray(points[int(np.argmin(problem.loss(points)))])
+
+
+def start_beside_nulls(problem: Problem, before: Fit, effects: tuple[str, ...], guess: dict[str, float]) -> Array:
+    """The point of a guess; what it leaves at its null, beside another amount of the last effect on the same axis,
+    begins at that of the effect's sizes which leaves least: a threshold, and what acts alike on either side of its
+    null, have no slope there."""
+    nulls, most = nulls_of_new(problem, before), dict(zip(problem.names, problem.upper.tolist(), strict=True))
+    moved = {axis_of(name) for name, null in nulls.items() if guess.get(name, null) != null}
+    resting = {name: null for name, null in nulls.items() if guess.get(name) == null and axis_of(name) in moved}
+    if not resting:
+        return start_of(problem, before, guess)
+    ways = [
+        {name: null + share * (most[name] - null) for name, null in resting.items()}
+        for share in (0, *blocks[effects[-1]].sizes)
+    ]
+    points = np.array([start_of(problem, before, guess | way) for way in ways])
+    return np.asarray(points[int(np.argmin(problem.loss(points)))])
+
+
+def axis_of(name: str) -> str:
+    """That of a parameter by its name; empty where there is one axis."""
+    return name.rsplit(".", 2)[0] if name.count(".") > 1 else ""
 
 
 def nulls_of_new(problem: Problem, before: Fit) -> dict[str, float]:

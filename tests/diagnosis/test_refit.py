@@ -81,6 +81,16 @@ def test_a_payload_begins_where_the_resonance_is_that_it_moves(times):
     assert load == pytest.approx(0.03, rel=0.2)
 
 
+@pytest.mark.parametrize("form", ["lag", "soft"])
+def test_a_limit_that_no_slope_leads_to_begins_where_the_model_fits_best(form):
+    """Beside a lag that is guessed already: below a limit nothing tells that there is one."""
+    known, word = {"slew_limit.slowness": 1.6e-3, "slew_limit.tau": 4e-3}, f"slew_limit.{form}"
+    case = Case(("bouc_wen",), (), stage.records(known, dt=1e-3, forms=[word], effects=["slew_limit"]), {})
+    fit = refit.refit(case, first_fit(case, 0), (word,), known | {"slew_limit.slowness": 0.0})
+    assert fit.values["slew_limit.slowness"] == pytest.approx(1.6e-3, rel=0.1)
+    assert fit.identify == pytest.approx(stage.NOISE, rel=0.1)
+
+
 def test_a_refit_without_an_effect_starts_with_what_it_adds_to_another_parameter():
     """Without the payload the moving mass has both, and the same resonance."""
     loaded = stage.case(model=("bouc_wen", "lumped"))
