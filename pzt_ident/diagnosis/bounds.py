@@ -247,16 +247,26 @@ def brought_back(case: Case, fit: Fit) -> Fit | None:
 def narrow_bounds_sentence(case: Case, fit: Fit) -> str:
     """A sentence about each parameter that lies beyond the bounds of the job; empty where none does."""
     given, text = case.problem(fit.effects, fit.steps, fit.measured_only), ""
+    beyond = beyond_names(case, fit)
     for i, name in enumerate(given.names):
-        value = fit.values.get(name, given.lower[i])  # mechanics that are left out lie beyond nothing
-        bound = min(max(value, given.lower[i]), given.upper[i])
-        if f"{value:.4g}" == f"{bound:.4g}":
+        if name not in beyond:
             continue
+        value, bound = beyond[name]
         unit = f" {given.units[i]}".removesuffix(" 1")
         named = any(word in case.specs for word in given.model.spellings(given.model.entries[given.free[i]]))
         whose = "in the job, which is too narrow" if named else "by default: give it bounds in the job"
         text += f" {name} is {value:.4g}{unit}, beyond its bound of {bound:.4g}{unit} {whose}."
     return text + freed_sentence(case, fit)
+
+
+def beyond_names(case: Case, fit: Fit) -> dict[str, tuple[float, float]]:
+    """The value of each parameter that lies beyond the bounds of the job, by name, and the bound, in the user's
+    units."""
+    given = case.problem(fit.effects, fit.steps, fit.measured_only)
+    ends = zip(given.names, given.lower.tolist(), given.upper.tolist(), strict=True)
+    values = {name: (fit.values.get(name, low), low, high) for name, low, high in ends}  # what is left out is in them
+    both = {name: (value, min(max(value, low), high)) for name, (value, low, high) in values.items()}
+    return {name: (value, bound) for name, (value, bound) in both.items() if f"{value:.4g}" != f"{bound:.4g}"}
 
 
 def freed_names(case: Case, fit: Fit) -> list[str]:

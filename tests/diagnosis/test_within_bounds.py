@@ -1,0 +1,50 @@
+"""A payload is told beside a bound that is too narrow, where either leads to the noise."""
+
+import numpy as np
+import pytest
+
+import stage
+from pzt_ident.diagnosis.bounds import Widened, beyond_bounds, beyond_names
+from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.diagnosis.within_bounds import adding_effects, within_bounds_sentence
+
+RINGING = np.repeat([0.0, 40.0, 10.0, 60.0, 0.0], 200)
+MADE = {"model": ("bouc_wen", "lumped"), "drives": [RINGING, 0.8 * RINGING], "dt": 2e-5, "steps": 1}
+
+
+def weighed(hidden, low, high, ruled_out=()):
+    """A stage of known mass whose stiffness has bounds, as shares of the true one."""
+    case = stage.case(hidden, {"lumped.mass": 0.15}, **MADE)
+    case = case.with_specs({"lumped.stiffness": Widened((low * 7e7, high * 7e7))})
+    case.ruled_out = ruled_out
+    return case
+
+
+def beyond(case):
+    """The fit of the model as given, with bounds as wide as it needs."""
+    first = first_fit(case, 0)
+    return beyond_bounds(case, first, first)[1]
+
+
+@pytest.mark.parametrize("load", [0.0, 0.006])
+def test_a_payload_and_a_stiffness_below_its_bound_are_told_as_one(load):
+    """A resonance at a known mass has k / m; 4 % less of it is either."""
+    case = weighed({"lumped.load": load} if load else {}, *((0.998, 1.002) if load else (1.04, 1.05)))
+    end = beyond(case)
+    assert list(beyond_names(case, end)) == ["lumped.stiffness"] and adding_effects(case, end)
+    assert within_bounds_sentence(case, end).startswith(" With load_mass the model fits as well within the bounds")
+    case.ruled_out = ("load_mass",)
+    assert "load_mass" not in within_bounds_sentence(case, end)
+
+
+def test_a_stiffness_above_its_bound_is_no_payload():
+    case = weighed({}, 0.94, 0.95)
+    end = beyond(case)
+    assert list(beyond_names(case, end)) == ["lumped.stiffness"]
+    assert within_bounds_sentence(case, end) == ""
+
+
+def test_of_a_model_within_its_bounds_nothing_is_said():
+    case = weighed({}, 0.9, 1.1)
+    end = first_fit(case, 0)
+    assert beyond_names(case, end) == {} and within_bounds_sentence(case, end) == ""
