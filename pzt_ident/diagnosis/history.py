@@ -54,7 +54,7 @@ def with_history(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fi
             return None
         given_up = best[1].identify > rival
         return (best[0], refit(best[0], best[1], first.effects, {})) if given_up else best
-    behind = (history_behind(case, first, fit) for fit in effects[:TRIED])
+    behind = (history_behind(case, first, fit, rival) for fit in effects[:TRIED])
     return next((found for found in behind if found), None)
 
 
@@ -63,10 +63,12 @@ def lead_on(case: Case, first: Fit, effects: Sequence[Fit]) -> bool:
     return bool(effects) and promises_most(case, first, effects[0], NEARLY_ALL)
 
 
-def history_behind(case: Case, first: Fit, end: Fit) -> tuple[Case, Fit] | None:
+def history_behind(case: Case, first: Fit, end: Fit, rival: float = np.inf) -> tuple[Case, Fit] | None:
     """The same where what was before the records shows behind the effects of a fit, most of what these leave; else
-    None."""
-    best = None if has_history(end) or not has_operator(case) else beside(case, end, rival=enough(case, end))
+    None. rival: as of `beside`."""
+    if has_history(end) or not has_operator(case):
+        return None
+    best = beside(case, end, rival=min(rival, enough(case, end)))
     if best is None or share_explained(end.total, best[1].total, case.floor) < DECISIVE:
         return None
     return best[0], refit(best[0], first, first.effects, {})

@@ -129,6 +129,9 @@ def test_behind_effects_what_was_before_has_what_would_be_enough_as_a_rival(aske
     first = first_fit(case, 0)
     assert has_history(history_behind(case, first, first)[1])
     assert share_explained(first.identify, asked[0][1], case.floor) == pytest.approx(DECISIVE)
+    asked.clear()
+    history_behind(case, first, first, rival=0.9 * history.enough(case, first))
+    assert asked[0][1] == 0.9 * history.enough(case, first)
 
 
 @pytest.mark.parametrize(("in_motion", "forms"), [(False, ["history"]), (True, ["history", "history.two"])])
