@@ -30,8 +30,7 @@ def refit(case: Case, before: Fit, effects: tuple[str, ...], guess: dict[str, fl
     the new ones. The new effects act on all axes or on the measured ones only, whichever fits better. A guess that
     leads to a model which fits worse than the one it is added to is astray: the new effects then begin where the model
     fits best on the way from the guess to their nulls. One that leaves an amount at its null beside another begins at
-    the size of it that fits best. rival: an RMSE that a refit which stays far above it is given up
-    for."""
+    the size of it that fits best. rival: an RMSE that a refit which stays far above it is given up for."""
     problem = case.problem(effects, before.steps)
     point = start_beside_nulls(problem, before, effects, guess)
     key = (effects, before.steps, point.tobytes(), rival)
@@ -81,7 +80,7 @@ def start_beside_nulls(problem: Problem, before: Fit, effects: tuple[str, ...], 
 
 
 def axis_of(name: str) -> str:
-    """That of a parameter by its name; empty where there is one axis."""
+    """The axis of a parameter, by its name; empty where there is one axis."""
     return name.rsplit(".", 2)[0] if name.count(".") > 1 else ""
 
 

@@ -87,9 +87,8 @@ class SoftLimit(SaturatingLag):
 
     def step(y, before, u, steep, fading, ahead):
         behind = before - y + ahead * (u - before)
-        left = (
-            faded(steep * abs(behind), fading) / steep if steep * abs(behind) > LINEAR else abs(behind) * exp(-fading)
-        )
+        x = steep * abs(behind)
+        left = faded(x, fading) / steep if x > LINEAR else abs(behind) * exp(-fading)
         y = u - (left if behind > 0 else -left) - (1 - ahead) * (u - before)
         return y, u, y
 

@@ -51,7 +51,8 @@ def improvement_of(
     undecided = dict.fromkeys(step.tied for step in ties(steps))
     reason += "".join(f" These data cannot tell {' from '.join(map(phrase_of, tied))}." for tied in undecided)
     reason += no_drive_sentence(job, case, [step.rivals for step in ties(steps)]) if undecided and not proposed else ""
-    reason += narrow_bounds_sentence(case, end) + within_bounds_sentence(case, end)
+    reason += narrow_bounds_sentence(case, end)
+    reason += within_bounds_sentence(case, end) if last["verdict"] != "unfinished" else ""
     reason += own_mechanics_sentence(case, end) + history_sentence(case, end)
     reason += caveats(case, end, reason)  # the last diagnosis may be of this fit
     return {

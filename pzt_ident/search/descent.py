@@ -83,8 +83,8 @@ def settled(problem: Problem, point: Array) -> Array:
     shorter: the loss tells half as many digits of it."""
     loss, length = problem.best(point[None], point)[1], NEXT
     while 0 < loss < np.inf:
-        jacobian, residual = (part / loss for part in problem.equations(point))
-        movable = ~steep(problem, jacobian * loss)
+        jacobian, residual = problem.equations(point)
+        movable, jacobian, residual = ~steep(problem, jacobian), jacobian / loss, residual / loss
         move = bounded_steps(point, jacobian.T @ residual, jacobian.T @ jacobian, DAMPINGS[0], movable)[0]
         moved, least = problem.best(np.clip(point + move, 0, 1)[None], point)
         if not np.abs(moved - point).max() < length / 2 or least > (1 + ROUNDING) * loss:
@@ -111,9 +111,9 @@ def steps(
         loss = float(np.linalg.norm(residual)) if np.isnan(loss) else loss
         if not 0 < loss < np.inf:
             break
+        movable = (np.arange(point.size) != held) & ~steep(problem, jacobian)
         jacobian, residual = jacobian / loss, residual / loss
         gradient, curvature = jacobian.T @ residual, jacobian.T @ jacobian
-        movable = (np.arange(point.size) != held) & ~steep(problem, jacobian * loss)
         moves = np.clip(bounded_steps(point, gradient, curvature, DAMPINGS, movable), -FARTHEST, FARTHEST)
         if 1 - np.linalg.norm(residual[:, None] + jacobian @ moves.T, axis=0).min() < least:
             break
