@@ -37,12 +37,12 @@ def show_word(facts: Facts) -> None:
         )
         if any("drive" in row["unit"] or "response" in row["unit"] for row in facts["parameters"]):
             click.echo(
-                "Numbers in units of drive and response are multiples of the data's own peak-to-peak values; in a job"
+                "Numbers in units of drive and response are multiples of the largest peak-to-peak value of a record to"
             )
             click.echo(
-                "they are in volts and micrometres, or what the files have. Bounds of response/drive have either sign"
+                "identify; in a job they are in volts and micrometres, or what the files have. Bounds of response/drive"
             )
-            click.echo("where the response does not rise with the drive.")
+            click.echo("have either sign where the response does not rise with the drive.")
     for title, key in (("Leaves the same trace as", "look_alikes"), ("To tell", "separate_by"), ("To do", "remedy")):
         if text := facts.get(key):
             click.echo(f"\n{title}: {text if isinstance(text, str) else ', '.join(text)}")
@@ -63,5 +63,5 @@ def _meaning(row: Facts) -> str:
     effect = "" if row["effect"] is None else f" With `{row['effect']}` only."
     per_record = " Each record has its own." if row["per_record"] else ""
     form = f" With `{row['form']}` only." if row["form"] else ""
-    apart = f" Seen only where the job gives `{row['adds_to']}` a value or close bounds." if row["adds_to"] else ""
-    return row["doc"] + fixed + effect + per_record + form + apart
+    apart = f" Seen only where the job gives `{row['adds_to']}` and the rest of its block values or close bounds."
+    return row["doc"] + fixed + effect + per_record + form + (apart if row["adds_to"] else "")

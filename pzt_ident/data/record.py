@@ -17,8 +17,9 @@ Use = Literal["identify", "validate"]
 class Channel:
     """Where a signal is in a file: by its name, its column or its dataset.
 
-    name: in the header, such as `u_x [V]`. column: counted from 1. unit: where it is not that in the header. dataset:
-    which one of a file with several. index: which part of an array. file: where it is not that of the record.
+    name: in the header, such as `u_x [V]`. column: counted from 1, of a table or an array of two dimensions. unit:
+    where it is not that in the header. dataset: which one of a file with several, such as an array of .npz or .mat.
+    index: which part of an array. file: where it is not that of the record.
     """
 
     name: str | None = None
