@@ -37,9 +37,11 @@ def is_tied(case: Case, effect: str, fit: Fit, rival: Fit) -> bool:
 
 
 def is_twin(case: Case, effect: str, forms: Collection[Fit], rival: Fit) -> bool:
-    """Whether a fit with a look-alike in the place of an effect is that with another form of the effect: a form that
-    the look-alike does not have tells nothing between them."""
-    twin = any(abs(fit.total - rival.total) < TWIN * case.floor for fit in forms)
+    """Whether a fit with a look-alike in the place of an effect is that with another form of the effect, which does not
+    contain the look-alike: a form that this does not have tells nothing between them."""
+    word = word_of(rival.effects[-1])
+    own = [fit for fit in forms if word not in blocks[fit.effects[-1]].contains]
+    twin = any(abs(fit.total - rival.total) < TWIN * case.floor for fit in own)
     return twin and are_look_alikes(effect, rival.effects[-1])
 
 

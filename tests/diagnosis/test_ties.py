@@ -34,6 +34,13 @@ def test_what_fits_as_another_form_of_an_effect_does_is_not_told_from_it(apart, 
     assert is_twin(CASE, "cross_coupling.voltage", [force], rival) == twin
 
 
+@pytest.mark.parametrize(("word", "twin"), [("amplifier_lag", False), ("sensor_lag", True)])
+def test_a_form_that_contains_a_look_alike_does_not_tie_another_form_with_it(word, twin):
+    """A limit that is never reached leaves its lag: of an amplifier, which says nothing of a limit that is."""
+    in_its_limit, rival = fit(8.0, 8.0, ["slew_limit.lag"]), fit(8.0, 8.0, [word])
+    assert is_twin(CASE, "slew_limit.soft", [in_its_limit], rival) == twin
+
+
 def test_a_form_of_more_parameters_than_the_best_effect_may_contain_it():
     lag = fit(1.0, effects=["amplifier_lag"], dimensions=5)
     assert generalises(fit(1.0, effects=["slew_limit.lag"], dimensions=6), lag)
