@@ -13,7 +13,13 @@ from pzt_ident.diagnosis.candidates import promises_most
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.contained import join_look_alikes, separate_accounts
 from pzt_ident.diagnosis.criteria import DECISIVE, FAR, adequate, clears_an_axis, removed_rms, removes_enough
-from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, forms_instead, remove_unneeded
+from pzt_ident.diagnosis.exchange import (
+    exchange_accounts,
+    exchange_any,
+    exchange_behind,
+    forms_instead,
+    remove_unneeded,
+)
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.merging import merge_effects
@@ -175,8 +181,11 @@ def next_steps(
 ) -> list[Step]:
     """The candidate, or what leads farther where no effect helps a fit that rests astray, but not to a known one;
     without a candidate a pair of effects, else an effect whose fit is restarted, else, once in a path, an effect in the
-    place of another. Empty where the path ends."""
+    place of another. Ahead of these an effect behind another form of what was added before. Empty where the path
+    ends."""
     now = steps[-1].fit
+    if behind := exchange_behind(case, first, now, [item.fit for item in diagnosis.candidates if item.fit]):
+        return behind
     if candidate is not None and candidate.fit is not None:
         word, fit = candidate.score.effect, candidate.fit
         for others in other_ways(case, first, now, diagnosis) if is_astray(case, first, now, fit) else ():

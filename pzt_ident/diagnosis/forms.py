@@ -199,6 +199,8 @@ def refit_other_forms(
     and its look-alikes in the forms that are not far from that by their scores: one may explain more in another. All
     that is refitted is added to the short list."""
     fits = [fit for item in shortlist for fit in item.refits.values()]
+    if unconfirmed(case, first, before, fits):
+        return
     passing = [fit for fit in fits if removes_enough(case, first, before, fit)]
     best = min(passing, key=lambda fit: fit.total, default=before)
     share = share_explained(before.identify, best.identify, case.floor)
@@ -245,6 +247,16 @@ def contending_forms(candidate: Candidate) -> list[Score]:
     """The forms that are not far from all of the misfit by their scores, and the first form beside them."""
     likely = [score for score in candidate.forms if score.explained >= NOT_ALL]
     return [score for score in candidate.forms if likely and (score in likely or score is candidate.forms[0])]
+
+
+def unconfirmed(case: Case, first: Fit, before: Fit, fits: Sequence[Fit]) -> Fit | None:
+    """The lowest of some fits on the identification records, where its effect, which is no first one and has not many
+    amounts, explains nearly all of these and the others do not confirm it; else None."""
+    few = [fit for fit in fits if not has_many_amounts(blocks[fit.effects[-1]])]
+    best = min(few, key=lambda fit: fit.identify, default=before)
+    nearly_all = share_explained(before.identify, best.identify, case.floor) >= NEARLY_ALL
+    confirmed = before.effects == first.effects or removes_enough(case, first, before, best)
+    return best if nearly_all and not confirmed else None
 
 
 def alternatives(case: Case, best: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
