@@ -30,6 +30,7 @@ from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.starts import at_a_glance, best_alias, first_fit, restart
 from pzt_ident.diagnosis.step import Doubt, Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE
+from pzt_ident.diagnosis.unmeasured import OWN, freed_mechanics
 from pzt_ident.diagnosis.verdict import Diagnosis, best_pair, diagnose, pair_behind
 from pzt_ident.model.registry import blocks, word_of
 
@@ -89,9 +90,10 @@ def climb(
         if joins(case, new[-1].fit, known):
             return None
         take(new)
-        if (wider := wider_bounds(case, first, steps[-1].fit)) and wider.case:
-            case = wider.case
-            take([wider])
+        for find in (wider_bounds, mechanics_of_each_axis):
+            if (changed := find(case, first, steps[-1].fit)) and changed.case:
+                case = changed.case
+                take([changed])
         if not adequate(case, first, steps[-1].fit) and not case.budget.allows("more effects", PROVING):
             break
         diagnosis = diagnose(case, steps[-1].fit, first)
@@ -99,8 +101,7 @@ def climb(
             take(settle(case, first, steps[-2].fit, steps[-1]))
             diagnosis = diagnose(case, steps[-1].fit, first)
         candidate = diagnosis.best
-    changed = next((step.case for step in reversed(steps) if step.case), None)
-    return Staircase(steps, diagnosis, case=changed)
+    return Staircase(steps, diagnosis, case=next((step.case for step in reversed(steps) if step.case), None))
 
 
 def complete(case: Case, first: Fit, steps: Sequence[Step], new: list[Step], unsettled: bool) -> bool:
@@ -134,6 +135,12 @@ def wider_bounds(case: Case, first: Fit, fit: Fit) -> Step | None:
     if stands_in(wide, case, after) or not are_too_narrow(case, wide, fit, after):
         return None
     return Step(after, explained=explained_share(case, fit, after), change=WIDER, case=wide)
+
+
+def mechanics_of_each_axis(case: Case, first: Fit, fit: Fit) -> Step | None:
+    """The step to mechanics of their own of axes without a response, where that is most of what a coupling leaves."""
+    freed = None if adequate(case, first, fit) else freed_mechanics(case, fit)
+    return freed and Step(freed[1], explained=explained_share(case, fit, freed[1]), change=OWN, case=freed[0])
 
 
 def stuck(steps: list[Step]) -> bool:

@@ -250,13 +250,14 @@ def contending_forms(candidate: Candidate) -> list[Score]:
 
 
 def unconfirmed(case: Case, first: Fit, before: Fit, fits: Sequence[Fit]) -> Fit | None:
-    """The lowest of some fits on the identification records, where its effect, which is no first one and has not many
-    amounts, explains nearly all of these and the others do not confirm it; else None."""
+    """Beside effects that were added before, the lowest of some fits on the identification records, where its effect,
+    which has not many amounts, explains nearly all of these and the others do not confirm it; else None."""
+    if before.effects == first.effects:
+        return None
     few = [fit for fit in fits if not has_many_amounts(blocks[fit.effects[-1]])]
     best = min(few, key=lambda fit: fit.identify, default=before)
     nearly_all = share_explained(before.identify, best.identify, case.floor) >= NEARLY_ALL
-    confirmed = before.effects == first.effects or removes_enough(case, first, before, best)
-    return best if nearly_all and not confirmed else None
+    return best if nearly_all and not removes_enough(case, first, before, best) else None
 
 
 def alternatives(case: Case, best: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:

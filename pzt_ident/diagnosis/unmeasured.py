@@ -11,6 +11,7 @@ from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE
 from pzt_ident.diagnosis.fit import Fit, fit_at
+from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.possible import applicable
 from pzt_ident.diagnosis.score import scorer_of
 from pzt_ident.model.block import Coupling, Place
@@ -33,14 +34,37 @@ def with_own_mechanics(case: Case, first: Fit) -> tuple[Case, Fit] | None:
     values |= {name: alike(first, name) for name in free}
     explained = 0.0
     for name in stiffnesses:
-        tried = [resonant(values, name, factor) for factor in np.geomspace(1 / REACH, REACH, TRIED)]
-        inside = [point for point in tried if free[name].bounds[0] <= point[name] <= free[name].bounds[1]]
+        inside = resonances(values, name, free[name])
         fits = [fit_at(first.effects, problem, problem.unit_point(point)) for point in inside]
         promised = [promise_of_coupling(own, fit) for fit in fits]
         explained = max(promised, default=0.0)
         values = inside[int(np.argmax(promised))] if explained else values
     start = fit_at(first.effects, problem, problem.unit_point(values), first.converged)
     return (own, start) if explained >= DECISIVE else None
+
+
+def freed_mechanics(case: Case, fit: Fit) -> tuple[Case, Fit] | None:
+    """The case in which these are free and a fit with a coupling in it, where that leaves less than half of what the
+    fit does; else None. Beside other effects a coupling may show what it does not show alone."""
+    free = own_mechanics(case) if any(issubclass(blocks[effect], Coupling) for effect in fit.effects) else {}
+    if not free:
+        return None
+    own = case.with_specs(free)
+    problem = own.problem(fit.effects, fit.steps, fit.measured_only)
+    values = fit.values | {name: alike(fit, name) for name in free}
+    for name in (name for name in free if name.endswith(STIFFNESS)):
+        inside = resonances(values, name, free[name])
+        losses = problem.loss(np.array([problem.unit_point(point) for point in inside]))
+        values = inside[int(np.argmin(losses))]
+    point = own.descend(problem, problem.unit_point(values))
+    freed = fit_at(fit.effects, problem, point, fit.converged, fit.measured_only)
+    return (own, freed) if share_explained(fit.total, freed.total, case.floor) >= DECISIVE else None
+
+
+def resonances(values: dict[str, float], name: str, free: Widened) -> list[dict[str, float]]:
+    """Parameters with other stiffnesses within bounds, lower and higher ones."""
+    tried = [resonant(values, name, factor) for factor in np.geomspace(1 / REACH, REACH, TRIED)]
+    return [point for point in tried if free.bounds[0] <= point[name] <= free.bounds[1]]
 
 
 def resonant(values: dict[str, float], name: str, factor: float) -> dict[str, float]:

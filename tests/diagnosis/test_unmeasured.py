@@ -11,12 +11,13 @@ from pzt_ident.diagnosis.bounds import bounds_that_changed
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.possible import fits
-from pzt_ident.diagnosis.refit import values_in
+from pzt_ident.diagnosis.refit import refit, values_in
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.unmeasured import (
     OWN,
     OWN_LOOPS,
+    freed_mechanics,
     own_hysteresis,
     own_mechanics,
     own_mechanics_sentence,
@@ -65,6 +66,29 @@ def test_a_coupling_shows_the_stiffness_of_an_axis_without_a_response(stiffness)
     assert end.values["y.lumped.stiffness"] == pytest.approx(stiffness, rel=0.01)
     assert "y.lumped.stiffness" in bounds_that_changed(case, end)
     assert f"y.lumped.stiffness is {str(stiffness)[0]}" in own_mechanics_sentence(case, end)
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "effect", "shown"),
+    [
+        (STIFFNESS, "kinematic_coupling", True),
+        (X["lumped.stiffness"], "kinematic_coupling", False),
+        (STIFFNESS, "sensor_lag", False),
+    ],
+)
+def test_a_coupling_beside_other_effects_shows_the_stiffness_of_an_axis_without_a_response(stiffness, effect, shown):
+    """Where it leaves most of the misfit until that is free; without a coupling nothing shows it."""
+    case = coupled(stiffness, share=2 * SHARE)
+    first = first_fit(case, 0)
+    known = {"kinematic_coupling.ratio": 2 * SHARE, "sensor_lag.tau": 1e-5}
+    now = refit(case, first, (effect,), {name: value for name, value in known.items() if name.startswith(effect)})
+    freed = freed_mechanics(case, now)
+    assert (freed is not None) == shown
+    if freed:
+        own, fit = freed
+        assert fit.effects == now.effects and fit.total < 1.1 * case.floor < now.total
+        assert fit.values["y.lumped.stiffness"] == pytest.approx(stiffness, rel=0.01)
+        assert freed_mechanics(own, fit) is None
 
 
 @pytest.mark.parametrize("share", [0.5, 1.0])
