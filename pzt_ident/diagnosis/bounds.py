@@ -24,6 +24,7 @@ Array = NDArray[np.float64]
 
 SLIP = 0.08  # of a bound, by which a data sheet may be beside the truth
 FAR_SLIP = 0.3  # by which it may be where nothing else is missing
+ON_THE_WAY = 0.2  # of the misfit, of which more than 1 - (1 - SLIP / FAR_SLIP)^2 is taken up if it is a parabola
 DECADES = 100.0  # times a bound on a logarithmic scale that the job does not give: a guess of where a search begins
 FOLLOWING = 3  # steps
 BESIDE = 0.02  # of the range of such a guess: that close to its bound a fit is as good as on it
@@ -39,15 +40,19 @@ class Widened:
 
 def beyond_bounds(case: Case, first: Fit, fit: Fit) -> tuple[Case, Fit] | None:
     """The case with wider bounds where a fit rests on bounds of the job, and the fit in it, if that removes enough;
-    None where it does not. Bounds that are still too narrow then are taken further if that leads to the noise."""
-    near = beyond_by(SLIP, case, first, fit)
-    farther = widened(case, fit, FAR_SLIP) and (near is None or stands_in(near[0], case, near[1]))
-    far = beyond_by(FAR_SLIP, case, first, fit) if farther else None
+    None where it does not. Bounds that are still too narrow then are taken further if that leads to the noise, which it
+    cannot where the first part of the way takes up little."""
+    beyond = beyond_by(SLIP, case, fit)
+    enough = beyond and (removes_enough(case, first, fit, beyond[1]) or are_decisive(case, fit, beyond[1]))
+    near = beyond if enough else None
+    leads_on = beyond is None or share_explained(fit.identify, beyond[1].identify, case.floor) >= ON_THE_WAY
+    farther = leads_on and widened(case, fit, FAR_SLIP) and (near is None or stands_in(near[0], case, near[1]))
+    far = beyond_by(FAR_SLIP, case, fit) if farther else None
     return far if far and adequate(case, first, far[1]) and not stands_in(far[0], case, far[1]) else near
 
 
-def beyond_by(slip: float, case: Case, first: Fit, fit: Fit) -> tuple[Case, Fit] | None:
-    """The same with bounds that are wider by a share of them."""
+def beyond_by(slip: float, case: Case, fit: Fit) -> tuple[Case, Fit] | None:
+    """The case with bounds that are wider by a share of them, and a fit in it; None where it rests on none."""
     specs = widened(case, fit, slip) | freed(case, fit.problem)
     if not specs:
         return None
@@ -55,9 +60,7 @@ def beyond_by(slip: float, case: Case, first: Fit, fit: Fit) -> tuple[Case, Fit]
     if key not in case.wider:
         wide = case.with_specs(specs)
         case.wider[key] = wide, continued(wide, fit)
-    wide, after = case.wider[key]
-    enough = removes_enough(case, first, fit, after) or are_decisive(case, fit, after)
-    return (wide, after) if enough else None
+    return case.wider[key]
 
 
 def are_decisive(case: Case, before: Fit, after: Fit) -> bool:

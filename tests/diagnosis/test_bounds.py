@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 import stage
-from made_fits import fit
+from made_fits import CASE, fit
 from pzt_ident.diagnosis import bounds, staircase
 from pzt_ident.diagnosis.bounds import (
     DECADES,
+    FAR_SLIP,
     SLIP,
     Widened,
     are_decisive,
@@ -242,6 +243,20 @@ def test_wider_bounds_that_help_too_little_are_no_account():
     case = bounded(0.9, 1.2)
     first = first_fit(case, 0)
     assert beyond_bounds(case, first, first) is None
+
+
+@pytest.mark.parametrize(("left", "slips"), [(9.5, [SLIP]), (8.0, [SLIP, FAR_SLIP])], ids=["little", "on the way"])
+def test_bounds_are_widened_far_only_where_the_first_part_of_the_way_takes_up_some_of_the_misfit(
+    monkeypatch, left, slips
+):
+    """A fit of 10 noise floors on a bound; what is wanted beyond both leaves half of it after a quarter of the way."""
+    tried = []
+    monkeypatch.setattr(bounds, "widened", lambda case, fit, slip: {"gain": slip})
+    monkeypatch.setattr(bounds, "beyond_by", lambda slip, case, rested: tried.append(slip) or (case, fit(left, left)))
+    monkeypatch.setattr(bounds, "removes_enough", lambda *fits: False)
+    monkeypatch.setattr(bounds, "are_decisive", lambda *fits: False)
+    assert beyond_bounds(CASE, fit(10.0, 10.0), fit(10.0, 10.0)) is None
+    assert tried == slips
 
 
 def test_bounds_that_keep_out_one_axis_are_widened_though_the_other_lacks_more():
