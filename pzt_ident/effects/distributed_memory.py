@@ -19,7 +19,7 @@ class DistributedMemory(Plays):
     """
 
     place = Place.READOUT
-    form = Form("plays", ("plays", "fine_plays", "bent_plays"), "How many plays, and what each adds.")
+    form = Form("plays", ("plays", "fine_plays", "bent_plays", "two_plays"), "How many plays, and what each adds.")
     refines = ("prandtl_ishlinskii",)
     branches = PLAYS
     weight = Parameter("1", (-0.5, 0.5), "Weight of the i-th play over the gain.", null=0, count=PLAYS)
@@ -78,4 +78,20 @@ class BentPlays(DistributedMemory):
         return u + total
 
 
-DistributedMemory.forms = {"fine_plays": FinePlays, "bent_plays": BentPlays}
+class TwoPlays(DistributedMemory):
+    """Two plays, as of joints with backlash: y = d (u + w_1 F_1[u] + w_2 F_2[u]) - h, r_1 = inner reach, r_2 = reach.
+
+    Kuhnen (2003), Eur. J. Control 9, 407, with half-widths that are fitted.
+    """
+
+    branches = 2
+    trials = {"reach": 6, "inner": 4}
+    weight = Parameter("1", (-1, 1), "Weight of the i-th play over the gain.", null=0, count=2)
+    reach = Parameter("drive", (0.02, 0.6), "Half-width of the second play.", scale="log")
+    inner = Parameter("1", (0.05, 1), "Half-width of the first play over that of the second.")
+
+    def prepare(weight, reach, inner, branch):
+        return weight, reach if branch else reach * inner
+
+
+DistributedMemory.forms = {"fine_plays": FinePlays, "bent_plays": BentPlays, "two_plays": TwoPlays}

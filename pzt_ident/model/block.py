@@ -109,13 +109,13 @@ class Block:
     @cache
     def parameters(cls) -> dict[str, Parameter]:
         """Declared parameters by name, in the order of declaration; a counted one appears as `name_1`, `name_2`, ..."""
-        parameters = {}
+        own, parameters = dict[str, Parameter](), dict[str, Parameter]()
         for owner in reversed(cls.__mro__):
-            for word, declared in vars(owner).items():
-                if isinstance(declared, Parameter):
-                    count = cls.setting(declared.count) if isinstance(declared.count, str) else declared.count
-                    names = [word] if count is None else [f"{word}_{k + 1}" for k in range(count)]
-                    parameters.update(dict.fromkeys(names, declared))
+            own |= {word: declared for word, declared in vars(owner).items() if isinstance(declared, Parameter)}
+        for word, declared in own.items():
+            count = cls.setting(declared.count) if isinstance(declared.count, str) else declared.count
+            names = [word] if count is None else [f"{word}_{k + 1}" for k in range(count)]
+            parameters.update(dict.fromkeys(names, declared))
         return parameters
 
     @classmethod

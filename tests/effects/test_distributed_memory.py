@@ -3,6 +3,7 @@
 import numpy as np
 
 from pzt_ident.effects.distributed_memory import PLAYS
+from pzt_ident.model.registry import blocks
 from rig import path, response
 from twins.prandtl_ishlinskii_twin import prandtl_ishlinskii
 
@@ -29,3 +30,12 @@ def test_a_nested_loop_comes_back_to_where_it_left():
     assert abs(found[60 * 5] - found[60 * 3]) < 1e-12
     assert abs(found[60 * 7] - found[60]) < 1e-12
     assert np.ptp(found[60 * 3 : 60 * 5]) > 30
+
+
+def test_two_plays_have_half_widths_and_weights_of_their_own():
+    known = {"weight_1": 0.3, "weight_2": -0.2, "reach": 30.0, "inner": 0.4}
+    expected = prandtl_ishlinskii(DRIVE, 1.0, np.array([0.3, -0.2]), np.array([12.0, 30.0]))
+    found = response(["distributed_memory.two_plays"], {f"distributed_memory.{k}": v for k, v in known.items()}, DRIVE)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12)
+    names = blocks["distributed_memory.two_plays"].parameters()
+    assert [name for name in names if name.startswith("weight")] == ["weight_1", "weight_2"]
