@@ -12,7 +12,7 @@ from pzt_ident.diagnosis.candidates import promises_most
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import CLEAR, DECISIVE, LEAST_SHARE, adequate, removed_rms
 from pzt_ident.diagnosis.fit import Fit, fit_at
-from pzt_ident.diagnosis.forms import NEARLY_ALL
+from pzt_ident.diagnosis.forms import NEARLY_ALL, is_far_behind
 from pzt_ident.diagnosis.misfit import share_explained, squared_misfit
 from pzt_ident.diagnosis.possible import applicable
 from pzt_ident.diagnosis.refit import refit, refit_from, start_of
@@ -36,8 +36,8 @@ PROMISING = 0.1  # of the misfit: what is removed at once, with all parameters a
 def with_history(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fit] | None:
     """The case whose model follows what was before the records, and the fit as given in it, where that removes most of
     the misfit or more than any effect, alone or beside one of the best of these; None elsewhere, and where an effect
-    alone leads to the noise as well, or another one beside it promises nearly all that it leaves. diagnosis: of the
-    fit."""
+    alone leads to the noise as well, or another one beside it promises nearly all that it leaves; beside one that
+    explains nearly all none that stays far above it. diagnosis: of the fit."""
     if has_history(first) or not has_operator(case):
         return None
     effects = sorted((item.fit for item in diagnosis.passing if item.fit), key=lambda fit: fit.total)
@@ -54,13 +54,14 @@ def with_history(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fi
             return None
         given_up = best[1].identify > rival
         return (best[0], refit(best[0], best[1], first.effects, {})) if given_up else best
-    behind = (history_behind(case, first, fit, rival) for fit in effects[:TRIED])
+    level = [fit for fit in effects if not (accounted and is_far_behind(case, fit, effects[0]))]
+    behind = (history_behind(case, first, fit, rival) for fit in level[:TRIED])
     return next((found for found in behind if found), None)
 
 
 def lead_on(case: Case, first: Fit, effects: Sequence[Fit]) -> bool:
     """Whether an effect promises nearly all that the best of some fits with another one leaves."""
-    return bool(effects) and promises_most(case, first, effects[0], NEARLY_ALL)
+    return bool(effects and promises_most(case, first, effects[0], NEARLY_ALL))
 
 
 def history_behind(case: Case, first: Fit, end: Fit, rival: float = np.inf) -> tuple[Case, Fit] | None:
