@@ -169,7 +169,9 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
     now, last = steps[-1].fit, steps[-1]
     added = now.effects[len(first.effects) :]
     known = added == (last.added,) and last.removed is None
-    for effect in added if not known and case.budget.allows("ties", WHOLE + PROOF) else ():
+    for effect in () if known else added:
+        if not case.budget.allows("ties", WHOLE + PROOF):
+            break
         step = next(step for step in reversed(steps) if step.added == effect)
         fits = rivals_in_place(case, now, effect, step.tied, in_every_form=len(added) > 1)
         tied = [fit for fit in fits if is_tied(case, effect, now, fit)]
