@@ -77,14 +77,14 @@ def worth_other_forms(candidates: Mapping[str, Candidate]) -> list[str]:
     return [word for word in words if word == words[0] or are_look_alikes(words[0], word)]
 
 
-def promises_most(case: Case, first: Fit, fit: Fit, least: float = PROMISING) -> bool:
-    """Whether an effect, in its first form, explains most of what a fit leaves by its score, at least such a share, and
-    is no look-alike of one that was added: it may belong in the place of that."""
+def promises_most(case: Case, first: Fit, fit: Fit, least: float = PROMISING) -> str:
+    """The effect that explains most of what a fit leaves by its score, in its first form, at least such a share, unless
+    it is a look-alike of one that was added: it may belong in the place of that. Empty where there is none."""
     candidates = score_all(case, first, fit, scorer_of(case, fit), in_every_form=False)
     scores = [item.score for item in candidates if item.score.explained_in_bounds >= least]
     best = max(scores, key=lambda score: score.explained_in_bounds, default=None)
     added = fit.effects[len(first.effects) :]
-    return best is not None and not any(are_look_alikes(effect, best.effect) for effect in added)
+    return "" if best is None or any(are_look_alikes(effect, best.effect) for effect in added) else best.effect
 
 
 def likeliest(case: Case, first: Fit) -> Fit | None:
@@ -99,10 +99,10 @@ def likeliest(case: Case, first: Fit) -> Fit | None:
 
 def simpler_first(candidates: list[Candidate]) -> list[Candidate]:
     """The candidates in the order in which they are refitted: ahead of one with many amounts, or some of each record,
-    that explains most by its score the best of the others, if that explains nearly as much. Many amounts follow
-    anything a little better, and take long."""
+    that explains most by its score the best of the others, if that explains nearly as much, or most too. Many amounts
+    follow anything a little better, and take long."""
     other = next((item for item in candidates if not _follows_anything(item.score.effect)), None)
-    if other is None or other.score.explained < AS_LIKELY * candidates[0].score.explained:
+    if other is None or other.score.explained < min(AS_LIKELY * candidates[0].score.explained, PROMISING):
         return candidates
     return [other, *(item for item in candidates if item is not other)]
 
@@ -160,14 +160,18 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
 def refit_further(case: Case, first: Fit, before: Fit, candidate: Candidate) -> None:
     """Refit the best candidate in its other likely forms; from random points where it and the model as given rest on
     bounds far from the noise, or where it drives the model onto bounds, unless another effect promises most of what it
-    leaves."""
+    leaves; of the former no memory, which may be that of the model as given."""
     refit_likely_forms(case, first, before, candidate)
     if before is not first:
         return
-    if rests_on_bounds(case, first, candidate.best):
-        refit_anew(case, first, candidate, [candidate.best.effects[-1]])
-    elif drives_onto_bounds(case, first, candidate) and not promises_most(case, first, candidate.best):
-        refit_anew(case, first, candidate, [score.effect for score in likely_forms(candidate)])
+    resting = rests_on_bounds(case, first, candidate.best)
+    if not resting and not drives_onto_bounds(case, first, candidate):
+        return
+    promised = promises_most(case, first, candidate.best)
+    if promised and not (resting and _follows_anything(promised)):
+        return
+    items = [candidate.best.effects[-1]] if resting else [score.effect for score in likely_forms(candidate)]
+    refit_anew(case, first, candidate, items)
 
 
 def restart_unconfirmed(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:

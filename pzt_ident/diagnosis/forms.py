@@ -196,20 +196,22 @@ def refit_other_forms(
 ) -> None:
     """Refit the short list, and then what else scores, in every form where no effect explains most of the misfit: one
     that scores low may leave little of it. Where an effect explains nearly all, refit it, unless it is at the noise,
-    and its look-alikes in the forms that are not far from that by their scores: one may explain more in another. All
-    that is refitted is added to the short list."""
+    and its look-alikes in the forms that are not far from that by their scores: one may explain more in another. Where
+    something helps and is not enough, half of the time for exploring is for what is missing beside it. All that is
+    refitted is added to the short list."""
     fits = [fit for item in shortlist for fit in item.refits.values()]
     if unconfirmed(case, first, before, fits):
         return
     passing = [fit for fit in fits if removes_enough(case, first, before, fit)]
     best = min(passing, key=lambda fit: fit.total, default=before)
     share = share_explained(before.identify, best.identify, case.floor)
-    nearly_all = share >= NEARLY_ALL
+    nearly_all, enough = share >= NEARLY_ALL, adequate(case, first, best)
+    time = case.budget.beside if passing and not enough else EXPLORING
     if nearly_all:
         wanted = alternatives(case, best, candidates)
-        if not adequate(case, first, best) and best.identify < FAR * case.floor:
+        if not enough and best.identify < FAR * case.floor:
             others = [item for item in candidates if item not in wanted]
-            wanted += nearly_all_in_another_form(case, before, others, share_of_others(case, first, before, fits))
+            wanted += nearly_all_in_another_form(case, before, others, time)
     else:
         least = least_score(case, first, before)
         others = [item for item in candidates if item not in shortlist and item.score.explained > least]
@@ -218,7 +220,7 @@ def refit_other_forms(
         candidate.forms = scorer_of(case, before).scores(word_of(candidate.score.effect))
         possible = contending_forms(candidate) if nearly_all else candidate.forms
         missing = [score for score in possible if score.effect not in candidate.refits]
-        if missing and not case.budget.allows("other forms", share_of_others(case, first, before, fits)):
+        if missing and not case.budget.allows("other forms", time):
             break
         new = {
             score.effect: refit_from(case, before, (*before.effects, score.effect), score.guesses, best.identify)
