@@ -10,11 +10,10 @@ from pzt_ident.diagnosis.budget import PROOF, PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, beyond_form, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.fit import Fit
-from pzt_ident.diagnosis.forms import unconfirmed
 from pzt_ident.diagnosis.limit import is_limited, own_bounds
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.possible import applicable, fitting_forms
-from pzt_ident.diagnosis.refit import AT_NOISE, refit, refit_beside, refit_last
+from pzt_ident.diagnosis.refit import AT_NOISE, refit, refit_beside
 from pzt_ident.diagnosis.score import scorer_of
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.step import Step, StepListener, effects_without, explained_share
@@ -243,23 +242,6 @@ def exchange_any(case: Case, first: Fit, now: Fit) -> list[Step]:
         if rival and rival.fit and rival.fit.total < best.total:
             best, removed = rival.fit, effect
     return [exchange_step(case, now, best, removed)] if fits_better(case, now, best) else []
-
-
-def exchange_behind(case: Case, first: Fit, now: Fit, fits: Sequence[Fit]) -> list[Step]:
-    """The steps to another form or a look-alike of an added effect, and to the one of some fits beside it that the
-    validation records do not confirm, where they do so behind the other form: what hardly shows in the identification
-    records may have been taken in the wrong one. fits: of one effect more each."""
-    found = unconfirmed(case, first, now, fits)
-    for effect in now.effects[len(first.effects) :] if found else ():
-        if not found or not case.budget.allows("other forms", PROVING):
-            break
-        items = [*look_alikes(case, now, effect, in_every_form=True), *other_forms(case, now, effect)]
-        behind = [(other, refit_last(case, found, other)) for other in fits_in_place(case, now, effect, items)]
-        other, both = min(behind, key=lambda fits: fits[1].total, default=(now, now))
-        if removes_enough(case, first, now, both):
-            word, share = both.effects[-1], explained_share(case, other, both)
-            return [exchange_step(case, now, other, effect), Step(both, word, None, {word: both}, share)]
-    return []
 
 
 def fits_better(case: Case, now: Fit, other: Fit) -> bool:

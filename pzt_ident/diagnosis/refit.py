@@ -112,12 +112,6 @@ def refit_beside(
     return refit(case, fits[int(np.argmin(losses))], effects, guess, rival)
 
 
-def refit_last(case: Case, fit: Fit, other: Fit) -> Fit:
-    """Another fit with the last effect of a fit, which begins as it is there."""
-    guess = {name: value for name, value in fit.values.items() if name not in other.problem.names}
-    return refit(case, other, (*other.effects, fit.effects[-1]), guess)
-
-
 def refit_holding(case: Case, now: Fit, effects: tuple[str, ...]) -> Fit:
     """The refit with a form that holds what another effect did, from the parameters of a fit with both: the amounts
     that it has beside these begin at the share of their ranges, of some decades, that leaves least."""
