@@ -175,12 +175,14 @@ def refit_further(case: Case, first: Fit, before: Fit, candidate: Candidate) -> 
 
 
 def restart_unconfirmed(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:
-    """Where none is adequate, restart the fits that reach the noise of the identification records and not that of the
-    others: what the former do not determine, as a mode that they do not make ring, may rest in a side minimum."""
-    refits = [(candidate, item, fit) for candidate in candidates for item, fit in candidate.refits.items()]
-    if any(adequate(case, first, fit) for _, _, fit in refits):
+    """Where none is adequate, restart the best refit of each effect that reaches the noise of the identification
+    records and not that of the others: what the former do not determine, as a mode that they do not make ring, may rest
+    in a side minimum."""
+    refits = [fit for candidate in candidates for fit in candidate.refits.values()]
+    if any(adequate(case, first, fit) for fit in refits):
         return
-    for candidate, item, fit in refits:
+    for candidate in filter(lambda candidate: candidate.refits, candidates):
+        item, fit = min(candidate.refits.items(), key=lambda pair: pair[1].identify)
         if reaches_noise(case, first, fit) and case.budget.allows("other starts"):
             candidate.refits[item] = restart(case, fit)
 

@@ -16,7 +16,7 @@ from pzt_ident.diagnosis.contained import join_look_alikes, separate_accounts
 from pzt_ident.diagnosis.criteria import DECISIVE, FAR, adequate, clears_an_axis, removed_rms, removes_enough
 from pzt_ident.diagnosis.exchange import exchange_accounts, exchange_any, forms_instead, remove_unneeded
 from pzt_ident.diagnosis.fit import Fit
-from pzt_ident.diagnosis.forms import Candidate
+from pzt_ident.diagnosis.forms import Candidate, unconfirmed
 from pzt_ident.diagnosis.merging import merge_effects
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.possible import fitting_forms
@@ -92,7 +92,7 @@ def climb(
         if not adequate(case, first, steps[-1].fit) and not case.budget.allows("more effects", PROVING):
             break
         diagnosis = diagnose(case, steps[-1].fit, first)
-        if hurried and diagnosis.best is None:
+        if hurried and diagnosis.best is None and not unconfirmed(case, first, steps[-1].fit, diagnosis.fits):
             take(settle(case, first, steps[-2].fit, steps[-1]))
             diagnosis = diagnose(case, steps[-1].fit, first)
         candidate = diagnosis.best
@@ -186,7 +186,7 @@ def next_steps(
     place of another. Ahead of these an effect behind another form of what was added before. Empty where the path
     ends."""
     now = steps[-1].fit
-    if behind := exchange_behind(case, first, now, [item.fit for item in diagnosis.candidates if item.fit]):
+    if behind := exchange_behind(case, first, now, diagnosis.fits):
         return behind
     if candidate is not None and candidate.fit is not None:
         word, fit = candidate.score.effect, candidate.fit

@@ -81,6 +81,11 @@ class Diagnosis:
         return next((candidate for candidate in self.candidates if candidate.decision == "missing"), None)
 
     @property
+    def fits(self) -> list[Fit]:
+        """Those of the candidates that were refitted."""
+        return [candidate.fit for candidate in self.candidates if candidate.fit]
+
+    @property
     def rivals(self) -> dict[str, Fit]:
         """The refits with the tied effects, by effect, the best first."""
         fits = {candidate.score.effect: candidate.fit for candidate in self.candidates}
