@@ -53,7 +53,7 @@ def freed_mechanics(case: Case, fit: Fit) -> tuple[Case, Fit] | None:
     problem = own.problem(fit.effects, fit.steps, fit.measured_only)
     values = fit.values | {name: alike(fit, name) for name in free}
     for name in (name for name in free if name.endswith(STIFFNESS)):
-        inside = resonances(values, name, free[name])
+        inside = [values, *resonances(values, name, free[name])]
         losses = problem.loss(np.array([problem.unit_point(point) for point in inside]))
         values = inside[int(np.argmin(losses))]
     point = own.descend(problem, problem.unit_point(values))
