@@ -11,7 +11,7 @@ from pzt_ident.diagnosis.exchange import exchange_step, fits_in_place, look_alik
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import AS_LIKELY, NEARLY_ALL, unconfirmed
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.possible import fitting_forms
+from pzt_ident.diagnosis.possible import applicable, fitting_forms
 from pzt_ident.diagnosis.refit import refit, refit_from
 from pzt_ident.diagnosis.score import scorer_of
 from pzt_ident.diagnosis.step import Step, effects_without, explained_share
@@ -51,11 +51,19 @@ def accounts_behind(case: Case, before: Fit, effect: str, items: Sequence[str]) 
     explain nearly as much as the best of them by their scores."""
     instead = [*look_alikes(case, before, effect, in_every_form=True), *other_forms(case, before, effect)]
     for other in fits_in_place(case, before, effect, instead) if case.budget.allows("other forms", PROVING) else ():
-        scores = [scorer_of(case, other).score(item) for item in items]
-        least = AS_LIKELY * max(score.explained for score in scores)
+        scores = [scorer_of(case, other).score(item) for item in possible_beside(case, other, items)]
+        least = AS_LIKELY * max((score.explained for score in scores), default=0.0)
         for score in (score for score in scores if score.explained >= least):
             if case.budget.allows("other forms", PROVING):
                 yield other, refit_from(case, other, (*other.effects, score.effect), score.guesses)
+
+
+def possible_beside(case: Case, fit: Fit, items: Sequence[str]) -> list[str]:
+    """Those of some items that a model can have beside its effects: one that took a place is not added again."""
+    words = applicable(case, fit.effects)
+    return [
+        item for item in items if word_of(item) in words and item in fitting_forms(case, fit.effects, word_of(item))
+    ]
 
 
 def predicts_less(case: Case, fit: Fit) -> bool:

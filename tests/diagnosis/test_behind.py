@@ -5,8 +5,11 @@ from types import SimpleNamespace
 import pytest
 
 import made_fits
+import stage
 from pzt_ident.diagnosis import behind
-from pzt_ident.diagnosis.behind import exchange_behind
+from pzt_ident.diagnosis.behind import accounts_behind, exchange_behind, possible_beside
+from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.model.registry import word_of
 
 COUPLED, PUSHED, LIMIT = "kinematic_coupling", "cross_coupling.displacement", "slew_limit"
 
@@ -54,3 +57,14 @@ def test_where_a_model_predicts_far_less_than_it_fits_its_last_effect_is_tried_b
     steps = exchange_behind(made_fits.CASE, first, now, [])
     told = [(None, LIMIT), (PUSHED, COUPLED), (f"{LIMIT}.soft", None)]
     assert [(step.added, step.removed) for step in steps] == (told if exchanged else [])
+
+
+@pytest.mark.parametrize(
+    ("taken", "items"), [("amplifier_lag", ["sensor_lag.second_order", "sensor_lag"]), ("sensor_lag", [])]
+)
+def test_what_took_the_place_of_an_effect_is_not_added_beside_itself(taken, items):
+    case = stage.case()
+    fit = SimpleNamespace(effects=(taken,))
+    assert possible_beside(case, fit, ["sensor_lag.second_order", "sensor_lag"]) == items
+    pairs = [*accounts_behind(case, first_fit(case, 0, effects=("delay",)), "delay", ["sensor_lag"])]
+    assert all([*map(word_of, both.effects)].count("sensor_lag") == 1 for _, both in pairs) and pairs
