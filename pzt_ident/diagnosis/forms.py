@@ -206,12 +206,12 @@ def refit_other_forms(
     best = min(passing, key=lambda fit: fit.total, default=before)
     share = share_explained(before.identify, best.identify, case.floor)
     nearly_all, enough = share >= NEARLY_ALL, adequate(case, first, best)
-    time = case.budget.beside if passing and not enough else EXPLORING
+    until = case.budget.beside if passing and not enough else EXPLORING
     if nearly_all:
         wanted = alternatives(case, best, candidates)
         if not enough and best.identify < FAR * case.floor:
             others = [item for item in candidates if item not in wanted]
-            wanted += nearly_all_in_another_form(case, before, others, time)
+            wanted += nearly_all_in_another_form(case, before, others, until)
     else:
         least = least_score(case, first, before)
         others = [item for item in candidates if item not in shortlist and item.score.explained > least]
@@ -220,7 +220,7 @@ def refit_other_forms(
         candidate.forms = scorer_of(case, before).scores(word_of(candidate.score.effect))
         possible = contending_forms(candidate) if nearly_all else candidate.forms
         missing = [score for score in possible if score.effect not in candidate.refits]
-        if missing and not case.budget.allows("other forms", time):
+        if missing and not case.budget.allows("other forms", until):
             break
         new = {
             score.effect: refit_from(case, before, (*before.effects, score.effect), score.guesses, best.identify)

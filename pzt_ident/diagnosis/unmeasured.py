@@ -44,8 +44,9 @@ def with_own_mechanics(case: Case, first: Fit) -> tuple[Case, Fit] | None:
 
 
 def freed_mechanics(case: Case, fit: Fit) -> tuple[Case, Fit] | None:
-    """The case in which these are free and a fit with a coupling in it, where that leaves less than half of what the
-    fit does; else None. Beside other effects a coupling may show what it does not show alone."""
+    """The case in which stiffness and damping of each axis without a response are free, and a fit with a coupling gone
+    on with in it, where that removes most of what it leaves; else None. Beside other effects a coupling may show what
+    it does not show alone."""
     free = own_mechanics(case) if any(issubclass(blocks[effect], Coupling) for effect in fit.effects) else {}
     if not free:
         return None

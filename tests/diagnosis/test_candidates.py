@@ -26,6 +26,15 @@ def test_what_other_records_do_not_confirm_is_started_anew_where_nothing_is_adeq
     assert validated == ([14.4, 14.2, 1.0] if confirmed else [1.2, 14.2])
 
 
+def test_of_the_forms_that_other_records_do_not_confirm_the_best_is_started_anew(monkeypatch):
+    monkeypatch.setattr(candidates, "restart", lambda case, fit: replace(fit, validate=1.2))
+    case = SimpleNamespace(floor=1.0, budget=Budget())
+    refits = {"slew_limit": fit(1.04, 17.0), "slew_limit.soft": fit(1.02, 17.0), "slew_limit.lag": fit(1.06, 17.0)}
+    limit = Candidate(Score("slew_limit"), refits=refits)
+    candidates.restart_unconfirmed(case, fit(20.0, 20.0), [limit])
+    assert [made.validate for made in limit.refits.values()] == [17.0, 1.2, 17.0]
+
+
 @pytest.mark.parametrize("own, led", [(6.0, 1.0), (6.0, 7.0)])
 def test_a_look_alike_far_behind_is_tried_from_where_the_best_led(monkeypatch, own, led):
     monkeypatch.setattr(forms, "refit", lambda case, other, effects, guess, rival: fit(led, led, effects))

@@ -182,3 +182,16 @@ def test_beside_one_that_is_not_adequate_an_effect_is_tried_that_explains_nearly
     found = sought and explained >= forms.NEARLY_ALL
     assert ("periodic_disturbance.ripple" in refitted) == found
     assert (hum in shortlist) == found
+
+
+@pytest.mark.parametrize(("left", "helps"), [(8.0, True), (9.95, False)])
+def test_where_something_helps_half_of_the_time_for_exploring_is_kept_for_what_is_beside_it(monkeypatch, left, helps):
+    """Refits in other forms beside a model of 10 noise floors end there."""
+    shares, scores = [], [Score("saturation", 0.3), Score("saturation.cubic", 0.3)]
+    budget = SimpleNamespace(beside=0.3, allows=lambda what, share: shares.append(share))
+    case = SimpleNamespace(floor=1.0, floors=CASE.floors, on_event=CASE.on_event, budget=budget)
+    bend = Candidate.of(scores)
+    bend.refits = {"saturation": fit(left, left, ["saturation"])}
+    monkeypatch.setattr(forms, "scorer_of", lambda case, fit: SimpleNamespace(scores=lambda word: scores))
+    forms.refit_other_forms(case, fit(10.0, 10.0), fit(10.0, 10.0), [bend], [bend])
+    assert shares == [0.3 if helps else forms.EXPLORING]

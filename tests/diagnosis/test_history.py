@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import made_fits
 import rig
 import stage
 from pzt_ident.diagnosis import history, staircase
@@ -101,6 +102,22 @@ def test_beside_an_effect_that_explains_nearly_all_what_was_before_is_not_asked_
     first = first_fit(case, 0)
     assert with_history(case, first, diagnose(case, first)) is None
     assert not asked
+
+
+@pytest.mark.parametrize(("best", "other", "looked_for"), [(1.7, 2.5, 1), (1.7, 1.9, 2), (8.0, 11.0, 2)])
+def test_beside_one_that_explains_nearly_all_what_was_before_is_looked_for_behind_none_that_is_far_behind_it(
+    monkeypatch, best, other, looked_for
+):
+    """RMSE in noise floors, of 12 as given: 8 is not nearly all of it."""
+    tried, fits = [], [made_fits.fit(left, left) for left in (best, other)]
+    monkeypatch.setattr(history, "has_history", lambda fit: False)
+    monkeypatch.setattr(history, "has_operator", lambda case: True)
+    monkeypatch.setattr(history, "beside", lambda *arguments: None)
+    monkeypatch.setattr(history, "history_behind", lambda case, first, fit, rival: tried.append(fit))
+    first = made_fits.fit(12.0, 12.0)
+    diagnosis = Diagnosis("missing", "", first, [], [], [Candidate(None, fit) for fit in fits])
+    assert with_history(made_fits.CASE, first, diagnosis) is None
+    assert [fit.identify for fit in tried] == [best, other][:looked_for]
 
 
 def test_what_was_before_has_the_best_effect_as_a_rival(asked):

@@ -381,6 +381,18 @@ def test_a_simpler_one_that_leaves_the_noise_is_tied_and_not_taken(monkeypatch, 
     assert {*steps[-1].tied} == {*words}
 
 
+@pytest.mark.parametrize(("lasting", "asked"), [(0, []), (1, ["creep"]), (2, ["creep", "delay"])])
+def test_the_rivals_of_each_effect_are_asked_for_while_the_budget_lasts(monkeypatch, lasting, asked):
+    now = SimpleNamespace(effects=("creep", "delay"), total=1.0, identify=1.0, freedom=2)
+    left, tried = iter([True] * lasting + [False]), []
+    monkeypatch.setattr(exchange, "rivals_in_place", lambda case, now, effect, *_, **__: tried.append(effect) or [])
+    monkeypatch.setattr(exchange, "other_forms", lambda *arguments: [])
+    monkeypatch.setattr(exchange, "fits_in_place", lambda *arguments: [])
+    case = SimpleNamespace(floor=1.0, budget=SimpleNamespace(allows=lambda what, share: next(left)))
+    exchange.find_rivals(case, SimpleNamespace(effects=()), [Step(now, "creep"), Step(now, "delay"), Step(now)], repr)
+    assert tried == asked
+
+
 def test_the_rivals_of_an_effect_that_is_alone_again_are_asked_for_anew(monkeypatch):
     def fitted(*effects, total=1.1):
         return SimpleNamespace(effects=effects, total=total, identify=total, freedom=3)
