@@ -9,11 +9,15 @@ import rig
 import stage
 from pzt_ident.diagnosis.bounds import bounds_that_changed
 from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.climb import climb
 from pzt_ident.diagnosis.fit import fit_at
+from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.possible import fits
 from pzt_ident.diagnosis.refit import refit, values_in
+from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
+from pzt_ident.diagnosis.step import Step
 from pzt_ident.diagnosis.unmeasured import (
     OWN,
     OWN_LOOPS,
@@ -23,6 +27,7 @@ from pzt_ident.diagnosis.unmeasured import (
     own_mechanics_sentence,
     with_own_hysteresis,
 )
+from pzt_ident.diagnosis.verdict import diagnose
 from pzt_ident.model.registry import blocks, word_of
 
 DT, MODEL = 1e-3, ("bouc_wen", "lumped")
@@ -89,6 +94,17 @@ def test_a_coupling_beside_other_effects_shows_the_stiffness_of_an_axis_without_
         assert fit.effects == now.effects and fit.total < 1.1 * case.floor < now.total
         assert fit.values["y.lumped.stiffness"] == pytest.approx(stiffness, rel=0.01)
         assert freed_mechanics(own, fit) is None
+
+
+def test_a_path_goes_on_with_the_mechanics_of_each_axis_that_its_coupling_shows():
+    """A coupling that was taken with those of the measured axis needs no second effect for what they leave."""
+    case = stage.considering(coupled(STIFFNESS, share=2 * SHARE), "kinematic_coupling", "resonance", "sensor_lag")
+    first = first_fit(case, 0)
+    fit = refit(case, first, ("kinematic_coupling",), {"kinematic_coupling.ratio": 2 * SHARE})
+    taken = Candidate(Score("kinematic_coupling"), fit)
+    path = climb(case, [Step(first)], diagnose(case, first), taken, lambda step: None)
+    assert [step.change for step in path.steps] == ["", "", OWN] and path.last.verdict == "adequate"
+    assert path.case.specs.keys() - case.specs.keys() == own_mechanics(case).keys()
 
 
 @pytest.mark.parametrize("share", [0.5, 1.0])
