@@ -96,15 +96,15 @@ def _block(name: str) -> Facts:
     if kind == "effects":
         facts |= {key: getattr(block, key) for key in ("look_alikes", "separate_by", "remedy")}
         facts["forms"] = [{"item": item, "doc": form_headline(item)} for item in blocks.forms(name)]
+    rows = _parameters(block) + (_parameters_of_effect(word_of(name)) if kind == "effects" else [])
     if issubclass(block, Term):
-        return facts | {"parameters": _parameters_of_effect(word_of(name))}
+        return facts | {"parameters": rows}
     forms = [block, *(block.make(**{word: value}) for word, value in _forms(block))]
     settings = {word: item for form in forms for word, item in form.settings().items() if word != "form"}
     choices = [{"name": word, "default": item.value, "unit": "1"} | _choices(item) for word, item in settings.items()]
     own = ", ".join(f"{word}: {block.setting(word)}" for word in block.settings() if word != "form")
     chosen: Facts = {"settings": choices} if choices else {}
     chosen |= {"in_a_job": f"{{name: {name}, {own}}}"} if own else {}
-    rows = _parameters(block) + (_parameters_of_effect(name) if kind == "effects" else [])
     return facts | {"place": block.place.name.lower(), "parameters": rows} | chosen
 
 
@@ -125,17 +125,20 @@ def _choice(block: type[Any], word: str, value: str) -> str:
 
 
 def _parameters(block: type[Any]) -> list[Facts]:
-    """The parameters of a block in all its forms, or in the form that was chosen."""
+    """The parameters of a block in all its forms, or in the form that was chosen; one that forms declare differently
+    has a row for each declaration."""
     keys = ("unit", "bounds", "null", "value", "scale", "effect", "per_record", "adds_to", "doc")
     variants = _variants(block)
+    owners: dict[tuple[Any, ...], list[str]] = {}
+    for label, found in variants.items():
+        for name, item in found.items():
+            owners.setdefault((name, *(getattr(item, key) for key in keys)), []).append(label)
     rows: list[Facts] = []
-    for name, item in {name: item for found in reversed(variants.values()) for name, item in found.items()}.items():
-        owners = [label for label, found in variants.items() if name in found]
-        some = [] if len(owners) == len(variants) else owners
+    for (name, *declared), labels in owners.items():
+        some = [] if len(labels) == len(variants) else labels
         form = "` or `".join(filter(None, ["`, `".join(some[:-1]), *some[-1:]]))
-        rows.append({"name": name, "form": form} | {key: getattr(item, key) for key in keys})
-    order = list(dict.fromkeys(name for found in variants.values() for name in found))
-    return sorted(rows, key=lambda row: order.index(row["name"]))
+        rows.append({"name": name, "form": form} | dict(zip(keys, declared, strict=True)))
+    return rows
 
 
 def _variants(block: type[Any]) -> dict[str, dict[str, Any]]:
