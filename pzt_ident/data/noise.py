@@ -44,7 +44,7 @@ def noise_floor(records: list[Record], axis: int) -> Floor:
     alike, windows may know better. A quantiser adds its own. Windows are weak evidence: they take slow noise for
     signal, and fast signal that does not follow the drive for noise.
     """
-    found, span = evident_floor(records, axis), max(float(np.ptp(r.response[axis])) for r in records)
+    found, span = evident_floor(records, axis), max(r.swings[axis] for r in records)
     return found if found.value > ROUNDING * span else Floor(UNSEEN * span, "no noise: 1e-4 of the range")
 
 
@@ -128,7 +128,7 @@ def error_scales(records: list[Record]) -> Array:
     below the error of any model."""
     if of_one_kind(list(records[0].units.values())):
         return np.ones(len(records[0].measured))
-    spans = np.array([max(np.ptp(record.response[axis]) for record in records) for axis in records[0].measured])
+    spans = np.array([max(record.swings[axis] for record in records) for axis in records[0].measured])
     floors = np.array([noise_floor(records, axis).value for axis in records[0].measured])
     return np.maximum(floors, LEAST_SCALE * spans)
 

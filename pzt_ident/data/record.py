@@ -149,6 +149,24 @@ class Record:
         return [float(np.ptp(drive)) for drive in self.drive]
 
     @cached_property
+    def swings(self) -> list[float]:
+        """Largest less least response of each axis."""
+        return [float(np.ptp(response)) for response in self.response]
+
+    @cached_property
+    def scored_swings(self) -> NDArray[np.float64]:
+        """The same of what is scored, (axes,)."""
+        return np.asarray(np.ptp(self.response[:, self.settle :], axis=1))
+
+    @cached_property
+    def products(self) -> NDArray[np.float64]:
+        """Of drive and response about their means, summed over the samples: (axes, 3), the square of the drive, that of
+        the response, and the product of both."""
+        drive, response = (rows - rows.mean(axis=1, keepdims=True) for rows in (self.drive, self.response))
+        pairs = (drive, drive), (response, response), (drive, response)
+        return np.stack([np.einsum("as,as->a", one, other) for one, other in pairs], axis=1)
+
+    @cached_property
     def peaks(self) -> list[float]:
         """The largest drive of each axis, of either sign."""
         return [float(np.abs(drive).max()) for drive in self.drive]
@@ -194,7 +212,6 @@ def interpolated(drive: NDArray[np.float64], steps: int, periodic: bool, smooth:
 
 def drive_correlation(records: Sequence[Record], axis: int) -> float:
     """Correlation of an axis' response with its drive over all records, 0 where one of them is constant."""
-    drive = np.concatenate([record.drive[axis] - record.drive[axis].mean() for record in records])
-    response = np.concatenate([record.response[axis] - record.response[axis].mean() for record in records])
-    norm = np.sqrt((drive @ drive) * (response @ response))
-    return float(drive @ response / norm) if norm > 0 else 0.0
+    drives, responses, both = np.sum([record.products[axis] for record in records], axis=0)
+    norm = np.sqrt(drives * responses)
+    return float(both / norm) if norm > 0 else 0.0

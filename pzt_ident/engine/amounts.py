@@ -40,7 +40,7 @@ class Amounts:
         self._low, self._high = bounds.T * np.array(sizes)
         self._widths = WIDTH * (self._high - self._low)
         self._starts = starts_of(model.amounts) * self._high
-        spans = np.ptp(record.response[list(model.measured), record.settle :], axis=1)
+        spans = record.scored_swings[list(model.measured)]
         self._scales = 1 / np.where(spans > 0, spans, 1)
         self._known: dict[bytes, Array] = {}  # amounts of the candidates that were asked for last
         self._held: dict[bytes, Held] = {}  # of the candidate that was asked for last
@@ -150,7 +150,7 @@ def size_of(record: Record, entry: Entry) -> float:
     that is scored, the zero of which means nothing."""
     if entry.parameter.unit == "drive":
         return max(record.spans[entry.axis], record.peaks[entry.axis])
-    return float(np.ptp(record.response[entry.axis, record.settle :]))
+    return float(record.scored_swings[entry.axis])
 
 
 class Held(NamedTuple):

@@ -43,8 +43,8 @@ def size_of(model: Chain, entry: Entry, records: Sequence[Record]) -> float:
     """
     spans = {
         "drive": max(record.spans[entry.axis] for record in records),
-        "response": max(float(np.ptp(record.response[entry.axis])) for record in records),
-        "first": max(float(np.ptp(record.response[model.measured[0]])) for record in records),
+        "response": max(record.swings[entry.axis] for record in records),
+        "first": max(record.swings[model.measured[0]] for record in records),
     }
     named = re.findall(r"drive|response|first", entry.parameter.unit)
     if not named:
