@@ -9,11 +9,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from pzt_ident.engine.gather import lapack
+
 Array = NDArray[np.float64]
 
 NEGLIGIBLE = 1e-7  # of the largest singular value: directions below are rounding
 ROUNDING = 1e-12  # of a signal
 OVERSHOOT = 1e-9  # of its range, by which a parameter may pass its bound
+PANEL = 32  # columns that LAPACK takes together
 ALIKE = 1e-14  # of the largest inner product: traces that differ by less are one
 LOST = 1e-8  # of the square of a trace: so little outside is told by taking away what is inside, not from squares
 
@@ -162,7 +165,7 @@ def rows_of(products: Array) -> Array:
 
 def _amounts(traces: Array, signal: Array, one_sided: NDArray[np.bool_]) -> Array:
     """Least-squares multiples of the traces, (rows, amplitudes), that take the signal away."""
-    amounts = np.asarray(np.linalg.lstsq(traces, -signal, rcond=1e-8)[0])
+    amounts = least_squares(traces, -signal, 1e-8)
     if not (one_sided & (amounts < 0)).any():
         return amounts
     low, high = np.where(one_sided, 0, -np.inf), np.full(one_sided.size, np.inf)
@@ -190,16 +193,16 @@ def exchanged(matrix: Array, target: Array, low: Array, high: Array, x: Array) -
     least, left = ROUNDING * np.linalg.norm(target), target + matrix @ x
     for _ in range(10 * low.size):
         step = np.zeros(low.size)
-        step[free] = np.linalg.lstsq(matrix[:, free], -left, rcond=ROUNDING)[0]
+        step[free] = least_squares(matrix[:, free], -left, ROUNDING)
         room = room_along(step, x, low, high)
         nearest = int(np.argmin(room))
         if room[nearest] < 1:
-            x = np.clip(x + room[nearest] * step, low, high)
+            x = within(x + room[nearest] * step, low, high)
             x[nearest] = high[nearest] if step[nearest] > 0 else low[nearest]
             free[nearest] = False
             left = target + matrix @ x
             continue
-        x = np.clip(x + step, low, high)
+        x = within(x + step, low, high)
         left = target + matrix @ x
         gradient = matrix.T @ left
         pull = np.where(free | (high <= low), 0, np.where(x >= high, gradient, -gradient))
@@ -209,7 +212,24 @@ def exchanged(matrix: Array, target: Array, low: Array, high: Array, x: Array) -
     return x
 
 
+def least_squares(matrix: Array, target: Array, rank: float) -> Array:
+    """The shortest x that leaves least of matrix x - target, by a complete orthogonal factorization; directions below
+    that share of the largest are rounding."""
+    rows, columns = matrix.shape
+    if not matrix.size:
+        return np.zeros(columns)
+    right = np.zeros((max(rows, columns), 1))
+    right[:rows, 0] = target
+    room = min(rows, columns) + 2 * columns + PANEL * (columns + 1)
+    return np.asarray(lapack.dgelsy(matrix, right, np.zeros((columns, 1), np.int32), rank, room)[1][:columns, 0])
+
+
+def within(x: Array, low: Array, high: Array) -> Array:
+    """Steps, those beyond a bound on it."""
+    return np.minimum(np.maximum(x, low), high)
+
+
 def room_along(step: Array, x: Array, low: Array, high: Array) -> Array:
     """The multiples of each step after which its bound is reached."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(step > 0, (high - x) / step, np.where(step < 0, (low - x) / step, np.inf))
+    room = np.full(step.size, np.inf)
+    return np.divide(np.where(step > 0, high, low) - x, step, out=room, where=step != 0)

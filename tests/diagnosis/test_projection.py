@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import lsq_linear
 
-from pzt_ident.diagnosis.projection import Projection
+from pzt_ident.diagnosis.projection import Projection, least_squares
 from pzt_ident.diagnosis.projection import bounded as solved
 
 SAMPLES = 40
@@ -121,3 +121,13 @@ def test_a_parameter_that_hardly_moves_the_response_takes_up_its_range_of_it():
     derivative = np.sin(np.arange(SAMPLES))
     jacobian, point = 1e-3 * derivative[:, None], np.array([0.25])
     assert left(jacobian, point, -derivative) == pytest.approx((1 - 0.75e-3) * np.linalg.norm(derivative))
+
+
+@given(st.integers(0, 10_000), st.integers(0, 12), st.integers(0, 12), st.integers(1, 12))
+def test_least_squares_are_those_of_the_pseudo_inverse(seed, rows, columns, rank):
+    rng = np.random.default_rng(seed)
+    matrix = rng.normal(size=(rows, rank)) @ rng.normal(size=(rank, columns))
+    target = rng.normal(size=rows)
+    expected = np.linalg.pinv(matrix, rcond=1e-8) @ target
+    scale = 1 + np.abs(expected).max(initial=0)
+    np.testing.assert_allclose(least_squares(matrix, target, 1e-8) / scale, expected / scale, atol=1e-6)
