@@ -39,7 +39,7 @@ from pzt_ident.diagnosis.refit import refit_from
 from pzt_ident.diagnosis.score import LEAST_SCORE, Scorer, scorer_of
 from pzt_ident.diagnosis.starts import restart
 from pzt_ident.diagnosis.threads import side_by_side
-from pzt_ident.diagnosis.ties import TIE, are_look_alikes, is_equal
+from pzt_ident.diagnosis.ties import TIE, TWIN, are_look_alikes, is_equal
 from pzt_ident.model.registry import blocks, word_of
 
 PROMISING = 0.6  # of the misfit: what an effect explains by its score, so that it is tried ahead of anything else
@@ -210,32 +210,36 @@ def simpler_look_alikes(
 
 
 def restart_look_alikes(case: Case, first: Fit, before: Fit, candidates: list[Candidate]) -> None:
-    """Refit the look-alikes that are far behind the best from where that led, also in their first form, which they are
-    in where that is as good, and restart those that are hardly worse on the identification records: with several
-    parameters they may rest in a side minimum that shows on the validation records only."""
+    """Refit the forms of the best effect and of its look-alikes that are far behind from where the best led, and
+    restart look-alikes that are hardly worse on the identification records: with several parameters they may rest in a
+    side minimum that shows on the validation records only."""
     passing = [item for item in candidates if item.fit and removes_enough(case, first, before, item.fit)]
     best = min(passing, key=lambda item: item.fit.total, default=None)  # type: ignore[union-attr]
     if best is None or best.fit is None:
         return
+    led, effect = best.fit, best.score.effect
     for candidate in candidates:
-        if candidate.fit is None or not are_look_alikes(candidate.score.effect, best.score.effect):
+        if candidate is best:
+            follow(case, candidate, led)
+        if candidate.fit is None or not are_look_alikes(candidate.score.effect, effect):
             continue
-        follow(case, candidate, best.fit)
+        follow(case, candidate, led)
         word, fit = candidate.score.effect, candidate.fit
-        if removed_rms(fit.identify, best.fit.identify) < 2 * TIE * case.floor and len(candidate.score.guess) > 1:
+        if removed_rms(fit.identify, led.identify) < 2 * TIE * case.floor and len(candidate.score.guess) > 1:
             candidate.fit = candidate.refits[word] = restart(case, fit, word_of(word), LOOK_ALIKE_STARTS)
 
 
 def follow(case: Case, candidate: Candidate, best: Fit) -> None:
-    """Refit a candidate in its form and in the first one from where another fit led, if it is far behind that."""
-    forms = {score.effect: score for score in (candidate.forms[0], candidate.score) if score.effect in candidate.refits}
-    for word, score in forms.items():
-        fit = candidate.refits[word]
-        if is_far_behind(case, fit, best) and case.budget.allows("ties", PROVING):
-            candidate.refits[word] = from_where(case, best, fit, score.guess)
-    usual, candidate.fit = candidate.forms[0].effect, candidate.refits[candidate.score.effect]
-    if usual in forms and is_equal(case, candidate.fit, candidate.refits[usual]):
-        candidate.take(usual)
+    """Refit a candidate in each of its forms that is far behind another fit from where that led; it then means the
+    first form if that is as good as its own, else that of fewest parameters which is the same model."""
+    for score in candidate.forms:
+        fit = candidate.refits.get(score.effect)
+        if fit and is_far_behind(case, fit, best) and case.budget.allows("ties", PROVING):
+            candidate.refits[score.effect] = from_where(case, best, fit, score.guess)
+    own, usual = candidate.refits[candidate.score.effect], candidate.forms[0].effect
+    same = [item for item, fit in candidate.refits.items() if abs(fit.total - own.total) < TWIN * case.floor]
+    first = usual in candidate.refits and is_equal(case, own, candidate.refits[usual])
+    candidate.take(usual if first else min(same, key=lambda item: candidate.refits[item].freedom))
 
 
 def promises_enough(case: Case, first: Fit, before: Fit, candidate: Candidate) -> bool:

@@ -65,6 +65,26 @@ def test_a_look_alike_is_in_its_first_form_where_that_is_as_good_from_where_the_
     assert rival.score.effect == form and rival.fit is rival.refits[form]
 
 
+@pytest.mark.parametrize(("led", "form"), [(1.0, "voltage"), (1.05, "linear_displacement")])
+def test_the_best_is_in_the_form_of_fewest_parameters_that_is_the_same_model_from_where_it_led(monkeypatch, led, form):
+    """A coupling by voltage rested in a side minimum, unlike one by a displacement that has a resonance beside it."""
+
+    def refitted(case, other, effects, guess, rival):
+        return fit(led if effects[-1] == "cross_coupling.voltage" else 2.3, 1.0, effects)
+
+    monkeypatch.setattr(forms, "refit", refitted)
+    lefts = {
+        "cross_coupling": (2.4, 4),
+        "cross_coupling.voltage": (1.4, 4),
+        "cross_coupling.linear_displacement": (1.0, 6),
+    }
+    best = Candidate.of([Score(item, guesses=[{"ratio": 1.0}]) for item in lefts])
+    best.refits = {item: fit(left, left, [item], many) for item, (left, many) in lefts.items()}
+    best.take("cross_coupling.linear_displacement")
+    candidates.restart_look_alikes(CASE, fit(9.0, 9.0), fit(9.0, 9.0), [best])
+    assert best.score.effect == f"cross_coupling.{form}" and best.fit is best.refits[best.score.effect]
+
+
 def test_a_look_alike_in_another_form_is_started_anew_by_the_name_of_its_block(monkeypatch):
     def started(case, fit, block, starts):
         assert block == "sensor_lag"
