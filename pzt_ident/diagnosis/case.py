@@ -54,6 +54,7 @@ class Case:
         self._resampled: dict[tuple[int, int], Record] = {}
         self.refits: dict[Any, Fit] = {}  # by effects, steps and start
         self.wider: dict[Any, tuple[Case, Fit]] = {}  # fits gone on with beyond bounds, by slip, effects and point
+        self.unlike: dict[Any, tuple[Case, Fit] | None] = {}  # with axes of their own mechanics, by effects and point
         self.scorers: list[Any] = []  # of the fits that were diagnosed last
         self.smooth: Case | None = None  # with drives that are smooth between their samples, once that was asked for
         self.records, self.specs, self.error_scales = tuple(records), specs, error_scales(list(records))

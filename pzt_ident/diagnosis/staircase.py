@@ -28,6 +28,7 @@ from pzt_ident.diagnosis.undetermined import enough_without_mechanics
 from pzt_ident.diagnosis.unmeasured import (
     OWN,
     OWN_LOOPS,
+    coupled,
     own_hysteresis,
     own_mechanics,
     with_own_hysteresis,
@@ -160,6 +161,8 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener, diagnosis: Dia
         wide = improve_beyond(case, first, *beyond, on_step) if adequate(case, first, beside[1]) else None
         if wide and accounts(wide, case, first):
             return wide
+    if own := own_at_once(case, first, diagnosis, on_step):
+        return own
     lean, begun = lean_or_begun(case, first, diagnosis, on_step)
     if lean and (lean.last.verdict == "adequate" or settles_for(case, first, lean)):
         return lean
@@ -212,18 +215,34 @@ def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, F
     return None
 
 
+def own_at_once(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListener) -> Staircase | None:
+    """The staircase where axes without a response have a resonance of their own, if a coupling leads to the noise with
+    that alone; None elsewhere, and where the best effect is no coupling, or one that leads there as it is."""
+    best = diagnosis.best.fit if diagnosis.best else None
+    settled = best and (adequate(case, first, best) or not issubclass(blocks[best.effects[-1]], Coupling))
+    if settled or diagnosis.verdict in SETTLED or not own_mechanics(case):
+        return None
+    if not case.budget.allows("axes without a response that are unlike the others"):
+        return None
+    found = with_own_mechanics(case, first)
+    if found is None or not any(adequate(case, first, fit) for fit in coupled(*found)):
+        return None
+    own, start = found
+    return improve_within(own, [Step(first), Step(start, change=OWN, case=own)], on_step)
+
+
 def own_account(case: Case, first: Fit, given: Staircase, on_step: StepListener) -> Staircase | None:
     """The staircase where axes without a response have a resonance, or else a hysteresis, of their own, if that is the
     better account: of one that leads to the noise, if that takes other effects beside a coupling."""
     arrived = given.last.verdict == "adequate"
     added = given.end.effects[len(first.effects) :]
     tried = added if arrived else [step.added for step in given.steps if step.added]
-    coupled = any(issubclass(blocks[effect], Coupling) for effect in tried)
-    if arrived and not (coupled and len(added) > 1):
+    beside = any(issubclass(blocks[effect], Coupling) for effect in tried)
+    if arrived and not (beside and len(added) > 1):
         return None
     for change, free, alternative in (
         (OWN, own_mechanics(case), with_own_mechanics),
-        (OWN_LOOPS, own_hysteresis(case, first) if coupled else {}, with_own_hysteresis),
+        (OWN_LOOPS, own_hysteresis(case, first) if beside else {}, with_own_hysteresis),
     ):
         if not free or not case.budget.allows("axes without a response that are unlike the others", WHOLE):
             continue

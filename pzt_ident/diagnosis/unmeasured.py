@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import product
 
 import numpy as np
@@ -13,6 +14,7 @@ from pzt_ident.diagnosis.criteria import DECISIVE
 from pzt_ident.diagnosis.fit import Fit, fit_at
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.possible import applicable
+from pzt_ident.diagnosis.refit import refit_from
 from pzt_ident.diagnosis.score import scorer_of
 from pzt_ident.model.block import Coupling, Place
 from pzt_ident.model.registry import blocks
@@ -26,7 +28,15 @@ REACH, TRIED = 30.0, 41  # times the stiffness of the measured axis, down and up
 def with_own_mechanics(case: Case, first: Fit) -> tuple[Case, Fit] | None:
     """The case in which stiffness and damping of each axis without a response are free, and the fit as given in it,
     with these where a coupling would explain most; None where the job says what its stiffness is, and where no coupling
-    would explain most of the misfit."""
+    would explain most of the misfit. It is found once."""
+    key = first.effects, first.steps, first.point.tobytes()
+    if key not in case.unlike:
+        case.unlike[key] = found_mechanics(case, first)
+    return case.unlike[key]
+
+
+def found_mechanics(case: Case, first: Fit) -> tuple[Case, Fit] | None:
+    """The same, sought."""
     free = own_mechanics(case)
     stiffnesses = [name for name in free if name.endswith(STIFFNESS)]
     own = case.with_specs(free)
@@ -41,6 +51,15 @@ def with_own_mechanics(case: Case, first: Fit) -> tuple[Case, Fit] | None:
         values = inside[int(np.argmax(promised))] if explained else values
     start = fit_at(first.effects, problem, problem.unit_point(values), first.converged)
     return (own, start) if explained >= DECISIVE else None
+
+
+def coupled(case: Case, fit: Fit) -> Iterator[Fit]:
+    """A fit with each coupling that a model can have, in its first form."""
+    scorer = scorer_of(case, fit)
+    for word in applicable(case, fit.effects):
+        if issubclass(blocks[word], Coupling):
+            score = scorer.score(word)
+            yield refit_from(case, fit, (*fit.effects, score.effect), score.guesses)
 
 
 def freed_mechanics(case: Case, fit: Fit) -> tuple[Case, Fit] | None:

@@ -183,7 +183,14 @@ def test_the_first_path_with_mechanics_is_taken_where_it_alone_reaches_the_noise
         begun.append(case)
         return Begun(diagnosis, given)
 
-    for word in ("beyond_bounds", "fit_behind", "bounds_beside", "own_account", "enough_without_mechanics"):
+    for word in (
+        "beyond_bounds",
+        "fit_behind",
+        "bounds_beside",
+        "own_at_once",
+        "own_account",
+        "enough_without_mechanics",
+    ):
         monkeypatch.setattr(staircase, word, lambda *arguments: None)
     monkeypatch.setattr(lean, "begin_lean", lambda *arguments: other)
     monkeypatch.setattr(lean, "begin", begin)

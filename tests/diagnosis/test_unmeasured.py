@@ -15,7 +15,7 @@ from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.possible import fits
 from pzt_ident.diagnosis.refit import refit, values_in
 from pzt_ident.diagnosis.score import Score
-from pzt_ident.diagnosis.staircase import improve
+from pzt_ident.diagnosis.staircase import improve, own_at_once
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step
 from pzt_ident.diagnosis.unmeasured import (
@@ -105,6 +105,26 @@ def test_a_path_goes_on_with_the_mechanics_of_each_axis_that_its_coupling_shows(
     path = climb(case, [Step(first)], diagnose(case, first), taken, lambda step: None)
     assert [step.change for step in path.steps] == ["", "", OWN] and path.last.verdict == "adequate"
     assert path.case.specs.keys() - case.specs.keys() == own_mechanics(case).keys()
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "share", "at_once"),
+    [
+        (STIFFNESS, SHARE, True),
+        (1.15 * X["lumped.stiffness"], 2 * SHARE, True),
+        (X["lumped.stiffness"], 4 * SHARE, False),
+        (STIFFNESS, 0.0, False),
+    ],
+)
+def test_an_own_resonance_is_looked_for_ahead_of_second_effects_where_a_coupling_falls_short(stiffness, share, at_once):
+    """Where none passes, or one that leaves more than the noise; not where one reaches that as it is, nor where nothing
+    is missing."""
+    case = stage.considering(coupled(stiffness, share=share), "kinematic_coupling", "cross_coupling", "resonance")
+    first, told = first_fit(case, 0), []
+    found = own_at_once(case, first, diagnose(case, first), told.append)
+    assert (found is not None) == at_once == bool(told)
+    if found:
+        assert [step.change for step in found.steps] == ["", OWN, ""] and found.last.verdict == "adequate"
 
 
 @pytest.mark.parametrize("share", [0.5, 1.0])
