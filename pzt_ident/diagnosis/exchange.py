@@ -23,6 +23,7 @@ from pzt_ident.diagnosis.ties import (
     TWIN,
     at_noise,
     generalises,
+    is_better,
     is_equal,
     is_tied,
     is_twin,
@@ -189,12 +190,12 @@ def find_rivals(case: Case, first: Fit, steps: list[Step], on_step: StepListener
 
 def rivals_in_place(case: Case, now: Fit, effect: str, tied: Collection[str], in_every_form: bool) -> list[Fit]:
     """The model refitted with the look-alikes of an effect in its place, at the noise without other forms of these that
-    may contain it."""
+    may contain it, unless they fit better."""
     fits = fits_in_place(case, now, effect, look_alikes(case, now, effect, tied, in_every_form), as_rivals=True)
     if not in_every_form or not at_noise(case, now):
         return fits
     meant = look_alikes(case, now, effect, tied)
-    return [fit for fit in fits if fit.effects[-1] in meant or not generalises(fit, now)]
+    return [fit for fit in fits if fit.effects[-1] in meant or not generalises(fit, now) or is_better(case, now, fit)]
 
 
 def simplicity(case: Case, now: Fit, rivals: Mapping[str, Fit], item: str) -> tuple[int, bool, int, str]:

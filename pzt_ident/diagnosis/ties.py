@@ -69,6 +69,11 @@ def nearness_of(effect: str) -> int:
     return getattr(blocks[word_of(blocks[effect].equation_of or effect)], "place", Place.OPERATOR)
 
 
+def is_better(case: Case, fit: Fit, rival: Fit) -> bool:
+    """Whether a rival leaves less by half of what is a tie: what it has more of may be needed."""
+    return removed_rms(fit.total, rival.total) > TIE / 2 * case.floor
+
+
 def generalises(rival: Fit, fit: Fit) -> bool:
     """Whether a rival fits in a form of more parameters than its first, which may contain the other effect."""
     return form_of(rival.effects[-1]) is not None and rival.freedom > fit.freedom

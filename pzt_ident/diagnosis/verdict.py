@@ -51,6 +51,7 @@ from pzt_ident.diagnosis.ties import (
     TWIN,
     are_look_alikes,
     generalises,
+    is_better,
     is_tied,
     is_twin,
     nearness_of,
@@ -169,8 +170,7 @@ def in_least_form(case: Case, best: Candidate, item: Candidate) -> bool:
     of what is a tie, or is tied in its first form, too, which it then means."""
     if best.fit is None or item.fit is None or not generalises(item.fit, best.fit):
         return True
-    better = removed_rms(best.fit.total, item.fit.total) > TIE / 2 * case.floor
-    if better and are_look_alikes(best.score.effect, item.score.effect):
+    if is_better(case, best.fit, item.fit) and are_look_alikes(best.score.effect, item.score.effect):
         return True
     usual = item.refits.get(item.forms[0].effect) if item.forms else None
     if usual is None or generalises(usual, best.fit) or not is_tied(case, best.score.effect, best.fit, usual):

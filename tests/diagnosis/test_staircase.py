@@ -425,7 +425,7 @@ def test_a_form_that_may_contain_the_effect_is_no_exchange_but_a_tie_far_above_t
         return SimpleNamespace(effects=("creep", item), total=total, identify=total, freedom=freedom)
 
     now, worse = fitted("delay", total), fitted("creep", 9)
-    better = fitted("sensor_lag.third_order", total - 0.01, freedom)
+    better = fitted("sensor_lag.third_order", total - 0.002, freedom)
     fits = {better.effects[-1]: better}
 
     def in_place(case, now, effect, items, **_):
