@@ -19,6 +19,8 @@ from pzt_ident.search.problem import Problem
 
 Facts = dict[str, Any]
 
+MOVED = 2e-3  # of the range of a drive that moves
+
 
 def summary_of(job: Job) -> Facts:
     """Records, axes, parameters and optimizers of a job. Raises InputError on whatever is wrong with its data."""
@@ -33,7 +35,14 @@ def summary_of(job: Job) -> Facts:
         "records": [_record(record) for record in records],
         "axes": axes,
         "parameters": _parameters(problem),
-        "notes": [*far_off(problem), *_products(problem), *_weak_floors(axes), *_unmeasured(axes)],
+        "notes": [
+            *far_off(problem),
+            *_products(problem),
+            *_weak_floors(axes),
+            *_unmeasured(axes),
+            *_all_fitted(records),
+            *_cut_in_motion(job, records, problem),
+        ],
         "runs": [task.run for task in tasks],
         "evaluations": sum(task.stop["evaluations"] for task in tasks),
     }
@@ -102,3 +111,27 @@ def _unmeasured(axes: list[Facts]) -> Iterator[str]:
     for axis in axes:
         if axis["response_unit"] is None:
             yield f"{axis['name']} has no response: its drive matters where a coupling takes it to another axis"
+
+
+def _all_fitted(records: list[Record]) -> Iterator[str]:
+    """A sentence where no record is kept back."""
+    if all(record.use == "identify" for record in records):
+        yield "all records are fitted: keep one back by `use: validate` to see what the model predicts of it"
+
+
+def _cut_in_motion(job: Job, records: list[Record], problem: Problem) -> Iterator[str]:
+    """A sentence on each record that is cut out of its file where a drive moves, if nothing says what was before."""
+    told = any(block.lead for block in problem.model.blocks)
+    for source, record in zip(job.records, records, strict=True):
+        first = (source.rows or source.time or (0,))[0]
+        if first and not (told or record.run_in or record.rest_at) and _moves_at_once(record):
+            yield (
+                f"{record.name} is cut out of its file where the drive moves, and the model starts from rest there: "
+                "`history` in `model` follows what was before"
+            )
+
+
+def _moves_at_once(record: Record) -> bool:
+    """Whether a drive has left its first value in the first hundredth of the samples."""
+    first = record.drive[:, : max(2, record.samples // 100)]
+    return bool((np.abs(first[:, -1] - first[:, 0]) > MOVED * np.array(record.spans)).any())

@@ -51,3 +51,38 @@ def test_a_noise_floor_that_is_taken_while_the_stage_moves_is_told(tmp_path):
     records = stage.records({}, drives=[chirp, 0.8 * chirp])
     (note,) = summary_of(load_job(stage.write(tmp_path, records, stage.JOB)))["notes"]
     assert note.startswith("x: the noise floor is taken while the stage moves")
+
+
+def notes_with(folder: Path, *changes: tuple[str, str], made: object = None) -> list[str]:
+    job = stage.JOB
+    for old, new in changes:
+        assert old in job
+        job = job.replace(old, new)
+    return summary_of(load_job(stage.write(folder, made or stage.records({}), job)))["notes"]
+
+
+def test_that_no_record_is_kept_back_is_told(tmp_path):
+    assert notes_with(tmp_path) == []
+    (note,) = notes_with(tmp_path, ("use: validate", "use: identify"))
+    assert note.startswith("all records are fitted: keep one back")
+
+
+@pytest.mark.parametrize(
+    ("cut", "model", "told"),
+    [
+        ("rows: [300, 900]", "[bouc_wen]", True),
+        ("time: [0.3, 0.9]", "[bouc_wen]", True),
+        ("rows: [300, 900], run_in: 1", "[bouc_wen]", False),
+        ("rows: [300, 900], rest_at: 0 V", "[bouc_wen]", False),
+        ("rows: [300, 900]", "[history, bouc_wen]", False),
+        ("rows: [100, 900]", "[bouc_wen]", False),
+        ("rows: [0, 900]", "[bouc_wen]", False),
+    ],
+)
+def test_a_record_that_is_cut_out_in_motion_is_told_unless_the_job_says_what_was_before(tmp_path, cut, model, told):
+    """The drive rests for 0.2 s and moves then."""
+    drive = 60 - 60 * np.cos(np.maximum(np.arange(1000) - 200, 0) / 60)
+    made = stage.records({}, drives=[drive, drive], dt=1e-3)
+    changes = ("identify.csv, use: identify", f"identify.csv, use: identify, {cut}"), ("[bouc_wen]", model)
+    notes = notes_with(tmp_path, *changes, made=made)
+    assert ["is cut out of its file where the drive moves" in note for note in notes] == [True] * told

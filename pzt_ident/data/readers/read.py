@@ -199,6 +199,9 @@ def unit_note(signal: Signal | None) -> str:
 
 def _start(record: Record) -> list[str]:
     """What the record was at before its first sample, or may have been."""
+    if record.run_in:
+        times = "once" if record.run_in == 1 else f"{record.run_in} times"
+        return [f"the drive is run {times} ahead of the first sample"]
     each = zip(record.axes, record.rest_at, record.drive_units, strict=False)
     levels = [f"{level / factor(unit):g} {unit} on {axis}" for axis, level, unit in each if level is not None]
     if levels:

@@ -74,7 +74,7 @@ def test_what_a_record_carries(path, read):
     record = read(path, use="validate", run_in=2)
     assert (record.name, record.use, record.file, record.run_in) == ("loop", "validate", "loop.txt", 2)
     assert record.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
-    assert record.notes == ()
+    assert record.notes == ("the drive is run 2 times ahead of the first sample",)
     assert read(path, name="slow").name == "slow"
 
 
