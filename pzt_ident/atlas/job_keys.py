@@ -55,6 +55,12 @@ def key_tables() -> list[Section]:
     return [first, *(_section(kind, schema["$defs"][kind]) for kind in kinds)]
 
 
+def sections_of(key: str) -> list[Section]:
+    """The sections that have a key, each with that alone; empty where there is no such key."""
+    alone = [section._replace(rows=[row for row in section.rows if row.key == key]) for section in key_tables()]
+    return [section for section in alone if section.rows]
+
+
 def _section(kind: str, schema: dict[str, Any]) -> Section:
     doc, about = documented(schema["description"], schema["properties"])
     return Section(PLACES.get(kind, kind), doc, _rows(schema, about))

@@ -42,7 +42,7 @@ _TIMES = ("sample_rate", "seconds", "settle")
 def _range(axis: Facts, channel: str) -> str:
     if axis[f"{channel}_unit"] is None:
         return "not measured"
-    low, high = axis[f"{channel}_range"]
+    low, high = (float(f"{end:.4g}") + 0.0 for end in axis[f"{channel}_range"])  # no -0
     return f"{low:.4g} to {high:.4g} {axis[f'{channel}_unit']}"
 
 

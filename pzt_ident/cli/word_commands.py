@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from pzt_ident.cli.options import EXISTING, answer, output_options, plugins_option
+
+if TYPE_CHECKING:
+    from pzt_ident.atlas.job_keys import Section
 
 KINDS = ("blocks", "effects", "optimizers")
 
@@ -34,9 +38,12 @@ def list_(kind: str | None, as_json: bool, quiet: bool) -> None:
 
 def list_keys(as_json: bool, quiet: bool) -> None:
     from pzt_ident.atlas.job_keys import key_tables
-    from pzt_ident.cli.table import table
 
-    sections = key_tables()
+    tell_keys(key_tables(), as_json, quiet)
+
+
+def tell_keys(sections: list[Section], as_json: bool, quiet: bool) -> None:
+    from pzt_ident.cli.table import table
 
     def show_sections() -> None:
         for section in sections:
@@ -52,10 +59,15 @@ def list_keys(as_json: bool, quiet: bool) -> None:
 @plugins_option
 @output_options
 def show(name: str, as_json: bool, quiet: bool) -> None:
-    """Show what a block, effect or optimizer declares."""
+    """Show what a block, effect or optimizer declares, or what a key of a job is."""
+    from pzt_ident.atlas.job_keys import sections_of
     from pzt_ident.cli.word_tables import show_word
-    from pzt_ident.model.description import description_of
+    from pzt_ident.model.description import description_of, is_word
 
+    sections = [] if is_word(name) else sections_of(name)
+    if sections:
+        tell_keys(sections, as_json, quiet)
+        return
     description = description_of(name)
     answer(description, lambda: show_word(description), as_json, quiet)
 

@@ -20,11 +20,12 @@ FEW = 4  # descriptions that speak of a word: where more do, it is a common one
 
 
 def words(kind: str) -> dict[str, str]:
-    """The words of a kind (`blocks`, `effects` or `optimizers`) with the headlines of their docstrings."""
+    """The words of a kind (`blocks`, `effects` or `optimizers`) with the headlines of their docstrings, effects in the
+    order of the alphabet."""
     if kind == "optimizers":
         return {item.name: headline(item) for item in optimizers}
     headlines = {item.name: _listed(item) for item in blocks if blocks.is_effect(item.name) == (kind == "effects")}
-    return (_terms() if kind == "effects" else {}) | headlines
+    return dict(sorted((_terms() | headlines).items())) if kind == "effects" else headlines
 
 
 def _terms() -> dict[str, str]:
@@ -64,6 +65,11 @@ def summary(item: type) -> str:
     """What a block or optimizer is, in a few words: the first paragraph of its file, else its own headline."""
     file = inspect.getdoc(sys.modules[item.__module__]) or ""
     return " ".join(file.partition("\n\n")[0].split()) or headline(item)
+
+
+def is_word(name: str) -> bool:
+    """Whether a name is that of a block, effect or optimizer."""
+    return word_of(name) in blocks or name in optimizers or name in _terms()
 
 
 def description_of(name: str) -> Facts:

@@ -293,6 +293,17 @@ class TestWords:
             shown = call("show", word).stdout
             assert all(f"\n{field.name} " in shown for field in fields(optimizers[word]))
 
+    def test_a_key_of_a_job_is_shown_where_it_stands(self):
+        shown = json.loads(call("show", "settle", "--json").stdout)
+        assert [*shown] == ["each item of records"] and [*shown["each item of records"]] == ["settle"]
+        assert "simulated but not scored" in call("show", "settle").stdout
+        for word in ("delay", "pso", "bouc_wen"):  # a word is none
+            assert json.loads(call("show", word, "--json").stdout)["name"] == word
+
+    def test_effects_are_listed_by_the_alphabet(self):
+        listed = [*json.loads(call("list", "effects", "--json").stdout)]
+        assert listed == sorted(listed)
+
     def test_another_form_is_shown_with_what_it_has_beside(self):
         shown = call("show", "homogenized_energy").stdout
         assert "\ndensity " in shown and "lognormal or free" in shown and "\nnodes " in shown

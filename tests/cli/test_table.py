@@ -2,6 +2,7 @@
 
 import sys
 
+from pzt_ident.cli.job_tables import show_job
 from pzt_ident.cli.table import table
 from terminal import Terminal
 
@@ -26,3 +27,12 @@ def test_table_on_a_narrow_terminal_cuts_no_word(monkeypatch):
     words = ("x.cross_coupling.ratio", "-0.2308", "standard_error", "not-determined")
     table(("parameter", "value", "error", "verdict"), [words])
     assert all(word in screen.getvalue() for word in words)
+
+
+def test_a_range_has_no_negative_zero(capsys):
+    axis = {"name": "x", "drive_unit": "V", "drive_range": [-0.0, 150.0]}
+    axis |= {"response_unit": "um", "response_range": [-0.0, 11.56]}
+    facts = {"name": "j", "hash": "0", "model": [], "records": [], "axes": [axis], "parameters": [], "notes": []}
+    show_job(facts | {"runs": [], "evaluations": 0})
+    said = capsys.readouterr().out
+    assert "0 to 150 V" in said and "0 to 11.56 um" in said and "-0" not in said
