@@ -8,6 +8,7 @@ import click
 
 from pzt_ident.atlas.href import href
 from pzt_ident.cli.table import grouped_by_range, table
+from pzt_ident.model.registry import blocks, word_of
 
 Facts = dict[str, Any]
 
@@ -60,8 +61,16 @@ def _number(value: float | None) -> str:
 def _meaning(row: Facts) -> str:
     """What a parameter is, and when it is searched for."""
     fixed = "" if row["value"] is None else f" Fixed at {row['value']:g} unless the job gives bounds or another value."
-    effect = "" if row["effect"] is None else f" With `{row['effect']}` only."
+    effect = "" if row["effect"] is None else f" With {_needed(row['effect'])} only."
     per_record = " Each record has its own." if row["per_record"] else ""
     form = f" With `{row['form']}` only." if row["form"] else ""
     apart = f" Seen only where the job gives `{row['adds_to']}` and the rest of its block values or close bounds."
     return row["doc"] + fixed + effect + per_record + form + (apart if row["adds_to"] else "")
+
+
+def _needed(effect: str) -> str:
+    """An effect as a job names it: one in all its forms, or in the first, which the word alone means, or in another."""
+    forms = blocks.forms(effect) if word_of(effect) in blocks else [effect]
+    if len(forms) == 1 or effect in forms[1:]:
+        return f"`{effect}`"
+    return f"`{forms[0]}`, in any of its forms," if effect == forms[0] else f"`{forms[0]}` in its first form"

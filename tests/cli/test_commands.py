@@ -293,6 +293,12 @@ class TestWords:
             shown = call("show", word).stdout
             assert all(f"\n{field.name} " in shown for field in fields(optimizers[word]))
 
+    def test_it_says_with_which_forms_of_an_effect_a_parameter_is_searched_for(self):
+        shown = call("show", "bouc_wen").stdout
+        assert "With `asymmetry` in its first form only." in shown and "With `asymmetry.constant` only." in shown
+        assert "With `rate_dependence`, in any of its forms, only." in shown
+        assert "asymmetry.voltage" not in shown + call("show", "asymmetry").stdout
+
     def test_a_key_of_a_job_is_shown_where_it_stands(self):
         shown = json.loads(call("show", "settle", "--json").stdout)
         assert [*shown] == ["each item of records"] and [*shown["each item of records"]] == ["settle"]
