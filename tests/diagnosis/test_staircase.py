@@ -248,6 +248,22 @@ def test_a_step_is_settled_first_where_no_other_effect_promises_most_of_what_it_
     assert (added[0] in settled) != kept and added[-1] in settled
 
 
+@pytest.mark.parametrize("confirmed", [True, False])
+def test_a_promise_that_is_not_kept_settles_the_step_unless_unseen_records_do_not_confirm_what_kept_it(
+    monkeypatch, confirmed
+):
+    """What explains nearly all of the fitted records and fails on the others is tried behind other forms first."""
+    case, settled = stage.considering(stage.case(PAIR), "quadratic_gain"), []
+    first = first_fit(case, 0)
+    diagnosis = diagnose(case, first)
+    monkeypatch.setattr(climb, "promises_most", lambda case, first, fit: True)
+    monkeypatch.setattr(climb, "unconfirmed", lambda case, first, now, fits: None if confirmed else first)
+    monkeypatch.setattr(climb, "settle", lambda case, first, before, step: settled.append(step.added) or [])
+    monkeypatch.setattr(climb, "exchange_behind", lambda *arguments: [])
+    climb.climb(case, [Step(first)], diagnosis, diagnosis.best, lambda step: None)
+    assert settled == ["quadratic_gain"] * confirmed
+
+
 @pytest.mark.parametrize(("lower", "taken"), [(0.999, False), (0.9, True)])
 def test_a_restart_that_leads_hardly_lower_leaves_a_step_its_fit(monkeypatch, lower, taken):
     """Else all effects would be scored again beside it."""
