@@ -19,6 +19,7 @@ MODEL_FORM = 0.03  # of the initial misfit: less may as well be the form of the 
 FORM_OF_OTHERS = 0.15  # of the initial RMS misfit: what the form of the other effects may leave
 NEARLY_ALL = 0.95  # of a misfit, and NOT_LITTLE noise floors: no form leaves what another effect explains so well
 NOT_LITTLE = 0.9
+SHOWN = 0.3  # noise floors: the least that the records which are fitted show of what the others confirm
 MOST_OF_OTHERS = 1.5  # noise floors: the most that it may leave, however large the initial misfit
 FAR = 5.0  # noise floors: what leaves more lacks another effect or rests elsewhere, whatever the noise says
 MOST_FORM = 2.0  # noise floors: what a model leaves above this is not adequate, whatever there was before
@@ -49,7 +50,7 @@ def beyond_form(case: Case, first: Fit, without: Fit, now: Fit) -> bool:
     where the model with it is at the noise of both: what predicts records that nothing was fitted to is not bent to
     them. And what leaves next to nothing of a rest of either kind is no part of a form."""
     removed = removed_rms(without.identify, now.identify)
-    if takes_all(case, without, now):
+    if takes_all(case, without, now) or predicts(case, first, without, now):
         return True
     shown = removed > form_of_others(case, first.identify)
     near = max(without.validate or 0.0, now.validate or 0.0, now.identify) <= NEAR * case.floor
@@ -72,6 +73,15 @@ def takes_all(case: Case, without: Fit, now: Fit) -> bool:
     )
 
 
+def predicts(case: Case, first: Fit, without: Fit, now: Fit) -> bool:
+    """Whether an effect leads to the noise and takes up nearly all of what is left without it of the validation
+    records, to which nothing is fitted, however little the identification records show of it."""
+    unseen = misfit.share_explained(without.validate or 0.0, now.validate or 0.0, case.floor)
+    shown = removed_rms(without.identify, now.identify) > SHOWN * case.floor
+    much = now.validate is not None and removed_rms(without.validate, now.validate) > threshold(case, first)
+    return shown and much and unseen >= NEARLY_ALL and adequate(case, first, now)
+
+
 def only_all_counts(case: Case, first: Fit, fit: Fit) -> bool:
     """Whether what a fit leaves of the identification records may all be the form of its effects: another one is proven
     only if it takes up nearly all of it, or leads to the noise of both kinds of records."""
@@ -92,9 +102,9 @@ def is_enough(case: Case, first: Fit, before: Fit, share: float) -> bool:
 
 def removes_enough(case: Case, first: Fit, before: Fit, after: Fit) -> bool:
     """Whether an effect removes enough on the identification records and on the validation records; where the latter
-    do not show it, it must bring both down to the noise. What takes all of a rest is enough, however far the model as
-    given was from the noise."""
-    if takes_all(case, before, after):
+    do not show it, it must bring both down to the noise. What takes all of a rest, or predicts it, is enough, however
+    far the model as given was from the noise."""
+    if takes_all(case, before, after) or predicts(case, first, before, after):
         return True
     removed, least = removed_rms(before.identify, after.identify), threshold(case, first)
     in_validation = removed_rms(before.validate, after.validate) > least / 2 or not_in_validation(

@@ -79,6 +79,26 @@ def test_what_takes_all_of_a_rest_is_enough_however_far_the_first_model_was(left
     assert is_enough(CASE, first, rest, 1 - (left / before) ** 2) == (left < 0.5 and much)
 
 
+@pytest.mark.parametrize(
+    ("shown", "unseen", "left", "proven"),
+    [
+        (0.5, 4.6, 0.6, True),
+        (0.2, 4.6, 0.6, False),  # the fitted records hardly show it
+        (0.5, 4.6, 1.5, False),  # the others confirm it, but for a tenth
+        (0.5, 1.2, 0.0, False),  # not more than the form of what leads to 40 floors
+        (0.5, None, None, False),
+    ],
+)
+def test_what_predicts_nearly_all_of_unseen_records_is_proven_however_little_the_others_show(
+    shown, unseen, left, proven
+):
+    """As a friction that holds steps, which loops hardly show."""
+    first, before = above(40.0, 40.0), above(shown, unseen and np.hypot(1, unseen))
+    after = fit(1.0, left if left is None else np.hypot(1, left))
+    assert removes_enough(CASE, first, before, after) == proven
+    assert beyond_form(CASE, first, before, after) == proven
+
+
 @pytest.mark.parametrize(("share", "earned"), [(0.151, True), (0.149, False)])
 def test_an_effect_removes_a_share_of_what_is_left_of_the_records_that_were_fitted(share, earned):
     before = above(FAR, FAR)
