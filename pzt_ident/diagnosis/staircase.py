@@ -255,8 +255,10 @@ def own_account(case: Case, first: Fit, given: Staircase, on_step: StepListener)
 
 
 def outdoes(wide: Staircase, given: Staircase, case: Case, first: Fit) -> bool:
-    """Whether wider bounds are the better account than those of the job."""
-    return accounts(wide, case, first) or clearly_better(wide, given, case) or is_cheaper(wide, given, case)
+    """Whether wider bounds are the better account than those of the job, which do not lead to the noise: they do, even
+    if one of them is reached, or lead farther."""
+    arrived = wide.last.verdict == "adequate"
+    return arrived or accounts(wide, case, first) or clearly_better(wide, given, case) or is_cheaper(wide, given, case)
 
 
 def accounts(wide: Staircase, case: Case, first: Fit) -> bool:

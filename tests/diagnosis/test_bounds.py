@@ -33,7 +33,7 @@ from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.paths import exchange_for_bounds, improve_within
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.score import scorer_of
-from pzt_ident.diagnosis.staircase import bounds_beside, improve, is_cheaper
+from pzt_ident.diagnosis.staircase import bounds_beside, improve, is_cheaper, outdoes
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step
 from pzt_ident.diagnosis.verdict import diagnose
@@ -359,6 +359,20 @@ def test_wider_bounds_without_an_effect_are_the_cheaper_account_of_what_no_effec
     wide = Staircase([Step(replace(first, identify=left, validate=left))], diagnosis)
     monkeypatch.setattr(staircase, "keeps_within", lambda *arguments: within)
     assert is_cheaper(wide, Staircase([Step(given)], wide.last), case) == cheaper
+
+
+@pytest.mark.parametrize("arrived", [True, False])
+def test_wider_bounds_that_lead_to_the_noise_outdo_those_that_do_not_even_if_one_is_reached(
+    monkeypatch, unbent, arrived
+):
+    """A gain by the prompt response, which the stops of a memory lower beyond the bounds of a data sheet."""
+    case, first, diagnosis = unbent
+    verdict = replace(diagnosis, verdict="adequate" if arrived else "unexplained")
+    wide = Staircase([Step(replace(first, effects=("distributed_memory",)))], verdict)
+    given = Staircase([Step(first)], replace(diagnosis, verdict="unexplained"))
+    for word in ("accounts", "keeps_within"):
+        monkeypatch.setattr(staircase, word, lambda *arguments: False)
+    assert outdoes(wide, given, case, first) == arrived
 
 
 @pytest.mark.parametrize(("low", "stands_in"), [(0.0826, True), (0.05, False)])
