@@ -11,6 +11,7 @@ from .operators import everett_table, plays, preisach_density
 from .stage import Axis, simulate
 
 FINE = {"amplifier_lag": 8, "sensor_lag": 2, "delay": 4, "slew_limit": 16, "resonance": 2, "amplitude_gain": 4}
+PER_PERIOD, MOST_STEPS = 8, 32
 HELD = {"bouc_wen": ("gain", "alpha", "beta", "gamma")}
 HELD["preisach"] = HELD["free_energy"] = ("gain", "remanence", "coercive", "spread", "interaction")
 
@@ -26,17 +27,24 @@ class Rig:
         self.least = 3.0
 
     def _fine(self, record, effects):
-        """Steps to a sample: more where something is quick against it."""
+        """Steps to a sample: more where something is quick against it, and PER_PERIOD in one of the fastest mode, whose
+        response to a kink between two steps is that to another one."""
         fine = max([1 if self.axes["x"].base["kind"] == "preisach" else 2, *(FINE.get(e, 1) for e in effects)])
         entry = effects.get("friction", {})
         if self.axes["x"].modes and ("cubic_stiffness" in effects or "inside" in entry.get("form", "")):
             fine = max(fine, math.ceil(2 * math.pi * self.axes["x"].modes[0][0] / record.rate / 0.1))
-        return min(fine, 16)
+        fastest = max((mode[0] for axis in self.axes.values() for mode in axis.modes), default=0.0)
+        return min(max(fine, math.ceil(PER_PERIOD * fastest / record.rate)), MOST_STEPS)
 
-    def reading(self, i, record, axes=None):
-        """Clean readings of record number i."""
+    def step_errors(self, fine=64):
+        """By how much so many steps to a sample move the readings of x of each record, root mean square, in floors."""
+        apart = [self.reading(i, r)["x"] - self.reading(i, r, fine=fine)["x"] for i, r in enumerate(self.records)]
+        return [float(np.sqrt(np.mean(change**2)) / self.floor) for change in apart]
+
+    def reading(self, i, record, axes=None, fine=None):
+        """Clean readings of record number i, in so many steps to a sample, by default as many as it needs."""
         axes = axes or self.axes
-        fine = self._fine(record, axes["x"].effects)
+        fine = fine or self._fine(record, axes["x"].effects)
         return simulate(axes, record.run, 1 / record.rate, fine, i, self.case["noise_seed"], record.lead)
 
     def readings(self, axes=None):

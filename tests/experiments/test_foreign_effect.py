@@ -15,6 +15,7 @@ from experiments.foreign_effect.campaign import DRIVES, Record, drive, floor, no
 from experiments.foreign_effect.family import Family
 from experiments.foreign_effect.forms import FORMS, NEEDS
 from experiments.foreign_effect.stage import Axis, simulate
+from experiments.foreign_effect.visibility import Rig
 
 FOLDER = Path(operators.__file__).parent
 BOUC_WEN = {"kind": "bouc_wen", "gain": 0.1, "alpha": 0.4, "beta": 0.05, "gamma": 0.02}
@@ -327,3 +328,14 @@ def test_every_effect_has_a_campaign_that_excites_it():
 def test_no_file_of_the_folder_imports_the_package():
     for path in FOLDER.glob("*.py"):
         assert not re.search(r"^\s*(from|import)\s+pzt_ident|hidden_effect", path.read_text(), re.MULTILINE), path.name
+
+
+@pytest.mark.parametrize(("frequency", "least"), [(290.0, 12), (20.0, 2)])
+def test_a_mode_that_samples_are_too_slow_for_has_steps_enough_in_its_period(frequency, least):
+    """What rings at it begins at the kinks of the hysteresis, wherever these are between two samples."""
+    drive = 50 - 50 * np.cos(np.arange(400) / 9)
+    record = Record("sines", "identify", 200.0, {"x": drive})
+    axes = {"x": Axis(dict(BOUC_WEN), [(frequency, 0.015, 1.0)])}
+    rig = Rig({"axes": axes, "records": [record], "sensor": {"sigma": 0.003, "count": 0.0}, "noise_seed": 1})
+    assert rig._fine(record, {}) == least
+    assert rig.step_errors()[0] < 0.3
