@@ -238,8 +238,8 @@ def follow(case: Case, candidate: Candidate, best: Fit) -> None:
             candidate.refits[score.effect] = from_where(case, best, fit, score.guess)
     own, usual = candidate.refits[candidate.score.effect], candidate.forms[0].effect
     same = [item for item, fit in candidate.refits.items() if abs(fit.total - own.total) < TWIN * case.floor]
-    first = usual in candidate.refits and is_equal(case, own, candidate.refits[usual])
-    candidate.take(usual if first else min(same, key=lambda item: candidate.refits[item].freedom))
+    as_good = usual in candidate.refits and is_equal(case, own, candidate.refits[usual])
+    candidate.take(usual if as_good else min(same, key=lambda item: candidate.refits[item].freedom))
 
 
 def promises_enough(case: Case, first: Fit, before: Fit, candidate: Candidate) -> bool:
