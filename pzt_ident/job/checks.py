@@ -178,7 +178,11 @@ def _as_fault(document: Document, loc: Loc, known: str = "") -> Iterator[None]:
 
 def _rule_out(document: Document, words: tuple[str, ...], earlier: Earlier) -> None:
     for i, word in enumerate(words):
-        if word not in blocks.effects():
+        if word not in blocks.effects() and word_of(word) in blocks.effects():
+            document.fault(
+                ("rule_out", i), f"{word!r} is a form", f"rule out the effect with all its forms: {word_of(word)}"
+            )
+        elif word not in blocks.effects():
             document.fault(("rule_out", i), f"unknown effect {word!r}", nearest(word, blocks.effects()))
         elif word in map(word_of, earlier.get("effects", ())):
             document.fault(("rule_out", i), f"{word!r} is among the `effects` too", "keep it in one of the two")
@@ -194,7 +198,8 @@ def _effects(document: Document, items: tuple[str, ...], earlier: Earlier) -> No
         with _as_fault(document, loc):
             effect = next(iter(blocks.chain([items[i]])), None)
         if word in words[:i]:
-            document.fault(loc, f"duplicate effect {word!r}", "keep one of the two")
+            again = "" if items[i] in items[:i] else ", of which a form is here already"
+            document.fault(loc, f"duplicate effect {word!r}{again}", "keep one of the two")
         elif word not in known and word in blocks:
             document.fault(loc, f"{blocks[word].name!r} is not an effect", f"move it to `model: [{word}]`")
         elif word not in known:

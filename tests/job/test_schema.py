@@ -201,6 +201,18 @@ ONE_FAULT = [
     ("lumped]", "{name: lumped, size: 3}]", "10:34: model[1].size: unknown setting 'size'", "write just `lumped`"),
     ("lumped]", "{size: 3}]", "10:19: model[1]: missing key 'name'", "add `name: ...`"),
     ("lumped]", "3]", "10:19: model[1]: 3 is not a text", "put it in quotes"),
+    (
+        "[cross_coupling]",
+        "[cross_coupling, cross_coupling.voltage]",
+        "11:27: effects[1]: duplicate effect 'cross_coupling', of which a form is here already",
+        "keep one of the two",
+    ),
+    (
+        "effects: [cross_coupling]",
+        "effects: [cross_coupling]\nrule_out: [creep.voltage]",
+        "12:12: rule_out[0]: 'creep.voltage' is a form",
+        "rule out the effect with all its forms: creep",
+    ),
     ("[cross_coupling]", "[cros_coupling]", "11:11: effects[0]: unknown effect 'cros_coupling'", "'cross_coupling'"),
     ("[cross_coupling]", "[lumped]", "11:11: effects[0]: 'lumped' is not an effect", "move it to `model: [lumped]`"),
     ('    y: {drive: "u_y [V]"}\n', "", "10:11: effects[0]: 'cross_coupling' needs a second axis", "`drive`"),
