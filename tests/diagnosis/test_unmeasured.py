@@ -27,6 +27,7 @@ from pzt_ident.diagnosis.unmeasured import (
     own_mechanics,
     own_mechanics_sentence,
     with_own_hysteresis,
+    with_own_mechanics,
 )
 from pzt_ident.diagnosis.verdict import diagnose
 from pzt_ident.model.registry import blocks, word_of
@@ -125,6 +126,7 @@ def test_an_own_resonance_is_looked_for_ahead_of_second_effects_where_a_coupling
     first, told = first_fit(case, 0), []
     found = own_at_once(case, first, diagnose(case, first), told.append)
     assert (found is not None) == at_once == bool(told)
+    assert with_own_mechanics(case, first) is with_own_mechanics(case, first)  # sought once
     if found:
         assert [step.change for step in found.steps] == ["", OWN, ""] and found.last.verdict == "adequate"
 
