@@ -154,6 +154,9 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
             made.append(candidate)
             fits.extend(candidate.refits.values())
         rival = min((fit.identify for fit in fits), default=np.inf)
+    closest = min(made, key=lambda candidate: candidate.closest.identify, default=None)
+    if closest and before is first and closest is not candidates[0] and drives_onto_bounds(case, first, closest):
+        refit_further(case, first, before, closest)
     return made
 
 

@@ -64,6 +64,12 @@ class Candidate:
         """The refit that fits best."""
         return min(self.refits.values(), key=lambda fit: fit.total)
 
+    @property
+    def closest(self) -> Fit:
+        """The refit that is closest to the records which are fitted; others may lose by it, where it rests in a side
+        minimum."""
+        return min(self.refits.values(), key=lambda fit: fit.identify)
+
     def take(self, item: str) -> None:
         """Mean this form, which was refitted."""
         self.score, self.fit = next(score for score in self.forms if score.effect == item), self.refits[item]
@@ -78,7 +84,7 @@ def refit_likely_forms(case: Case, first: Fit, before: Fit, candidate: Candidate
     """Refit an effect that explains most of the misfit and leaves more than the noise in its other forms, before other
     effects are refitted, if it promised most, or rests where it may be astray: those that explain most by their scores
     first, until one is adequate."""
-    if candidate.score.explained < LIKELY and not (before is first and rests_anew(before, candidate.best)):
+    if candidate.score.explained < LIKELY and not (before is first and rests_anew(before, candidate.closest)):
         return
     for score in likely_forms(candidate):
         if not leaves_some(case, first, before, candidate.best):
@@ -98,9 +104,9 @@ def drives_onto_bounds(case: Case, first: Fit, candidate: Candidate) -> bool:
     """Whether an effect beside the model as given explains most and leaves more than the noise of the identification
     records, and drives the model onto bounds where it did not rest without it; not one with many amounts, which takes
     the place of what the model has."""
-    if has_many_amounts(blocks[candidate.score.effect]) or reaches_noise(case, first, candidate.best):
+    if has_many_amounts(blocks[candidate.score.effect]) or reaches_noise(case, first, candidate.closest):
         return False
-    return leaves_some(case, first, first, candidate.best) and rests_anew(first, candidate.best)
+    return leaves_some(case, first, first, candidate.closest) and rests_anew(first, candidate.closest)
 
 
 def rests_on_bounds(case: Case, first: Fit, fit: Fit) -> bool:

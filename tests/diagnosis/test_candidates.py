@@ -154,6 +154,35 @@ def test_an_effect_is_fitted_from_random_points_unless_another_promises_what_it_
     assert tried == ([anew] if anew else [])
 
 
+@pytest.mark.parametrize(
+    ("friction", "memory", "driven", "further"),
+    [
+        ((3.0, 9.2), (3.4, 6.6), True, ["friction"]),
+        ((3.0, 9.2), (3.4, 6.6), False, []),
+        ((3.6, 5.0), (3.4, 6.6), True, []),
+    ],
+)
+def test_what_is_closest_to_the_fitted_records_is_refitted_further_where_it_drives_the_model_onto_bounds(
+    monkeypatch, friction, memory, driven, further
+):
+    """A friction that takes the place of all hysteresis, which other records do not confirm, may rest astray."""
+    first, gone_on = fit(6.4, 9.0), []
+    offered = [Candidate.of([Score(word, explained=0.6)]) for word in ("distributed_memory", "friction")]
+    refits = {"friction": fit(*friction, ["friction"]), "distributed_memory": fit(*memory, ["distributed_memory"])}
+    monkeypatch.setattr(candidates, "refit_from", lambda case, before, effects, *_: refits[effects[-1]])
+    monkeypatch.setattr(candidates, "drives_onto_bounds", lambda case, first, candidate: driven)
+
+    def refit_further(case, first, before, candidate):
+        gone_on.append(candidate.score.effect)
+
+    monkeypatch.setattr(candidates, "refit_further", refit_further)
+    assert candidates.refit_all(CASE, first, first, offered) == offered
+    assert gone_on == ["distributed_memory", *further]
+    gone_on.clear()
+    candidates.refit_all(CASE, fit(20.0, 20.0), first, offered)
+    assert gone_on == ["distributed_memory"]  # beside other effects it is not
+
+
 @pytest.mark.parametrize("many", ["distributed_memory", "periodic_disturbance"])
 @pytest.mark.parametrize(("bend", "first"), [(0.86, "saturation"), (0.61, "saturation"), (0.59, None)])
 def test_what_has_many_amounts_is_refitted_behind_what_explains_most_too(bend, first, many):

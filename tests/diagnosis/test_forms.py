@@ -82,6 +82,18 @@ def test_an_effect_that_drives_the_model_onto_bounds_is_fitted_from_random_point
     assert candidate.best.identify == (1.0 if sought else left)
 
 
+@pytest.mark.parametrize("resting", ["friction", "friction.commanded"])
+def test_the_form_that_is_closest_to_the_fitted_records_tells_whether_the_model_is_driven_onto_bounds(
+    monkeypatch, resting
+):
+    """Though another form leaves less of all records: what rests in a side minimum predicts little."""
+    refits = {"friction": fit(4.0, 6.2, ["friction"]), "friction.commanded": fit(3.0, 9.2, ["friction.commanded"])}
+    monkeypatch.setattr(forms, "rests_anew", lambda before, fit: fit.effects[-1] == resting)
+    candidate = Candidate(Score("friction", 0.5), refits=refits)
+    assert candidate.best is refits["friction"]
+    assert forms.drives_onto_bounds(CASE, fit(6.4, 9.0), candidate) == (resting == "friction.commanded")
+
+
 @pytest.mark.parametrize("item", blocks.effects())
 def test_only_a_density_takes_the_place_of_the_model_without_being_astray(monkeypatch, item):
     """A bank of many amounts has its own hysteresis: the one that the model had may well end on its bounds."""
