@@ -5,7 +5,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from pzt_ident.diagnosis.bounds import are_too_narrow, beyond_bounds, continued, stands_in, widened
+from pzt_ident.diagnosis.accounts import accounts, keeps_within, outdoes
+from pzt_ident.diagnosis.bounds import are_too_narrow, beyond_bounds, continued, widened
 from pzt_ident.diagnosis.budget import WHOLE
 from pzt_ident.diagnosis.candidates import likeliest
 from pzt_ident.diagnosis.case import Case
@@ -25,18 +26,9 @@ from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE
 from pzt_ident.diagnosis.undetermined import enough_without_mechanics
-from pzt_ident.diagnosis.unmeasured import (
-    OWN,
-    OWN_LOOPS,
-    coupled,
-    own_hysteresis,
-    own_mechanics,
-    with_own_hysteresis,
-    with_own_mechanics,
-)
+from pzt_ident.diagnosis.unlike import own_account, own_at_once
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
-from pzt_ident.model.block import Coupling
-from pzt_ident.model.registry import blocks, word_of
+from pzt_ident.model.registry import word_of
 
 BESIDE = 4  # of the refits with one effect: those that are gone on with beyond the bounds of the job
 
@@ -213,84 +205,6 @@ def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, F
         if beyond and adequate(case, first, beyond[1]):
             return beyond
     return None
-
-
-def own_at_once(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListener) -> Staircase | None:
-    """The staircase where axes without a response have a resonance of their own, if a coupling leads to the noise with
-    that alone; None elsewhere, and where the best effect is no coupling, or one that leads there as it is."""
-    best = diagnosis.best.fit if diagnosis.best else None
-    settled = best and (adequate(case, first, best) or not issubclass(blocks[best.effects[-1]], Coupling))
-    if settled or diagnosis.verdict in SETTLED or not own_mechanics(case):
-        return None
-    if not case.budget.allows("axes without a response that are unlike the others"):
-        return None
-    found = with_own_mechanics(case, first)
-    if found is None or not any(adequate(case, first, fit) for fit in coupled(*found)):
-        return None
-    own, start = found
-    return improve_within(own, [Step(first), Step(start, change=OWN, case=own)], on_step)
-
-
-def own_account(case: Case, first: Fit, given: Staircase, on_step: StepListener) -> Staircase | None:
-    """The staircase where axes without a response have a resonance, or else a hysteresis, of their own, if that is the
-    better account: of one that leads to the noise, if that takes other effects beside a coupling."""
-    arrived = given.last.verdict == "adequate"
-    added = given.end.effects[len(first.effects) :]
-    tried = added if arrived else [step.added for step in given.steps if step.added]
-    beside = any(issubclass(blocks[effect], Coupling) for effect in tried)
-    if arrived and not (beside and len(added) > 1):
-        return None
-    for change, free, alternative in (
-        (OWN, own_mechanics(case), with_own_mechanics),
-        (OWN_LOOPS, own_hysteresis(case, first) if beside else {}, with_own_hysteresis),
-    ):
-        if not free or not case.budget.allows("axes without a response that are unlike the others", WHOLE):
-            continue
-        if found := alternative(case, first):
-            own, start = found
-            other = improve_within(own, [Step(first), Step(start, change=change, case=own)], on_step)
-            if takes_fewer(other, given, case) if arrived else reaches_farther(other, given):
-                return other
-    return None
-
-
-def outdoes(wide: Staircase, given: Staircase, case: Case, first: Fit) -> bool:
-    """Whether wider bounds are the better account than those of the job, which do not lead to the noise: they do, even
-    if one of them is reached, or lead farther."""
-    arrived = wide.last.verdict == "adequate"
-    return arrived or accounts(wide, case, first) or clearly_better(wide, given, case) or is_cheaper(wide, given, case)
-
-
-def accounts(wide: Staircase, case: Case, first: Fit) -> bool:
-    """Whether wider bounds lead near the noise, to a model in which none of them is reached."""
-    return near_noise(case, first, wide.end) and keeps_within(wide, case)
-
-
-def clearly_better(wide: Staircase, given: Staircase, case: Case) -> bool:
-    """Whether wider bounds, none of which is reached, remove most of what the staircase as given leaves."""
-    share = share_explained(given.end.total, wide.end.total, case.floor)
-    return share >= DECISIVE and keeps_within(wide, case)
-
-
-def is_cheaper(wide: Staircase, given: Staircase, case: Case) -> bool:
-    """Whether wider bounds, none of which is reached, lead as far with fewer effects."""
-    return takes_fewer(wide, given, case) and keeps_within(wide, case)
-
-
-def takes_fewer(other: Staircase, given: Staircase, case: Case) -> bool:
-    """Whether another account leads as far with fewer effects."""
-    as_far = removed_rms(other.end.total, given.end.total) < TIE * case.floor
-    return as_far and len(other.end.effects) < len(given.end.effects)
-
-
-def reaches_farther(other: Staircase, given: Staircase) -> bool:
-    """Whether another account leads to the noise, or farther."""
-    return other.last.verdict == "adequate" or other.end.total < given.end.total
-
-
-def keeps_within(wide: Staircase, case: Case) -> bool:
-    """Whether the last model reaches none of the wider bounds."""
-    return wide.case is None or not stands_in(wide.case, case, wide.end)
 
 
 def improve_beyond(case: Case, first: Fit, wide: Case, start: Fit, on_step: StepListener) -> Staircase:

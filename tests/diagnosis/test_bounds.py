@@ -33,7 +33,7 @@ from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.paths import exchange_for_bounds, improve_within
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.score import scorer_of
-from pzt_ident.diagnosis.staircase import bounds_beside, improve, is_cheaper, outdoes
+from pzt_ident.diagnosis.staircase import bounds_beside, improve
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step
 from pzt_ident.diagnosis.verdict import diagnose
@@ -328,51 +328,6 @@ def test_what_is_larger_than_the_catalogue_expects_is_told_so_before_another_eff
     assert found.last.verdict == "adequate"
     assert found.end.values["quadratic_gain.curvature"] == pytest.approx(-size, rel=0.01)
     assert bool(narrow_bounds_sentence(case, found.end)) == (times > 1)
-
-
-@pytest.fixture(scope="module")
-def unbent():
-    """A case with bounds beside the truth, its first fit, and the diagnosis of that."""
-    case = bounded(0.9, 1.1)
-    first = first_fit(case, 0)
-    return case, first, diagnose(case, first)
-
-
-@pytest.mark.parametrize(
-    ("apart", "effects", "within", "cheaper"),
-    [
-        (-1.0, ["distributed_memory"], True, True),
-        (0.1, ["distributed_memory"], True, True),
-        (1.0, ["distributed_memory"], True, False),
-        (-1.0, [], True, False),
-        (-1.0, ["distributed_memory"], False, False),
-    ],
-)
-def test_wider_bounds_without_an_effect_are_the_cheaper_account_of_what_no_effect_explains(
-    monkeypatch, unbent, apart, effects, within, cheaper
-):
-    """Above the noise both: a jump at a position, in a job that bounds the gain beside the truth. apart: noise floors,
-    root mean square, by which wider bounds leave more."""
-    case, first, diagnosis = unbent
-    given = replace(first, identify=10 * case.floor, validate=10 * case.floor, effects=tuple(effects))
-    left = case.floor * (100 + np.sign(apart) * apart**2) ** 0.5
-    wide = Staircase([Step(replace(first, identify=left, validate=left))], diagnosis)
-    monkeypatch.setattr(staircase, "keeps_within", lambda *arguments: within)
-    assert is_cheaper(wide, Staircase([Step(given)], wide.last), case) == cheaper
-
-
-@pytest.mark.parametrize("arrived", [True, False])
-def test_wider_bounds_that_lead_to_the_noise_outdo_those_that_do_not_even_if_one_is_reached(
-    monkeypatch, unbent, arrived
-):
-    """A gain by the prompt response, which the stops of a memory lower beyond the bounds of a data sheet."""
-    case, first, diagnosis = unbent
-    verdict = replace(diagnosis, verdict="adequate" if arrived else "unexplained")
-    wide = Staircase([Step(replace(first, effects=("distributed_memory",)))], verdict)
-    given = Staircase([Step(first)], replace(diagnosis, verdict="unexplained"))
-    for word in ("accounts", "keeps_within"):
-        monkeypatch.setattr(staircase, word, lambda *arguments: False)
-    assert outdoes(wide, given, case, first) == arrived
 
 
 @pytest.mark.parametrize(("low", "stands_in"), [(0.0826, True), (0.05, False)])

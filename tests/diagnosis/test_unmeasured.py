@@ -16,9 +16,10 @@ from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.possible import fits
 from pzt_ident.diagnosis.refit import refit, values_in
 from pzt_ident.diagnosis.score import Score
-from pzt_ident.diagnosis.staircase import improve, own_at_once
+from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step
+from pzt_ident.diagnosis.unlike import own_at_once
 from pzt_ident.diagnosis.unmeasured import (
     OWN,
     OWN_LOOPS,
