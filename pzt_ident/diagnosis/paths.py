@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from pzt_ident.diagnosis.bounds import beyond_guesses, continued, freed, stands_in, widened
+from pzt_ident.diagnosis.bounds import FAR_SLIP, SLIP, beyond_guesses, continued, freed, stands_in, widened
 from pzt_ident.diagnosis.budget import PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase, climb
@@ -123,29 +123,41 @@ def finish(case: Case, first: Fit, path: Staircase) -> Fit | None:
 
 
 def exchange_for_bounds(case: Case, first: Fit, now: Fit) -> list[Step]:
-    """The steps to wider bounds and from the effect that made up for them, where a model near the noise rests on bounds
-    of the job, has a value that the catalogue guesses, or stands for one beyond its guess, and fits as well beyond
-    these without one of its effects."""
+    """The steps to wider bounds and from the effect that made up for them, where a model near the noise, with the
+    effect or without it, rests on bounds of the job, has a value that the catalogue guesses, or stands for one beyond
+    its guess, and fits as well beyond these without one of its effects."""
     added = now.effects[len(first.effects) :]
     if not added or not near_noise(case, first, now):
         return []
-    resting = widened(case, now) | freed(case, now.problem)
     for effect in reversed(added):
-        others = effects_without(now, effect)
-        without = case.problem(others, now.steps)
-        specs = resting | beyond_guesses(case, without, values_in(without, now))
-        if not specs or not case.budget.allows("wider bounds", WHOLE):
-            continue
-        wide = case.with_specs(specs)
-        fits = refit(wide, now, others, {}), continued(wide, refit(case, now, others, {}))
-        beyond = min(fits, key=lambda fit: fit.total)
-        if removed_rms(beyond.total, now.total) < TIE * case.floor and not stands_in(wide, case, beyond):
-            both = continued(wide, now)
-            return [
-                Step(both, explained=explained_share(case, now, both), change=WIDER, case=wide),
-                Step(beyond, None, effect, {}, explained_share(case, both, beyond)),
-            ]
+        for wide, beyond in without_within(case, now, effect):
+            as_low = removed_rms(beyond.total, now.total) < TIE * case.floor
+            if as_low and not stands_in(wide, case, beyond):
+                both = continued(wide, now)
+                return [
+                    Step(both, explained=explained_share(case, now, both), change=WIDER, case=wide),
+                    Step(beyond, None, effect, {}, explained_share(case, both, beyond)),
+                ]
     return []
+
+
+def without_within(case: Case, now: Fit, effect: str) -> Iterator[tuple[Case, Fit]]:
+    """The case with wider bounds of what a model rests on with an effect or without it, and the fit without it there;
+    with bounds that are far wider after those that are reached."""
+    if not case.budget.allows("wider bounds", WHOLE):
+        return
+    without = refit(case, now, effects_without(now, effect), {})
+    guesses = beyond_guesses(case, without.problem, values_in(without.problem, now))
+    for slip in (SLIP, FAR_SLIP):
+        specs = widened(case, without, slip) | widened(case, now, slip) | freed(case, now.problem) | guesses
+        if not specs:
+            return
+        wide = case.with_specs(specs)
+        fits = refit(wide, now, without.effects, {}), continued(wide, without)
+        beyond = min(fits, key=lambda fit: fit.total)
+        yield wide, beyond
+        if not stands_in(wide, case, beyond):
+            return
 
 
 def is_adequate(path: Staircase) -> bool:
