@@ -30,6 +30,7 @@ WORDS = {
     "boolean": "true or false",
     "object": "mapping",
 }
+ANY = "items", "additionalProperties"  # of a list, of a mapping whose keys are names
 PLACES = {
     "Source": "each item of records",
     "Level": "a drive, as of rest_at",
@@ -48,11 +49,34 @@ def key_tables() -> list[Section]:
     """The job itself, then each kind of mapping that it may hold."""
     from pzt_ident.job.schema import Job
 
-    schema = Job.model_json_schema()
+    schema = with_short_forms(Job.model_json_schema())
     kinds = sorted(schema["$defs"], key=lambda kind: list(PLACES).index(kind) if kind in PLACES else len(PLACES))
     about = {key: item["description"] for key, item in schema["properties"].items()}
     first = Section("The file", "What to identify from which records, and how.", _rows(schema, about))
     return [first, *(_section(kind, schema["$defs"][kind]) for kind in kinds)]
+
+
+def with_short_forms(schema: dict[str, Any]) -> dict[str, Any]:
+    """The schema of a job in which each value that has a short form says how that is written, as `short`."""
+    from pzt_ident.job.normalise import SHORT_FORMS
+
+    for pattern, _, written in SHORT_FORMS:
+        items = [schema]
+        for word in pattern.split("."):
+            items = [below for item in items for below in _below(schema["$defs"], item, word)]
+        for item in items:
+            item |= {"short": written} if written else {}
+    return schema
+
+
+def _below(kinds: Mapping[str, Any], item: Mapping[str, Any], word: str) -> list[dict[str, Any]]:
+    """What the schema says of a key of a mapping, or, of `*`, of any of its keys or of each item of a list."""
+    options = [item, *item.get("anyOf", ())]
+    options += [kinds[option["$ref"].rpartition("/")[2]] for option in options if "$ref" in option]
+    if word != "*":
+        return [option["properties"][word] for option in options if "properties" in option]
+    parts = [part for option in options for part in option.get("prefixItems", ())]
+    return parts + [option[any_of] for option in options for any_of in ANY if any_of in option]
 
 
 def sections_of(key: str) -> list[Section]:
@@ -88,7 +112,12 @@ def _default(item: dict[str, Any]) -> str:
 
 
 def _value(item: dict[str, Any]) -> str:
-    """What a value may be, in words."""
+    """What a value may be, in words, and how its short form is written."""
+    return f"{_long(item)} or {item['short']}" if "short" in item else _long(item)
+
+
+def _long(item: dict[str, Any]) -> str:
+    """What a value may be in its long form, in words."""
     if "$ref" in item:
         return "mapping"
     if "enum" in item:
@@ -101,4 +130,7 @@ def _value(item: dict[str, Any]) -> str:
     if item.get("type") == "array":
         parts = item.get("prefixItems")
         return f"[{', '.join(map(_value, parts))}]" if parts else f"list: {_value(item['items'])}"
+    below = item.get("additionalProperties")
+    if isinstance(below, dict) and "short" in below:
+        return f"mapping: {_value(below)}"
     return WORDS.get(item.get("type", ""), "any")

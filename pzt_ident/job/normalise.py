@@ -18,7 +18,7 @@ QUANTITY = re.compile(r"^([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\d].
 def long_form(document: Document) -> dict[str, Any]:
     """The data of a job in its long form; a quantity that cannot be read is added as a fault."""
     data: Any = document.data
-    for pattern, expand in _SHORT_FORMS:
+    for pattern, expand, _ in SHORT_FORMS:
         data = _expanded(document, data, pattern.split("."), expand, ())
     return data
 
@@ -101,17 +101,19 @@ def _number_and_unit(document: Document, loc: Loc, text: str, example: str) -> t
     return 1.0, None
 
 
-_SHORT_FORMS: tuple[tuple[str, Expand], ...] = (
-    ("records.*.sample_rate", _in("Hz")),
-    ("records.*.settle", _in("s")),
-    ("records.*.time.*", _in("s")),
-    ("records.*.rest_at", _levels),
-    ("records.*.channels.*", _channel),
-    ("channels.time", _channel),
-    ("channels.axes.*.drive", _channel),
-    ("channels.axes.*.response", _channel),
-    ("model.*", _block),
-    ("optimizers.*", _choice),
-    ("stop.seconds", _in("s")),
-    ("stop.target", _quantity("0.1 um")),
+SHORT_FORMS: tuple[tuple[str, Expand, str], ...] = (
+    ("records.*.sample_rate", _in("Hz"), "`1 kHz`"),
+    ("records.*.settle", _in("s"), "`20 ms`"),
+    ("records.*.time.*", _in("s"), "`20 ms`"),
+    ("records.*.rest_at", _levels, "`0 V`"),
+    ("records.*.channels.*", _channel, "a header"),
+    ("channels.time", _channel, "a header"),
+    ("channels.axes.*.drive", _channel, "a header"),
+    ("channels.axes.*.response", _channel, "a header"),
+    ("model.*", _block, ""),
+    ("optimizers.*", _choice, "a name"),
+    ("stop.seconds", _in("s"), "`5 min`"),
+    ("stop.target", _quantity("0.1 um"), "`0.1 um`"),
 )
+"""The place of each short form, with `*` for any key or index, how it is expanded, and how it is written; empty where
+its long form is written so, too."""

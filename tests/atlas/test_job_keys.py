@@ -3,6 +3,8 @@
 import re
 
 from pzt_ident.atlas.job_keys import PLACES, documented, key_tables
+from pzt_ident.job.document import Document
+from pzt_ident.job.normalise import SHORT_FORMS
 from pzt_ident.job.schema import Job
 
 
@@ -29,3 +31,18 @@ def test_values_are_in_words():
     assert rows["repeats"].value == "whole number" and rows["repeats"].default == "1"
     assert rows["model"].value == "list: text or mapping"
     assert rows["records"].default == "required"
+
+
+def test_every_short_form_is_told_where_its_long_form_is():
+    values = [row.value for section in key_tables() for row in section.rows]
+    for pattern, _, written in SHORT_FORMS:
+        word = pattern.removesuffix(".*").rpartition(".")[2]
+        assert any(row.key == word and written in row.value for section in key_tables() for row in section.rows), word
+    assert "[number or `20 ms`, number or `20 ms`]" in values and "list: mapping or a name" in values
+
+
+def test_a_short_form_as_it_is_told_is_read():
+    for pattern, expand, written in SHORT_FORMS:
+        if written.startswith("`"):
+            document = Document("channels: {axes: {x: {}}}", "job.yaml")
+            assert expand(document, tuple(pattern.split(".")), written.strip("`")) is not None and not document.faults
