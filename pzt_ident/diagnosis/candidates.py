@@ -107,15 +107,22 @@ def simpler_first(candidates: list[Candidate]) -> list[Candidate]:
     return [other, *(item for item in candidates if item is not other)]
 
 
+def is_disturbance(candidate: Candidate) -> bool:
+    """Whether an effect has amounts of each record, which are solved for: a refit takes little time, and tells more
+    than a score of what it does in a form that is not linear."""
+    return bool(blocks[candidate.score.effect].amounts())
+
+
 def _follows_anything(effect: str) -> bool:
     """Whether an effect has amounts enough to take up much of whatever is left."""
     return has_many_amounts(blocks[effect]) or bool(blocks[effect].amounts())
 
 
 def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
-    """Refit the model with each effect, in its first form and in the one that scores best; returns the refitted ones,
-    which are all that the budget suffices for, but at least the best one beside the model as given. Those that stay far
-    above what the best score leads to are given up; where that is adequate, none is refitted that is far from it."""
+    """Refit the model with each effect, in its first form and in the one that scores best, a disturbance in all; gives
+    the refitted ones, which are all that the budget suffices for, but at least the best one beside the model as given.
+    Those that stay far above what the best score leads to are given up; where that is adequate, none is refitted that
+    is far from it."""
     fits: list[Fit] = []
     rival = np.inf
 
@@ -138,7 +145,8 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
         return needed or (may_stand(candidate) and allows())
 
     def refitted(candidate: Candidate) -> Candidate:
-        forms = {score.effect: score for score in (candidate.forms[0], candidate.score)}
+        chosen = candidate.forms if is_disturbance(candidate) else (candidate.forms[0], candidate.score)
+        forms = {score.effect: score for score in chosen}
         fits = {
             item: refit_from(case, before, (*before.effects, item), score.guesses, rival)
             for item, score in forms.items()

@@ -10,6 +10,7 @@ from pzt_ident.diagnosis import candidates, forms
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.score import Score
+from pzt_ident.model.registry import blocks
 
 
 @pytest.mark.parametrize("confirmed", [False, True])
@@ -191,3 +192,22 @@ def test_what_has_many_amounts_is_refitted_behind_what_explains_most_too(bend, f
     assert ordered[0].score.effect == (first or many) and len(ordered) == 3
     alone = [Candidate.of([score]) for score in scores[:1]]
     assert candidates.simpler_first(alone) == alone and candidates.simpler_first([]) == []
+
+
+def test_a_disturbance_is_refitted_in_all_of_its_forms_and_any_other_effect_in_two(monkeypatch):
+    """What a ripple of the drive does to the hysteresis is not linear: its score tells little of it."""
+    fitted = []
+
+    def refit_from(case, before, effects, guesses, rival):
+        fitted.append(effects[-1])
+        return fit(2.0, 2.0, effects)
+
+    monkeypatch.setattr(candidates, "refit_from", refit_from)
+    monkeypatch.setattr(candidates, "from_each_other", lambda case, fits, rival: fits)
+    monkeypatch.setattr(candidates, "refit_further", lambda *arguments: None)
+    words = {word: blocks.forms(word) for word in ("creep", "periodic_disturbance")}
+    offered = [Candidate.of([Score(item, 0.3) for item in items]) for items in words.values()]
+    first = fit(20.0, 20.0)
+    candidates.refit_all(CASE, first, first, offered)
+    assert sorted(fitted) == sorted(["creep", *words["periodic_disturbance"]])
+    assert len(words["creep"]) > 2 < len(words["periodic_disturbance"])
