@@ -55,7 +55,10 @@ class Job(BaseModel):
         tuple[str, ...], Field(description="Effects that the rig cannot have: no diagnosis names them.")
     ] = ()
     shared: Annotated[tuple[str, ...], Field(description="Parameters with one value for all axes.")] = ()
-    parameters: Annotated[dict[str, Setting], Field(description="Bounds or values of parameters, by name.")] = {}
+    parameters: Annotated[
+        dict[str, Setting],
+        Field(description="Bounds or values of parameters, by name: `bouc_wen.gain`, of one axis `x.bouc_wen.gain`."),
+    ] = {}
     optimizers: Annotated[
         tuple[Choice, ...], Field(description="The searches; all get the evaluations of the first.")
     ] = (Choice("pso"),)
@@ -233,7 +236,7 @@ def _add_faults(document: Document, error: ValidationError) -> None:
             message = ": ".join(part for part in (raised.where, raised.message) if part)
             document.fault(loc, message, raised.remedy)
         elif kind in ("extra_forbidden", "unexpected_keyword_argument"):
-            remedy = nearest(str(loc[-1]), _known_keys(loc[:-1]))
+            remedy = _name_on_axis(document, loc) or nearest(str(loc[-1]), _known_keys(loc[:-1]))
             document.fault(loc, f"unknown key {loc[-1]!r}", remedy, at_key=True)
         elif kind == "missing" and isinstance(loc[-1], str):
             close = get_close_matches(loc[-1], document.keys(loc[:-1]), 1)
@@ -265,6 +268,13 @@ def _without(data: dict[str, Any], locs: list[Loc]) -> dict[str, Any]:
         else:
             remaining.pop(str(place[0]), None)
     return remaining
+
+
+def _name_on_axis(document: Document, loc: Loc) -> str:
+    """What to write for an axis below the name of a parameter; empty where the place is none."""
+    if loc[0] != "parameters" or loc[-1] not in document.keys(("channels", "axes")):
+        return ""
+    return f"the name of one axis is `{loc[-1]}.{loc[1]}`"
 
 
 def _known_keys(loc: Loc) -> list[str]:

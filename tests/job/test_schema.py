@@ -197,6 +197,7 @@ ONE_FAULT = [
     ('{drive: "u_y [V]"}', "5", "channels.axes.y: 5 is not a mapping", "with some of drive, response"),
     ("{name: fake, population: 40, pull: 1.5}", "5", "optimizers[0]: 5 is not a mapping", "some of name, its settings"),
     ("{value: 0.1566}", "0.1566", "x.lumped.mass: 0.1566 is not a mapping", "{key: value} with some of bounds, value"),
+    ("x.lumped.mass: {value: 0.1566}", "lumped.mass: {x: {value: 1}}", "unknown key 'x'", "is `x.lumped.mass`"),
     ("lumped]", "{name: lumpd}]", "10:26: model[1].name: unknown block 'lumpd'", "did you mean 'lumped'"),
     ("lumped]", "{name: lumped, size: 3}]", "10:34: model[1].size: unknown setting 'size'", "write just `lumped`"),
     ("lumped]", "{size: 3}]", "10:19: model[1]: missing key 'name'", "add `name: ...`"),
