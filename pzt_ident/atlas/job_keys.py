@@ -80,9 +80,25 @@ def _below(kinds: Mapping[str, Any], item: Mapping[str, Any], word: str) -> list
 
 
 def sections_of(key: str) -> list[Section]:
-    """The sections that have a key, each with that alone; empty where there is no such key."""
-    alone = [section._replace(rows=[row for row in section.rows if row.key == key]) for section in key_tables()]
-    return [section for section in alone if section.rows]
+    """The sections that have a key, each with that alone, and those of what it may hold; empty where there is no such
+    key."""
+    every = key_tables()
+    alone = [section._replace(rows=[row for row in section.rows if row.key == key]) for section in every]
+    held = _held_by(key) if any(section.rows for section in alone) else set()
+    return [one for one in alone if one.rows] + [section for section in every if section.title in held]
+
+
+def _held_by(key: str) -> set[str]:
+    """The titles of the sections of mappings that the value of a key may hold, at any depth."""
+    from pzt_ident.job.schema import Job
+
+    schema = Job.model_json_schema()
+    items = [part["properties"][key] for part in (schema, *schema["$defs"].values()) if key in part["properties"]]
+    held: set[str] = set()
+    while items:
+        new = {*re.findall(r'"#/\$defs/(\w+)"', json.dumps(items))} - held
+        items, held = [schema["$defs"][kind] for kind in new], held | new
+    return {PLACES.get(kind, kind) for kind in held}
 
 
 def _section(kind: str, schema: dict[str, Any]) -> Section:

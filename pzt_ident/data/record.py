@@ -18,8 +18,8 @@ class Channel:
     """Where a signal is in a file: by its name, its column or its dataset.
 
     name: in the header, such as `u_x [V]`. column: counted from 1, of a table or an array of two dimensions. unit:
-    where it is not that in the header. dataset: which one of a file with several, such as an array of .npz or .mat.
-    index: which part of an array. file: where it is not that of the record.
+    where it is not that in the header. dataset: which one of a file with several, such as an array of .npz or .mat,
+    below that of the record. index: which part of an array. file: where it is not that of the record.
     """
 
     name: str | None = None
@@ -65,10 +65,10 @@ class Source:
     of all axes or by axis, for a record that begins with a step. denoise_drive: whether noise of the recorded drive is
     left out; it turns where that goes back by more. smooth_drive: whether the drive is smooth between its samples, as
     behind a filter against aliasing, and not linear: with `run_in` it is the Fourier series of the record, else a cubic
-    spline; steps of 2 and more feel it. steps: simulation steps in a sample. dataset: which one of a file with several.
-    table: which one of a text export with several. index: which part of an array. sheet: which one of a workbook.
-    channels: what is elsewhere in this record, by `time`, `drive`, `response` or, of one axis, `x.drive`: `{response:
-    {file: y.npy}}` takes every response from another file.
+    spline; steps of 2 and more feel it. steps: simulation steps in a sample. dataset: below which one of a file with
+    several its channels are. table: which one of a text export with several. index: which part of an array. sheet:
+    which one of a workbook. channels: what is elsewhere in this record, by `time`, `drive`, `response` or, of one axis,
+    `x.drive`: `{response: {file: y.npy}}` takes every response from another file.
     """
 
     file: str

@@ -2,7 +2,7 @@
 
 import re
 
-from pzt_ident.atlas.job_keys import PLACES, documented, key_tables
+from pzt_ident.atlas.job_keys import PLACES, documented, key_tables, sections_of
 from pzt_ident.job.document import Document
 from pzt_ident.job.normalise import SHORT_FORMS
 from pzt_ident.job.schema import Job
@@ -31,6 +31,14 @@ def test_values_are_in_words():
     assert rows["repeats"].value == "whole number" and rows["repeats"].default == "1"
     assert rows["model"].value == "list: text or mapping"
     assert rows["records"].default == "required"
+
+
+def test_a_key_is_shown_with_what_it_may_hold():
+    titles = [section.title for section in sections_of("parameters")]
+    assert titles == ["The file", PLACES["Setting"]] and sections_of("nothing") == []
+    held = {section.title: [row.key for row in section.rows] for section in sections_of("channels")}
+    assert held["The file"] == ["channels"] and held[PLACES["Axis"]] == ["drive", "response"]
+    assert "column" in held[PLACES["Channel"]] and PLACES["Limits"] not in held
 
 
 def test_every_short_form_is_told_where_its_long_form_is():
