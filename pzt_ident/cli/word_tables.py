@@ -12,6 +12,12 @@ from pzt_ident.model.registry import blocks, word_of
 
 Facts = dict[str, Any]
 
+SAYINGS = {"Leaves much the same trace as": "look_alikes", "To tell": "separate_by", "To do": "remedy"}
+UNITS = """\
+Numbers in units of drive and response are multiples of the largest peak-to-peak value of a record to
+identify; in a job they are in volts and micrometres, or what the files have. Bounds of response/drive
+have either sign where the response does not rise with the drive."""
+
 
 def show_word(facts: Facts) -> None:
     click.echo(f"{facts['name']} ({facts['kind']})\n\n{facts['doc']}\n")
@@ -24,30 +30,41 @@ def show_word(facts: Facts) -> None:
     if "settings" in facts:
         table(
             ("setting", "default", "from - to", "unit", "what it is"),
-            [(row["name"], row["default"], _allowed(row), row["unit"], row["doc"]) for row in facts["settings"]],
+            [
+                (row["name"], row["default"], _allowed(row), row["unit"], row["doc"] + _with_form(row))
+                for row in facts["settings"]
+            ],
         )
     if written := facts.get("in_a_job"):
         click.echo(f"In a job: {written}\n")
     if "parameters" in facts:
-        table(
-            ("parameter", "unit", "bounds", "null", "what it is"),
-            [
-                (row["name"], row["unit"], "{:g} to {:g}".format(*row["bounds"]), _number(row["null"]), _meaning(row))
-                for row in grouped_by_range(facts["parameters"])
-            ],
-        )
-        if any("drive" in row["unit"] or "response" in row["unit"] for row in facts["parameters"]):
-            click.echo(
-                "Numbers in units of drive and response are multiples of the largest peak-to-peak value of a record to"
-            )
-            click.echo(
-                "identify; in a job they are in volts and micrometres, or what the files have. Bounds of response/drive"
-            )
-            click.echo("have either sign where the response does not rise with the drive.")
-    for title, key in (("Leaves the same trace as", "look_alikes"), ("To tell", "separate_by"), ("To do", "remedy")):
+        _show_parameters(facts)
+    for title, key in (
+        ("Leaves much the same trace as", "look_alikes"),
+        ("To tell", "separate_by"),
+        ("To do", "remedy"),
+    ):
         if text := facts.get(key):
             click.echo(f"\n{title}: {text if isinstance(text, str) else ', '.join(text)}")
     click.echo(f"\nPictures and more: `pzt-ident atlas` writes {href(facts['name'])}")
+
+
+def _show_parameters(facts: Facts) -> None:
+    """The table of parameters, by their names in a job, behind what their units mean there."""
+    word, rows = word_of(facts["name"]), [*grouped_by_range(facts["parameters"])]
+    if any("drive" in row["unit"] or "response" in row["unit"] for row in rows):
+        click.echo(f"{UNITS}\n")
+    names = [row["name"] if "." in row["name"] else f"{word}.{row['name']}" for row in rows]
+    table(
+        ("parameter, in a job", "unit", "bounds", "null", "what it is"),
+        [
+            (name, row["unit"], "{:g} to {:g}".format(*row["bounds"]), _number(row["null"]), _meaning(row))
+            for name, row in zip(names, rows, strict=True)
+        ],
+    )
+    own = [name.partition(" ")[0] for name, row in zip(names, rows, strict=True) if not row["per_record"]]
+    if own:
+        click.echo(f"Of one of several axes: `x.{own[0]}`.")
 
 
 def _allowed(row: Facts) -> str:
@@ -63,9 +80,12 @@ def _meaning(row: Facts) -> str:
     fixed = "" if row["value"] is None else f" Fixed at {row['value']:g} unless the job gives bounds or another value."
     effect = "" if row["effect"] is None else f" With {_needed(row['effect'])} only."
     per_record = " Each record has its own." if row["per_record"] else ""
-    form = f" With `{row['form']}` only." if row["form"] else ""
-    apart = f" Seen only where the job gives `{row['adds_to']}` and the rest of its block values or close bounds."
-    return row["doc"] + fixed + effect + per_record + form + (apart if row["adds_to"] else "")
+    apart = f" Seen is what the bounds of `{row['adds_to']}` and of the rest of its block leave out: fix what is known."
+    return row["doc"] + fixed + effect + per_record + _with_form(row) + (apart if row["adds_to"] else "")
+
+
+def _with_form(row: Facts) -> str:
+    return f" With `{row['form']}` only." if row.get("form") else ""
 
 
 def _needed(effect: str) -> str:

@@ -10,7 +10,8 @@ class Backlash(Block):
     """The target of the sensor moves once the stage has crossed a gap 2 r: y = min(max(x - r, y), x + r).
 
     Tao & Kokotovic (1996), Adaptive Control of Systems with Actuator and Sensor Nonlinearities, ch. 2. The stage starts
-    in the middle of the gap. A fault of the set-up: a diagnosis tells it, and `improve` never adds it.
+    in the middle of the gap. A fault of the set-up: a diagnosis tells it, and `improve` never adds it; a job may, as
+    `effects: [backlash]`.
     """
 
     place = Place.OUTPUT

@@ -9,7 +9,8 @@ from pzt_ident.model.registry import blocks
 class Delay(Shift):
     """Transport and sampling delay of command or reading: y(t) = u(t - time), for any fraction of a sample.
 
-    Its phase lag is proportional to frequency, without the loss of amplitude of a lag.
+    Its phase lag is proportional to frequency, without the loss of amplitude of a lag. Ahead of the hysteresis or
+    behind it is one: the whole response is later.
     """
 
     place = Place.DELAY

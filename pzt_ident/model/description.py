@@ -100,18 +100,40 @@ def _block(name: str) -> Facts:
     block, kind = blocks[name], blocks.kind_of(word_of(name))
     facts: Facts = {"name": name, "kind": kind, "doc": inspect.getdoc(block)}
     if kind == "effects":
-        facts |= {key: getattr(block, key) for key in ("look_alikes", "separate_by", "remedy")}
+        facts |= {"look_alikes": _look_alikes(block)} | {key: getattr(block, key) for key in ("separate_by", "remedy")}
         facts["forms"] = [{"item": item, "doc": form_headline(item)} for item in blocks.forms(name)]
     rows = _parameters(block) + (_parameters_of_effect(word_of(name)) if kind == "effects" else [])
     if issubclass(block, Term):
         return facts | {"parameters": rows}
-    forms = [block, *(block.make(**{word: value}) for word, value in _forms(block))]
-    settings = {word: item for form in forms for word, item in form.settings().items() if word != "form"}
-    choices = [{"name": word, "default": item.value, "unit": "1"} | _choices(item) for word, item in settings.items()]
+    choices = _settings(block)
     own = ", ".join(f"{word}: {block.setting(word)}" for word in block.settings() if word != "form")
     chosen: Facts = {"settings": choices} if choices else {}
     chosen |= {"in_a_job": f"{{name: {name}, {own}}}"} if own else {}
     return facts | {"place": block.place.name.lower(), "parameters": rows} | chosen
+
+
+def _look_alikes(block: type[Any]) -> list[str]:
+    """The look-alikes that an effect declares, and the effects that declare it as one of theirs."""
+    others = [item.name for item in blocks if block.name in item.look_alikes and item.name not in block.look_alikes]
+    return [*block.look_alikes, *others]
+
+
+def _settings(block: type[Any]) -> list[Facts]:
+    """What a job may set of a block but its form, with the forms that have it where not all do."""
+    choices, rows = _forms(block), dict[str, Facts]()
+    usual = {_choice(block, word, block.setting(word)): block for word, _ in choices[:1]}
+    made = {_choice(block, word, value): block.make(**{word: value}) for word, value in choices}
+    forms = (usual | made) or {"": block}
+    for word, item in [pair for form in forms.values() for pair in form.settings().items() if pair[0] != "form"]:
+        owners = [label for label, form in forms.items() if word in form.settings()]
+        some = "" if len(owners) == len(forms) else _one_of(owners)
+        rows[word] = {"name": word, "default": item.value, "unit": "1", "form": some} | _choices(item)
+    return [*rows.values()]
+
+
+def _one_of(labels: list[str]) -> str:
+    """Forms as `a`, `b` or `c`, without the first and the last mark."""
+    return "` or `".join(filter(None, ["`, `".join(labels[:-1]), *labels[-1:]]))
 
 
 def _forms(block: type[Any]) -> list[tuple[str, str]]:
@@ -141,8 +163,7 @@ def _parameters(block: type[Any]) -> list[Facts]:
             owners.setdefault((name, *(getattr(item, key) for key in keys)), []).append(label)
     rows: list[Facts] = []
     for (name, *declared), labels in owners.items():
-        some = [] if len(labels) == len(variants) else labels
-        form = "` or `".join(filter(None, ["`, `".join(some[:-1]), *some[-1:]]))
+        form = "" if len(labels) == len(variants) else _one_of(labels)
         rows.append({"name": name, "form": form} | dict(zip(keys, declared, strict=True)))
     return rows
 

@@ -18,3 +18,16 @@ def test_each_form_is_told_with_its_own_bounds_and_value(item):
         ]
         told = [(row["bounds"], row["value"], row["doc"]) for row in of_form]
         assert told == [(declared.bounds, declared.value, declared.doc)]
+
+
+def test_look_alikes_are_told_by_both():
+    """As a diagnosis takes them."""
+    told = {word: description_of(word)["look_alikes"] for word in blocks.effects()}
+    assert all(len({*others}) == len(others) for others in told.values())
+    assert all(word in told[other] for word, others in told.items() for other in others)
+    assert all({*blocks[word].look_alikes} <= {*others} for word, others in told.items())
+
+
+def test_the_nodes_of_a_density_are_told_with_the_forms_that_have_them():
+    rows = {row["name"]: row for row in description_of("homogenized_energy")["settings"]}
+    assert rows["nodes"]["form"] == "density: free` or `density: shared" and rows["density"]["form"] == ""
