@@ -11,6 +11,7 @@ from pzt_ident.diagnosis.refit import refit
 from pzt_ident.model.registry import blocks, word_of
 
 RUBBING = {"friction.force": 0.6e-6, "friction.reach": 0.4e-6, "friction.stiction": 0.3, "friction.stribeck": 20e-6}
+GUESS = {"friction.force": 0.6, "friction.reach": 0.4, "friction.stiction": 0.3, "friction.stribeck": 20.0}  # in um
 VISCOUS = "friction.lugre_viscous"
 
 
@@ -21,7 +22,7 @@ def with_viscous_friction(late):
     case = Case(("bouc_wen",), (), made, {})
     problem = case.problem(())
     first = fit_at((), problem, case.descend(problem, problem.unit_point(stage.STAGE)))
-    return case, first, refit(case, first, (VISCOUS,), {"friction.viscous": 0.01} | RUBBING)
+    return case, first, refit(case, first, (VISCOUS,), {"friction.viscous": 0.01} | GUESS)
 
 
 def test_a_delay_that_viscous_friction_stood_in_for_is_told_beside_friction():
