@@ -183,7 +183,26 @@ def taken_out(
     for effect in [*in_the_shade(now, judged, doubtful), *held]:
         suspects.append(suspect(case, first, now, effect, rivals.get(effect, ()), known, axis))
         now = suspects[-1].without
-    return suspects
+    return suspects + (driven_onto_bounds(case, first, now, rivals, known, axis) if held else [])
+
+
+def driven_onto_bounds(
+    case: Case,
+    first: Fit,
+    now: Fit,
+    rivals: Mapping[str, Collection[str]],
+    known: Sequence[Fit],
+    axis: int | None,
+) -> list[Suspect]:
+    """Those of the effects that are left which are on a bound without those taken out, in a model that is not adequate:
+    beside these they were not."""
+    found, view, seen = list[Suspect](), case.on_axis(axis), partial(on_axis, axis=axis)
+    for effect in now.effects[len(first.effects) :]:
+        doubted = suspect(case, first, now, effect, rivals.get(effect, ()), known, axis)
+        if doubted.on_bounds and not doubted.is_line and not adequate(view, seen(first), seen(now)):
+            found.append(doubted)
+            now = doubted.without
+    return found
 
 
 def in_the_shade(now: Fit, judged: Sequence[Suspect], held: Sequence[Suspect]) -> list[str]:

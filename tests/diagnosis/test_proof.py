@@ -57,12 +57,13 @@ def suspects_of(monkeypatch):
         traces=(),
         many=(),
         flexible=(),
+        alone=None,
         **declared,
     ):
         """sizes: the parameters of a model without each effect. larger: those that would settle beyond their bounds.
         instead: those that take the place of the operator. lines: those of the spectrum. harmonics: those of the drive.
-        traces: those that others leave. many: those with many amounts. flexible: those that follow anything. declared:
-        of the parameters with shapes."""
+        traces: those that others leave. many: those with many amounts. flexible: those that follow anything. alone:
+        shapes as of `fit` where no other effect is left. declared: of the parameters with shapes."""
         validation = validation or errors
         operator = lambda case, first, now, effect: "bouc_wen" if effect in instead else ""  # noqa: E731
         monkeypatch.setattr(proof, "displaced_operator", operator)
@@ -76,7 +77,8 @@ def suspects_of(monkeypatch):
         def refitted(case, before, effects, guess):
             left = frozenset(effects)
             size = sum((sizes or {}).get(effect, 1) for effect in left)
-            return fit(errors[left], validation[left], effects, dimensions=size)
+            own = alone if len(left) == 1 else None
+            return fit(errors[left], validation[left], effects, own, size, **(declared if own else {}))
 
         monkeypatch.setattr(proof, "refit", refitted)
         settle = lambda case, fit, names: {name.split(".")[1] for name in names} <= {*larger}  # noqa: E731
@@ -224,6 +226,13 @@ def test_beside_what_takes_up_most_and_may_be_something_else_another_effect_is_p
     """Without the first one, the second takes up a hundredth. alone: the error of the first one."""
     seen = of(ab=5.0, a=alone, b=38.8, none=39.0)
     assert taken_out(seen, first=39.0, shapes={"a": [1.0], "b": [0.5]}, null=0) == suspects
+
+
+@pytest.mark.parametrize(("place", "suspects"), [(1.0, ["a", "b"]), (0.5, ["a"])])
+def test_what_is_on_a_bound_once_another_effect_is_taken_out_is_a_suspect_too(taken_out, place, suspects):
+    """As a creep of the wrong sign beside a drift that ended on its bound."""
+    seen, shapes = of(ab=5.0, a=20.0, b=25.0, none=300.0), {"a": [1.0], "b": [0.5]}
+    assert taken_out(seen, first=300.0, shapes=shapes, alone={"b": [place]}) == suspects
 
 
 @pytest.mark.parametrize(("left", "alone", "suspects"), [(5.0, 5.2, ["a"]), (5.0, 250.0, ["a", "b"]), (1.1, 250.0, [])])
