@@ -190,21 +190,22 @@ def only_adds(fit: Fit) -> bool:
 def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fit] | None:
     """The case with the wider bounds that the model with one effect needs, and the fit with it there; None where there
     are none. Only where no effect passes within the bounds of the job, or the one that is best on the identification
-    records leaves there less than half of what the best that passes leaves; else that of the next best which is
-    adequate beyond bounds of the job, where none is within."""
-    fits = [candidate.fit for candidate in diagnosis.candidates if candidate.fit]
+    records leaves there less than half of what the best that passes leaves; ahead of these, where they do not lead to
+    the noise and none is there within, that of the next best, in any form, which is adequate beyond bounds of the
+    job."""
+    fits = [fit for candidate in diagnosis.candidates for fit in candidate.refits.values()]
     passing = [candidate.fit.identify for candidate in diagnosis.passing if candidate.fit]
-    best = min(fits, key=lambda fit: fit.identify, default=first)
+    best, *others = sorted(fits, key=lambda fit: fit.identify) or [first]
     by_far = not passing or share_explained(min(passing), best.identify, case.floor) >= DECISIVE
-    if beyond := beyond_bounds(case, first, best) if by_far else None:
-        return beyond
-    enough = any(adequate(case, first, fit) for fit in fits)
-    for fit in [] if enough else sorted(fits, key=lambda fit: fit.identify)[1:BESIDE]:
+    found = beyond_bounds(case, first, best) if by_far else None
+    if (found and adequate(case, first, found[1])) or any(adequate(case, first, fit) for fit in fits):
+        return found
+    for fit in others[: BESIDE - 1]:
         of_the_job = widened(case, fit).keys() <= case.specs.keys()
         beyond = beyond_bounds(case, first, fit) if of_the_job and case.budget.allows("wider bounds") else None
         if beyond and adequate(case, first, beyond[1]):
             return beyond
-    return None
+    return found
 
 
 def improve_beyond(case: Case, first: Fit, wide: Case, start: Fit, on_step: StepListener) -> Staircase:

@@ -350,17 +350,24 @@ def test_an_effect_that_made_up_for_a_bound_of_the_job_gives_way_to_a_wider_one(
 @pytest.mark.parametrize(
     ("best", "beyond", "taken"), [(1.8, 1.0, True), (1.0, 1.0, False), (1.8, 1.6, False)], ids=["", "enough", "in vain"]
 )
-def test_another_effect_that_is_adequate_beyond_a_bound_of_the_job_is_gone_on_with(monkeypatch, best, beyond, taken):
-    """In noise floors; the best one rests on no bound."""
+@pytest.mark.parametrize("form", [False, True])
+@pytest.mark.parametrize("own", [None, 1.7])
+def test_another_effect_that_is_adequate_beyond_a_bound_of_the_job_is_gone_on_with(
+    monkeypatch, best, beyond, taken, form, own
+):
+    """In noise floors; the best one rests on no bound, or leaves `own` beyond its own. form: whether the other is one
+    of its forms."""
     case = stage.case(fixed={"bouc_wen.alpha": 0.55})
     first = first_fit(case, 0)
     lowest, other = (replace(first, identify=left * case.floor, validate=left * case.floor) for left in (best, 2.2))
     wide = replace(first, identify=beyond * case.floor, validate=beyond * case.floor)
-    passing = [SimpleNamespace(fit=lowest), SimpleNamespace(fit=other)]
+    little = (case, replace(first, identify=own * case.floor, validate=own * case.floor)) if own else None
+    forms = [{"a": lowest, "a.b": other}] if form else [{"a": lowest}, {"c": other}]
+    items = [SimpleNamespace(fit=next(iter(refits.values())), refits=refits) for refits in forms]
     monkeypatch.setattr(staircase, "widened", lambda case, fit: {"bouc_wen.alpha": None} if fit is other else {})
-    monkeypatch.setattr(staircase, "beyond_bounds", lambda case, first, fit: (case, wide) if fit is other else None)
-    found = bounds_beside(case, first, SimpleNamespace(candidates=passing, passing=passing))
-    assert found == ((case, wide) if taken else None)
+    monkeypatch.setattr(staircase, "beyond_bounds", lambda case, first, fit: (case, wide) if fit is other else little)
+    found = bounds_beside(case, first, SimpleNamespace(candidates=items, passing=[] if own else items))
+    assert found == ((case, wide) if taken else little)
 
 
 WEIGHTS = {f"prandtl_ishlinskii.weight_{i + 1}": 4e-9 for i in range(8)}
