@@ -34,6 +34,7 @@ from pzt_ident.diagnosis.forms import (
     rests_on_bounds,
     share_of_others,
 )
+from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.possible import applicable
 from pzt_ident.diagnosis.refit import refit_from
 from pzt_ident.diagnosis.score import LEAST_SCORE, Scorer, scorer_of
@@ -43,6 +44,7 @@ from pzt_ident.diagnosis.ties import TIE, TWIN, are_look_alikes, is_equal
 from pzt_ident.model.registry import blocks, word_of
 
 PROMISING = 0.6  # of the misfit: what an effect explains by its score, so that it is tried ahead of anything else
+SHORTLIST = 6  # effects that are refitted
 LOOK_ALIKE_STARTS = 8  # starts of a look-alike's own parameters
 VISIBLE = 0.3  # noise floors that the strongest plausible effect would leave
 
@@ -97,6 +99,13 @@ def likeliest(case: Case, first: Fit) -> Fit | None:
     return refit_from(case, first, (*first.effects, best.effect), best.guesses)
 
 
+def short_list(promising: list[Candidate]) -> list[Candidate]:
+    """The effects to be refitted, of those that score, the best first: as many as that, in the order of
+    `simpler_first`, and behind these every other disturbance."""
+    listed, others = promising[:SHORTLIST], promising[SHORTLIST:]
+    return simpler_first(listed) + [item for item in others if is_disturbance(item)]
+
+
 def simpler_first(candidates: list[Candidate]) -> list[Candidate]:
     """The candidates in the order in which they are refitted: ahead of one with many amounts, or some of each record,
     that explains most by its score the best of the others, if that explains nearly as much, or most too. Many amounts
@@ -119,12 +128,12 @@ def _follows_anything(effect: str) -> bool:
 
 
 def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate]) -> list[Candidate]:
-    """Refit the model with each effect, in its first form and in the one that scores best, a disturbance in all; gives
-    the refitted ones, which are all that the budget suffices for, but at least the best one beside the model as given.
-    Those that stay far above what the best score leads to are given up; where that is adequate, none is refitted that
-    is far from it."""
+    """Refit the model with each effect, in its first form and in the one that scores best; gives the refitted ones, all
+    that the budget suffices for, but at least the best one beside the model as given. Those that stay far above
+    what the best score leads to are given up; where that is adequate, none is refitted that is far from it. As long as
+    no effect explains most, a disturbance is refitted in all of its forms; then none beyond the first SHORTLIST is."""
     fits: list[Fit] = []
-    rival = np.inf
+    rival, in_every_form = np.inf, set[str]()
 
     def may_stand(candidate: Candidate) -> bool:
         if not any(adequate(case, first, fit) for fit in fits):
@@ -140,12 +149,17 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
         return EXPLORING if as_likely else share_of_others(case, first, before, fits)
 
     def allowed(candidate: Candidate) -> bool:
+        if is_disturbance(candidate) and not any(explains_most(case, before, fit) for fit in fits):
+            in_every_form.add(candidate.score.effect)
+        elif candidate in candidates[SHORTLIST:]:
+            return False
         needed = before is first and candidate is candidates[0]
         allows = partial(case.budget.allows, "the refits of all candidates", share_allowed(candidate))
         return needed or (may_stand(candidate) and allows())
 
     def refitted(candidate: Candidate) -> Candidate:
-        chosen = candidate.forms if is_disturbance(candidate) else (candidate.forms[0], candidate.score)
+        some = candidate.forms[0], candidate.score
+        chosen = candidate.forms if candidate.score.effect in in_every_form else some
         forms = {score.effect: score for score in chosen}
         fits = {
             item: refit_from(case, before, (*before.effects, item), score.guesses, rival)
@@ -183,6 +197,12 @@ def refit_further(case: Case, first: Fit, before: Fit, candidate: Candidate) -> 
         return
     items = [candidate.best.effects[-1]] if resting else [score.effect for score in likely_forms(candidate)]
     refit_anew(case, first, candidate, items)
+
+
+def explains_most(case: Case, before: Fit, fit: Fit) -> bool:
+    """Whether a fit explains most of the misfit of the identification and of the validation records."""
+    pairs = (before.identify, fit.identify), (before.validate, fit.validate)
+    return all(share_explained(one, other, case.floor) >= DECISIVE for one, other in pairs if one and other)
 
 
 def restart_unconfirmed(case: Case, first: Fit, candidates: Sequence[Candidate]) -> None:

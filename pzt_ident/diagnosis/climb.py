@@ -20,8 +20,8 @@ from pzt_ident.diagnosis.forms import Candidate, unconfirmed
 from pzt_ident.diagnosis.merging import merge_effects
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.possible import fitting_forms
-from pzt_ident.diagnosis.refit import refit
-from pzt_ident.diagnosis.score import Score
+from pzt_ident.diagnosis.refit import refit, refit_from
+from pzt_ident.diagnosis.score import Score, scorer_of
 from pzt_ident.diagnosis.starts import at_a_glance, best_alias, first_fit, restart
 from pzt_ident.diagnosis.step import Doubt, Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE
@@ -105,13 +105,20 @@ def complete(case: Case, first: Fit, steps: Sequence[Step], new: list[Step], uns
     before, last = (*steps, *new)[-2].fit, new[-1]
     if not adequate(case, first, last.fit):
         fit_anew(case, before, last, best_alias(case, last.fit))
-        if promises_most(case, first, last.fit):
+        promised = promises_most(case, first, last.fit)
+        if promised and keeps_promise(case, last.fit, promised):
             return True
     new += settle(case, first, before, last)
     if unsettled and adequate(case, first, new[-1].fit):
         new += forms_instead(case, first, new[-1].fit)
     new += merge_effects(case, first, new[-1].fit)
     return False
+
+
+def keeps_promise(case: Case, fit: Fit, effect: str) -> bool:
+    """Whether an effect, in its first form, takes up most of what a fit leaves, as its score says."""
+    guesses = scorer_of(case, fit).score(effect).guesses
+    return explained_share(case, fit, refit_from(case, fit, (*fit.effects, effect), guesses)) >= DECISIVE
 
 
 def joins(case: Case, fit: Fit, known: Sequence[Fit]) -> bool:

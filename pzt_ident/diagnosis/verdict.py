@@ -10,13 +10,12 @@ import numpy as np
 from pzt_ident.diagnosis.candidates import (
     PROMISING,
     decide_by_score,
-    is_disturbance,
     promises_enough,
     refit_all,
     restart_look_alikes,
     restart_unconfirmed,
     score_all,
-    simpler_first,
+    short_list,
     simpler_look_alikes,
 )
 from pzt_ident.diagnosis.case import Case
@@ -60,7 +59,6 @@ from pzt_ident.diagnosis.ties import (
 )
 from pzt_ident.model.registry import blocks, word_of
 
-SHORTLIST = 6  # effects that are refitted
 STEP_FAULT = 0.6  # of the misfit: where halving the simulation step changes more, the step is to blame
 
 
@@ -105,7 +103,7 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
         return without_effect(case, first, before, candidates)
     least = least_score(case, first, before)
     promising = [item for item in candidates if item.score.explained > least]
-    shortlist = refit_all(case, first, before, simpler_first(short_list(promising)))
+    shortlist = refit_all(case, first, before, short_list(promising))
     refit_other_forms(case, first, before, candidates, shortlist)
     restart_unconfirmed(case, first, shortlist)
     choose_forms(case, first, shortlist)
@@ -117,12 +115,6 @@ def diagnose(case: Case, before: Fit, first: Fit | None = None) -> Diagnosis:
     if not passing:
         return without_effect(case, first, before, candidates)
     return with_effects(case, first, before, candidates, passing)
-
-
-def short_list(promising: list[Candidate]) -> list[Candidate]:
-    """The effects that are refitted, of those that score, the best first: as many as that, and every disturbance, whose
-    amounts are solved for, which takes little time."""
-    return [item for place, item in enumerate(promising) if place < SHORTLIST or is_disturbance(item)]
 
 
 def is_account(case: Case, first: Fit, before: Fit, fit: Fit) -> bool:

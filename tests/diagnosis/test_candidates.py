@@ -194,20 +194,38 @@ def test_what_has_many_amounts_is_refitted_behind_what_explains_most_too(bend, f
     assert candidates.simpler_first(alone) == alone and candidates.simpler_first([]) == []
 
 
-def test_a_disturbance_is_refitted_in_all_of_its_forms_and_any_other_effect_in_two(monkeypatch):
+def test_a_disturbance_is_on_the_short_list_whatever_scores_more():
+    others = [word for word in blocks.effects() if not blocks[word].amounts()]
+    words = [*others, "periodic_disturbance", "drift"]
+    promising = [Candidate.of([Score(word, 1 / place)]) for place, word in enumerate(words, 1)]
+    assert [item.score.effect for item in candidates.short_list(promising)] == [
+        *others[: candidates.SHORTLIST],
+        *words[-2:],
+    ]
+
+
+@pytest.mark.parametrize(
+    ("listed", "explains", "expected"),
+    [(True, False, "all"), (True, True, "two"), (False, False, "all"), (False, True, "none")],
+)
+def test_a_disturbance_is_refitted_in_all_of_its_forms_as_long_as_no_effect_explains_most(
+    monkeypatch, listed, explains, expected
+):
     """What a ripple of the drive does to the hysteresis is not linear: its score tells little of it."""
-    fitted = []
+    fitted, left = [], 3.0 if explains else 19.0
 
     def refit_from(case, before, effects, guesses, rival):
         fitted.append(effects[-1])
-        return fit(2.0, 2.0, effects)
+        return fit(left, left, effects)
 
+    monkeypatch.setattr(candidates, "SHORTLIST", 2 if listed else 1)
     monkeypatch.setattr(candidates, "refit_from", refit_from)
     monkeypatch.setattr(candidates, "from_each_other", lambda case, fits, rival: fits)
     monkeypatch.setattr(candidates, "refit_further", lambda *arguments: None)
-    words = {word: blocks.forms(word) for word in ("creep", "periodic_disturbance")}
-    offered = [Candidate.of([Score(item, 0.3) for item in items]) for items in words.values()]
+    hum = blocks.forms("periodic_disturbance")
+    some = [[Score(item, 0.3) for item in blocks.forms("creep")], [Score(item, 0.2) for item in hum]]
+    some[1][2].explained = 0.3
     first = fit(20.0, 20.0)
-    candidates.refit_all(CASE, first, first, offered)
-    assert sorted(fitted) == sorted(["creep", *words["periodic_disturbance"]])
-    assert len(words["creep"]) > 2 < len(words["periodic_disturbance"])
+    candidates.refit_all(CASE, first, first, [Candidate.of(scores) for scores in some])
+    forms = {"all": hum, "two": [hum[0], hum[2]], "none": []}[expected]
+    assert sorted(fitted) == sorted(["creep", *forms]) and len(hum) == 3

@@ -239,13 +239,28 @@ def test_a_step_is_settled_first_where_no_other_effect_promises_most_of_what_it_
     """A promise that is not kept is asked for afterwards."""
     case, settled = stage.considering(stage.case(PAIR), "quadratic_gain", *["creep"] * kept), []
     if not kept:
-        monkeypatch.setattr(climb, "promises_most", lambda case, first, fit: True)
+        monkeypatch.setattr(climb, "promises_most", lambda case, first, fit: "creep")
+        monkeypatch.setattr(climb, "keeps_promise", lambda case, fit, effect: True)
     monkeypatch.setattr(climb, "settle", lambda case, first, before, step: settled.append(step.added) or [])
     first = first_fit(case, 0)
     diagnosis = diagnose(case, first)
     found = climb.climb(case, [Step(first)], diagnosis, diagnosis.best, lambda step: None)
     added = [step.added for step in found.steps if step.added]
     assert (added[0] in settled) != kept and added[-1] in settled
+
+
+@pytest.mark.parametrize(("word", "kept"), [("creep", True), ("delay", False)])
+def test_a_promise_that_a_refit_does_not_keep_settles_the_step_at_once(monkeypatch, word, kept):
+    """Other forms of what was added are tried before all effects are refitted beside it."""
+    case, settled = stage.considering(stage.case(PAIR), "quadratic_gain", "creep", "delay"), []
+    first = first_fit(case, 0)
+    begun = refit(case, first, ("quadratic_gain",), {})
+    assert climb.keeps_promise(case, begun, word) == kept
+    monkeypatch.setattr(climb, "promises_most", lambda case, first, fit: word)
+    monkeypatch.setattr(climb, "settle", lambda case, first, before, step: settled.append(step.added) or [])
+    step = Step(begun, "quadratic_gain")
+    assert climb.complete(case, first, [Step(first)], [step], False) == kept
+    assert settled == ["quadratic_gain"] * (not kept)
 
 
 @pytest.mark.parametrize("confirmed", [True, False])
@@ -256,7 +271,8 @@ def test_a_promise_that_is_not_kept_settles_the_step_unless_unseen_records_do_no
     case, settled = stage.considering(stage.case(PAIR), "quadratic_gain"), []
     first = first_fit(case, 0)
     diagnosis = diagnose(case, first)
-    monkeypatch.setattr(climb, "promises_most", lambda case, first, fit: True)
+    monkeypatch.setattr(climb, "promises_most", lambda case, first, fit: "creep")
+    monkeypatch.setattr(climb, "keeps_promise", lambda case, fit, effect: True)
     monkeypatch.setattr(climb, "unconfirmed", lambda case, first, now, fits: None if confirmed else first)
     monkeypatch.setattr(climb, "settle", lambda case, first, before, step: settled.append(step.added) or [])
     monkeypatch.setattr(climb, "exchange_behind", lambda *arguments: [])

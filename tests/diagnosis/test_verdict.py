@@ -20,7 +20,7 @@ from pzt_ident.diagnosis.reasons import missing_sentence, nothing_explains
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, Scorer
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.ties import are_look_alikes
-from pzt_ident.diagnosis.verdict import SHORTLIST, Diagnosis, diagnose, short_list, unexplained
+from pzt_ident.diagnosis.verdict import Diagnosis, diagnose, unexplained
 from pzt_ident.engine import work
 from pzt_ident.model.registry import blocks, word_of
 
@@ -41,13 +41,6 @@ def decisions(diagnosis):
 
 def of(diagnosis, effect):
     return next(item for item in diagnosis.candidates if item.score.effect == effect)
-
-
-def test_a_disturbance_is_refitted_whatever_scores_more():
-    others = [word for word in blocks.effects() if not blocks[word].amounts()]
-    words = [*others, "periodic_disturbance", "drift"]
-    promising = [Candidate.of([Score(word, 1 / place)]) for place, word in enumerate(words, 1)]
-    assert [item.score.effect for item in short_list(promising)] == [*others[:SHORTLIST], *words[-2:]]
 
 
 @pytest.mark.parametrize("effect", ["creep", "quadratic_gain"])
