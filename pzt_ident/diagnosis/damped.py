@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from pzt_ident.diagnosis.budget import WHOLE
 from pzt_ident.diagnosis.case import Case
+from pzt_ident.diagnosis.contained import join_look_alikes
 from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.forms import NEARLY_ALL
@@ -28,8 +29,8 @@ DAMPER = "viscous_damping"  # the effect whose trace they leave
 
 def exchange_damped(case: Case, first: Fit, end: Fit) -> tuple[list[Step], Undetermined] | None:
     """The steps from an adequate model to the one without mechanics that do not ring, and to the effect in their place
-    that leads to the noise as well and fits hardly worse, of several that with the fewest parameters; and these
-    mechanics, as a suspect. None where there is no such effect."""
+    that leads to the noise as well and fits hardly worse, of several that with the fewest parameters, joined with one
+    that was there where a form is both; and these mechanics, as a suspect. None where there is no such effect."""
     mode = mode_that_is_silent(end) if adequate(case, first, end) else None
     if mode is None or not case.budget.allows("effects like a damper", WHOLE):
         return None
@@ -48,6 +49,7 @@ def exchange_damped(case: Case, first: Fit, end: Fit) -> tuple[list[Step], Undet
         Step(start, explained=explained_share(case, end, start), change=f"without {word}", case=lean),
         Step(best, effect, None, {effect: best} | rivals, share),
     ]
+    steps += join_look_alikes(lean, first, best)
     return steps, Undetermined(word, explained_share(case, start, end), best.total / case.floor, mode)
 
 

@@ -8,9 +8,11 @@ import pytest
 
 import stage
 from pzt_ident.diagnosis import damped
+from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import adequate
 from pzt_ident.diagnosis.damped import exchange_damped
 from pzt_ident.diagnosis.fit import fit_at
+from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.undetermined import mode_that_is_silent
@@ -53,6 +55,19 @@ def test_a_mode_that_is_damped_or_faster_than_all_samples_rings_in_no_record(sha
     values = stage.STAGE | {f"lumped.{word}": value for word, value in lumped.items()}
     there = fit_at((), problem, problem.unit_point(values))
     assert bool(mode_that_is_silent(there)) == silent
+
+
+def test_a_lag_in_their_place_is_joined_with_one_that_was_there():
+    """An amplifier of two poles is no lag of one pole and a delay."""
+    values = {"amplifier_lag.tau": 0.03, "amplifier_lag.damping": 1.0}
+    made = stage.records(values, model=("bouc_wen", "amplifier_lag.two_poles"), noise=stage.NOISE / 2, effects={})
+    case = Case(BLOCKS, (), made, {})
+    first = first_fit(case, 0)
+    end = refit(case, first, ("amplifier_lag",), {"amplifier_lag.tau": 0.03})
+    assert adequate(case, first, end) and mode_that_is_silent(end)
+    steps, mechanics = exchange_damped(case, first, end)
+    assert mechanics.effect == "lumped" and steps[-1].fit.effects == ("amplifier_lag.two_poles",)
+    assert steps[-1].fit.total < end.total
 
 
 def test_mechanics_that_ring_are_kept():
