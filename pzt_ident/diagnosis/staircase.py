@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from pzt_ident.diagnosis.accounts import accounts, keeps_within, outdoes
 from pzt_ident.diagnosis.bounds import are_too_narrow, beyond_bounds, continued, widened
 from pzt_ident.diagnosis.budget import WHOLE
@@ -191,19 +193,21 @@ def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, F
     """The case with the wider bounds that the model with one effect needs, and the fit with it there; None where there
     are none. Only where no effect passes within the bounds of the job, or the one that is best on the identification
     records leaves there less than half of what the best that passes leaves; ahead of these, where they do not lead to
-    the noise and none is there within, that of the next best, in any form, which is adequate beyond bounds of the
-    job."""
+    the noise and none is there within but on bounds of the job, that of the next best, in any form, which is adequate
+    beyond these, and clearly lower than those on them."""
     fits = [fit for candidate in diagnosis.candidates for fit in candidate.refits.values()]
     passing = [candidate.fit.identify for candidate in diagnosis.passing if candidate.fit]
     best, *others = sorted(fits, key=lambda fit: fit.identify) or [first]
     by_far = not passing or share_explained(min(passing), best.identify, case.floor) >= DECISIVE
     found = beyond_bounds(case, first, best) if by_far else None
-    if (found and adequate(case, first, found[1])) or any(adequate(case, first, fit) for fit in fits):
+    there = [fit for fit in fits if adequate(case, first, fit)]
+    if (found and adequate(case, first, found[1])) or any(not widened(case, fit).keys() & case.specs for fit in there):
         return found
+    least = min((fit.total for fit in there), default=np.inf)
     for fit in others[: BESIDE - 1]:
         of_the_job = widened(case, fit).keys() <= case.specs.keys()
         beyond = beyond_bounds(case, first, fit) if of_the_job and case.budget.allows("wider bounds") else None
-        if beyond and adequate(case, first, beyond[1]):
+        if beyond and adequate(case, first, beyond[1]) and removed_rms(least, beyond[1].total) > TIE * case.floor:
             return beyond
     return found
 

@@ -348,15 +348,18 @@ def test_an_effect_that_made_up_for_a_bound_of_the_job_gives_way_to_a_wider_one(
 
 
 @pytest.mark.parametrize(
-    ("best", "beyond", "taken"), [(1.8, 1.0, True), (1.0, 1.0, False), (1.8, 1.6, False)], ids=["", "enough", "in vain"]
-)
+    ("best", "rests", "beyond", "taken"),
+    [(1.8, False, 1.0, True), (1.0, False, 1.0, False), (1.8, False, 1.6, False), (1.1, True, 1.0, True),
+     (1.01, True, 1.0, False)],
+    ids=["", "enough", "in vain", "on its bound", "enough on its bound"],
+)  # fmt: skip
 @pytest.mark.parametrize("form", [False, True])
 @pytest.mark.parametrize("own", [None, 1.7])
 def test_another_effect_that_is_adequate_beyond_a_bound_of_the_job_is_gone_on_with(
-    monkeypatch, best, beyond, taken, form, own
+    monkeypatch, best, rests, beyond, taken, form, own
 ):
-    """In noise floors; the best one rests on no bound, or leaves `own` beyond its own. form: whether the other is one
-    of its forms."""
+    """In noise floors; the best one rests on no bound, or leaves `own` beyond its own. rests: whether it is at a bound
+    of the job. form: whether the other is one of its forms."""
     case = stage.case(fixed={"bouc_wen.alpha": 0.55})
     first = first_fit(case, 0)
     lowest, other = (replace(first, identify=left * case.floor, validate=left * case.floor) for left in (best, 2.2))
@@ -364,7 +367,9 @@ def test_another_effect_that_is_adequate_beyond_a_bound_of_the_job_is_gone_on_wi
     little = (case, replace(first, identify=own * case.floor, validate=own * case.floor)) if own else None
     forms = [{"a": lowest, "a.b": other}] if form else [{"a": lowest}, {"c": other}]
     items = [SimpleNamespace(fit=next(iter(refits.values())), refits=refits) for refits in forms]
-    monkeypatch.setattr(staircase, "widened", lambda case, fit: {"bouc_wen.alpha": None} if fit is other else {})
+    resting = [id(fit) for fit in (other, lowest)[: 1 + rests]]
+    specs = {"bouc_wen.alpha": None}
+    monkeypatch.setattr(staircase, "widened", lambda case, fit: specs if id(fit) in resting else {})
     monkeypatch.setattr(staircase, "beyond_bounds", lambda case, first, fit: (case, wide) if fit is other else little)
     found = bounds_beside(case, first, SimpleNamespace(candidates=items, passing=[] if own else items))
     assert found == ((case, wide) if taken else little)
