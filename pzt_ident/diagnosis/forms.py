@@ -21,6 +21,7 @@ from pzt_ident.diagnosis.criteria import (
 )
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
+from pzt_ident.diagnosis.modes import with_modes_exchanged
 from pzt_ident.diagnosis.refit import AT_NOISE, refit, refit_from
 from pzt_ident.diagnosis.score import LEAST_SCORE, Score, scorer_of
 from pzt_ident.diagnosis.starts import first_fit
@@ -158,8 +159,12 @@ def is_far_behind(case: Case, fit: Fit, best: Fit) -> bool:
 
 
 def from_where(case: Case, other: Fit, fit: Fit, guess: dict[str, float]) -> Fit:
-    """A fit, or the same model refitted from where another one led and from a guess of its own parameters."""
-    return min(fit, refit(case, other, fit.effects, guess, other.identify), key=lambda each: each.total)
+    """A fit, or the same model refitted from where another one led and from a guess of its own parameters; from where
+    another form led also with modes exchanged."""
+    is_form = word_of(other.effects[-1]) == word_of(fit.effects[-1])
+    starts = with_modes_exchanged(other) if is_form else []
+    led = [refit(case, start, fit.effects, {}, other.identify) for start in starts]
+    return min(fit, refit(case, other, fit.effects, guess, other.identify), *led, key=lambda each: each.total)
 
 
 def share_of_others(case: Case, first: Fit, before: Fit, fits: Sequence[Fit]) -> float:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pzt_ident.diagnosis.fit import EDGE, Fit
+from pzt_ident.diagnosis.fit import EDGE, Fit, fit_at
 from pzt_ident.model.block import Modes, Place
 from pzt_ident.model.chain import Entry
 from pzt_ident.model.registry import word_of
@@ -97,6 +97,21 @@ def with_modes_at_second(fit: Fit, kept: Collection[str]) -> list[Values]:
         for mode in modes_of(fit, values) if share.name not in kept else ():
             moved = mode._replace(damping=second.damping)
             found += moved_to(fit, values, moved, [second.frequency, *aliases(fit, second)])
+    return found
+
+
+def with_modes_exchanged(fit: Fit) -> list[Fit]:
+    """The fits with the main mode of an axis and a second one exchanged, where bounds allow it. The response is the
+    same where they are in parallel; in another form of the second mode only one of the two may be it."""
+    values, found = values_of(fit), list[Fit]()
+    for share, second in second_modes(fit, values):
+        block = share.name.removesuffix("share")
+        for main in modes_of(fit, values):
+            moved = mode_at(fit, values, main._replace(frequency=second.frequency, damping=second.damping))
+            of_second = {"share": 1 - values[share.name], "frequency": main.frequency, "damping": main.damping}
+            point = fit.values | moved | {f"{block}{word}": value for word, value in of_second.items()}
+            if main.axis == second.axis and moved and is_within(fit, point):
+                found.append(fit_at(fit.effects, fit.problem, fit.problem.unit_point(point), True, fit.measured_only))
     return found
 
 

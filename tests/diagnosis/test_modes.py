@@ -1,16 +1,19 @@
 """Modes that rest elsewhere: where the samples look alike, or where the mechanics stand in for something."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import stage
+from pzt_ident.diagnosis import exchange, forms
 from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.fit import fit_at
-from pzt_ident.diagnosis.modes import mechanics_at_main_mode, with_aliases
+from pzt_ident.diagnosis.modes import mechanics_at_main_mode, with_aliases, with_modes_exchanged
 from pzt_ident.diagnosis.refit import refit, start_of
+from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.second_mode import exchange_main_mode, exchange_second_mode
 from pzt_ident.diagnosis.staircase import improve
 from pzt_ident.diagnosis.starts import best_alias
@@ -151,3 +154,57 @@ def test_what_leads_out_of_a_side_minimum_is_no_payload():
     found = improve(case, first)
     assert found.last.verdict == "adequate" and [step.added for step in found.steps] == [None]
     assert found.steps[-1].fit.values["lumped.stiffness"] == pytest.approx(SOFT["lumped.stiffness"], rel=0.01)
+
+
+TWO = {"lumped.mass": 0.1, "lumped.stiffness": 0.1 * (2 * np.pi * 140) ** 2, "lumped.damping": 2.0}
+OTHER = {"resonance.share": 0.6, "resonance.frequency": 260.0, "resonance.damping": 0.03}
+
+
+def struck(values, form):
+    """A stage of two modes, which ring in two records of steps."""
+    drives = [np.random.default_rng(seed).normal(0, 12, 60).repeat(50) + 50 for seed in (1, 2)]
+    return stage.case(values, model=("bouc_wen", "lumped", form), drives=drives, dt=2e-4, effects={}).with_words(
+        ("bouc_wen", "lumped")
+    )
+
+
+def test_modes_in_parallel_that_are_exchanged_respond_alike():
+    case = struck(TWO | OTHER, "resonance")
+    fit = fit_with(case, TWO | OTHER)
+    (exchanged,) = with_modes_exchanged(fit)
+    assert exchanged.values["resonance.frequency"] == pytest.approx(140)
+    assert exchanged.values["resonance.share"] == pytest.approx(0.4)
+    there, here = (each.problem.residuals(each.point)[0] for each in (exchanged, fit))
+    assert np.abs(there - here).max() < 1e-6 * np.abs(fit.problem.swing)
+    assert with_modes_exchanged(refit(case, fit, (), {})) == []
+
+
+def test_modes_are_exchanged_only_within_their_bounds():
+    case = struck(TWO | OTHER, "resonance").with_specs({"resonance.frequency": Widened((200.0, 300.0))})
+    assert with_modes_exchanged(fit_with(case, TWO | OTHER)) == []
+
+
+@pytest.mark.parametrize(("item", "starts"), [("resonance.series", 2), ("sensor_lag", 1)])
+def test_another_form_of_a_second_mode_is_tried_with_modes_exchanged(monkeypatch, item, starts):
+    """In parallel either may be the second one; in series, the one that the force passes."""
+    begun = []
+
+    def refit_from(case, start, effects, *more):
+        begun.append(start.values["resonance.frequency"])
+        return replace(start, effects=effects)
+
+    fit = fit_with(struck(TWO | OTHER, "resonance"), TWO | OTHER)
+    monkeypatch.setattr(forms, "refit", refit_from)
+    forms.from_where(None, fit, replace(fit, effects=(item,)), {})
+    assert sorted(begun) == pytest.approx([140.0, 260.0][-starts:])
+
+
+def test_a_form_in_the_place_of_another_is_tried_with_modes_exchanged(monkeypatch):
+    begun, fit = [], fit_with(struck(TWO | OTHER, "resonance"), TWO | OTHER)
+    monkeypatch.setattr(
+        exchange, "refit_beside", lambda case, fits, effects, guess, rival: replace(fit, effects=effects)
+    )
+    monkeypatch.setattr(exchange, "refit", lambda case, start, effects, guess: begun.append(start) or start)
+    monkeypatch.setattr(exchange, "scorer_of", lambda case, fit: SimpleNamespace(score=lambda item: Score(item, 0.5)))
+    exchange.fits_in_place(None, fit, "resonance", ["resonance.series"])
+    assert [start.values["resonance.frequency"] for start in begun[1:]] == pytest.approx([140.0])
