@@ -157,13 +157,15 @@ def taken_out(
     """Those that are not proven by the errors of all axes together, or by those of one alone; see `unproven`."""
     seen, view = partial(on_axis, axis=axis), case.on_axis(axis)
     given = seen(first)
+
+    def doubt(now: Fit, effect: str) -> Suspect:
+        return suspect(case, first, now, effect, rivals.get(effect, ()), known, axis)
+
     suspects, held, judged = list[Suspect](), list[str](), list[Suspect]()
     while added := now.effects[len(first.effects) :]:
         near, explained = near_noise(view, given, seen(now)), adequate(view, given, seen(now))
         left = left_of_allowed(view, given, seen(now), added)
-        judged = [
-            suspect(case, first, now, item, rivals.get(item, ()), known, axis) for item in added if item not in held
-        ]
+        judged = [doubt(now, item) for item in added if item not in held]
         doubted = [item for item in judged if item.is_doubtful or (item.on_bounds and not explained) or not near]
         suspected = [item for item in doubted if not item.is_line]
         if not suspected:
@@ -179,30 +181,15 @@ def taken_out(
         else:
             suspects.append(least)
             now = least.without
-    doubtful = [suspect(case, first, now, item, rivals.get(item, ()), known, axis) for item in held]
-    for effect in [*in_the_shade(now, judged, doubtful), *held]:
-        suspects.append(suspect(case, first, now, effect, rivals.get(effect, ()), known, axis))
+    for effect in [*in_the_shade(now, judged, [doubt(now, item) for item in held]), *held]:
+        suspects.append(doubt(now, effect))
         now = suspects[-1].without
-    return suspects + (driven_onto_bounds(case, first, now, rivals, known, axis) if held else [])
-
-
-def driven_onto_bounds(
-    case: Case,
-    first: Fit,
-    now: Fit,
-    rivals: Mapping[str, Collection[str]],
-    known: Sequence[Fit],
-    axis: int | None,
-) -> list[Suspect]:
-    """Those of the effects that are left which are on a bound without those taken out, in a model that is not adequate:
-    beside these they were not."""
-    found, view, seen = list[Suspect](), case.on_axis(axis), partial(on_axis, axis=axis)
-    for effect in now.effects[len(first.effects) :]:
-        doubted = suspect(case, first, now, effect, rivals.get(effect, ()), known, axis)
-        if doubted.on_bounds and not doubted.is_line and not adequate(view, seen(first), seen(now)):
-            found.append(doubted)
-            now = doubted.without
-    return found
+    for effect in now.effects[len(first.effects) :] if held else ():
+        last = doubt(now, effect)  # beside what was taken out it was on no bound
+        if last.on_bounds and not last.is_line and not adequate(view, given, seen(now)):
+            suspects.append(last)
+            now = last.without
+    return suspects
 
 
 def in_the_shade(now: Fit, judged: Sequence[Suspect], held: Sequence[Suspect]) -> list[str]:
