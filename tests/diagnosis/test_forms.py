@@ -57,6 +57,7 @@ def test_a_form_far_behind_another_one_is_tried_from_where_that_led(monkeypatch,
         return fit(led, led, effects)
 
     monkeypatch.setattr(forms, "refit", refit)
+    monkeypatch.setattr(forms, "with_modes_exchanged", lambda fit: [])
     found = forms.from_each_other(CASE, refits)
     assert found["creep"].identify == kept and found["creep.voltage"] is refits["creep.voltage"]
 
@@ -144,6 +145,7 @@ def test_a_form_that_contains_another_effect_is_ranked_behind_it_where_it_explai
 def test_no_form_is_tried_again_far_behind_another_effect_at_the_noise(monkeypatch):
     refits = {"creep": fit(8.0, 8.0, ["creep"]), "creep.voltage": fit(3.0, 3.0, ["creep.voltage"])}
     monkeypatch.setattr(forms, "refit", lambda case, other, effects, guess, rival: fit(2.9, 2.9, effects))
+    monkeypatch.setattr(forms, "with_modes_exchanged", lambda fit: [])
     for rival, tried in ((1.0, False), (1.5, True), (np.inf, True)):
         assert (forms.from_each_other(CASE, refits, rival) != refits) == tried
 
