@@ -10,9 +10,9 @@ from pzt_ident.diagnosis.budget import PROOF, PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import DECISIVE, adequate, beyond_form, removed_rms, removes_enough, threshold
 from pzt_ident.diagnosis.fit import Fit
+from pzt_ident.diagnosis.forms import from_modes_exchanged
 from pzt_ident.diagnosis.limit import is_limited, own_bounds
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.modes import with_modes_exchanged
 from pzt_ident.diagnosis.possible import applicable, fitting_forms
 from pzt_ident.diagnosis.refit import AT_NOISE, refit, refit_beside
 from pzt_ident.diagnosis.score import scorer_of
@@ -155,11 +155,9 @@ def fits_in_place(case: Case, now: Fit, effect: str, items: Sequence[str], as_ri
     for score in scores:
         if score.explained < COMPARABLE * own:
             continue
-        effects, is_form = (*without.effects, score.effect), word_of(score.effect) == word_of(effect)
-        starts = with_modes_exchanged(now) if is_form else []
-        led = [refit(case, start, effects, {}) for start in starts]
-        beside = refit_beside(case, (without, now), effects, score.guess, now.identify)
-        fit = min([beside, *led], key=lambda each: each.total)
+        fit = refit_beside(case, (without, now), (*without.effects, score.effect), score.guess, now.identify)
+        if word_of(score.effect) == word_of(effect):
+            fit = from_modes_exchanged(case, now, fit)
         promised = as_rivals and score.explained >= own and len(score.guess) > 1
         if promised and not is_tied(case, effect, now, fit) and case.budget.allows("ties", WHOLE):
             fit = restart(case, fit)

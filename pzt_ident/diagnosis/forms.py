@@ -161,10 +161,15 @@ def is_far_behind(case: Case, fit: Fit, best: Fit) -> bool:
 def from_where(case: Case, other: Fit, fit: Fit, guess: dict[str, float]) -> Fit:
     """A fit, or the same model refitted from where another one led and from a guess of its own parameters; from where
     another form led also with modes exchanged."""
+    led = min(fit, refit(case, other, fit.effects, guess, other.identify), key=lambda each: each.total)
     is_form = word_of(other.effects[-1]) == word_of(fit.effects[-1])
-    starts = with_modes_exchanged(other) if is_form else []
-    led = [refit(case, start, fit.effects, {}, other.identify) for start in starts]
-    return min(fit, refit(case, other, fit.effects, guess, other.identify), *led, key=lambda each: each.total)
+    return from_modes_exchanged(case, other, led) if is_form else led
+
+
+def from_modes_exchanged(case: Case, other: Fit, fit: Fit) -> Fit:
+    """A fit, or the same model refitted from where another one led with modes exchanged."""
+    led = (refit(case, start, fit.effects, {}, fit.identify) for start in with_modes_exchanged(other))
+    return min([fit, *led], key=lambda each: each.total)
 
 
 def share_of_others(case: Case, first: Fit, before: Fit, fits: Sequence[Fit]) -> float:

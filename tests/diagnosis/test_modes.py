@@ -200,11 +200,11 @@ def test_another_form_of_a_second_mode_is_tried_with_modes_exchanged(monkeypatch
 
 
 def test_a_form_in_the_place_of_another_is_tried_with_modes_exchanged(monkeypatch):
-    begun, fit = [], fit_with(struck(TWO | OTHER, "resonance"), TWO | OTHER)
-    monkeypatch.setattr(
-        exchange, "refit_beside", lambda case, fits, effects, guess, rival: replace(fit, effects=effects)
-    )
-    monkeypatch.setattr(exchange, "refit", lambda case, start, effects, guess: begun.append(start) or start)
-    monkeypatch.setattr(exchange, "scorer_of", lambda case, fit: SimpleNamespace(score=lambda item: Score(item, 0.5)))
-    exchange.fits_in_place(None, fit, "resonance", ["resonance.series"])
-    assert [start.values["resonance.frequency"] for start in begun[1:]] == pytest.approx([140.0])
+    tried, fit = [], fit_with(struck(TWO | OTHER, "resonance"), TWO | OTHER)
+    scorer = SimpleNamespace(score=lambda item: Score(item, 0.5))
+    monkeypatch.setattr(exchange, "refit", lambda case, start, effects, guess: start)
+    monkeypatch.setattr(exchange, "refit_beside", lambda case, fits, effects, *more: replace(fit, effects=effects))
+    monkeypatch.setattr(exchange, "scorer_of", lambda case, fit: scorer)
+    monkeypatch.setattr(exchange, "from_modes_exchanged", lambda case, now, fit: tried.append(fit.effects[-1]) or fit)
+    exchange.fits_in_place(None, fit, "resonance", ["resonance.series", "load_mass"])
+    assert tried == ["resonance.series"]
