@@ -1,4 +1,4 @@
-"""The path without mechanics that the data do not determine."""
+"""The path without mechanics that the data do not show: they do not determine them, or none of their modes rings."""
 
 from __future__ import annotations
 
@@ -15,7 +15,13 @@ from pzt_ident.diagnosis.paths import SETTLED, Begun, begin, conclude, improve_w
 from pzt_ident.diagnosis.refit import refit
 from pzt_ident.diagnosis.step import Step, StepListener, explained_share
 from pzt_ident.diagnosis.ties import TIE
-from pzt_ident.diagnosis.undetermined import Undetermined, undetermined_mechanics, without_mechanics
+from pzt_ident.diagnosis.undetermined import (
+    Undetermined,
+    mode_that_is_silent,
+    undetermined_mechanics,
+    unseen_mechanics,
+    without_mechanics,
+)
 from pzt_ident.diagnosis.verdict import Diagnosis, diagnose
 
 MOVED = "mechanics at another mode"  # the step that puts them where a second mode is
@@ -45,7 +51,7 @@ class Lean(NamedTuple):
 def lean_or_begun(
     case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListener
 ) -> tuple[Staircase | None, Begun | None]:
-    """The staircase without mechanics that the data do not determine, None where the first path with them alone reaches
+    """The staircase without mechanics that the data do not show, None where the first path with them alone reaches
     the noise, or as of `begin_lean`; and that path, None where it was not begun. diagnosis: of the fit `first`."""
     lean, begun = begin_lean(case, first, diagnosis, on_step), None
     if lean and not lean.settled and case.budget.allows("effects beside the mechanics"):
@@ -55,13 +61,13 @@ def lean_or_begun(
 
 
 def begin_lean(case: Case, first: Fit, diagnosis: Diagnosis, on_step: StepListener) -> Lean | None:
-    """The path without mechanics that the data do not determine; None where these determine them, alone or beside the
-    best effect, or where the model needs one effect at most beside them. diagnosis: of the fit `first`."""
+    """The path without mechanics that the data do not show; None where these show them, alone or beside the best
+    effect, or where the model needs one effect at most beside them. diagnosis: of the fit `first`."""
     settled = diagnosis.verdict in SETTLED or any(
         adequate(case, first, candidate.fit) for candidate in diagnosis.passing if candidate.fit
     )
     best = min((item.fit for item in diagnosis.passing if item.fit), key=lambda fit: fit.total, default=first)
-    alternative = None if settled or undetermined_mechanics(best) is None else without_mechanics(case, first)
+    alternative = None if settled or unseen_mechanics(best) is None else without_mechanics(case, first)
     if alternative is None:
         return None
     word, lean, start = alternative
@@ -75,7 +81,8 @@ def improve_lean(case: Case, first: Fit, lean: Lean, on_step: StepListener) -> S
     if moved := with_mechanics_moved(case, first, staircase.end, on_step):
         return moved
     share = explained_share(case, lean.start, first)
-    staircase.suspects.append(Undetermined(lean.word, share, staircase.end.total / case.floor))
+    mode = None if undetermined_mechanics(first) else mode_that_is_silent(first)
+    staircase.suspects.append(Undetermined(lean.word, share, staircase.end.total / case.floor, mode))
     return staircase
 
 

@@ -45,9 +45,9 @@ class Undetermined:
 
 
 def without_mechanics(case: Case, first: Fit) -> tuple[str, Case, Fit] | None:
-    """The word of the mechanics, the case without them and its fit, where the data do not determine the mechanics and
-    the model is clearly worse without them; None elsewhere."""
-    return clearly_worse_without(case, first, undetermined_mechanics(first))
+    """The word of the mechanics, the case without them and its fit, where the data do not show the mechanics and the
+    model is clearly worse without them; None elsewhere."""
+    return clearly_worse_without(case, first, unseen_mechanics(first))
 
 
 def clearly_worse_without(case: Case, fit: Fit, word: str | None) -> tuple[str, Case, Fit] | None:
@@ -81,6 +81,11 @@ def undetermined_mechanics(fit: Fit) -> str | None:
     """The word of the mechanics, if the data determine them on no axis."""
     axes = {entry.axis for entry in mechanics_of(fit).values()}
     return word_of_mechanics(fit) if undetermined_axes(fit) == axes else None
+
+
+def unseen_mechanics(fit: Fit) -> str | None:
+    """The word of mechanics that the data do not determine, or that ring in no record."""
+    return undetermined_mechanics(fit) or (word_of_mechanics(fit) if mode_that_is_silent(fit) else None)
 
 
 def word_of_mechanics(fit: Fit) -> str | None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stage
-from pzt_ident.diagnosis import lean, staircase, verdict
+from pzt_ident.diagnosis import lean, staircase, undetermined, verdict
 from pzt_ident.diagnosis.bounds import Widened
 from pzt_ident.diagnosis.fit import fit_at
 from pzt_ident.diagnosis.paths import Begun
@@ -16,6 +16,7 @@ from pzt_ident.diagnosis.undetermined import (
     enough_without_mechanics,
     undetermined_axes,
     undetermined_mechanics,
+    unseen_mechanics,
     without_mechanics,
 )
 from pzt_ident.model.registry import blocks
@@ -91,7 +92,7 @@ def test_mechanics_that_are_determined_beside_the_best_effect_are_kept(monkeypat
     first = first_fit(case, 0)
     diagnosis, tried = verdict.diagnose(case, first), []
     best = min(diagnosis.passing, key=lambda item: item.fit.total).fit
-    monkeypatch.setattr(lean, "undetermined_mechanics", lambda fit: beside if fit is best else "lumped")
+    monkeypatch.setattr(lean, "unseen_mechanics", lambda fit: beside if fit is best else "lumped")
     monkeypatch.setattr(lean, "without_mechanics", lambda case, first: tried.append(case))
     assert lean.begin_lean(case, first, diagnosis, lambda step: None) is None
     assert bool(tried) == (beside is not None)
@@ -200,3 +201,21 @@ def test_the_first_path_with_mechanics_is_taken_where_it_alone_reaches_the_noise
     found = staircase.improve_judged(case, first, lambda step: None, SimpleNamespace())
     assert found is (led if taken == "lean" else given)
     assert len(begun) == (without != "adequate")
+
+
+@pytest.mark.parametrize(("share", "ratio", "seen"), [(0.4, 0.25, True), (0.4, 0.35, False), (0.6, 0.25, False)])
+def test_mechanics_that_ring_in_no_record_are_tried_without_like_those_that_the_data_do_not_determine(
+    monkeypatch, share, ratio, seen
+):
+    """share: of the sampling rate, beyond half of which the samples show another frequency."""
+    monkeypatch.setattr(undetermined, "undetermined_mechanics", lambda fit: None)
+    case = fast(RINGING, steps=8)
+    mass, pace = 0.02, 2 * np.pi * share / case.records[0].dt
+    there = KNOWN | {"lumped.mass": mass, "lumped.stiffness": mass * pace**2, "lumped.damping": 2 * ratio * mass * pace}
+    fit = fit_at_values(case, (), there)
+    assert unseen_mechanics(fit) == (None if seen else "lumped")
+    begun = []
+    monkeypatch.setattr(lean, "without_mechanics", lambda case, first: begun.append(first))
+    diagnosis = SimpleNamespace(verdict="unexplained", passing=[])
+    assert lean.begin_lean(case, fit, diagnosis, lambda step: None) is None
+    assert bool(begun) != seen
