@@ -25,7 +25,7 @@ from pzt_ident.diagnosis.displaced import displaced_operator
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.limit import differs_by_record, harmonic_of, limit_of, own_bounds, settle_beyond, size_of
 from pzt_ident.diagnosis.misfit import share_explained
-from pzt_ident.diagnosis.refit import refit
+from pzt_ident.diagnosis.refit import change_if_too_coarse, refit
 from pzt_ident.diagnosis.spectral_line import is_own_line
 from pzt_ident.diagnosis.step import effects_without
 from pzt_ident.diagnosis.ties import TIE, strangers
@@ -46,8 +46,8 @@ class Suspect:
     records (None without any), the fit without it, whether that is more than the form of the others may leave, the
     effects of another kind that fitted as well when it was added, its shapes or all its amounts that ended on a bound,
     what it is there if that is declared, the operator of the model that it takes the place of, and the share of all
-    records together where each has its own amount of it: one that has little says nothing against it; and whether it is
-    a line of the spectrum that takes up all of its band."""
+    records together where each has its own amount of it: one that has little says nothing against it; whether it is a
+    line of the spectrum that takes up all of its band, and whether the steps of the simulation are too long for it."""
 
     effect: str
     identify: float
@@ -60,6 +60,7 @@ class Suspect:
     displaced: str = ""
     of_all: float | None = None
     is_line: bool = False
+    is_coarse: bool = False
 
     @property
     def rank(self) -> tuple[bool, bool, bool, bool, float]:
@@ -84,7 +85,9 @@ class Suspect:
         """A sentence on why it is not proven."""
         seen = f"{max(self.identify, 0):.0%} of the misfit on the identification records"
         unseen = "" if self.validate is None else f" and {max(self.validate, 0):.0%} on the validation records"
-        if self.beyond_form and self.strangers:
+        if self.is_coarse:
+            rest = " of a model whose simulation is too coarse with it."
+        elif self.beyond_form and self.strangers:
             names = listed(map(phrase_of, self.strangers))
             rest = f" of a model that stays above the noise with it, and {names} fitted as well when it was added."
         elif self.beyond_form and self.displaced:
@@ -123,9 +126,12 @@ def unproven(
     gone beside it, unless the model is adequate. What takes up enough and only may be something else is a suspect
     beside which the others are judged: without it what they take up is nothing; of those that remove little beside what
     is in a limit none is proven. What is proven on one of several axes, and clear there, is proven, whatever another
-    lacks. What is flexible is proven only where the model is adequate with it, or if it removes SINGLE.
+    lacks. What is flexible is proven only where the model is adequate with it, or if it removes SINGLE. None
+    is proven by a model that is simulated too coarsely with it.
     """
     judge = partial(taken_out, case, first, now, rivals, known)
+    if coarse := simulated_too_coarsely(case, first, now, known):
+        return coarse + unproven(case, first, coarse[-1].without, rivals, known)
     suspects, axes = judge(), len(now.problem.model.measured)
     doubted = [item.effect for item in suspects]
     for axis in range(axes) if axes > 1 and suspects else ():
@@ -138,6 +144,15 @@ def unproven(
         suspects.append(suspect(case, first, now, effect, rivals.get(effect, ()), known))
         now = suspects[-1].without
     return suspects
+
+
+def simulated_too_coarsely(case: Case, first: Fit, now: Fit, known: Sequence[Fit]) -> list[Suspect]:
+    """The last effects of a model that is not adequate, as long as its misfit may come from the simulation."""
+    found = list[Suspect]()
+    while now.effects != first.effects and not adequate(case, first, now) and change_if_too_coarse(case, now):
+        found.append(replace(suspect(case, first, now, now.effects[-1], (), known), is_coarse=True))
+        now = found[-1].without
+    return found
 
 
 def is_clear(case: Case, now: Fit, effect: str, axis: int) -> bool:

@@ -18,6 +18,7 @@ from pzt_ident.search.problem import Problem
 
 Array = NDArray[np.float64]
 
+STEP_FAULT = 0.6  # of the misfit: where halving the simulation step changes more, the step is to blame
 STEP_TOLERANCE = 0.05  # of the noise, or twice as much of the misfit: a step is halved where that changes more
 FINEST = 8  # steps per sample
 AT_NOISE = 1.05  # noise floors: what leaves no more is fitted from no other guess
@@ -189,6 +190,13 @@ def refine_steps(case: Case, fit: Fit, rival: float = np.inf, checked: Sequence[
     point = case.descend(problem, fit.point, rival)
     finer = fit_at(fit.effects, problem, point, fit.converged, fit.measured_only)
     return refine_steps(case, finer, rival, coarse)
+
+
+def change_if_too_coarse(case: Case, fit: Fit) -> float:
+    """The change of the response when the simulation step is halved, root mean square, in units of the loss, where that
+    is so much of the misfit that the step is to blame; 0 elsewhere."""
+    change = float(np.sqrt(np.mean(np.square(step_errors(case, fit)))))
+    return change if change > STEP_FAULT * max(removed_rms(fit.identify, case.floor), 0.0) else 0.0
 
 
 def step_errors(case: Case, fit: Fit, numbers: Iterable[int] | None = None) -> Array:

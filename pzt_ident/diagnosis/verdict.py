@@ -41,8 +41,8 @@ from pzt_ident.diagnosis.reasons import (
     rmse_phrase,
     with_proven,
 )
-from pzt_ident.diagnosis.refit import refit, step_errors
-from pzt_ident.diagnosis.score import LEAST_SCORE, scorer_of, squared_misfit
+from pzt_ident.diagnosis.refit import change_if_too_coarse, refit
+from pzt_ident.diagnosis.score import LEAST_SCORE, scorer_of
 from pzt_ident.diagnosis.spectral_line import is_own_line
 from pzt_ident.diagnosis.ties import (
     LIMIT_TIE,
@@ -58,8 +58,6 @@ from pzt_ident.diagnosis.ties import (
     rests_on_own_bounds,
 )
 from pzt_ident.model.registry import blocks, word_of
-
-STEP_FAULT = 0.6  # of the misfit: where halving the simulation step changes more, the step is to blame
 
 
 @dataclass
@@ -226,8 +224,8 @@ def refusal(case: Case, first: Fit, fit: Fit) -> str:
         return ""
     if not fit.converged:
         return "Two starts of the fit do not agree, so the remaining error may come from the search. Narrow the bounds."
-    change = float(np.sqrt(np.mean(np.square(step_errors(case, fit)))))
-    if change <= STEP_FAULT * squared_misfit(case, fit) ** 0.5:
+    change = change_if_too_coarse(case, fit)
+    if not change:
         return ""
     return (
         f"The remaining error, an RMSE of {fit.identify / case.floor:.1f} noise floors, may come from the simulation:"

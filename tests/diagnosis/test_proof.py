@@ -58,12 +58,14 @@ def suspects_of(monkeypatch):
         many=(),
         flexible=(),
         alone=None,
+        coarse=(),
         **declared,
     ):
         """sizes: the parameters of a model without each effect. larger: those that would settle beyond their bounds.
         instead: those that take the place of the operator. lines: those of the spectrum. harmonics: those of the drive.
         traces: those that others leave. many: those with many amounts. flexible: those that follow anything. alone:
-        shapes as of `fit` where no other effect is left. declared: of the parameters with shapes."""
+        shapes as of `fit` where no other effect is left. coarse: those with which the simulation is too coarse.
+        declared: of the parameters with shapes."""
         validation = validation or errors
         operator = lambda case, first, now, effect: "bouc_wen" if effect in instead else ""  # noqa: E731
         monkeypatch.setattr(proof, "displaced_operator", operator)
@@ -71,6 +73,7 @@ def suspects_of(monkeypatch):
         monkeypatch.setattr(proof, "size_of", lambda now, effect: "")
         monkeypatch.setattr(proof, "is_trace", lambda effect, others: effect in traces and bool(others))
         monkeypatch.setattr(proof, "is_of_many", many.__contains__)
+        monkeypatch.setattr(proof, "change_if_too_coarse", lambda case, fit: float(bool({*fit.effects} & {*coarse})))
         monkeypatch.setattr(proof, "is_flexible", flexible.__contains__)
         monkeypatch.setattr(proof, "is_own_line", lambda case, without, now, effect: effect in lines)
 
@@ -96,6 +99,14 @@ def suspects_of(monkeypatch):
 def of(**errors):
     """`a=`, `ab=`: by the letters of the effects; `none` has none."""
     return {frozenset("" if word == "none" else word): error for word, error in errors.items()}
+
+
+@pytest.mark.parametrize(
+    ("coarse", "left", "suspects"), [("b", 5.0, ["b"]), ("", 5.0, []), ("b", 1.1, []), ("a", 5.0, ["b", "a"])]
+)
+def test_what_is_simulated_too_coarsely_proves_nothing(taken_out, coarse, left, suspects):
+    seen = of(ab=left, a=25.0, b=20.0, none=300.0)
+    assert taken_out(seen, first=300.0, coarse=coarse) == suspects
 
 
 def test_what_takes_up_less_than_a_third_of_a_rest_is_a_suspect(taken_out):
