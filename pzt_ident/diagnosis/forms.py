@@ -210,8 +210,9 @@ def clearly_best(case: Case, refits: Mapping[str, Fit], usual: str) -> str:
 def refit_other_forms(
     case: Case, first: Fit, before: Fit, candidates: Sequence[Candidate], shortlist: list[Candidate]
 ) -> None:
-    """Refit the short list, and then what else scores, in every form where no effect explains most of the misfit: one
-    that scores low may leave little of it. Where an effect explains nearly all, refit it, unless it is at the noise,
+    """Refit the short list, and then what else scores, in every form where no effect explains most of the misfit, or
+    beside the model as given only one with many amounts, which follows anything: one that scores low may leave little
+    of it. Where an effect explains nearly all, refit it, unless it is at the noise,
     and its look-alikes in the forms that are not far from that by their scores: one may explain more in another. Where
     something helps and is not enough, half of the time for exploring is for what is missing beside it. All that is
     refitted is added to the short list."""
@@ -231,7 +232,8 @@ def refit_other_forms(
     else:
         least = least_score(case, first, before)
         others = [item for item in candidates if item not in shortlist and item.score.explained > least]
-        wanted = [*shortlist, *others] if share < DECISIVE else []
+        follows = before is first and best is not before and has_many_amounts(blocks[best.effects[-1]]) and not enough
+        wanted = [*shortlist, *others] if share < DECISIVE or follows else []
     for candidate in wanted:
         candidate.forms = scorer_of(case, before).scores(word_of(candidate.score.effect))
         possible = contending_forms(candidate) if nearly_all else candidate.forms

@@ -209,3 +209,31 @@ def test_where_something_helps_half_of_the_time_for_exploring_is_kept_for_what_i
     monkeypatch.setattr(forms, "scorer_of", lambda case, fit: SimpleNamespace(scores=lambda word: scores))
     forms.refit_other_forms(case, fit(10.0, 10.0), fit(10.0, 10.0), [bend], [bend])
     assert shares == [0.3 if helps else forms.EXPLORING]
+
+
+@pytest.mark.parametrize(("word", "left", "before", "tried"), [
+    ("distributed_memory", 4.0, None, True),
+    ("distributed_memory", 1.0, None, False),
+    ("distributed_memory", 4.0, 12.0, False),
+    ("creep", 4.0, None, False),
+])  # fmt: skip
+def test_beside_what_follows_anything_all_that_scores_is_tried_in_every_form(monkeypatch, word, left, before, tried):
+    """A density took up most of a cubic saturation of the drive, of which no score tells. before: of a model that has
+    an effect already."""
+    refitted = []
+
+    def refit_from(case, before, effects, guesses, rival):
+        refitted.append(effects[-1])
+        return fit(1.1, 1.1, effects)
+
+    bend = Candidate.of([Score("saturation", 0.2), Score("saturation.cubic", 0.2)])
+    most = Candidate.of([Score(word, 0.7)])
+    most.refits = {word: fit(left, left, [word])}
+    scores = {word: most.forms, "saturation": bend.forms}
+    monkeypatch.setattr(forms, "scorer_of", lambda case, fit: SimpleNamespace(scores=scores.get))
+    monkeypatch.setattr(forms, "refit_from", refit_from)
+    given = fit(10.0, 10.0)
+    model = fit(before, before, ["drift"]) if before else given
+    shortlist = [most]
+    forms.refit_other_forms(CASE, given, model, [most, bend], shortlist)
+    assert ("saturation.cubic" in refitted) == tried == (bend in shortlist)
