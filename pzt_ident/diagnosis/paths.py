@@ -130,7 +130,7 @@ def exchange_for_bounds(case: Case, first: Fit, now: Fit) -> list[Step]:
     if not added or not near_noise(case, first, now):
         return []
     for effect in reversed(added):
-        for wide, beyond in without_within(case, now, effect):
+        for wide, beyond in without_in_wider_bounds(case, now, effect):
             as_low = removed_rms(beyond.total, now.total) < TIE * case.floor
             if as_low and not stands_in(wide, case, beyond):
                 both = continued(wide, now)
@@ -141,7 +141,7 @@ def exchange_for_bounds(case: Case, first: Fit, now: Fit) -> list[Step]:
     return []
 
 
-def without_within(case: Case, now: Fit, effect: str) -> Iterator[tuple[Case, Fit]]:
+def without_in_wider_bounds(case: Case, now: Fit, effect: str) -> Iterator[tuple[Case, Fit]]:
     """The case with wider bounds of what a model rests on with an effect or without it, and the fit without it there;
     with bounds that are far wider after those that are reached."""
     if not case.budget.allows("wider bounds", WHOLE):
