@@ -5,7 +5,7 @@ from __future__ import annotations
 from pzt_ident.diagnosis.bounds import stands_in
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import Staircase
-from pzt_ident.diagnosis.criteria import DECISIVE, near_noise, removed_rms
+from pzt_ident.diagnosis.criteria import DECISIVE, NEARLY_ALL, near_noise, reaches_noise, removed_rms
 from pzt_ident.diagnosis.fit import Fit
 from pzt_ident.diagnosis.misfit import share_explained
 from pzt_ident.diagnosis.ties import TIE
@@ -20,7 +20,13 @@ def outdoes(wide: Staircase, given: Staircase, case: Case, first: Fit) -> bool:
 
 def accounts(wide: Staircase, case: Case, first: Fit) -> bool:
     """Whether wider bounds lead near the noise, to a model in which none of them is reached."""
-    return near_noise(case, first, wide.end) and keeps_within(wide, case)
+    return (near_noise(case, first, wide.end) or explains_fitted(case, first, wide.end)) and keeps_within(wide, case)
+
+
+def explains_fitted(case: Case, first: Fit, fit: Fit) -> bool:
+    """Whether a fit is at the noise of the identification records, and explains nearly all of the misfit of all: what
+    is left of the others these do not determine."""
+    return reaches_noise(case, first, fit) and share_explained(first.total, fit.total, case.floor) >= NEARLY_ALL
 
 
 def clearly_better(wide: Staircase, given: Staircase, case: Case) -> bool:

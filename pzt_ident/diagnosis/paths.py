@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pzt_ident.diagnosis.accounts import explains_fitted
 from pzt_ident.diagnosis.bounds import FAR_SLIP, SLIP, beyond_guesses, continued, freed, stands_in, widened
 from pzt_ident.diagnosis.budget import PROVING, WHOLE
 from pzt_ident.diagnosis.case import Case
@@ -73,7 +74,8 @@ def improve_within(
     paths, told = [path], None if begun else path
     for candidate in first_candidates(case, first, diagnosis)[1:]:
         last = paths[-1]
-        if last.last.verdict in SETTLED or last.end.identify / case.floor > FAR or len(paths) == PATHS:
+        far = last.end.identify / case.floor > FAR
+        if last.last.verdict in SETTLED or far or len(paths) == PATHS or is_one_that_explains_all(case, first, last):
             break
         if not case.budget.allows("another effect first"):
             break
@@ -91,6 +93,11 @@ def improve_within(
         add_rivals_beside(best.case or case, first, best.steps, doubted)
     conclude(best.case or case, first, best)
     return best
+
+
+def is_one_that_explains_all(case: Case, first: Fit, path: Staircase) -> bool:
+    """Whether a path has one effect, which explains all that the identification records tell."""
+    return len(path.end.effects) == len(first.effects) + 1 and explains_fitted(case, first, path.end)
 
 
 def finish_all(case: Case, first: Fit, paths: Sequence[Staircase]) -> list[tuple[Staircase, Fit | None]]:

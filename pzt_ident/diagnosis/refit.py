@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.criteria import removed_rms
 from pzt_ident.diagnosis.fit import NO_WORSE, Fit, fit_at
+from pzt_ident.diagnosis.misfit import squared_misfit
 from pzt_ident.diagnosis.modes import mechanics_at_main_mode, mechanics_without_payload
 from pzt_ident.model.registry import blocks
 from pzt_ident.search.descent import FAR
@@ -196,7 +197,7 @@ def change_if_too_coarse(case: Case, fit: Fit) -> float:
     """The change of the response when the simulation step is halved, root mean square, in units of the loss, where that
     is so much of the misfit that the step is to blame; 0 elsewhere."""
     change = float(np.sqrt(np.mean(np.square(step_errors(case, fit)))))
-    return change if change > STEP_FAULT * max(removed_rms(fit.identify, case.floor), 0.0) else 0.0
+    return change if change > STEP_FAULT * squared_misfit(fit.identify, case.floor) ** 0.5 else 0.0
 
 
 def step_errors(case: Case, fit: Fit, numbers: Iterable[int] | None = None) -> Array:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from pzt_ident.diagnosis.accounts import accounts, keeps_within, outdoes
+from pzt_ident.diagnosis.accounts import accounts, explains_fitted, keeps_within, outdoes
 from pzt_ident.diagnosis.bounds import are_too_narrow, beyond_bounds, continued, widened
 from pzt_ident.diagnosis.budget import WHOLE
 from pzt_ident.diagnosis.candidates import likeliest
@@ -152,7 +152,7 @@ def improve_judged(case: Case, first: Fit, on_step: StepListener, diagnosis: Dia
     beside = None if good or beyond else bounds_beside(case, first, diagnosis)
     if beside:
         beyond = beside[0], continued(beside[0], first)
-        wide = improve_beyond(case, first, *beyond, on_step) if adequate(case, first, beside[1]) else None
+        wide = improve_beyond(case, first, *beyond, on_step) if leads(case, first, beside[1]) else None
         if wide and accounts(wide, case, first):
             return wide
     if own := own_at_once(case, first, diagnosis, on_step):
@@ -189,6 +189,12 @@ def only_adds(fit: Fit) -> bool:
     return bool(own) and all(parameter.adds_to for parameter in own)
 
 
+def leads(case: Case, first: Fit, fit: Fit) -> bool:
+    """Whether a fit beyond bounds is worth a path of its own: it is adequate, or leaves what the identification records
+    do not determine."""
+    return adequate(case, first, fit) or explains_fitted(case, first, fit)
+
+
 def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, Fit] | None:
     """The case with the wider bounds that the model with one effect needs, and the fit with it there; None where there
     are none. Only where no effect passes within the bounds of the job, or the one that is best on the identification
@@ -201,13 +207,13 @@ def bounds_beside(case: Case, first: Fit, diagnosis: Diagnosis) -> tuple[Case, F
     by_far = not passing or share_explained(min(passing), best.identify, case.floor) >= DECISIVE
     found = beyond_bounds(case, first, best) if by_far else None
     there = [fit for fit in fits if adequate(case, first, fit)]
-    if (found and adequate(case, first, found[1])) or any(not widened(case, fit).keys() & case.specs for fit in there):
+    if (found and leads(case, first, found[1])) or any(not widened(case, fit).keys() & case.specs for fit in there):
         return found
     least = min((fit.total for fit in there), default=np.inf)
     for fit in others[: BESIDE - 1]:
         of_the_job = widened(case, fit).keys() <= case.specs.keys()
         beyond = beyond_bounds(case, first, fit) if of_the_job and case.budget.allows("wider bounds") else None
-        if beyond and adequate(case, first, beyond[1]) and removed_rms(least, beyond[1].total) > TIE * case.floor:
+        if beyond and leads(case, first, beyond[1]) and removed_rms(least, beyond[1].total) > TIE * case.floor:
             return beyond
     return found
 

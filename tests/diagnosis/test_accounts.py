@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import stage
+from made_fits import CASE, fit
 from pzt_ident.diagnosis import accounts
-from pzt_ident.diagnosis.accounts import is_cheaper, outdoes
+from pzt_ident.diagnosis.accounts import explains_fitted, is_cheaper, outdoes
 from pzt_ident.diagnosis.climb import Staircase
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step
@@ -57,3 +58,12 @@ def test_wider_bounds_that_lead_to_the_noise_outdo_those_that_do_not_even_if_one
     for word in ("accounts", "keeps_within"):
         monkeypatch.setattr(accounts, word, lambda *arguments: False)
     assert outdoes(wide, given, case, first) == arrived
+
+
+@pytest.mark.parametrize(
+    ("identify", "validate", "explains"), [(1.0, 1.0, True), (1.0, 3.0, True), (1.0, 12.0, False), (2.0, 1.0, False)]
+)
+def test_wider_bounds_account_for_what_the_fitted_records_tell_where_nearly_all_of_the_others_goes_too(
+    identify, validate, explains
+):
+    assert explains_fitted(CASE, fit(30.0, 30.0), fit(identify, validate)) == explains

@@ -35,8 +35,9 @@ def test_of_two_paths_the_adequate_one_is_taken_else_the_better(ends, taken, mon
     assert taken_of(several, lambda path: [], monkeypatch) is several[taken]
 
 
-def taken_of(several, taken_back, monkeypatch):
-    """The one that is taken of paths, of which some steps are taken back."""
+def taken_of(several, taken_back, monkeypatch, alone=False):
+    """The one that is taken of paths, of which some steps are taken back. alone: whether the first explains all that
+    can be told."""
 
     told, joined = [], object()
 
@@ -50,6 +51,7 @@ def taken_of(several, taken_back, monkeypatch):
     monkeypatch.setattr(paths, "diagnose", lambda case, first: SimpleNamespace())
     monkeypatch.setattr(paths, "first_candidates", lambda case, first, diagnosis: [*range(len(several))])
     monkeypatch.setattr(paths, "climb", climb)
+    monkeypatch.setattr(paths, "is_one_that_explains_all", lambda *arguments: alone)
     exchanges = (
         "exchange_main_mode",
         "exchange_second_mode",
@@ -66,6 +68,25 @@ def taken_of(several, taken_back, monkeypatch):
     best = improve_within(SimpleNamespace(floor=1.0, budget=Budget()), [Step(SimpleNamespace())], told.append)
     assert told[-len(best.steps) :] == best.steps
     return best
+
+
+@pytest.mark.parametrize(
+    ("effects", "identify", "validate", "alone"),
+    [
+        (("a",), 1.0, 3.0, True),
+        (("a", "b"), 1.0, 3.0, False),
+        (("a",), 2.0, 3.0, False),
+        (("a",), 1.0, 12.0, False),
+    ],
+)
+def test_no_other_effect_is_tried_first_where_one_explains_all_that_the_fitted_records_tell(
+    monkeypatch, effects, identify, validate, alone
+):
+    """What is left of the others these do not determine, and a second path would follow it by chance."""
+    path = Staircase([Step(fit(identify, validate, effects))], ended("unexplained"))
+    assert paths.is_one_that_explains_all(CASE, fit(30.0, 30.0), path) == alone
+    several = [Staircase([Step(ending(1.0, total))], ended("unexplained")) for total in (3.0, 2.0)]
+    assert taken_of(several, lambda path: [], monkeypatch, alone) is several[not alone]
 
 
 def test_a_path_that_joins_another_is_no_path_and_the_next_effect_is_tried_first(monkeypatch):
