@@ -11,6 +11,7 @@ import numpy as np
 from pzt_ident.diagnosis.accounts import explains_fitted
 from pzt_ident.diagnosis.bounds import FAR_SLIP, SLIP, beyond_guesses, continued, freed, stands_in, widened
 from pzt_ident.diagnosis.budget import PROVING, WHOLE
+from pzt_ident.diagnosis.candidates import SHORTLIST, is_disturbance
 from pzt_ident.diagnosis.case import Case
 from pzt_ident.diagnosis.climb import WIDER, Staircase, climb
 from pzt_ident.diagnosis.criteria import FAR, adequate, near_noise, removed_rms, removes_enough
@@ -181,13 +182,18 @@ def best_path(case: Case, paths: Sequence[Staircase]) -> Staircase:
 
 
 def first_candidates(case: Case, first: Fit, diagnosis: Diagnosis) -> list[Candidate]:
-    """The best candidate, and the next best ones, for which another form of any effect counts too."""
+    """The best candidate, and the next best ones, for which another form of any effect counts too; a disturbance that
+    scored too little for the short list is none of these."""
     if not diagnosis.passing:
         return []
+    scored = sorted(diagnosis.candidates, key=lambda item: -item.rank)
+    unlisted = [item.score.effect for item in scored[SHORTLIST:] if is_disturbance(item)]
     best, *others = diagnosis.passing
+    others = [item for item in others if item.score.effect not in unlisted]
     every = [
         replace(item, score=score, fit=item.refits[score.effect])
         for item in diagnosis.candidates
+        if item.score.effect not in unlisted
         for score in item.forms
         if score.effect in item.refits and item.fit is not item.refits[score.effect]
     ]

@@ -12,7 +12,9 @@ from pzt_ident.diagnosis import paths
 from pzt_ident.diagnosis.budget import Budget
 from pzt_ident.diagnosis.climb import Staircase
 from pzt_ident.diagnosis.fit import Fit, fit_at
+from pzt_ident.diagnosis.forms import Candidate
 from pzt_ident.diagnosis.paths import PROVEN, best_path, improve_within, take_back
+from pzt_ident.diagnosis.score import Score
 from pzt_ident.diagnosis.starts import first_fit
 from pzt_ident.diagnosis.step import Step
 from pzt_ident.diagnosis.verdict import Diagnosis
@@ -222,3 +224,21 @@ def test_no_effect_is_held_against_a_fit_of_other_blocks(monkeypatch):
     monkeypatch.setattr(paths, "unproven", lambda case, first, now, rivals, known: known)
     assert paths.unproven_of(CASE, fits[1], fits[-1], steps) == [fits[1], *fits[1:]]
     assert paths.unproven_of(CASE, fits[0], fits[0], steps[:1]) == [fits[0], fits[0]]
+
+
+@pytest.mark.parametrize(("scores", "tried"), [(0.02, False), (0.9, True)])
+def test_a_disturbance_that_scored_too_little_for_the_short_list_is_added_first_only_if_it_is_the_best(scores, tried):
+    """A ripple took up half of what a memory and a lag were, and began the second path."""
+    words = ["saturation", "creep", "asymmetry", "delay", "friction", "quadratic_gain"]
+    shares = dict.fromkeys(words, 0.5) | {"periodic_disturbance": scores}
+    items = []
+    for word, explained in shares.items():
+        item = Candidate.of([Score(word, explained)])
+        item.refits = {word: fit(4.0 if word == "saturation" else 6.0, 6.0, [word])}
+        item.take(word)
+        items.append(item)
+    first, hum = fit(9.0, 9.0), items[-1]
+    for passing, is_first in (([items[0], hum], False), ([hum], True)):
+        diagnosis = SimpleNamespace(candidates=items, passing=passing)
+        found = [item.score.effect for item in paths.first_candidates(CASE, first, diagnosis)]
+        assert ("periodic_disturbance" in found) == (tried or is_first)
