@@ -39,11 +39,7 @@ def show_word(facts: Facts) -> None:
         click.echo(f"In a job: {written}\n")
     if "parameters" in facts:
         _show_parameters(facts)
-    for title, key in (
-        ("Leaves much the same trace as", "look_alikes"),
-        ("To tell", "separate_by"),
-        ("To do", "remedy"),
-    ):
+    for title, key in SAYINGS.items():
         if text := facts.get(key):
             click.echo(f"\n{title}: {text if isinstance(text, str) else ', '.join(text)}")
     click.echo(f"\nPictures and more: `pzt-ident atlas` writes {href(facts['name'])}")

@@ -131,7 +131,8 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
     """Refit the model with each effect, in its first form and in the one that scores best; gives the refitted ones, all
     that the budget suffices for, but at least the best one beside the model as given. Those that stay far above
     what the best score leads to are given up; where that is adequate, none is refitted that is far from it. As long as
-    no effect explains most, a disturbance is refitted in all of its forms; then none beyond the first SHORTLIST is."""
+    no effect explains most, a disturbance is refitted in all of its forms; after that, only if it is one of the first
+    SHORTLIST, and in those two."""
     fits: list[Fit] = []
     rival, in_every_form = np.inf, set[str]()
 
@@ -176,10 +177,17 @@ def refit_all(case: Case, first: Fit, before: Fit, candidates: Sequence[Candidat
             made.append(candidate)
             fits.extend(candidate.refits.values())
         rival = min((fit.identify for fit in fits), default=np.inf)
-    closest = min(made, key=lambda candidate: candidate.closest.identify, default=None)
-    if closest and before is first and closest is not candidates[0] and drives_onto_bounds(case, first, closest):
-        refit_further(case, first, before, closest)
+    if before is first:
+        refit_closest_further(case, first, candidates[:1], made)
     return made
+
+
+def refit_closest_further(case: Case, first: Fit, done: Sequence[Candidate], candidates: Sequence[Candidate]) -> None:
+    """Refit the candidate that is closest to the records which are fitted further, if it drives the model onto bounds
+    and that is not done."""
+    closest = min(candidates, key=lambda candidate: candidate.closest.identify, default=None)
+    if closest and all(closest is not item for item in done) and drives_onto_bounds(case, first, closest):
+        refit_further(case, first, first, closest)
 
 
 def refit_further(case: Case, first: Fit, before: Fit, candidate: Candidate) -> None:

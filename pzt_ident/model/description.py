@@ -120,15 +120,20 @@ def _look_alikes(block: type[Any]) -> list[str]:
 
 def _settings(block: type[Any]) -> list[Facts]:
     """What a job may set of a block but its form, with the forms that have it where not all do."""
-    choices, rows = _forms(block), dict[str, Facts]()
-    usual = {_choice(block, word, block.setting(word)): block for word, _ in choices[:1]}
-    made = {_choice(block, word, value): block.make(**{word: value}) for word, value in choices}
-    forms = (usual | made) or {"": block}
+    forms, rows = _labelled(block), dict[str, Facts]()
     for word, item in [pair for form in forms.values() for pair in form.settings().items() if pair[0] != "form"]:
         owners = [label for label, form in forms.items() if word in form.settings()]
         some = "" if len(owners) == len(forms) else _one_of(owners)
         rows[word] = {"name": word, "default": item.value, "unit": "1", "form": some} | _choices(item)
     return [*rows.values()]
+
+
+def _labelled(block: type[Any]) -> dict[str, type[Any]]:
+    """The block in each form that a job may choose, by what the job writes for it, as it is first."""
+    choices = _forms(block)
+    first = {_choice(block, word, block.setting(word)): block for word, _ in choices[:1]}
+    others = {_choice(block, word, value): block.make(**{word: value}) for word, value in choices}
+    return (first | others) or {"": block}
 
 
 def _one_of(labels: list[str]) -> str:
@@ -170,10 +175,9 @@ def _parameters(block: type[Any]) -> list[Facts]:
 
 def _variants(block: type[Any]) -> dict[str, dict[str, Any]]:
     """The parameters of each form that a block may have, by what a job writes for it."""
-    choices = [] if "form" in block.chosen_settings else _forms(block)
-    first = {_choice(block, word, block.setting(word)): block.parameters() for word, _ in choices[:1]}
-    others = {_choice(block, word, value): block.make(**{word: value}).parameters() for word, value in choices}
-    return (first | others) or {"": block.parameters()}
+    if "form" in block.chosen_settings:
+        return {"": block.parameters()}
+    return {label: form.parameters() for label, form in _labelled(block).items()}
 
 
 def _optimizer(name: str) -> Facts:
