@@ -76,7 +76,7 @@ def _meaning(row: Facts) -> str:
     fixed = "" if row["value"] is None else f" Fixed at {row['value']:g} unless the job gives bounds or another value."
     effect = "" if row["effect"] is None else f" With {_needed(row['effect'])} only."
     per_record = " Each record has its own." if row["per_record"] else ""
-    apart = f" Seen is what the bounds of `{row['adds_to']}` and of the rest of its block leave out: fix what is known."
+    apart = f" Wide bounds of `{row['adds_to']}` or of the rest of its block hide it: fix what is known."
     return row["doc"] + fixed + effect + per_record + _with_form(row) + (apart if row["adds_to"] else "")
 
 

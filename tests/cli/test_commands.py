@@ -19,6 +19,7 @@ import pzt_ident.run.identify
 from pzt_ident.cli.commands import main
 from pzt_ident.errors import InputError, RunError
 from pzt_ident.job.schema import Job
+from pzt_ident.model.description import description_of
 from pzt_ident.model.registry import blocks, optimizers
 from pzt_ident.run.place import Local
 
@@ -358,7 +359,8 @@ class TestWords:
     def test_effect_says_what_to_do(self):
         for word in ("creep", "drift", "load_mass"):
             effect, shown = blocks[word], call("show", word).stdout
-            assert f"\nLeaves much the same trace as: {', '.join(effect.look_alikes)}" in shown
+            alike = description_of(word)["look_alikes"]
+            assert f"\nLeaves much the same trace as: {', '.join(alike)}\n" in shown
             assert f"\nTo tell: {effect.separate_by}\n" in shown
             assert f"\nTo do: {effect.remedy}\n" in shown
         assert re.search(r"\nlumped\.load +kg", shown)
