@@ -1,4 +1,4 @@
-"""python -m experiments.foreign_effect cases|solve|follow|table|steps --kind single --seeds 100:130 --jobs 2"""
+"""python -m experiments.foreign_effect cases|solve|follow|table --kind single --seeds 100:130 --jobs 2"""
 
 import argparse
 import json
@@ -7,7 +7,7 @@ from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 
-from . import cases, follow, score, solve, tally, visibility
+from . import cases, follow, score, solve, tally
 
 
 def _seeds(text):
@@ -32,21 +32,15 @@ def _follow(job, **how):
         _say(job, answer)
 
 
-def _steps(job):
-    kind, seed, _ = job
-    return kind, seed, max(visibility.Rig(cases.draw(kind, seed)).step_errors())
-
-
 def _say(job, answer):
     found = (answer["improvement"] or {}).get("effects")
     print(f"{job[0]} {job[1]}: exit {answer['exit']}, named {found}, {answer['cpu']:.0f} s CPU", flush=True)
 
 
 def main():
-    """Make cases, let the tool answer them, play the drives it proposes, or print tables; what is done is skipped. Or
-    print by how many noise floors 64 steps in a sample move a record of each case at most."""
+    """Make cases, let the tool answer them, play the drives it proposes, or print tables; what is done is skipped."""
     parser = argparse.ArgumentParser(prog="python -m experiments.foreign_effect", description=main.__doc__)
-    parser.add_argument("task", choices=("cases", "solve", "follow", "table", "steps"))
+    parser.add_argument("task", choices=("cases", "solve", "follow", "table"))
     parser.add_argument("--kind", default="single", help="comma between " + ", ".join(cases.KINDS))
     parser.add_argument("--seeds", type=_seeds, default=range(1, 9), help="first:last, the last one left out")
     parser.add_argument("--out", default="results/foreign_effect")
@@ -64,10 +58,6 @@ def main():
         act = _solve if given.task == "solve" else _follow
         with ThreadPoolExecutor(given.jobs) as threads:
             list(threads.map(partial(act, limit=given.limit, on=given.on, budget=given.budget), work))
-    if given.task == "steps":
-        with get_context("fork").Pool(given.jobs) as pool:
-            for kind, seed, error in pool.imap(_steps, work):
-                print(f"{kind} {seed}: {error:.2f}", flush=True)
     if given.task == "table":
         rows = score.rows(given.out)
         (Path(given.out) / "rows.json").write_text(json.dumps(rows, indent=1))

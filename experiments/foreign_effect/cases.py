@@ -13,7 +13,7 @@ from .campaign import campaign, floor, one_frequency, read, slow_loops
 from .family import Family
 from .forms import FORMS, NEEDS
 from .stage import Axis
-from .visibility import Rig, apart
+from .visibility import Rig, Unsettled, apart
 
 KINDS = {"single": 1, "pair": 2, "none": 3, "outside": 4, "family": 5, "loops": 6, "one_frequency": 7}
 KINDS |= {"begun": 8, "begun_none": 9}
@@ -227,7 +227,7 @@ def draw(kind, seed):
             )
             case["job_seed"] = int(rng.integers(2**31))
             return equip(rng, case, effects)
-        except (Redraw, OverflowError):  # of a motion that a fixed step of time does not hold
+        except (Redraw, Unsettled, OverflowError):  # the latter of a motion that runs away
             continue
     raise RuntimeError(f"{kind} {seed}: no draw could be seen")
 
@@ -260,7 +260,7 @@ def equip(rng, case, effects):
     case["floor"], case["seen"] = level, {e: rig.seen(s) for e, s in signatures.items()}
     for entry, effect in ((case["sizes"][e], e) for e in effects):
         rig.put(effect, entry)
-    case["clean"] = rig.readings()
+    case["clean"] = [rig.settled_reading(i, record) for i, record in enumerate(case["records"])]
     return case
 
 

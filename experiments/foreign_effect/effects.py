@@ -8,10 +8,15 @@ import numpy as np
 from .mechanics import lag, linear
 
 
-def delay(u, t, dead, jitter=0.0, rng=None):
-    """u(t - dead), each sample late by a draw of its own where there is jitter."""
-    late = dead + (jitter * rng.standard_normal(len(t)) if jitter else 0.0)
-    return np.interp(t - late, t, u)
+def delay(u, t, dead):
+    """u(t - dead)."""
+    return np.interp(t - dead, t, u)
+
+
+def jittered(x, t, jitter, fine, rng):
+    """x, each sample of `fine` steps read at a time that a draw of its own moves."""
+    late = jitter * rng.standard_normal(math.ceil(len(t) / fine))
+    return np.interp(t - np.repeat(late, fine)[: len(t)], t, x)
 
 
 def rate_clip(u, dt, limit):

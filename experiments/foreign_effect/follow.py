@@ -49,6 +49,6 @@ def proposed(case, path):
 def play(case, record):
     """Noisy readings of the sealed stage, {axis: reading}; the record comes after all others."""
     number = len(case["records"])
-    clean = Rig(case).reading(number, record)
+    clean = Rig(case).settled_reading(number, record)
     rng = np.random.default_rng([case["noise_seed"], number])
     return {axis: read(clean[axis], rng, case["sensor"]) for axis in ["x"] + ["y"] * case["y_measured"]}

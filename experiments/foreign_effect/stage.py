@@ -165,7 +165,7 @@ def plan_of(axis):
     return plan
 
 
-def sense(axis, x, t, dt, record, rng):
+def sense(axis, x, t, dt, record, fine, rng):
     """Reading without noise."""
     since = np.maximum(t, 0.0)  # what a record begins with begins at its first sample
     if found := axis.size("drift"):
@@ -179,7 +179,7 @@ def sense(axis, x, t, dt, record, rng):
     if found := axis.size("encoder_cyclic_error"):
         x = act.cyclic_error(x, found[1], found[2])
     if (found := axis.size("delay")) and found[0] == "jitter":
-        x = act.delay(x, t, 0.0, found[2]["jitter"] * found[1], rng)
+        x = act.jittered(x, t, found[2]["jitter"] * found[1], fine, rng)
     return x
 
 
@@ -215,4 +215,4 @@ def simulate(axes, drives, sample, fine, record=0, seed=0, lead=0):
         moved[name] = carry(forces[name], axes[name].base["gain"] * asked[name][1], dt, plan_of(axes[name]))
     if found := axes["x"].size("kinematic_coupling"):
         moved["x"] = moved["x"] + found[1] * moved["y"]
-    return {name: sense(axes[name], moved[name], t, dt, record, rng)[lead * fine :: fine] for name in axes}
+    return {name: sense(axes[name], moved[name], t, dt, record, fine, rng)[lead * fine :: fine] for name in axes}

@@ -11,9 +11,14 @@ from .operators import everett_table, plays, preisach_density
 from .stage import Axis, simulate
 
 FINE = {"amplifier_lag": 8, "sensor_lag": 2, "delay": 4, "slew_limit": 16, "resonance": 2, "amplitude_gain": 4}
-PER_PERIOD, MOST_STEPS = 8, 32
+PER_PERIOD, MOST_AT_FIRST = 8, 32
+SETTLED, MOST_STEPS = 0.1, 128  # noise floors by which twice as many steps to a sample may move readings; steps
 HELD = {"bouc_wen": ("gain", "alpha", "beta", "gamma")}
 HELD["preisach"] = HELD["free_energy"] = ("gain", "remanence", "coercive", "spread", "interaction")
+
+
+class Unsettled(Exception):
+    """A motion that a fixed step of time does not hold."""
 
 
 class Rig:
@@ -34,15 +39,24 @@ class Rig:
         if self.axes["x"].modes and ("cubic_stiffness" in effects or "inside" in entry.get("form", "")):
             fine = max(fine, math.ceil(2 * math.pi * self.axes["x"].modes[0][0] / record.rate / 0.1))
         fastest = max((mode[0] for axis in self.axes.values() for mode in axis.modes), default=0.0)
-        return min(max(fine, math.ceil(PER_PERIOD * fastest / record.rate)), MOST_STEPS)
+        return min(max(fine, math.ceil(PER_PERIOD * fastest / record.rate)), MOST_AT_FIRST)
 
-    def step_errors(self, fine=64):
-        """By how much so many steps to a sample move the readings of x of each record, root mean square, in floors."""
-        apart = [self.reading(i, r)["x"] - self.reading(i, r, fine=fine)["x"] for i, r in enumerate(self.records)]
-        return [float(np.sqrt(np.mean(change**2)) / self.floor) for change in apart]
+    def settled_reading(self, i, record):
+        """Clean readings of record number i in so many steps to a sample that half of them move none by SETTLED floors,
+        root mean square. Raises Unsettled where MOST_STEPS do not suffice."""
+        fine = self._fine(record, self.axes["x"].effects)
+        coarse = self.reading(i, record, fine=fine)
+        while (fine := 2 * fine) <= MOST_STEPS:
+            reading = self.reading(i, record, fine=fine)
+            moved = [np.sqrt(np.mean((reading[axis] - coarse[axis]) ** 2)) for axis in reading]
+            if max(moved) < SETTLED * self.floor:
+                return reading
+            coarse = reading
+        raise Unsettled(f"{MOST_STEPS} steps to a sample do not hold record {i}")
 
     def reading(self, i, record, axes=None, fine=None):
-        """Clean readings of record number i, in so many steps to a sample, by default as many as it needs."""
+        """Clean readings of record number i, in so many steps to a sample, by default as many as are enough to size an
+        effect."""
         axes = axes or self.axes
         fine = fine or self._fine(record, axes["x"].effects)
         return simulate(axes, record.run, 1 / record.rate, fine, i, self.case["noise_seed"], record.lead)

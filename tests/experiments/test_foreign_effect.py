@@ -15,7 +15,7 @@ from experiments.foreign_effect.campaign import DRIVES, Record, drive, floor, no
 from experiments.foreign_effect.family import Family
 from experiments.foreign_effect.forms import FORMS, NEEDS
 from experiments.foreign_effect.stage import Axis, simulate
-from experiments.foreign_effect.visibility import Rig
+from experiments.foreign_effect.visibility import SETTLED, Rig, Unsettled
 
 FOLDER = Path(operators.__file__).parent
 BOUC_WEN = {"kind": "bouc_wen", "gain": 0.1, "alpha": 0.4, "beta": 0.05, "gamma": 0.02}
@@ -338,4 +338,25 @@ def test_a_mode_that_samples_are_too_slow_for_has_steps_enough_in_its_period(fre
     axes = {"x": Axis(dict(BOUC_WEN), [(frequency, 0.015, 1.0)])}
     rig = Rig({"axes": axes, "records": [record], "sensor": {"sigma": 0.003, "count": 0.0}, "noise_seed": 1})
     assert rig._fine(record, {}) == least
-    assert rig.step_errors()[0] < 0.3
+
+
+@pytest.mark.parametrize("form", ["constant", "jitter"])
+def test_readings_are_those_of_a_simulation_in_finer_steps(form):
+    rig, record = lone_rig({"delay": {"form": form, "size": 1.7e-3, "jitter": 0.1}})
+    finest = rig.reading(0, record, fine=256)["x"]
+    assert np.sqrt(np.mean((rig.reading(0, record)["x"] - finest) ** 2)) > 2 * SETTLED * rig.floor
+    assert np.sqrt(np.mean((rig.settled_reading(0, record)["x"] - finest) ** 2)) < 2 * SETTLED * rig.floor
+
+
+def test_a_motion_that_no_step_holds_is_said():
+    rig, record = lone_rig({})
+    rig.reading = lambda i, record, fine=1: {"x": np.full(record.samples, float(fine.bit_length() % 2))}
+    with pytest.raises(Unsettled, match="record 0"):
+        rig.settled_reading(0, record)
+
+
+def lone_rig(found):
+    """One axis without mechanics, with these effects, and a record of sines."""
+    axis = Axis(BOUC_WEN | {"gain": 1.0}, [], found)
+    rig = Rig({"axes": {"x": axis}, "records": [], "sensor": {"sigma": 0.003, "count": 0.0}, "noise_seed": 1})
+    return rig, Record("sines", "identify", 200.0, {"x": 50 - 50 * np.cos(np.arange(400) / 9)})
